@@ -1,0 +1,208 @@
+#include "core/assembler.hpp"
+
+namespace drev {
+
+Assembler::Assembler(const System& system)
+    : system_(system), u_(system.prescribed().size()) {
+  set_time(0.0);
+}
+
+void Assembler::set_time(double t) {
+  t_ = t;
+  if (system_.reference()) nominal_ = system_.reference()->at(t);
+  if (system_.any_prescribed_moves())
+    for (std::size_t k = 0; k < u_.size(); ++k)
+      if (system_.prescribed()[k].at) u_[k] = system_.prescribed()[k].at(t);
+}
+
+MotionPoint Assembler::node_motion(int node, const State& s) const {
+  const NodeMap& map = system_.node_map(node);
+  if (map.unknown >= 0)
+    return {map.coeff * s.z[map.unknown], map.coeff * s.v[map.unknown],
+            map.coeff * s.a[map.unknown]};
+  const MotionPoint& u = u_[at(map.prescribed)];
+  return {map.coeff * u.value, map.coeff * u.rate, map.coeff * u.acceleration};
+}
+
+double Assembler::node_angle(int node, const Vector& z) const {
+  const NodeMap& map = system_.node_map(node);
+  const double q = map.unknown >= 0 ? z[map.unknown] : u_[at(map.prescribed)].value;
+  return system_.ratio(node) * nominal_.value + map.coeff * q;
+}
+
+LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector& v) const {
+  const NodeMap& map = system_.node_map(term.node);
+  const double n = system_.ratio(term.node);
+  const double q = map.unknown >= 0 ? z[map.unknown] : u_[at(map.prescribed)].value;
+  const double q_dot = map.unknown >= 0 ? v[map.unknown] : u_[at(map.prescribed)].rate;
+  return term.load->evaluate({t_, n * nominal_.value, map.coeff * q,
+                              n * nominal_.rate + map.coeff * q_dot});
+}
+
+void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
+  const int n = system_.size();
+  p.setZero(n);
+  if (nominal_.acceleration != 0.0)
+    p -= nominal_.acceleration * system_.nominal_inertia().head(n);
+  if (nominal_.rate != 0.0) p -= nominal_.rate * system_.nominal_drag().head(n);
+  if (system_.any_prescribed_moves()) {
+    const MatrixSet& zu = system_.coupling_zu();
+    for (int k = 0; k < system_.prescribed_count(); ++k) {
+      const MotionPoint& u = u_[at(k)];
+      for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it)
+        p[it.row()] -= it.value() * u.acceleration;
+      for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it)
+        p[it.row()] -= it.value() * u.rate;
+      for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
+        p[it.row()] -= it.value() * u.value;
+    }
+  }
+  for (const LoadTerm& term : system_.loads()) {
+    const NodeMap& map = system_.node_map(term.node);
+    if (map.unknown >= 0) p[map.unknown] += map.coeff * load(term, z, v).torque;
+  }
+}
+
+ScalarInput Assembler::input(const ScalarTerm& term, const Vector& z, const Vector& v) const {
+  ScalarInput in;
+  in.t = t_;
+  for (const Entry& e : term.z) {
+    in.x += e.coeff * z[e.index];
+    in.x_dot += e.coeff * v[e.index];
+  }
+  for (const Entry& e : term.u) {
+    in.x += e.coeff * u_[at(e.index)].value;
+    in.x_dot += e.coeff * u_[at(e.index)].rate;
+  }
+  if (term.phase_node >= 0) {
+    const double n = system_.ratio(term.phase_node);
+    const Offset offset = term.force->offset(n * nominal_.value);
+    in.x -= offset.e;
+    in.x_dot -= offset.de_dangle * n * nominal_.rate;
+    in.angle = node_angle(term.phase_node, z);
+  }
+  return in;
+}
+
+void Assembler::add_scalar_forces(const Vector& z, const Vector& v, Vector& f) const {
+  for (const ScalarTerm& term : system_.scalars()) {
+    const double y = respond(term, z, v).y;
+    for (const Entry& e : term.z) f[e.index] += e.coeff * y;
+  }
+}
+
+LocalState Assembler::local_state(const GeneralTerm& g, const Vector& z, const Vector& v,
+                                  const Vector& history) const {
+  LocalState local;
+  const auto n = static_cast<Eigen::Index>(g.nodes.size());
+  local.t = t_;
+  local.q.resize(n);
+  local.v.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const NodeMap& map = system_.node_map(g.nodes[static_cast<std::size_t>(i)]);
+    const bool free = map.unknown >= 0;
+    local.q[i] = map.coeff * (free ? z[map.unknown] : u_[at(map.prescribed)].value);
+    local.v[i] = map.coeff * (free ? v[map.unknown] : u_[at(map.prescribed)].rate);
+  }
+  local.history = {history.data() + g.history_begin,
+                   static_cast<std::size_t>(g.force->history_size())};
+  return local;
+}
+
+namespace {
+
+LocalResponse zero_response(std::size_t nodes, const GeneralTerm& g, Vector& history_new) {
+  const auto n = static_cast<Eigen::Index>(nodes);
+  LocalResponse r;
+  r.f.setZero(n);
+  r.stiffness.setZero(n, n);
+  r.damping.setZero(n, n);
+  r.history = {history_new.data() + g.history_begin,
+               static_cast<std::size_t>(g.force->history_size())};
+  return r;
+}
+
+}  // namespace
+
+void Assembler::add_general_forces(const Vector& z, const Vector& v, const Vector& history,
+                                   Vector& f, Vector& history_new) const {
+  for (const GeneralTerm& g : system_.generals()) {
+    LocalResponse r = zero_response(g.nodes.size(), g, history_new);
+    g.force->evaluate(local_state(g, z, v, history), r);
+    for (std::size_t i = 0; i < g.nodes.size(); ++i) {
+      const NodeMap& map = system_.node_map(g.nodes[i]);
+      if (map.unknown >= 0) f[map.unknown] += map.coeff * r.f[static_cast<Eigen::Index>(i)];
+    }
+  }
+}
+
+void Assembler::linear_values(const Weights& w, Vector& values) const {
+  values = w.m * system_.mass_values() + w.c * system_.damping_values() +
+           w.k * system_.stiffness_values();
+}
+
+void Assembler::add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const {
+  std::size_t s = 0;
+  for (const Entry& row : term.z)
+    for (const Entry& col : term.z) values[term.slots[s++]] += slope * row.coeff * col.coeff;
+}
+
+void Assembler::add_general_slopes(const Weights& w, const Vector& z, const Vector& v,
+                                   const Vector& history, Vector& values) const {
+  if (system_.generals().empty()) return;
+  Vector scratch(system_.history_size());
+  for (const GeneralTerm& g : system_.generals()) {
+    LocalResponse r = zero_response(g.nodes.size(), g, scratch);
+    g.force->evaluate(local_state(g, z, v, history), r);
+    std::size_t s = 0;
+    for (std::size_t i = 0; i < g.nodes.size(); ++i)
+      for (std::size_t j = 0; j < g.nodes.size(); ++j, ++s)
+        if (g.slots[s] >= 0) {
+          const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+          values[g.slots[s]] += system_.node_map(g.nodes[i]).coeff *
+                                system_.node_map(g.nodes[j]).coeff *
+                                (w.k * r.stiffness(a, b) + w.c * r.damping(a, b));
+        }
+  }
+}
+
+void Assembler::tangent_values(const Weights& w, const Vector& z, const Vector& v,
+                               const Vector& history, bool with_loads, Vector& values) const {
+  linear_values(w, values);
+  for (const ScalarTerm& term : system_.scalars()) {
+    const ScalarResponse r = respond(term, z, v);
+    add_scalar_slope(term, w.k * r.dy_dx + w.c * r.dy_dx_dot, values);
+  }
+  if (with_loads)
+    for (const LoadTerm& term : system_.loads())
+      if (term.slot >= 0 && term.load->depends_on_motion()) {
+        const LoadResponse r = load(term, z, v);
+        const double c = system_.node_map(term.node).coeff;
+        values[term.slot] -= c * c * (w.k * r.dtorque_dangle + w.c * r.dtorque_dspeed);
+      }
+  add_general_slopes(w, z, v, history, values);
+}
+
+void Assembler::contact_values(const Weights& w, Contact contact, Vector& values) const {
+  linear_values(w, values);
+  for (const ScalarTerm& term : system_.scalars()) {
+    if (contact == Contact::open && term.force->gap()) continue;
+    add_scalar_slope(
+        term, w.k * term.force->closed_stiffness() + w.c * term.force->closed_damping(), values);
+  }
+  const Vector zero = Vector::Zero(system_.size());
+  add_general_slopes(w, zero, zero, State::initial(system_).history, values);
+}
+
+void Assembler::multiply(const Vector& values, const Vector& x, Vector& out) const {
+  const SparseMatrix& p = system_.pattern();
+  const int* outer = p.outerIndexPtr();
+  const int* inner = p.innerIndexPtr();
+  out.setZero(p.rows());
+  for (int col = 0; col < p.cols(); ++col) {
+    const double xc = x[col];
+    for (int s = outer[col]; s < outer[col + 1]; ++s) out[inner[s]] += values[s] * xc;
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,70 @@
+#pragma once
+/// Assembler: evaluates the terms of a System that are not constant, at one time. Holds what is known
+/// about that time (nominal motion, prescribed motions) and nothing else; one per thread.
+#include "core/state.hpp"
+
+namespace drev {
+
+/// S = m M + c C + k K + the laws' slopes with the same weights. Static, implicit steps and modal shifts
+/// are this one call. With the acceleration as unknown: m = 1 - alpha_m, c = (1 - alpha_f) gamma h, ...
+struct Weights {
+  double m = 0.0, c = 0.0, k = 0.0;
+};
+
+class Assembler {
+ public:
+  explicit Assembler(const System& system);
+
+  const System& system() const { return system_; }
+  /// Moves to time t [s]: nominal motion phi(t) and prescribed motions u(t).
+  void set_time(double t);
+  double time() const { return t_; }
+  const MotionPoint& nominal() const { return nominal_; }
+  const MotionPoint& prescribed(int k) const { return u_[at(k)]; }
+
+  /// Deviation, its rate and acceleration of a node.
+  MotionPoint node_motion(int node, const State& s) const;
+  /// Actual angle theta = n phi + q.
+  double node_angle(int node, const Vector& z) const;
+
+  /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t).
+  void external(const Vector& z, const Vector& v, Vector& p) const;
+  LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
+
+  /// What the law of a scalar term sees.
+  ScalarInput input(const ScalarTerm& term, const Vector& z, const Vector& v) const;
+  ScalarResponse respond(const ScalarTerm& term, const Vector& z, const Vector& v) const {
+    return term.force->evaluate(input(term, z, v));
+  }
+  /// f += sum_j b_j y_j.
+  void add_scalar_forces(const Vector& z, const Vector& v, Vector& f) const;
+  /// f += general elements' forces; history_new receives their history if the step is accepted.
+  void add_general_forces(const Vector& z, const Vector& v, const Vector& history, Vector& f,
+                          Vector& history_new) const;
+
+  /// Values of m M + c C + k K on the pattern.
+  void linear_values(const Weights& w, Vector& values) const;
+  /// The same plus the laws', loads' and general elements' slopes at (z, v). Loads enter with their
+  /// slopes where with_loads is set (their tangent can be indefinite).
+  void tangent_values(const Weights& w, const Vector& z, const Vector& v, const Vector& history,
+                      bool with_loads, Vector& values) const;
+  /// Values with every law linearised in a stated contact state: what modes are computed of.
+  void contact_values(const Weights& w, Contact contact, Vector& values) const;
+
+  /// out = A x with A's values on the pattern.
+  void multiply(const Vector& values, const Vector& x, Vector& out) const;
+
+ private:
+  LocalState local_state(const GeneralTerm& g, const Vector& z, const Vector& v,
+                         const Vector& history) const;
+  void add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const;
+  void add_general_slopes(const Weights& w, const Vector& z, const Vector& v,
+                          const Vector& history, Vector& values) const;
+
+  const System& system_;
+  double t_ = 0.0;
+  MotionPoint nominal_;
+  std::vector<MotionPoint> u_;
+};
+
+}  // namespace drev

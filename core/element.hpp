@@ -1,0 +1,94 @@
+#pragma once
+/// One entry of the catalogue. An element is immutable, does not know its place in the model, and sees
+/// no global matrix: describe() states its terms in its own node order, once.
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/general_force.hpp"
+#include "core/load.hpp"
+#include "core/scalar_force.hpp"
+
+namespace drev {
+
+/// b^T q over the element's nodes (internal nodes after the named ones).
+using LocalRow = Eigen::VectorXd;
+
+/// x = b^T q - e, f = b y(x, x_dot, t).
+struct ScalarSpec {
+  LocalRow b;
+  const ScalarForce* force = nullptr;  ///< owned by the element
+  int phase_node = -1;                 ///< local node whose angle the law sees; -1: none
+  bool along_line_of_action = false;   ///< y is a force in N although the nodes rotate (gear mesh)
+};
+
+/// A load on a local node.
+struct LoadSpec {
+  int node = 0;
+  const Load* load = nullptr;  ///< owned by the element
+};
+
+/// b^T n = 0: what the element asks of the nominal ratios n of its nodes, at most two of them. With
+/// one entry the node stands still nominally (it is tied to ground).
+struct ClosureSpec {
+  LocalRow b;
+  bool only_in_contact = false;  ///< no tie while the contact is open
+};
+
+/// A force or torque to report: stiffness^T q + damping^T v.
+struct OutputSpec {
+  std::string suffix;  ///< empty, or what distinguishes several of one element ("2")
+  LocalRow stiffness, damping;
+};
+
+/// What an element adds to the equation of motion. The matrices come zeroed, n x n over its nodes.
+struct Terms {
+  explicit Terms(int nodes)
+      : mass(Eigen::MatrixXd::Zero(nodes, nodes)),
+        damping(Eigen::MatrixXd::Zero(nodes, nodes)),
+        stiffness(Eigen::MatrixXd::Zero(nodes, nodes)) {}
+
+  Eigen::MatrixXd mass, damping, stiffness;  ///< constant, symmetric
+  bool rayleigh = false;                     ///< mass and stiffness take part in C = a M + b K
+  std::vector<ScalarSpec> scalars;
+  std::vector<LoadSpec> loads;
+  std::vector<const GeneralForce*> generals;
+  std::vector<ClosureSpec> closures;
+  /// Rows with b^T q = 0 exactly: ideal ratios, eliminated.
+  std::vector<LocalRow> constraints;
+  std::vector<OutputSpec> outputs;
+  double rayleigh_a = 0.0;  ///< 1/s, for the whole model
+  double rayleigh_b = 0.0;  ///< s
+};
+
+class Element {
+ public:
+  virtual ~Element() = default;
+  Element() = default;
+  Element(const Element&) = delete;
+  Element& operator=(const Element&) = delete;
+
+  virtual std::string_view type() const = 0;  ///< as the catalogue calls it, e.g. "shaft spring"
+  virtual int min_nodes() const = 0;          ///< named nodes it needs
+  virtual int max_nodes() const { return min_nodes(); }
+  virtual int internal_nodes() const { return 0; }  ///< nodes that it brings along
+  /// Reports every parameter out of range. Called by Model::build(); describe() only if none is.
+  virtual void check(ParameterCheck& check) const = 0;
+  /// Adds its terms; nodes = named nodes given + internal nodes.
+  virtual void describe(int nodes, Terms& terms) const = 0;
+};
+
+/// Shared by the elements with two ends or one end and ground: (-1, 1) or (1). The relative motion is
+/// end b minus end a; to ground it is the node's own.
+inline LocalRow relative_motion(int nodes) {
+  LocalRow b(nodes);
+  if (nodes == 1)
+    b << 1.0;
+  else
+    b << -1.0, 1.0;
+  return b;
+}
+
+}  // namespace drev

@@ -1,0 +1,127 @@
+#include "core/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace drev {
+
+namespace {
+
+std::string join(const std::vector<Finding>& findings) {
+  std::string all;
+  for (const Finding& finding : findings) {
+    if (!all.empty()) all += '\n';
+    all += finding.text();
+  }
+  return all;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string Finding::text() const {
+  std::string line = place;
+  if (!parameter.empty()) line += ": " + parameter;
+  if (!value.empty()) {
+    line += " = " + value;
+    if (!unit.empty()) line += " " + unit;
+  }
+  if (!range.empty()) line += (parameter.empty() && value.empty() ? ": " : ", ") + range;
+  return line;
+}
+
+ModelError::ModelError(std::vector<Finding> findings)
+    : std::runtime_error(join(findings)), findings_(std::move(findings)) {}
+
+void ParameterCheck::fail(std::string_view parameter, std::string value, std::string_view unit,
+                          std::string range) {
+  findings_.push_back({place_, std::string(parameter), std::move(value), std::string(unit),
+                       std::move(range)});
+}
+
+void ParameterCheck::finite(std::string_view parameter, double value, std::string_view unit) {
+  if (!std::isfinite(value)) fail(parameter, to_text(value), unit, "must be finite");
+}
+
+void ParameterCheck::positive(std::string_view parameter, double value, std::string_view unit) {
+  if (!(value > 0.0) || !std::isfinite(value))
+    fail(parameter, to_text(value), unit, "must be > 0 and finite");
+}
+
+void ParameterCheck::non_negative(std::string_view parameter, double value,
+                                  std::string_view unit) {
+  if (!(value >= 0.0) || !std::isfinite(value))
+    fail(parameter, to_text(value), unit, "must be >= 0 and finite");
+}
+
+void ParameterCheck::within(std::string_view parameter, double value, double low, double high,
+                            std::string_view unit) {
+  if (!(value >= low && value <= high))
+    fail(parameter, to_text(value), unit,
+         "must be between " + to_text(low) + " and " + to_text(high));
+}
+
+void ParameterCheck::increasing(std::string_view parameter, const std::vector<double>& values,
+                                std::string_view unit) {
+  all_finite(parameter, values, unit);
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (!(values[i] > values[i - 1])) {
+      fail(std::string(parameter) + "[" + std::to_string(i) + "]", to_text(values[i]), unit,
+           "must be greater than the value before it, " + to_text(values[i - 1]));
+      return;
+    }
+}
+
+void ParameterCheck::all_finite(std::string_view parameter, const std::vector<double>& values,
+                                std::string_view unit) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i])) {
+      fail(std::string(parameter) + "[" + std::to_string(i) + "]", to_text(values[i]), unit,
+           "must be finite");
+      return;
+    }
+}
+
+std::string to_text(double value) {
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return {buffer, result.ptr};
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(name, candidates);
+  return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";
+}
+
+}  // namespace drev

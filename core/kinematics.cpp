@@ -1,0 +1,143 @@
+#include "core/kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <queue>
+
+#include "core/ids.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kRatioTolerance = 1e-9;  // relative; teeth give exact ratios, radii 15 digits
+
+struct Edge {
+  int to;
+  double factor;  // n_to = factor * n_from
+  int closure;
+};
+
+struct Walk {
+  std::vector<double> relative;  // ratio to the root of the component
+  std::vector<int> parent, parent_closure;
+};
+
+std::string loop_text(const Walk& walk, const std::vector<Closure>& closures, int a, int b,
+                      int closing) {
+  // Elements on the tree paths from a and b to their common ancestor, then the closing element.
+  std::vector<int> up_a, up_b;
+  for (int i = a; i >= 0; i = walk.parent[at(i)]) up_a.push_back(i);
+  for (int i = b; i >= 0; i = walk.parent[at(i)]) up_b.push_back(i);
+  while (up_a.size() > 1 && up_b.size() > 1 && up_a[up_a.size() - 2] == up_b[up_b.size() - 2]) {
+    up_a.pop_back();
+    up_b.pop_back();
+  }
+  std::vector<std::string> names{closures[at(closing)].element};
+  const auto name_above = [&](int node) {
+    return closures[at(walk.parent_closure[at(node)])].element;
+  };
+  for (std::size_t i = 0; i + 1 < up_b.size(); ++i) names.push_back(name_above(up_b[i]));
+  for (std::size_t i = up_a.size() - 1; i-- > 0;) names.push_back(name_above(up_a[i]));
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " - ") + name;
+  return text;
+}
+
+}  // namespace
+
+std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures,
+                                      bool with_contacts) {
+  std::vector<int> root(at(nodes));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int i) {
+    while (root[at(i)] != i) i = root[at(i)] = root[at(root[at(i)])];
+    return i;
+  };
+  for (const Closure& c : closures)
+    if (c.second >= 0 && (with_contacts || !c.only_in_contact)) {
+      const int a = find(c.first), b = find(c.second);
+      root[at(std::max(a, b))] = std::min(a, b);
+    }
+  std::vector<int> component(at(nodes)), number(at(nodes), -1);
+  int next = 0;
+  for (int i = 0; i < nodes; ++i) {
+    int& n = number[at(find(i))];
+    if (n < 0) n = next++;
+    component[at(i)] = n;
+  }
+  return component;
+}
+
+Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
+                       const std::vector<Closure>& closures, int reference,
+                       std::vector<Finding>& findings) {
+  const int nodes = static_cast<int>(node_names.size());
+  Kinematics k;
+  k.component = connected_components(nodes, closures, true);
+  const int components =
+      nodes == 0 ? 0 : 1 + *std::max_element(k.component.begin(), k.component.end());
+  k.tied_to_ground.assign(at(components), false);
+  k.ratio.assign(at(nodes), 0.0);
+
+  std::vector<std::vector<Edge>> edges(at(nodes));
+  for (std::size_t c = 0; c < closures.size(); ++c) {
+    const Closure& row = closures[c];
+    if (row.second < 0) {
+      k.tied_to_ground[at(k.component[at(row.first)])] = true;
+      continue;
+    }
+    const double factor = -row.b_first / row.b_second;
+    edges[at(row.first)].push_back({row.second, factor, static_cast<int>(c)});
+    edges[at(row.second)].push_back({row.first, 1.0 / factor, static_cast<int>(c)});
+  }
+
+  Walk walk{std::vector<double>(at(nodes), 0.0), std::vector<int>(at(nodes), -1),
+            std::vector<int>(at(nodes), -1)};
+  std::vector<bool> seen(at(nodes), false), reported(closures.size(), false);
+  const auto walk_from = [&](int start, double ratio) {
+    std::queue<int> queue;
+    queue.push(start);
+    seen[at(start)] = true;
+    walk.relative[at(start)] = ratio;
+    while (!queue.empty()) {
+      const int i = queue.front();
+      queue.pop();
+      for (const Edge& e : edges[at(i)]) {
+        const double n = e.factor * walk.relative[at(i)];
+        if (!seen[at(e.to)]) {
+          seen[at(e.to)] = true;
+          walk.relative[at(e.to)] = n;
+          walk.parent[at(e.to)] = i;
+          walk.parent_closure[at(e.to)] = e.closure;
+          queue.push(e.to);
+        } else if (std::abs(n - walk.relative[at(e.to)]) >
+                       kRatioTolerance * std::max(std::abs(n), std::abs(walk.relative[at(e.to)])) &&
+                   !reported[at(e.closure)]) {
+          reported[at(e.closure)] = true;
+          findings.push_back(
+              {model + "/" + closures[at(e.closure)].element, "nominal ratio of " + node_names[at(e.to)],
+               to_text(n), "",
+               "but the rest of the loop gives " + to_text(walk.relative[at(e.to)]) +
+                   "; this loop cannot turn: " + loop_text(walk, closures, i, e.to, e.closure)});
+        }
+      }
+    }
+  };
+  if (reference >= 0) walk_from(reference, 1.0);
+  for (int i = 0; i < nodes; ++i)
+    if (!seen[at(i)]) walk_from(i, 1.0);
+
+  if (reference < 0) return k;
+  const int moving = k.component[at(reference)];
+  for (int i = 0; i < nodes; ++i)
+    if (k.component[at(i)] == moving) k.ratio[at(i)] = walk.relative[at(i)];
+  for (const Closure& row : closures)
+    if (row.second < 0 && k.component[at(row.first)] == moving)
+      findings.push_back({model + "/" + row.element, "node", node_names[at(row.first)], "",
+                          "turns with the reference shaft and cannot be tied to ground by a spring"});
+  return k;
+}
+
+}  // namespace drev

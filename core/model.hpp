@@ -1,0 +1,102 @@
+#pragma once
+/// Model: the description of a drivetrain, in names. build() validates it and returns a System.
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/element.hpp"
+#include "core/ids.hpp"
+#include "core/motion.hpp"
+
+namespace drev {
+
+class System;
+
+/// What a node's one degree of freedom is.
+enum class NodeKind {
+  rotational,    ///< angle [rad], torque [N m], inertia [kg m^2]
+  translational  ///< position [m], force [N], mass [kg]
+};
+
+/// A node by its id or by its name. Names are looked up by build(), so that all errors come at once.
+struct NodeRef {
+  NodeRef(NodeId node) : id(node) {}                         // NOLINT: implicit by intent
+  NodeRef(std::string node) : name(std::move(node)) {}       // NOLINT
+  NodeRef(const char* node) : name(node) {}                  // NOLINT
+  std::optional<NodeId> id;
+  std::string name;
+};
+
+/// One element in its place.
+struct Placement {
+  std::string name;
+  std::shared_ptr<const Element> element;
+  std::vector<NodeRef> nodes;
+  std::vector<NodeId> internal;  ///< nodes that the element brought along
+};
+
+class Model {
+ public:
+  explicit Model(std::string name) : name_(std::move(name)) {}
+
+  /// Adds a node. Names are unique and non-empty, without '.', ',' and line ends (channel names are
+  /// NODE.angle_rad); build() reports those that are not.
+  NodeId add_node(std::string name, NodeKind kind = NodeKind::rotational);
+
+  /// Adds an element of the catalogue or of one's own, e.g.
+  ///   model.add<ShaftSpring>("shaft", {"motor", "pinion"}, {.stiffness = 8.5e3});
+  template <class E>
+  ElementId add(std::string name, std::initializer_list<NodeRef> nodes,
+                typename E::Params params) {
+    return add(std::move(name), nodes, std::make_shared<const E>(std::move(params)));
+  }
+  ElementId add(std::string name, std::vector<NodeRef> nodes,
+                std::shared_ptr<const Element> element);
+
+  /// The node follows its nominal motion exactly (stands still where there is none): q = 0.
+  void hold(NodeRef node);
+  /// The node turns at constant speed omega [rad/s]: q = 0. Becomes the reference shaft if the model
+  /// has none; otherwise omega must equal the node's nominal speed.
+  void constant_speed(NodeRef node, double omega);
+  /// The node's deviation from its nominal motion is given: q = u(t).
+  void given_motion(NodeRef node, Motion deviation);
+  /// Nominal motion phi(t) of the reference shaft, through this node: theta_i = n_i phi(t) + q_i.
+  void set_reference(NodeRef node, Motion nominal);
+  /// Deviation and its rate at the start; zero unless set. rad, rad/s (or m, m/s).
+  void set_initial(NodeRef node, double deviation, double rate);
+
+  /// Validates, finds the nominal ratios, numbers the unknowns and fixes the sparsity.
+  /// Throws ModelError with every finding.
+  System build() const;
+
+  struct Prescription {
+    NodeRef node;
+    std::optional<Motion> deviation;  ///< none: q = 0
+    std::optional<double> omega;      ///< from constant_speed
+  };
+  struct Initial {
+    NodeRef node;
+    double deviation, rate;
+  };
+  const std::string& name() const { return name_; }
+  const std::vector<std::string>& node_names() const { return node_names_; }
+  const std::vector<NodeKind>& node_kinds() const { return node_kinds_; }
+  const std::vector<Placement>& placements() const { return placements_; }
+  const std::vector<Prescription>& prescriptions() const { return prescriptions_; }
+  const std::vector<Initial>& initials() const { return initials_; }
+  const std::vector<std::pair<NodeRef, Motion>>& references() const { return references_; }
+
+ private:
+  std::string name_;
+  std::vector<std::string> node_names_;
+  std::vector<NodeKind> node_kinds_;
+  std::vector<Placement> placements_;
+  std::vector<Prescription> prescriptions_;
+  std::vector<Initial> initials_;
+  std::vector<std::pair<NodeRef, Motion>> references_;
+};
+
+}  // namespace drev

@@ -1,0 +1,39 @@
+#include "core/motion.hpp"
+
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace drev {
+
+Motion constant_speed(double omega, double phi_0) {
+  std::vector<Finding> findings;
+  ParameterCheck check("constant_speed", findings);
+  check.finite("omega", omega, "rad/s");
+  check.finite("phi_0", phi_0, "rad");
+  if (!findings.empty()) throw ModelError(findings);
+  return {[omega, phi_0](double t) { return MotionPoint{phi_0 + omega * t, omega, 0.0}; }, {}};
+}
+
+Motion run_up(double omega_0, double omega_1, double t_0, double t_1) {
+  std::vector<Finding> findings;
+  ParameterCheck check("run_up", findings);
+  check.finite("omega_0", omega_0, "rad/s");
+  check.finite("omega_1", omega_1, "rad/s");
+  check.finite("t_0", t_0, "s");
+  if (!(t_1 > t_0) || !std::isfinite(t_1))
+    check.fail("t_1", to_text(t_1), "s", "must be greater than t_0 = " + to_text(t_0));
+  if (!findings.empty()) throw ModelError(findings);
+  const double acceleration = (omega_1 - omega_0) / (t_1 - t_0);
+  const auto at = [=](double t) {
+    if (t < t_0) return MotionPoint{omega_0 * t, omega_0, 0.0};
+    const double s = std::min(t, t_1) - t_0;
+    MotionPoint p{omega_0 * (t_0 + s) + 0.5 * acceleration * s * s, omega_0 + acceleration * s,
+                  acceleration};
+    if (t >= t_1) p = {p.value + omega_1 * (t - t_1), omega_1, 0.0};
+    return p;
+  };
+  return {at, {t_0, t_1}};
+}
+
+}  // namespace drev

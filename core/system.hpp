@@ -1,0 +1,174 @@
+#pragma once
+/// System: the immutable result of Model::build(). Holds the constant matrices, the terms that are not
+/// constant, and the map between the user's nodes and the unknowns. One System serves many threads.
+///
+///   M z'' + C z' + K z + sum_j b_j y_j(x_j, x_j', t) = p(t, q) - m phi'' - d phi' - coupling to u(t)
+///
+/// Every node's deviation is q_i = coeff z_k or q_i = coeff u_k: prescribed nodes (u) and ideal gear
+/// ratios are eliminated. m = T^T M n, and d = T^T C n is the mean drag of dashpots whose ends differ in
+/// nominal speed (zero for shafts and meshes).
+#include <Eigen/SparseCore>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kinematics.hpp"
+#include "core/model.hpp"
+
+namespace drev {
+
+using Vector = Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// q_node = coeff * z[unknown], or coeff * u[prescribed].
+struct NodeMap {
+  int unknown = -1;
+  int prescribed = -1;
+  double coeff = 1.0;
+};
+
+/// coefficient of one unknown (or prescribed motion, or node) in a row
+struct Entry {
+  int index = 0;
+  double coeff = 0.0;
+};
+
+/// x = sum z + sum u - e.
+struct ScalarTerm {
+  ElementId element{};
+  const ScalarForce* force = nullptr;
+  std::vector<Entry> z, u;
+  int phase_node = -1;
+  bool along_line_of_action = false;
+  std::vector<int> slots;  ///< of (z_a, z_b), row by row, in the pattern's values
+};
+
+struct LoadTerm {
+  ElementId element{};
+  int node = 0;
+  const Load* load = nullptr;
+  int slot = -1;  ///< diagonal slot of its unknown; -1 where the node is prescribed
+};
+
+struct GeneralTerm {
+  ElementId element{};
+  const GeneralForce* force = nullptr;
+  std::vector<int> nodes;
+  int history_begin = 0;
+  std::vector<int> slots;  ///< -1 where a node is prescribed
+};
+
+/// A force or torque to report, over nodes.
+struct OutputTerm {
+  ElementId element{};
+  std::string suffix;
+  std::vector<Entry> stiffness, damping;
+};
+
+/// b_first q_first + b_second q_second = 0, exactly.
+struct IdealRatio {
+  ElementId element{};
+  int first = 0, second = 0;
+  double b_first = 0.0, b_second = 0.0;
+};
+
+/// Constant matrices that belong together: mass, damping (Rayleigh included), stiffness.
+struct MatrixSet {
+  SparseMatrix mass, damping, stiffness;
+};
+
+/// State of the contacts that a linearisation is made about.
+enum class Contact {
+  closed,  ///< every contact closed, mesh stiffness at its mean over the phase
+  open     ///< every law that has a gap is open
+};
+
+class System {
+ public:
+  const std::string& name() const { return name_; }
+  int size() const { return static_cast<int>(pattern_.rows()); }  ///< number of unknowns
+  int node_count() const { return static_cast<int>(node_names_.size()); }
+  int prescribed_count() const { return static_cast<int>(prescribed_.size()); }
+  int history_size() const { return history_size_; }
+  const std::vector<std::string>& node_names() const { return node_names_; }
+  NodeKind node_kind(int node) const { return node_kinds_[at(node)]; }
+  const NodeMap& node_map(int node) const { return node_map_[at(node)]; }
+  /// Position of a node by name; throws ModelError with the nearest name.
+  int node(const std::string& name) const;
+  const std::vector<Placement>& placements() const { return placements_; }
+  /// A node that stands for unknown z[k], for messages.
+  const std::string& unknown_name(int k) const { return node_names_[at(unknown_node_[at(k)])]; }
+
+  /// n_i: nominal ratio of the node to the reference shaft.
+  double ratio(int node) const { return kinematics_.ratio[at(node)]; }
+  const std::optional<Motion>& reference() const { return reference_; }
+  /// Motions u_k of the prescribed nodes; empty function: u = 0.
+  const std::vector<Motion>& prescribed() const { return prescribed_; }
+  int prescribed_node(int k) const { return prescribed_node_[at(k)]; }
+  bool any_prescribed_moves() const { return any_prescribed_moves_; }
+
+  /// Union of all element cliques, structurally symmetric; its values are not used.
+  const SparseMatrix& pattern() const { return pattern_; }
+  /// Values of M, C, K on the pattern.
+  const Vector& mass_values() const { return mass_; }
+  const Vector& damping_values() const { return damping_; }
+  const Vector& stiffness_values() const { return stiffness_; }
+  /// Columns of the prescribed motions: rows are unknowns (zu) or prescribed motions (uu).
+  const MatrixSet& coupling_zu() const { return zu_; }
+  const MatrixSet& coupling_uu() const { return uu_; }
+  /// Over nodes, before elimination; only where the model has ideal ratios (to find their torques).
+  const std::optional<MatrixSet>& node_matrices() const { return node_matrices_; }
+  /// m and d over unknowns, then prescribed motions.
+  const Vector& nominal_inertia() const { return nominal_inertia_; }
+  const Vector& nominal_drag() const { return nominal_drag_; }
+
+  const std::vector<ScalarTerm>& scalars() const { return scalars_; }
+  const std::vector<LoadTerm>& loads() const { return loads_; }
+  const std::vector<GeneralTerm>& generals() const { return generals_; }
+  const std::vector<OutputTerm>& outputs() const { return outputs_; }
+  const std::vector<IdealRatio>& ideal_ratios() const { return ideal_ratios_; }
+  bool loads_depend_on_motion() const { return loads_depend_on_motion_; }
+  bool symmetric_tangent() const { return symmetric_tangent_; }
+
+  /// Times at which a load or known motion jumps or kinks, ascending, without doubles [s].
+  const std::vector<double>& breakpoints() const { return breakpoints_; }
+  const Vector& initial_deviation() const { return initial_z_; }
+  const Vector& initial_rate() const { return initial_v_; }
+
+  /// Number of rigid-body motions, from the graph: parts tied neither to ground nor to a prescribed
+  /// node. Names of one node each, for messages.
+  std::vector<std::string> floating_parts(Contact contact) const;
+  int rigid_mode_count(Contact contact) const {
+    return static_cast<int>(floating_parts(contact).size());
+  }
+
+ private:
+  friend class SystemBuilder;
+  System() = default;
+
+  std::string name_;
+  std::vector<std::string> node_names_;
+  std::vector<NodeKind> node_kinds_;
+  std::vector<Placement> placements_;
+  std::vector<NodeMap> node_map_;
+  std::vector<int> unknown_node_, prescribed_node_;
+  Kinematics kinematics_;
+  std::vector<Closure> closures_;
+  std::optional<Motion> reference_;
+  std::vector<Motion> prescribed_;
+  SparseMatrix pattern_;
+  Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, initial_z_, initial_v_;
+  MatrixSet zu_, uu_;
+  std::optional<MatrixSet> node_matrices_;
+  std::vector<ScalarTerm> scalars_;
+  std::vector<LoadTerm> loads_;
+  std::vector<GeneralTerm> generals_;
+  std::vector<OutputTerm> outputs_;
+  std::vector<IdealRatio> ideal_ratios_;
+  std::vector<double> breakpoints_;
+  int history_size_ = 0;
+  bool any_prescribed_moves_ = false, loads_depend_on_motion_ = false, symmetric_tangent_ = true;
+};
+
+}  // namespace drev
