@@ -1,0 +1,245 @@
+#include "core/channel.hpp"
+
+#include <algorithm>
+
+namespace drev {
+
+class ChannelFinder {
+ public:
+  explicit ChannelFinder(const System& system) : system_(system) {
+    for (int i = 0; i < system.node_count(); ++i) add_node(i);
+    for (std::size_t i = 0; i < system.outputs().size(); ++i) {
+      const OutputTerm& o = system.outputs()[i];
+      const auto& row = o.stiffness.empty() ? o.damping : o.stiffness;
+      const bool turns = row.empty() || rotational(row.front().index);
+      const std::string suffix = o.suffix.empty() ? "" : "_" + o.suffix;
+      add(element(o.element) + suffix + force_name(turns), force_unit(turns),
+          Channel::Kind::output, static_cast<int>(i));
+    }
+    for (std::size_t j = 0; j < system.scalars().size(); ++j) {
+      const ScalarTerm& s = system.scalars()[j];
+      const Placement& p = system.placements()[at(index(s.element))];
+      const bool line = s.along_line_of_action;
+      const bool turns = !line && rotational(first_node(p));
+      add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force,
+          static_cast<int>(j));
+      add(p.name + (turns ? ".deflection_rad" : ".deflection_m"), turns ? "rad" : "m",
+          Channel::Kind::deflection, static_cast<int>(j));
+    }
+    for (std::size_t l = 0; l < system.loads().size(); ++l) {
+      const bool turns = rotational(system.loads()[l].node);
+      add(element(system.loads()[l].element) + force_name(turns), force_unit(turns),
+          Channel::Kind::load, static_cast<int>(l));
+    }
+    for (std::size_t r = 0; r < system.ideal_ratios().size(); ++r) {
+      const bool turns = rotational(system.ideal_ratios()[r].second);
+      add(element(system.ideal_ratios()[r].element) + force_name(turns), force_unit(turns),
+          Channel::Kind::ideal_ratio, static_cast<int>(r));
+    }
+  }
+
+  std::vector<Channel> channels;
+
+  /// NODE_A-NODE_B.twist_rad; node names may hold '-' themselves.
+  bool find_difference(const std::string& name, Channel& channel) const {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) return false;
+    const std::string kind = name.substr(dot + 1), pair = name.substr(0, dot);
+    if (kind != "twist_rad" && kind != "distance_m") return false;
+    for (std::size_t cut = pair.find('-'); cut != std::string::npos; cut = pair.find('-', cut + 1)) {
+      const int a = node(pair.substr(0, cut)), b = node(pair.substr(cut + 1));
+      if (a < 0 || b < 0) continue;
+      const bool turns = rotational(a);
+      if (turns != rotational(b) || turns != (kind == "twist_rad")) return false;
+      channel.name_ = name;
+      channel.unit_ = turns ? "rad" : "m";
+      channel.kind_ = Channel::Kind::difference;
+      channel.index_ = a;
+      channel.second_ = b;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  void add(std::string name, std::string unit, Channel::Kind kind, int index) {
+    Channel c;
+    c.name_ = std::move(name);
+    c.unit_ = std::move(unit);
+    c.kind_ = kind;
+    c.index_ = index;
+    channels.push_back(std::move(c));
+  }
+  void add_node(int i) {
+    using Kind = Channel::Kind;
+    const std::string& name = system_.node_names()[at(i)];
+    const bool turns = rotational(i);
+    add(name + (turns ? ".angle_rad" : ".position_m"), turns ? "rad" : "m", Kind::value, i);
+    add(name + (turns ? ".speed_rad_per_s" : ".velocity_m_per_s"), turns ? "rad/s" : "m/s",
+        Kind::rate, i);
+    add(name + (turns ? ".acceleration_rad_per_s2" : ".acceleration_m_per_s2"),
+        turns ? "rad/s^2" : "m/s^2", Kind::acceleration, i);
+    const NodeMap& map = system_.node_map(i);
+    if (map.prescribed >= 0 && system_.prescribed_node(map.prescribed) == i)
+      add(name + (turns ? ".reaction_Nm" : ".reaction_N"), force_unit(turns), Kind::reaction,
+          map.prescribed);
+  }
+  static std::string force_name(bool turns) { return turns ? ".torque_Nm" : ".force_N"; }
+  static std::string force_unit(bool turns) { return turns ? "N m" : "N"; }
+  bool rotational(int node) const { return system_.node_kind(node) == NodeKind::rotational; }
+  std::string element(ElementId id) const { return system_.placements()[at(index(id))].name; }
+  int node(const std::string& name) const {
+    const auto& names = system_.node_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  }
+  int first_node(const Placement& p) const {
+    return p.nodes.front().id ? index(*p.nodes.front().id) : node(p.nodes.front().name);
+  }
+
+  const System& system_;
+};
+
+namespace {
+
+/// Sum of all forces on the left side less the loads, at one node, before elimination.
+Vector node_residual(const Assembler& assembler, const State& s) {
+  const System& system = assembler.system();
+  const int nodes = system.node_count();
+  Vector q(nodes), v(nodes), a(nodes);
+  for (int i = 0; i < nodes; ++i) {
+    const MotionPoint m = assembler.node_motion(i, s);
+    q[i] = m.value, v[i] = m.rate, a[i] = m.acceleration;
+    a[i] += system.ratio(i) * assembler.nominal().acceleration;
+  }
+  const MatrixSet& k = *system.node_matrices();
+  Vector r = k.mass * a + k.damping * v + k.stiffness * q;
+  for (const LoadTerm& term : system.loads()) r[term.node] -= assembler.load(term, s.z, s.v).torque;
+  return r;
+}
+
+double ideal_ratio_torque(const Assembler& assembler, const State& s, int which) {
+  // Constraint torques by peeling leaves off the tree of ideal ratios: the last constraint at a node
+  // carries whatever that node is out of balance by.
+  const System& system = assembler.system();
+  Vector r = node_residual(assembler, s);
+  // Scalar elements act on nodes through their placement; they are few, so their rows are found again.
+  for (const ScalarTerm& term : system.scalars()) {
+    const Placement& p = system.placements()[at(index(term.element))];
+    Terms terms(static_cast<int>(p.nodes.size() + p.internal.size()));
+    p.element->describe(static_cast<int>(p.nodes.size() + p.internal.size()), terms);
+    const double y = assembler.respond(term, s.z, s.v).y;
+    for (const ScalarSpec& spec : terms.scalars)
+      if (spec.force == term.force)
+        for (int i = 0; i < spec.b.size(); ++i) {
+          const NodeRef& ref = p.nodes[at(i)];
+          r[ref.id ? index(*ref.id) : system.node(ref.name)] += spec.b[i] * y;
+        }
+  }
+  std::vector<bool> done(system.ideal_ratios().size(), false);
+  std::vector<int> degree(at(system.node_count()), 0);
+  for (const IdealRatio& c : system.ideal_ratios()) ++degree[at(c.first)], ++degree[at(c.second)];
+  for (std::size_t round = 0; round < done.size(); ++round)
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      if (done[i]) continue;
+      const IdealRatio& c = system.ideal_ratios()[i];
+      const auto is_prescribed = [&](int node) {
+        const NodeMap& m = system.node_map(node);
+        return m.prescribed >= 0 && system.prescribed_node(m.prescribed) == node;
+      };
+      const bool leaf_second = degree[at(c.second)] == 1 && !is_prescribed(c.second);
+      const bool leaf_first = degree[at(c.first)] == 1 && !is_prescribed(c.first);
+      if (!leaf_second && !leaf_first) continue;
+      // b lambda + r = 0 at the leaf.
+      const double lambda = leaf_second ? -r[c.second] / c.b_second : -r[c.first] / c.b_first;
+      if (static_cast<int>(i) == which) return -lambda * c.b_second;
+      r[c.first] += c.b_first * lambda;
+      r[c.second] += c.b_second * lambda;
+      --degree[at(c.first)], --degree[at(c.second)];
+      done[i] = true;
+    }
+  return 0.0;
+}
+
+}  // namespace
+
+double reaction(const Assembler& assembler, const State& s, int k) {
+  const System& system = assembler.system();
+  const MatrixSet& zu = system.coupling_zu();
+  const MatrixSet& uu = system.coupling_uu();
+  const int row = system.size() + k;
+  double r = system.nominal_inertia()[row] * assembler.nominal().acceleration +
+             system.nominal_drag()[row] * assembler.nominal().rate;
+  for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it) r += it.value() * s.a[it.row()];
+  for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) r += it.value() * s.v[it.row()];
+  for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it) r += it.value() * s.z[it.row()];
+  for (SparseMatrix::InnerIterator it(uu.mass, k); it; ++it)
+    r += it.value() * assembler.prescribed(static_cast<int>(it.row())).acceleration;
+  for (SparseMatrix::InnerIterator it(uu.damping, k); it; ++it)
+    r += it.value() * assembler.prescribed(static_cast<int>(it.row())).rate;
+  for (SparseMatrix::InnerIterator it(uu.stiffness, k); it; ++it)
+    r += it.value() * assembler.prescribed(static_cast<int>(it.row())).value;
+  for (const ScalarTerm& term : system.scalars())
+    for (const Entry& e : term.u)
+      if (e.index == k) r += e.coeff * assembler.respond(term, s.z, s.v).y;
+  for (const LoadTerm& term : system.loads()) {
+    const NodeMap& map = system.node_map(term.node);
+    if (map.prescribed == k) r -= map.coeff * assembler.load(term, s.z, s.v).torque;
+  }
+  return r;
+}
+
+double Channel::evaluate(const Assembler& assembler, const State& state) const {
+  const System& system = assembler.system();
+  switch (kind_) {
+    case Kind::value: return assembler.node_motion(index_, state).value;
+    case Kind::rate: return assembler.node_motion(index_, state).rate;
+    case Kind::acceleration: return assembler.node_motion(index_, state).acceleration;
+    case Kind::difference:
+      return assembler.node_motion(index_, state).value -
+             assembler.node_motion(second_, state).value;
+    case Kind::reaction: return reaction(assembler, state, index_);
+    case Kind::output: {
+      const OutputTerm& o = system.outputs()[at(index_)];
+      double y = 0.0;
+      for (const Entry& e : o.stiffness) y += e.coeff * assembler.node_motion(e.index, state).value;
+      for (const Entry& e : o.damping) y += e.coeff * assembler.node_motion(e.index, state).rate;
+      return y;
+    }
+    case Kind::force: return assembler.respond(system.scalars()[at(index_)], state.z, state.v).y;
+    case Kind::deflection:
+      return assembler.input(system.scalars()[at(index_)], state.z, state.v).x;
+    case Kind::load: return assembler.load(system.loads()[at(index_)], state.z, state.v).torque;
+    case Kind::ideal_ratio: return ideal_ratio_torque(assembler, state, index_);
+  }
+  return 0.0;
+}
+
+std::vector<Channel> all_channels(const System& system) { return ChannelFinder(system).channels; }
+
+std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names) {
+  const ChannelFinder finder(system);
+  std::vector<std::string> known;
+  for (const Channel& c : finder.channels) known.push_back(c.name());
+  std::vector<Channel> found;
+  std::vector<Finding> findings;
+  for (const std::string& name : names) {
+    const auto it = std::find(known.begin(), known.end(), name);
+    Channel difference;
+    if (it != known.end())
+      found.push_back(finder.channels[static_cast<std::size_t>(it - known.begin())]);
+    else if (finder.find_difference(name, difference))
+      found.push_back(difference);
+    else
+      findings.push_back({system.name(), "channel", name, "",
+                          "is no channel of this model" + did_you_mean(name, known)});
+  }
+  if (!findings.empty()) throw ModelError(findings);
+  return found;
+}
+
+Channel find_channel(const System& system, const std::string& name) {
+  return find_channels(system, {name}).front();
+}
+
+}  // namespace drev

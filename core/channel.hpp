@@ -1,0 +1,49 @@
+#pragma once
+/// Results as named channels with units. Names:
+///
+///   NODE.angle_rad, NODE.speed_rad_per_s, NODE.acceleration_rad_per_s2      deviation from nominal motion
+///   NODE.position_m, NODE.velocity_m_per_s, NODE.acceleration_m_per_s2      translational nodes
+///   NODE_A-NODE_B.twist_rad (.distance_m)                                   q_A - q_B
+///   NODE.reaction_Nm (.reaction_N)                                          prescribed nodes
+///   ELEMENT.torque_Nm, ELEMENT.force_N                                      force the element carries
+///   ELEMENT.deflection_m (_rad)                                             x of a scalar element
+///
+/// Signs: a shaft's or spring's torque is k (q_b - q_a) + c (q_b' - q_a'), Rayleigh damping not included; a
+/// mesh's force is positive on the front flank (x > 0); a load's torque is as it enters the right-hand side;
+/// an ideal gear's torque is the one it applies to its second node; a reaction is the torque that must be
+/// applied to the prescribed node to make it move as given.
+#include <string>
+#include <vector>
+
+#include "core/assembler.hpp"
+
+namespace drev {
+
+class Channel {
+ public:
+  const std::string& name() const { return name_; }
+  const std::string& unit() const { return unit_; }
+  /// Value at a state; the assembler must stand at the state's time.
+  double evaluate(const Assembler& assembler, const State& state) const;
+
+ private:
+  friend class ChannelFinder;
+  enum class Kind { value, rate, acceleration, difference, reaction, output, force, deflection, load,
+                    ideal_ratio };
+  std::string name_, unit_;
+  Kind kind_ = Kind::value;
+  int index_ = 0, second_ = 0;
+};
+
+/// Every channel of a system, in the order of its nodes and elements (differences left out).
+std::vector<Channel> all_channels(const System& system);
+
+/// Channels by name; a difference is found too. Throws ModelError that lists every unknown name with the
+/// nearest known one.
+std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names);
+Channel find_channel(const System& system, const std::string& name);
+
+/// Torque that must act on prescribed node k beside the model's own terms to move it as given.
+double reaction(const Assembler& assembler, const State& state, int k);
+
+}  // namespace drev

@@ -1,0 +1,64 @@
+#pragma once
+/// Newton on the contact forces alone. With the linear part factored once (S a = rhs - c B y, W = S^-1 B,
+/// G = B^T W) the step is an m x m problem for the m laws' forces lambda:
+///
+///   lambda_j = y_j(x_j, x_j'),  x = x_free - kappa_x G lambda,  x' = x'_free - kappa_v G lambda
+///
+/// (Woodbury). Its potential is strictly convex for non-decreasing laws, so Newton with the exact line
+/// search converges from any start; without it, three meshes in a chain can cycle for ever.
+#include <Eigen/Dense>
+
+#include "core/assembler.hpp"
+
+namespace drev {
+
+enum class NewtonStatus {
+  converged,
+  no_root,         ///< a force that jumps leaves this step without a solution: take a smaller one
+  too_many_steps,  ///< the iteration limit was reached
+  not_finite,      ///< a law returned NaN or infinity
+  singular         ///< the tangent could not be factored
+};
+const char* to_text(NewtonStatus status);
+
+struct NewtonResult {
+  NewtonStatus status = NewtonStatus::converged;
+  int iterations = 0;
+};
+
+class ContactNewton {
+ public:
+  struct Options {
+    int max_iterations = 50;
+    /// |lambda - y| below tolerance * force_scale [-].
+    double tolerance = 1e-12;
+    bool line_search = true;  ///< false: plain Newton, to show that it cycles
+  };
+
+  ContactNewton() = default;
+  ContactNewton(const System& system, Eigen::MatrixXd compliance, double kappa_x, double kappa_v);
+
+  /// free[j]: what law j would see if all contact forces were zero (time and phase included).
+  /// lambda: start in, solution out. force_scale [N or N m] > 0 makes the tolerance relative.
+  NewtonResult solve(const std::vector<ScalarInput>& free, double force_scale,
+                     const Options& options, Vector& lambda);
+
+  /// The laws' inputs and responses at the last lambda evaluated.
+  const std::vector<ScalarInput>& inputs() const { return inputs_; }
+  const std::vector<ScalarResponse>& responses() const { return responses_; }
+
+ private:
+  void evaluate(const std::vector<ScalarInput>& free, const Vector& lambda);
+
+  const System* system_ = nullptr;
+  Eigen::MatrixXd compliance_;  // G
+  double kappa_x_ = 0.0, kappa_v_ = 0.0;
+  std::vector<ScalarInput> inputs_;
+  std::vector<ScalarResponse> responses_;
+  Eigen::MatrixXd tangent_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  Vector shift_, residual_, direction_, g_direction_, trial_;
+  std::vector<double> kinks_;
+};
+
+}  // namespace drev
