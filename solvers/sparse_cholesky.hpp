@@ -1,0 +1,68 @@
+#pragma once
+/// Sparse Cholesky factorisation A = L L' of a symmetric positive definite matrix whose pattern
+/// stays the same: analysed once, factored often, solved without allocating.
+///
+///   P A P' = L L',  A x = b
+///
+/// P is the identity where that fills no more than AMD's ordering does (chains), else AMD's. The
+/// factor is simplicial: drivetrains fill too little for dense blocks to pay.
+///
+/// LL' and not LDL': LDL' accepts diag(1, -1) and singular matrices as success.
+///
+/// Source: Y. Chen, T. A. Davis, W. W. Hager, S. Rajamanickam, Algorithm 887: CHOLMOD, ACM TOMS
+/// 35(3), 2008, doi:10.1145/1391989.1391995.
+#include <memory>
+
+#include "core/system.hpp"
+
+namespace drev {
+
+enum class FactorStatus {
+  not_computed,           ///< factorize() was not called, or not with success
+  success,                ///< the factor can be used
+  not_positive_definite,  ///< a pivot is zero or negative: failed_column() says which
+  singular,               ///< a pivot lost all its digits: see pivot_ratio(), failed_column()
+  not_finite,             ///< a value is NaN or infinite, or the factor overflowed
+  pattern_changed,        ///< not the pattern of the first call, or sizes that do not match
+  out_of_memory           ///< CHOLMOD or KLU could not allocate
+};
+const char* to_text(FactorStatus status);
+
+class SparseCholesky {
+ public:
+  SparseCholesky();
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  /// Factors A. pattern: compressed, structurally symmetric, both triangles there; values: of A on
+  /// that pattern, numerically symmetric (one triangle is read). The first call analyses the
+  /// pattern; later calls must bring the same one. Prints nothing, throws nothing.
+  FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
+  FactorStatus status() const;
+  bool ok() const { return status() == FactorStatus::success; }
+
+  /// x = A^-1 b; b and x may be the same vector. Allocates nothing after the first call. Throws
+  /// SolverError without a factor and where b has another size.
+  void solve(const Vector& b, Vector& x);
+
+  /// Column (unknown) at which the factorisation failed, for the message; -1 where it did not.
+  int failed_column() const;
+  /// min_j L_jj^2 / A_jj, in (0, 1]: what is left of the diagonal after elimination, independent of
+  /// the units of the unknowns. Below (10 + n) eps nothing but rounding is left and the status is
+  /// singular.
+  double pivot_ratio() const;
+  /// (min L_jj / max L_jj)^2, CHOLMOD's estimate of 1 / cond(A). Depends on the units of the
+  /// unknowns: small for a badly scaled matrix that is solved well. 0 without a factor.
+  double reciprocal_condition() const;
+  /// True if the unknowns are eliminated in their own order.
+  bool natural_order() const;
+  /// Number of entries of L; 0 before the first factorisation.
+  int factor_entries() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace drev
