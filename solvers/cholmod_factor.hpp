@@ -18,7 +18,8 @@ class CholmodFactor {
   CholmodFactor(const CholmodFactor&) = delete;
   CholmodFactor& operator=(const CholmodFactor&) = delete;
 
-  /// Analyses at the first call, then factors. Reads one triangle.
+  FactorStatus analyse(const SparseMatrix& pattern);
+  /// Analyses where that was not done yet, then factors. Reads one triangle.
   FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
   bool solve(const Vector& b, Vector& x);
 
@@ -33,7 +34,6 @@ class CholmodFactor {
   int failed_column() const { return failed_column_; }
 
  private:
-  FactorStatus analyse(const SparseMatrix& pattern);
   bool same_pattern(const SparseMatrix& pattern) const;
 
   cholmod_common common_;

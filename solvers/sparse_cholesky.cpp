@@ -38,6 +38,9 @@ struct SparseCholesky::Impl {
 };
 
 SparseCholesky::SparseCholesky() : impl_(std::make_unique<Impl>()) {}
+SparseCholesky::SparseCholesky(const SparseMatrix& pattern) : SparseCholesky() {
+  impl_->cholmod.analyse(pattern);
+}
 SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;

@@ -31,6 +31,8 @@ const char* to_text(FactorStatus status);
 class SparseCholesky {
  public:
   SparseCholesky();
+  /// Analyses at once; a pattern that cannot be analysed is reported by factorize().
+  explicit SparseCholesky(const SparseMatrix& pattern);
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;

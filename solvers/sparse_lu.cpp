@@ -79,6 +79,7 @@ FactorStatus SparseLu::Impl::factorize() {
 }
 
 SparseLu::SparseLu() : impl_(std::make_unique<Impl>()) {}
+SparseLu::SparseLu(const SparseMatrix& pattern) : SparseLu() { impl_->analyse(pattern); }
 SparseLu::~SparseLu() = default;
 SparseLu::SparseLu(SparseLu&&) noexcept = default;
 SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;

@@ -16,6 +16,8 @@ namespace drev {
 class SparseLu {
  public:
   SparseLu();
+  /// Analyses at once; a pattern that cannot be analysed is reported by factorize().
+  explicit SparseLu(const SparseMatrix& pattern);
   ~SparseLu();
   SparseLu(SparseLu&&) noexcept;
   SparseLu& operator=(SparseLu&&) noexcept;
