@@ -91,10 +91,11 @@ void Assembler::add_scalar_forces(const Vector& z, const Vector& v, Vector& f) c
   }
 }
 
-LocalState Assembler::local_state(const GeneralTerm& g, const Vector& z, const Vector& v,
-                                  const Vector& history) const {
-  LocalState local;
+LocalResponse Assembler::respond(const GeneralTerm& g, const Vector& z, const Vector& v,
+                                 const Vector& history, Vector& history_new) const {
   const auto n = static_cast<Eigen::Index>(g.nodes.size());
+  const auto size = static_cast<std::size_t>(g.force->history_size());
+  LocalState local;
   local.t = t_;
   local.q.resize(n);
   local.v.resize(n);
@@ -104,36 +105,46 @@ LocalState Assembler::local_state(const GeneralTerm& g, const Vector& z, const V
     local.q[i] = map.coeff * (free ? z[map.unknown] : u_[at(map.prescribed)].value);
     local.v[i] = map.coeff * (free ? v[map.unknown] : u_[at(map.prescribed)].rate);
   }
-  local.history = {history.data() + g.history_begin,
-                   static_cast<std::size_t>(g.force->history_size())};
-  return local;
-}
-
-namespace {
-
-LocalResponse zero_response(std::size_t nodes, const GeneralTerm& g, Vector& history_new) {
-  const auto n = static_cast<Eigen::Index>(nodes);
+  local.history = {history.data() + g.history_begin, size};
   LocalResponse r;
   r.f.setZero(n);
   r.stiffness.setZero(n, n);
   r.damping.setZero(n, n);
-  r.history = {history_new.data() + g.history_begin,
-               static_cast<std::size_t>(g.force->history_size())};
+  r.history = {history_new.data() + g.history_begin, size};
+  g.force->evaluate(local, r);
   return r;
 }
-
-}  // namespace
 
 void Assembler::add_general_forces(const Vector& z, const Vector& v, const Vector& history,
                                    Vector& f, Vector& history_new) const {
   for (const GeneralTerm& g : system_.generals()) {
-    LocalResponse r = zero_response(g.nodes.size(), g, history_new);
-    g.force->evaluate(local_state(g, z, v, history), r);
+    const LocalResponse r = respond(g, z, v, history, history_new);
     for (std::size_t i = 0; i < g.nodes.size(); ++i) {
       const NodeMap& map = system_.node_map(g.nodes[i]);
       if (map.unknown >= 0) f[map.unknown] += map.coeff * r.f[static_cast<Eigen::Index>(i)];
     }
   }
+}
+
+void Assembler::add_general_node_forces(const State& s, Vector& r) const {
+  Vector scratch(system_.history_size());
+  for (const GeneralTerm& g : system_.generals()) {
+    const LocalResponse response = respond(g, s.z, s.v, s.history, scratch);
+    for (std::size_t i = 0; i < g.nodes.size(); ++i)
+      r[g.nodes[i]] += response.f[static_cast<Eigen::Index>(i)];
+  }
+}
+
+std::pair<double, double> Assembler::general_energy(const State& s,
+                                                    const Vector& history) const {
+  std::pair<double, double> sum{0.0, 0.0};
+  Vector scratch(system_.history_size());
+  for (const GeneralTerm& g : system_.generals()) {
+    const LocalResponse r = respond(g, s.z, s.v, history, scratch);
+    sum.first += r.stored_energy;
+    sum.second += r.dissipated_power;
+  }
+  return sum;
 }
 
 void Assembler::linear_values(const Weights& w, Vector& values) const {
@@ -152,8 +163,7 @@ void Assembler::add_general_slopes(const Weights& w, const Vector& z, const Vect
   if (system_.generals().empty()) return;
   Vector scratch(system_.history_size());
   for (const GeneralTerm& g : system_.generals()) {
-    LocalResponse r = zero_response(g.nodes.size(), g, scratch);
-    g.force->evaluate(local_state(g, z, v, history), r);
+    const LocalResponse r = respond(g, z, v, history, scratch);
     std::size_t s = 0;
     for (std::size_t i = 0; i < g.nodes.size(); ++i)
       for (std::size_t j = 0; j < g.nodes.size(); ++j, ++s)

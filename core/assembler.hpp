@@ -18,6 +18,9 @@ class Assembler {
   const System& system() const { return system_; }
   /// Moves to time t [s]: nominal motion phi(t) and prescribed motions u(t).
   void set_time(double t);
+  /// Stands still at nominal angle phi [rad] of the reference shaft (statics): no nominal rate, known
+  /// motions as at the time set last.
+  void stand_at_angle(double phi) { nominal_ = {phi, 0.0, 0.0}; }
   double time() const { return t_; }
   const MotionPoint& nominal() const { return nominal_; }
   const MotionPoint& prescribed(int k) const { return u_[at(k)]; }
@@ -42,6 +45,11 @@ class Assembler {
   void add_general_forces(const Vector& z, const Vector& v, const Vector& history, Vector& f,
                           Vector& history_new) const;
 
+  /// r += general elements' forces over nodes, before elimination.
+  void add_general_node_forces(const State& s, Vector& r) const;
+  /// Stored energy [J] and dissipated power [W] of the general elements; history as before the step.
+  std::pair<double, double> general_energy(const State& s, const Vector& history) const;
+
   /// Values of m M + c C + k K on the pattern.
   void linear_values(const Weights& w, Vector& values) const;
   /// The same plus the laws', loads' and general elements' slopes at (z, v). Loads enter with their
@@ -55,8 +63,8 @@ class Assembler {
   void multiply(const Vector& values, const Vector& x, Vector& out) const;
 
  private:
-  LocalState local_state(const GeneralTerm& g, const Vector& z, const Vector& v,
-                         const Vector& history) const;
+  LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
+                        const Vector& history, Vector& history_new) const;
   void add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const;
   void add_general_slopes(const Weights& w, const Vector& z, const Vector& v,
                           const Vector& history, Vector& values) const;

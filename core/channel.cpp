@@ -20,7 +20,7 @@ class ChannelFinder {
       const ScalarTerm& s = system.scalars()[j];
       const Placement& p = system.placements()[at(index(s.element))];
       const bool line = s.along_line_of_action;
-      const bool turns = !line && rotational(first_node(p));
+      const bool turns = !line && rotational(s.nodes.front().index);
       add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force,
           static_cast<int>(j));
       add(p.name + (turns ? ".deflection_rad" : ".deflection_m"), turns ? "rad" : "m",
@@ -93,9 +93,6 @@ class ChannelFinder {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
   }
-  int first_node(const Placement& p) const {
-    return p.nodes.front().id ? index(*p.nodes.front().id) : node(p.nodes.front().name);
-  }
 
   const System& system_;
 };
@@ -114,7 +111,13 @@ Vector node_residual(const Assembler& assembler, const State& s) {
   }
   const MatrixSet& k = *system.node_matrices();
   Vector r = k.mass * a + k.damping * v + k.stiffness * q;
+  r += assembler.nominal().rate * system.node_drag();
+  for (const ScalarTerm& term : system.scalars()) {
+    const double y = assembler.respond(term, s.z, s.v).y;
+    for (const Entry& e : term.nodes) r[e.index] += e.coeff * y;
+  }
   for (const LoadTerm& term : system.loads()) r[term.node] -= assembler.load(term, s.z, s.v).torque;
+  assembler.add_general_node_forces(s, r);
   return r;
 }
 
@@ -123,19 +126,6 @@ double ideal_ratio_torque(const Assembler& assembler, const State& s, int which)
   // carries whatever that node is out of balance by.
   const System& system = assembler.system();
   Vector r = node_residual(assembler, s);
-  // Scalar elements act on nodes through their placement; they are few, so their rows are found again.
-  for (const ScalarTerm& term : system.scalars()) {
-    const Placement& p = system.placements()[at(index(term.element))];
-    Terms terms(static_cast<int>(p.nodes.size() + p.internal.size()));
-    p.element->describe(static_cast<int>(p.nodes.size() + p.internal.size()), terms);
-    const double y = assembler.respond(term, s.z, s.v).y;
-    for (const ScalarSpec& spec : terms.scalars)
-      if (spec.force == term.force)
-        for (int i = 0; i < spec.b.size(); ++i) {
-          const NodeRef& ref = p.nodes[at(i)];
-          r[ref.id ? index(*ref.id) : system.node(ref.name)] += spec.b[i] * y;
-        }
-  }
   std::vector<bool> done(system.ideal_ratios().size(), false);
   std::vector<int> degree(at(system.node_count()), 0);
   for (const IdealRatio& c : system.ideal_ratios()) ++degree[at(c.first)], ++degree[at(c.second)];

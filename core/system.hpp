@@ -39,6 +39,7 @@ struct ScalarTerm {
   ElementId element{};
   const ScalarForce* force = nullptr;
   std::vector<Entry> z, u;
+  std::vector<Entry> nodes;  ///< b over nodes, before elimination
   int phase_node = -1;
   bool along_line_of_action = false;
   std::vector<int> slots;  ///< of (z_a, z_b), row by row, in the pattern's values
@@ -119,6 +120,7 @@ class System {
   const MatrixSet& coupling_uu() const { return uu_; }
   /// Over nodes, before elimination; only where the model has ideal ratios (to find their torques).
   const std::optional<MatrixSet>& node_matrices() const { return node_matrices_; }
+  const Vector& node_drag() const { return node_drag_; }
   /// m and d over unknowns, then prescribed motions.
   const Vector& nominal_inertia() const { return nominal_inertia_; }
   const Vector& nominal_drag() const { return nominal_drag_; }
@@ -158,7 +160,8 @@ class System {
   std::optional<Motion> reference_;
   std::vector<Motion> prescribed_;
   SparseMatrix pattern_;
-  Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, initial_z_, initial_v_;
+  Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, node_drag_,
+      initial_z_, initial_v_;
   MatrixSet zu_, uu_;
   std::optional<MatrixSet> node_matrices_;
   std::vector<ScalarTerm> scalars_;

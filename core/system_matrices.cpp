@@ -107,6 +107,7 @@ void SystemBuilder::map_terms() {
       term.along_line_of_action = s.along_line_of_action;
       for (int i = 0; i < s.b.size(); ++i) {
         const NodeMap& map = system_.node_map_[at(d.nodes[at(i)])];
+        if (s.b[i] != 0.0) term.nodes.push_back({d.nodes[at(i)], s.b[i]});
         if (map.unknown >= 0) add_entry(term.z, map.unknown, s.b[i] * map.coeff);
         if (map.prescribed >= 0) add_entry(term.u, map.prescribed, s.b[i] * map.coeff);
       }
@@ -139,6 +140,8 @@ void SystemBuilder::assemble_matrices() {
   system_.nominal_inertia_ = Vector::Zero(nz + nu);
   system_.nominal_drag_ = Vector::Zero(nz + nu);
   const bool keep_nodes = !system_.ideal_ratios_.empty();
+  if (keep_nodes)
+    system_.node_drag_ = Vector::Zero(static_cast<Eigen::Index>(system_.node_names_.size()));
 
   const auto add_clique = [&](const std::vector<int>& dofs) {
     for (const int r : dofs)
@@ -173,6 +176,7 @@ void SystemBuilder::assemble_matrices() {
         const double ratio = system_.kinematics_.ratio[at(d.nodes[at(j)])];
         system_.nominal_inertia_[row] += map.coeff * m * ratio;
         system_.nominal_drag_[row] += map.coeff * c * ratio;
+        if (keep_nodes) system_.node_drag_[d.nodes[at(i)]] += c * ratio;
       }
   }
 

@@ -1,0 +1,78 @@
+#include "solvers/energy_monitor.hpp"
+
+#include <cmath>
+
+namespace drev {
+
+EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
+    : assembler_(assembler) {
+  balance_.kinetic = kinetic(start.state);
+  balance_.stored = stored(start);
+  start_energy_ = balance_.kinetic + balance_.stored;
+  balance_.scale = start_energy_;
+}
+
+double EnergyMonitor::kinetic(const State& state) {
+  assembler_.multiply(assembler_.system().mass_values(), state.v, mv_);
+  return 0.5 * state.v.dot(mv_);
+}
+
+double EnergyMonitor::stored(const StepPoint& point) const {
+  double sum = 0.5 * point.state.z.dot(point.kz) + point.general_energy;
+  for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
+  return sum;
+}
+
+void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
+  const System& system = assembler_.system();
+  double input = 0.0, dissipated = 0.0;
+  for (Eigen::Index i = 0; i < to.state.z.size(); ++i) {
+    const double dz = to.state.z[i] - from.state.z[i];
+    input += 0.5 * dz * (from.p[i] + to.p[i]);
+    dissipated += 0.5 * dz * (from.cv[i] + to.cv[i]);
+  }
+  for (std::size_t j = 0; j < system.scalars().size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+    const ScalarInput &in0 = from.inputs[j], &in1 = to.inputs[j];
+    dissipated += 0.5 * h * (r0.dissipated_power + r1.dissipated_power);
+    // Known part of the deflection: prescribed ends and transmission error do work on the law.
+    double by_unknowns = 0.0;
+    for (const Entry& e : term.z)
+      by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
+    if (!term.u.empty() || term.phase_node >= 0)
+      input += 0.5 * (r0.y + r1.y) * (in1.x - in0.x - by_unknowns);
+    // A law that varies: its energy changes at constant x too; mean over both orders of changing.
+    if (term.force->varies()) {
+      const double v01 =
+          term.force->evaluate({in0.x, in0.x_dot, in1.t, in1.angle}).stored_energy;
+      const double v10 =
+          term.force->evaluate({in1.x, in1.x_dot, in0.t, in0.angle}).stored_energy;
+      input += 0.5 * ((v01 - r0.stored_energy) + (r1.stored_energy - v10));
+    }
+  }
+  dissipated += 0.5 * h * (from.general_power + to.general_power);
+  balance_.input += input;
+  balance_.dissipated += dissipated;
+  balance_.kinetic = kinetic(to.state);
+  balance_.stored = stored(to);
+  note(to.state.t);
+}
+
+void EnergyMonitor::restart(const StepPoint& before, const StepPoint& after) {
+  balance_.input += stored(after) - stored(before);
+  balance_.stored = stored(after);
+}
+
+void EnergyMonitor::note(double t) {
+  EnergyBalance& b = balance_;
+  const double energy = b.kinetic + b.stored;
+  b.imbalance = energy - start_energy_ - b.input + b.dissipated;
+  b.scale = std::max({b.scale, std::abs(b.input), b.dissipated, energy});
+  if (!(std::abs(b.imbalance) <= std::abs(b.worst_imbalance))) {
+    b.worst_imbalance = b.imbalance;
+    b.worst_time = t;
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,50 @@
+#pragma once
+/// The energy balance of a run, of the deviations from nominal motion:
+///
+///   kinetic + stored - (at the start) = input - dissipated + error
+///
+/// kinetic 1/2 v'Mv, stored 1/2 z'Kz + the laws' energies. Input: loads and known motions, as the mean of
+/// the forces at both ends of a step times the displacement in it, so that average acceleration on a linear
+/// system balances to rounding; plus what a mesh stiffness or a transmission error that varies puts in. The
+/// error is what the method itself gained (positive) or lost: impacts, numerical damping, too large a step.
+/// Newton's convergence says nothing about it. See Krenk 2006, doi:10.1016/j.cma.2005.12.001, for energy
+/// balances of Newmark methods.
+#include "solvers/step_solver.hpp"
+
+namespace drev {
+
+struct EnergyBalance {
+  double kinetic = 0.0;       ///< J, at the end
+  double stored = 0.0;        ///< J, at the end
+  double input = 0.0;         ///< J, since the start
+  double dissipated = 0.0;    ///< J, since the start
+  double imbalance = 0.0;     ///< J, at the end: > 0 energy from nothing
+  double worst_imbalance = 0.0;  ///< J, largest in size over the run
+  double worst_time = 0.0;       ///< s
+  double scale = 0.0;            ///< J, largest of input, dissipated, kinetic + stored over the run
+  /// worst_imbalance over scale [-]; 0 for a run without energy.
+  double relative_error() const { return scale > 0.0 ? worst_imbalance / scale : 0.0; }
+};
+
+class EnergyMonitor {
+ public:
+  EnergyMonitor(const Assembler& assembler, const StepPoint& start);
+  /// Accounts for one accepted step.
+  void step(const StepPoint& from, const StepPoint& to, double h);
+  /// The same point after a breakpoint: forces jumped, the state did not. Energy that a law's stored
+  /// energy gained by the jump counts as input.
+  void restart(const StepPoint& before, const StepPoint& after);
+  const EnergyBalance& balance() const { return balance_; }
+
+ private:
+  double kinetic(const State& state);
+  double stored(const StepPoint& point) const;
+  void note(double t);
+
+  const Assembler& assembler_;
+  double start_energy_ = 0.0;
+  Vector mv_;
+  EnergyBalance balance_;
+};
+
+}  // namespace drev

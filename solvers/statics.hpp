@@ -1,0 +1,50 @@
+#pragma once
+/// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle.
+#include <optional>
+
+#include "core/channel.hpp"
+#include "solvers/peaks.hpp"
+#include "solvers/sparse_newton.hpp"
+
+namespace drev {
+
+struct StaticOptions {
+  double nominal_angle = 0.0;  ///< rad, of the reference shaft
+  double t = 0.0;              ///< s, for loads and known motions that depend on time
+  SparseNewton::Options newton = {};
+};
+
+struct StaticResult {
+  State state;         ///< z of the equilibrium; rates zero
+  int iterations = 0;
+};
+
+/// Finds the equilibrium for many angles of one System with one set-up.
+class StaticSolver {
+ public:
+  /// Throws SolverError if a part of the model floats even with every contact closed: then there is no
+  /// equilibrium, or infinitely many. The message names the parts.
+  explicit StaticSolver(const System& system);
+
+  /// Throws SolverError, with the angle, if Newton does not converge.
+  StaticResult solve(const StaticOptions& options = {});
+  /// Stands at the state solved last.
+  const Assembler& assembler() const { return assembler_; }
+
+ private:
+  const System& system_;
+  Assembler assembler_;
+  SparseNewton newton_;
+  Vector start_, zero_;
+  double shift_ = 0.0;
+};
+
+/// Equilibrium at one angle.
+StaticResult solve_static(const System& system, const StaticOptions& options = {});
+
+/// Largest and smallest static values of channels while the reference shaft turns from angle_0 to angle_1
+/// [rad] in `count` >= 1 equal parts; Peak::max_time and min_time are then the angles.
+std::vector<Peak> static_sweep(const System& system, const std::vector<Channel>& channels,
+                               double angle_0, double angle_1, int count);
+
+}  // namespace drev
