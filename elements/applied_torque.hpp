@@ -1,0 +1,54 @@
+#pragma once
+/// AppliedTorque: a torque that is a function of time, on one node.
+///
+///   tau(t) on the RIGHT side: positive drives the node forward. On a translational node a force
+///   [N].
+///
+/// Either a function, with the times at which it jumps or kinks as breakpoints (at a jump it must
+/// give the value after it), or a TimeTable, which knows its own.
+#include <functional>
+#include <optional>
+
+#include "core/element.hpp"
+#include "elements/time_table.hpp"
+
+namespace drev {
+
+class AppliedTorque final : public Element, public Load {
+ public:
+  struct Params {
+    std::function<double(double t)> torque = {};  ///< N m over s; pure, callable from any thread
+    std::vector<double> breakpoints = {};         ///< of the function [s]
+    std::optional<TimeTable> table = {};          ///< instead of the function: s -> N m
+  };
+  explicit AppliedTorque(Params params) : params_(std::move(params)) {}
+
+  std::string_view type() const override { return "applied torque"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    if (static_cast<bool>(params_.torque) == params_.table.has_value())
+      check.fail("torque", params_.table ? "torque and table" : "nothing", "",
+                 "exactly one of torque and table must be given");
+    check.all_finite("breakpoints", params_.breakpoints, "s");
+    if (params_.table) params_.table->check(check, "table", "N m");
+  }
+  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+
+  LoadResponse evaluate(const LoadInput& in) const override {
+    return {.torque = params_.table ? params_.table->at(in.t).value : params_.torque(in.t)};
+  }
+  bool depends_on_motion() const override { return false; }
+  std::vector<double> breakpoints() const override {
+    std::vector<double> all = params_.breakpoints;
+    if (params_.table) {
+      const std::vector<double> knots = params_.table->breakpoints();
+      all.insert(all.end(), knots.begin(), knots.end());
+    }
+    return all;
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

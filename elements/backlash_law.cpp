@@ -1,0 +1,71 @@
+#include "elements/backlash_law.hpp"
+
+#include <cmath>
+
+namespace drev {
+
+namespace {
+constexpr double kReferenceFraction = 1.0 / 20.0;  // of the half gap
+}
+
+BacklashLaw::BacklashLaw(const Params& params)
+    : params_(params),
+      half_gap_(0.5 * params.normal_backlash),
+      p_ref_(std::isnan(params.reference_penetration) ? kReferenceFraction * half_gap_
+                                                      : params.reference_penetration) {
+  if (!has_gap()) return;
+  const bool saturates = params_.damping_law == MeshDamping::proportional && params_.damping > 0.0;
+  if (saturates) kinks_[kink_count_++] = -half_gap_ - p_ref_;
+  kinks_[kink_count_++] = -half_gap_;
+  kinks_[kink_count_++] = half_gap_;
+  if (saturates) kinks_[kink_count_++] = half_gap_ + p_ref_;
+}
+
+std::optional<Gap> BacklashLaw::gap() const {
+  if (!has_gap()) return std::nullopt;
+  return Gap{-half_gap_, half_gap_};
+}
+
+ScalarResponse BacklashLaw::evaluate(double x, double x_dot, CurvePoint stiffness) const {
+  const double k = stiffness.value, c = params_.damping;
+  ScalarResponse r;
+  // Side of contact: +1 in front, -1 behind, 0 in the gap.
+  const double side = x > half_gap_ ? 1.0 : x < -half_gap_ ? -1.0 : 0.0;
+  const double p = has_gap() ? (side == 0.0 ? 0.0 : x - side * half_gap_) : x;
+  const double depth = std::abs(p);
+  r.stored_energy = 0.5 * k * p * p;
+
+  if (!has_gap() || params_.damping_law == MeshDamping::always) {
+    const bool touches = !has_gap() || side != 0.0;
+    r.y = k * p + c * x_dot;
+    r.dy_dx = touches ? k : 0.0;
+    r.dy_dx_dot = c;
+    r.dy_dangle = stiffness.slope * p;
+    r.dissipated_power = c * x_dot * x_dot;
+    return r;
+  }
+  if (side == 0.0) return r;
+
+  const bool rising = params_.damping_law == MeshDamping::proportional && depth < p_ref_;
+  const double c_eff = rising ? c * depth / p_ref_ : c;
+  const double y = k * p + c_eff * x_dot;
+  if (y * side <= 0.0) {  // the damper would pull: the flank lets go and its energy is lost
+    r.dissipated_power = -k * p * x_dot;
+    return r;
+  }
+  r.y = y;
+  r.dy_dx = rising ? k + c * side * x_dot / p_ref_ : k;
+  r.dy_dx_dot = c_eff;
+  r.dy_dangle = stiffness.slope * p;
+  r.dissipated_power = c_eff * x_dot * x_dot;
+  return r;
+}
+
+void BacklashLaw::check(ParameterCheck& check) const {
+  check.non_negative("normal_backlash", params_.normal_backlash, "m");
+  check.non_negative("damping", params_.damping, "N s/m");
+  if (!std::isnan(params_.reference_penetration))
+    check.positive("reference_penetration", params_.reference_penetration, "m");
+}
+
+}  // namespace drev

@@ -1,0 +1,44 @@
+#pragma once
+/// CamTorque: the torque of a cam on its shaft, from a table over one revolution of the cam.
+///
+///   tau = table(theta + phase)       on the RIGHT side: positive drives the shaft forward
+///
+/// theta is the shaft's actual angle (nominal + deviation), so that twist feeds back into the load
+/// with the table's slope as tangent. twist_feedback = false takes the nominal angle: the source's
+/// form, in which the twist hardly mattered (S. L. Sunde, NTNU, 2015, program TimeStepping.m), and
+/// a load of time alone. The phase places a cylinder in the firing order: the table is entered
+/// `phase` ahead.
+#include "core/element.hpp"
+#include "elements/periodic_table.hpp"
+
+namespace drev {
+
+class CamTorque final : public Element, public Load {
+ public:
+  struct Params {
+    PeriodicTable angle_table = {};  ///< rad -> N m; period 2 pi (4 pi for a crank's four strokes)
+    double phase = 0.0;              ///< rad
+    bool twist_feedback = true;
+  };
+  explicit CamTorque(Params params) : params_(std::move(params)) {}
+
+  std::string_view type() const override { return "cam torque"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    params_.angle_table.check(check, "angle_table", "rad", "N m");
+    check.finite("phase", params_.phase, "rad");
+  }
+  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+
+  LoadResponse evaluate(const LoadInput& in) const override {
+    const double twist = params_.twist_feedback ? in.deviation : 0.0;
+    const CurvePoint p = params_.angle_table.at(in.nominal_angle + twist + params_.phase);
+    return {.torque = p.value, .dtorque_dangle = params_.twist_feedback ? p.slope : 0.0};
+  }
+  bool depends_on_motion() const override { return params_.twist_feedback; }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

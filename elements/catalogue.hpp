@@ -1,0 +1,15 @@
+#pragma once
+/// Every element of the catalogue.
+#include "elements/applied_torque.hpp"
+#include "elements/cam_torque.hpp"
+#include "elements/dashpot.hpp"
+#include "elements/distributed_shaft.hpp"
+#include "elements/engine_order_torque.hpp"
+#include "elements/gear_mesh.hpp"
+#include "elements/ground_spring.hpp"
+#include "elements/ideal_gear.hpp"
+#include "elements/inertia.hpp"
+#include "elements/involute.hpp"
+#include "elements/polyline_spring.hpp"
+#include "elements/rayleigh_damping.hpp"
+#include "elements/shaft_spring.hpp"

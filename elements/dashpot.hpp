@@ -1,0 +1,38 @@
+#pragma once
+/// Dashpot: a linear viscous damper between two nodes, or between one node and ground.
+///
+///   tau = c (omega_b - omega_a)      two nodes;      tau = c omega      one node, to ground
+///
+/// Ties no nominal speeds to each other: a dashpot whose ends differ in nominal speed (a bearing's
+/// drag) loads them with its mean torque too. The output is the part that follows from the
+/// deviations, c (q_b' - q_a'). Between translational nodes: N s/m.
+#include "core/element.hpp"
+#include "elements/not_given.hpp"
+
+namespace drev {
+
+class Dashpot final : public Element {
+ public:
+  struct Params {
+    double damping = kNotGiven;  ///< c [N m s/rad], >= 0
+  };
+  explicit Dashpot(Params params) : params_(params) {}
+
+  std::string_view type() const override { return "dashpot"; }
+  int min_nodes() const override { return 1; }
+  int max_nodes() const override { return 2; }
+  void check(ParameterCheck& check) const override {
+    check.non_negative("damping", params_.damping, "N m s/rad");
+  }
+  void describe(int nodes, Terms& terms) const override {
+    const LocalRow b = relative_motion(nodes);
+    terms.damping = params_.damping * b * b.transpose();
+    terms.outputs.push_back(
+        {.suffix = "", .stiffness = LocalRow::Zero(nodes), .damping = params_.damping * b});
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

@@ -1,0 +1,75 @@
+#include "elements/distributed_shaft.hpp"
+
+#include <cmath>
+
+#include "core/units.hpp"
+
+namespace drev {
+
+namespace {
+
+double polar_area_moment(const DistributedShaft::Params& p) {
+  return kPi / 32.0 * (std::pow(p.outer_diameter, 4) - std::pow(p.inner_diameter, 4));
+}
+
+}  // namespace
+
+// Asked for when the element enters the model, before check(): an absurd count must not create
+// nodes.
+int DistributedShaft::internal_nodes() const {
+  return params_.segments >= 1 && params_.segments <= kMaxSegments ? params_.segments - 1 : 0;
+}
+
+void DistributedShaft::check(ParameterCheck& check) const {
+  check.positive("shear_modulus", params_.shear_modulus, "Pa");
+  check.non_negative("density", params_.density, "kg/m^3");
+  check.positive("outer_diameter", params_.outer_diameter, "m");
+  check.non_negative("inner_diameter", params_.inner_diameter, "m");
+  if (params_.inner_diameter >= params_.outer_diameter)
+    check.fail("inner_diameter", to_text(params_.inner_diameter), "m",
+               "must be less than outer_diameter, " + to_text(params_.outer_diameter));
+  check.positive("length", params_.length, "m");
+  if (params_.segments < 1 || params_.segments > kMaxSegments)
+    check.fail("segments", std::to_string(params_.segments), "",
+               "must be between 1 and " + std::to_string(kMaxSegments));
+  if (params_.density == 0.0 && params_.segments > 1)
+    check.fail("segments", std::to_string(params_.segments), "",
+               "must be 1 where density is 0: internal nodes would have no inertia");
+}
+
+double DistributedShaft::segment_stiffness() const {
+  return params_.shear_modulus * polar_area_moment(params_) * params_.segments / params_.length;
+}
+
+double DistributedShaft::segment_inertia() const {
+  return params_.density * polar_area_moment(params_) * params_.length / params_.segments;
+}
+
+void DistributedShaft::describe(int nodes, Terms& terms) const {
+  const double k = segment_stiffness(), j = segment_inertia();
+  const int n = params_.segments;
+  // Positions along the shaft 0..n in the element's node order: a, b, internal.
+  const auto local = [n](int position) {
+    return position == 0 ? 0 : position == n ? 1 : position + 1;
+  };
+  for (int s = 0; s < n; ++s) {
+    const int a = local(s), b = local(s + 1);
+    terms.mass(a, a) += j / 3.0;
+    terms.mass(b, b) += j / 3.0;
+    terms.mass(a, b) += j / 6.0;
+    terms.mass(b, a) += j / 6.0;
+    LocalRow row = LocalRow::Zero(nodes);
+    row[a] = -1.0;
+    row[b] = 1.0;
+    terms.stiffness(a, a) += k;
+    terms.stiffness(b, b) += k;
+    terms.stiffness(a, b) -= k;
+    terms.stiffness(b, a) -= k;
+    terms.outputs.push_back(
+        {.suffix = std::to_string(s + 1), .stiffness = k * row, .damping = LocalRow::Zero(nodes)});
+    terms.closures.push_back({.b = std::move(row)});
+  }
+  terms.rayleigh = true;
+}
+
+}  // namespace drev

@@ -1,0 +1,114 @@
+#include "elements/gear_mesh.hpp"
+
+#include <cmath>
+
+#include "core/units.hpp"
+#include "elements/involute.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kRadiusTolerance = 1e-3;  // printed radii are rounded; a tooth too many is more
+
+bool given(double value) { return !std::isnan(value); }
+
+bool agree(double a, double b) { return std::abs(a - b) <= kRadiusTolerance * std::abs(b); }
+
+double radius(double base_radius, double module, int teeth, double pressure_angle) {
+  return given(base_radius) ? base_radius : involute_base_radius(module, teeth, pressure_angle);
+}
+
+}  // namespace
+
+GearMesh::GearMesh(Params params)
+    : params_(std::move(params)),
+      law_({.normal_backlash = params_.normal_backlash,
+            .damping = params_.damping,
+            .damping_law = params_.damping_law,
+            .reference_penetration = params_.reference_penetration}),
+      radius_1_(
+          radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
+      radius_2_(
+          radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
+      teeth_per_radian_(params_.teeth_1 / kTwoPi) {}
+
+void GearMesh::check(ParameterCheck& check) const {
+  check_radii(check);
+  params_.stiffness.check(check, "stiffness");
+  law_.check(check);
+  params_.transmission_error.check(check, "transmission_error");
+  check.finite("mesh_phase", params_.mesh_phase, "mesh periods");
+  if (params_.teeth_1 < 0 || params_.teeth_2 < 0)
+    check.fail(params_.teeth_1 < 0 ? "teeth_1" : "teeth_2",
+               std::to_string(params_.teeth_1 < 0 ? params_.teeth_1 : params_.teeth_2), "",
+               "must be > 0 where given");
+  if ((params_.stiffness.varies() || params_.transmission_error.varies()) && params_.teeth_1 <= 0)
+    check.fail(
+        "teeth_1", std::to_string(params_.teeth_1), "",
+        "must be given where the stiffness or the transmission error follows the mesh phase");
+}
+
+void GearMesh::check_radii(ParameterCheck& check) const {
+  const Params& p = params_;
+  const bool radii = given(p.base_radius_1) || given(p.base_radius_2);
+  const bool teeth = given(p.module) || given(p.pressure_angle);
+  if (!radii && !teeth) {
+    check.fail("base_radius_1", "NaN", "m",
+               "must be given, with base_radius_2; or module, teeth_1, teeth_2 and pressure_angle");
+    return;
+  }
+  if (radii) {
+    check.positive("base_radius_1", p.base_radius_1, "m");
+    check.positive("base_radius_2", p.base_radius_2, "m");
+  }
+  if (teeth) {
+    check.positive("module", p.module, "m");
+    check.positive("teeth_1", p.teeth_1, "");
+    check.positive("teeth_2", p.teeth_2, "");
+    if (!(p.pressure_angle >= 0.0 && p.pressure_angle < kPi / 2))
+      check.fail("pressure_angle", to_text(p.pressure_angle), "rad", "must be >= 0 and < pi/2");
+  }
+  if (p.internal && radius_2_ <= radius_1_)
+    check.fail(
+        "base_radius_2", to_text(radius_2_), "m",
+        "must exceed base_radius_1, " + to_text(radius_1_) + ", of the gear inside the ring");
+  if (!radii) return;
+  if (teeth) {
+    const double from_1 = involute_base_radius(p.module, p.teeth_1, p.pressure_angle);
+    const double from_2 = involute_base_radius(p.module, p.teeth_2, p.pressure_angle);
+    if (given(p.base_radius_1) && given(from_1) && !agree(p.base_radius_1, from_1))
+      check.fail("base_radius_1", to_text(p.base_radius_1), "m",
+                 "contradicts module, teeth_1 and pressure_angle, which give " + to_text(from_1));
+    if (given(p.base_radius_2) && given(from_2) && !agree(p.base_radius_2, from_2))
+      check.fail("base_radius_2", to_text(p.base_radius_2), "m",
+                 "contradicts module, teeth_2 and pressure_angle, which give " + to_text(from_2));
+  } else if (p.teeth_1 > 0 && p.teeth_2 > 0 && given(p.base_radius_1) && given(p.base_radius_2) &&
+             !agree(p.base_radius_2 * p.teeth_1, p.base_radius_1 * p.teeth_2)) {
+    check.fail("base_radius_2", to_text(p.base_radius_2), "m",
+               "contradicts base_radius_1 and the teeth, which give " +
+                   to_text(p.base_radius_1 * p.teeth_2 / p.teeth_1));
+  }
+}
+
+void GearMesh::describe(int nodes, Terms& terms) const {
+  LocalRow b(nodes);
+  b << radius_1_, params_.internal ? -radius_2_ : radius_2_;
+  const bool phased = params_.stiffness.varies() || params_.transmission_error.varies();
+  terms.scalars.push_back(
+      {.b = b, .force = this, .phase_node = phased ? 0 : -1, .along_line_of_action = true});
+  terms.closures.push_back({.b = b, .only_in_contact = law_.has_gap()});
+}
+
+ScalarResponse GearMesh::evaluate(const ScalarInput& in) const {
+  CurvePoint k = params_.stiffness.at(phase(in.angle));
+  k.slope *= teeth_per_radian_;
+  return law_.evaluate(in.x, in.x_dot, k);
+}
+
+Offset GearMesh::offset(double nominal_angle) const {
+  const CurvePoint e = params_.transmission_error.at(phase(nominal_angle));
+  return {e.value, e.slope * teeth_per_radian_};
+}
+
+}  // namespace drev

@@ -1,0 +1,78 @@
+#pragma once
+/// GearMesh: two gears in mesh, with compliance, backlash and damping along the line of action.
+///
+///   external pair   x = r_b1 theta_1 + r_b2 theta_2 - e        both angles about one common axis
+///   sense internal pair   x = r_b1 theta_1 - r_b2 theta_2 - e        gear 2 is the ring f = b y(x,
+///   x_dot),   b = (r_b1, +-r_b2)                    y: BacklashLaw [N], reported as the force
+///
+/// y > 0: the flanks in front carry (gear 1 turned forward relative to the mesh); y brakes gear 1
+/// with the torque r_b1 y. e is the transmission error. The nominal speeds obey r_b1 n_1 +- r_b2
+/// n_2 = 0.
+///
+/// Radii: give base_radius_1 and _2, or module, teeth_1, teeth_2 and pressure_angle (r_b = m z
+/// cos(alpha)/2; helical gears: transverse module and pressure angle). Both are accepted if they
+/// agree to 0.1 % (printed radii are rounded); the base radii given are then used.
+///
+/// The stiffness follows the mesh phase s = teeth_1 theta_1/(2 pi) + mesh_phase of gear 1's ACTUAL
+/// angle; the transmission error takes gear 1's nominal angle. The tangent leaves out the coupling
+/// through the phase (dy/dangle is given for those who want it).
+///
+/// Limits: rigid gear bodies, no friction on the flanks, gap centred at x = 0, same stiffness on
+/// both flanks, contact ratio and backlash constant. Stiffness along the line of action: torque
+/// stiffness of gear 1 with gear 2 held, divided by r_b1^2.
+///
+/// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
+/// equations 4.2 to 4.5, with the signs of one common axis sense.
+#include "core/element.hpp"
+#include "elements/backlash_law.hpp"
+#include "elements/mesh_stiffness.hpp"
+#include "elements/transmission_error.hpp"
+
+namespace drev {
+
+class GearMesh final : public Element, public ScalarForce {
+ public:
+  struct Params {
+    double base_radius_1 = kNotGiven;     ///< r_b1 [m], > 0
+    double base_radius_2 = kNotGiven;     ///< r_b2 [m], > 0; internal: > r_b1
+    double module = kNotGiven;            ///< m [m], > 0
+    int teeth_1 = 0;                      ///< z_1; needed where stiffness or error varies
+    int teeth_2 = 0;                      ///< z_2
+    double pressure_angle = kNotGiven;    ///< alpha [rad], 0 <= alpha < pi/2
+    bool internal = false;                ///< gear 2 is a ring
+    MeshStiffness stiffness = kNotGiven;  ///< k [N/m]: a number, or step, fourier, table
+    double normal_backlash = 0.0;         ///< TOTAL gap along the line of action [m], >= 0
+    double damping = 0.0;                 ///< c [N s/m], >= 0
+    MeshDamping damping_law = MeshDamping::proportional;
+    double reference_penetration = kNotGiven;  ///< p_ref [m], > 0; NaN: normal_backlash/40
+    TransmissionError transmission_error = {};
+    double mesh_phase = 0.0;  ///< offset of the mesh phase [mesh periods]
+  };
+  explicit GearMesh(Params params);
+
+  std::string_view type() const override { return "gear mesh"; }
+  int min_nodes() const override { return 2; }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
+
+  double base_radius_1() const { return radius_1_; }
+  double base_radius_2() const { return radius_2_; }
+
+  ScalarResponse evaluate(const ScalarInput& in) const override;
+  double closed_stiffness() const override { return params_.stiffness.mean(); }
+  double closed_damping() const override { return params_.damping; }
+  std::span<const double> kinks() const override { return law_.kinks(); }
+  std::optional<Gap> gap() const override { return law_.gap(); }
+  bool varies() const override { return params_.stiffness.varies(); }
+  Offset offset(double nominal_angle) const override;
+
+ private:
+  void check_radii(ParameterCheck& check) const;
+  double phase(double angle) const { return teeth_per_radian_ * angle + params_.mesh_phase; }
+
+  Params params_;
+  BacklashLaw law_;
+  double radius_1_, radius_2_, teeth_per_radian_;
+};
+
+}  // namespace drev

@@ -1,0 +1,41 @@
+#pragma once
+/// PeriodicTable: a measured periodic curve, linear between its points and from the last to the
+/// first.
+///
+///   value(u) = v_i + s_i (u - u_i)      u_i <= u < u_{i+1},   u = argument modulo the period
+///
+/// The slope is that of the segment to the right of u. Points need not be evenly spaced and need
+/// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
+/// in constant time, others by bisection.
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "elements/curve.hpp"
+
+namespace drev {
+
+class PeriodicTable {
+ public:
+  PeriodicTable() = default;  ///< empty: check() reports it
+  /// arguments strictly ascending, all within one period.
+  PeriodicTable(std::vector<double> arguments, std::vector<double> values, double period = kTwoPi);
+
+  CurvePoint at(double argument) const;
+  double mean() const;  ///< over one period
+  double period() const { return period_; }
+  const std::vector<double>& arguments() const { return arguments_; }
+  const std::vector<double>& values() const { return values_; }
+  void check(ParameterCheck& check, const std::string& parameter, const std::string& argument_unit,
+             const std::string& value_unit) const;
+
+ private:
+  std::size_t segment(double u) const;
+
+  std::vector<double> arguments_, values_, slopes_;
+  double period_ = kTwoPi;
+  double inverse_spacing_ = 0.0;  // > 0 for an evenly spaced table
+};
+
+}  // namespace drev

@@ -1,0 +1,121 @@
+#include "elements/polyline_spring.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace drev {
+
+PolylineSpring::PolylineSpring(Params params) : params_(std::move(params)) {
+  if (!usable()) return;  // check() says why
+  for (std::size_t i = 0; i + 1 < params_.x.size(); ++i)
+    slopes_.push_back((params_.y[i + 1] - params_.y[i]) / (params_.x[i + 1] - params_.x[i]));
+  find_energies();
+  find_gap();
+}
+
+bool PolylineSpring::usable() const {
+  const auto& x = params_.x;
+  if (x.size() < 2 || params_.y.size() != x.size()) return false;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (!(x[i] > x[i - 1])) return false;
+  return true;
+}
+
+PolylineSpring::Params PolylineSpring::dead_band(double stiffness, double half_gap,
+                                                 double damping) {
+  if (half_gap == 0.0) return {.x = {-1.0, 1.0}, .y = {-stiffness, stiffness}, .damping = damping};
+  return {.x = {-2.0 * half_gap, -half_gap, half_gap, 2.0 * half_gap},
+          .y = {-stiffness * half_gap, 0.0, 0.0, stiffness * half_gap},
+          .damping = damping};
+}
+
+PolylineSpring::Params PolylineSpring::with_stops(double stiffness, double travel,
+                                                  double stop_stiffness, double damping) {
+  const double at_stop = stiffness * travel, beyond = at_stop + stop_stiffness * travel;
+  return {.x = {-2.0 * travel, -travel, travel, 2.0 * travel},
+          .y = {-beyond, -at_stop, at_stop, beyond},
+          .damping = damping};
+}
+
+void PolylineSpring::find_energies() {
+  const auto &x = params_.x, &y = params_.y;
+  energies_.assign(1, 0.0);
+  for (std::size_t i = 0; i < slopes_.size(); ++i)
+    energies_.push_back(energies_[i] + 0.5 * (y[i] + y[i + 1]) * (x[i + 1] - x[i]));
+  // The least energy is where y = 0: in the segment in which y changes sign, or at a point.
+  std::size_t i = 0;
+  while (i + 1 < slopes_.size() && y[i + 1] < 0.0) ++i;
+  const double least =
+      slopes_[i] > 0.0 ? energies_[i] - 0.5 * y[i] * y[i] / slopes_[i] : energies_[i];
+  for (double& e : energies_) e = std::max(e - least, 0.0);
+}
+
+void PolylineSpring::find_gap() {
+  const auto &x = params_.x, &y = params_.y;
+  for (std::size_t i = 0; i < slopes_.size(); ++i) {
+    if (y[i] != 0.0 || y[i + 1] != 0.0) continue;
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (!gap_) gap_ = Gap{i == 0 ? -infinity : x[i], 0.0};
+    gap_->high = i + 1 == slopes_.size() ? infinity : x[i + 1];
+  }
+}
+
+std::size_t PolylineSpring::segment(double x) const {
+  const auto inner = params_.x.begin() + 1;
+  return static_cast<std::size_t>(std::upper_bound(inner, params_.x.end() - 1, x) - inner);
+}
+
+ScalarResponse PolylineSpring::evaluate(const ScalarInput& in) const {
+  const std::size_t i = segment(in.x);
+  const double s = in.x - params_.x[i], k = slopes_[i], c = params_.damping;
+  ScalarResponse r;
+  r.y = params_.y[i] + k * s + c * in.x_dot;
+  r.dy_dx = k;
+  r.dy_dx_dot = c;
+  // Rounding can leave -1e-17 J at the bottom of the valley.
+  r.stored_energy = std::max(energies_[i] + s * (params_.y[i] + 0.5 * k * s), 0.0);
+  r.dissipated_power = c * in.x_dot * in.x_dot;
+  return r;
+}
+
+double PolylineSpring::closed_stiffness() const {
+  if (!gap_) return slopes_[segment(0.0)];
+  const double low = slopes_.front(), high = slopes_.back();
+  if (low == 0.0 || high == 0.0) return std::max(low, high);
+  return 0.5 * (low + high);
+}
+
+std::span<const double> PolylineSpring::kinks() const {
+  return {params_.x.data() + 1, params_.x.size() - 2};
+}
+
+void PolylineSpring::check(ParameterCheck& check) const {
+  const auto &x = params_.x, &y = params_.y;
+  check.non_negative("damping", params_.damping, "N m s/rad");
+  check.increasing("x", x, "rad");
+  check.all_finite("y", y, "N m");
+  if (x.size() < 2) check.fail("x", std::to_string(x.size()), "points", "must be at least 2");
+  if (x.size() != y.size())
+    check.fail("y", std::to_string(y.size()), "values",
+               "must be as many as x has, " + std::to_string(x.size()));
+  for (std::size_t i = 1; i < y.size(); ++i)
+    if (y[i] < y[i - 1]) {
+      check.fail("y[" + std::to_string(i) + "]", to_text(y[i]), "N m",
+                 "must not be less than the value before it, " + to_text(y[i - 1]));
+      return;
+    }
+  if (!usable()) return;
+  const bool reaches_zero =
+      (y.front() <= 0.0 || slopes_.front() > 0.0) && (y.back() >= 0.0 || slopes_.back() > 0.0);
+  if (!reaches_zero)
+    check.fail("y", to_text(y.front() > 0.0 ? y.front() : y.back()), "N m",
+               "must pass through zero; this spring balances nowhere");
+}
+
+void PolylineSpring::describe(int nodes, Terms& terms) const {
+  terms.scalars.push_back({.b = relative_motion(nodes), .force = this});
+  terms.closures.push_back({.b = relative_motion(nodes), .only_in_contact = gap_.has_value()});
+}
+
+}  // namespace drev

@@ -1,0 +1,43 @@
+#pragma once
+/// ShaftSpring: a massless shaft between two nodes.
+///
+///   tau = k (theta_b - theta_a) + c (omega_b - omega_a)        end b minus end a
+///
+/// tau acts on a as +tau, on b as -tau: a positive twist pulls a forward and b back. Reported with
+/// the sign of the twist. Both ends have the same nominal speed. The stiffness takes part in
+/// Rayleigh damping; the shaft's own damping c adds to that. Between translational nodes: N/m, N
+/// s/m.
+#include "core/element.hpp"
+#include "elements/not_given.hpp"
+
+namespace drev {
+
+class ShaftSpring final : public Element {
+ public:
+  struct Params {
+    double stiffness = kNotGiven;  ///< k [N m/rad], > 0
+    double damping = 0.0;          ///< c [N m s/rad], >= 0, besides Rayleigh damping
+  };
+  explicit ShaftSpring(Params params) : params_(params) {}
+
+  std::string_view type() const override { return "shaft spring"; }
+  int min_nodes() const override { return 2; }
+  void check(ParameterCheck& check) const override {
+    check.positive("stiffness", params_.stiffness, "N m/rad");
+    check.non_negative("damping", params_.damping, "N m s/rad");
+  }
+  void describe(int nodes, Terms& terms) const override {
+    const LocalRow b = relative_motion(nodes);
+    terms.stiffness = params_.stiffness * b * b.transpose();
+    terms.damping = params_.damping * b * b.transpose();
+    terms.rayleigh = true;
+    terms.closures.push_back({.b = b});
+    terms.outputs.push_back(
+        {.suffix = "", .stiffness = params_.stiffness * b, .damping = params_.damping * b});
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

@@ -1,0 +1,32 @@
+#pragma once
+/// TimeTable: a curve over time, linear between its points, constant before the first and after the
+/// last.
+///
+/// The same time given twice makes a jump: the first value holds before it, the second from it on
+/// (the curve is right-continuous). Every knot is a breakpoint, where integration stops and starts
+/// anew.
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "elements/curve.hpp"
+
+namespace drev {
+
+class TimeTable {
+ public:
+  TimeTable() = default;  ///< empty: check() reports it
+  /// times ascending [s], each at most twice.
+  TimeTable(std::vector<double> times, std::vector<double> values)
+      : times_(std::move(times)), values_(std::move(values)) {}
+
+  CurvePoint at(double t) const;
+  std::vector<double> breakpoints() const;  ///< the knots, each once [s]
+  void check(ParameterCheck& check, const std::string& parameter,
+             const std::string& value_unit) const;
+
+ private:
+  std::vector<double> times_, values_;
+};
+
+}  // namespace drev
