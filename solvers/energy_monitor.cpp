@@ -9,7 +9,7 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
   balance_.kinetic = kinetic(start.state);
   balance_.stored = stored(start);
   start_energy_ = balance_.kinetic + balance_.stored;
-  balance_.scale = start_energy_;
+  balance_.given = balance_.scale = start_energy_;
 }
 
 double EnergyMonitor::kinetic(const State& state) {
@@ -68,7 +68,8 @@ void EnergyMonitor::note(double t) {
   EnergyBalance& b = balance_;
   const double energy = b.kinetic + b.stored;
   b.imbalance = energy - start_energy_ - b.input + b.dissipated;
-  b.scale = std::max({b.scale, std::abs(b.input), b.dissipated, energy});
+  b.given = std::max({b.given, std::abs(b.input), b.dissipated});
+  b.scale = std::max({b.scale, b.given, energy});
   if (!(std::abs(b.imbalance) <= std::abs(b.worst_imbalance))) {
     b.worst_imbalance = b.imbalance;
     b.worst_time = t;
