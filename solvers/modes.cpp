@@ -1,0 +1,160 @@
+#include "solvers/modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.hpp"
+#include "solvers/modal_problem.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kSameFrequency = 1e-8;  // relative, of lambda: copies of one mode
+
+int modes_wanted(const System& system, const ModesOptions& options, int elastic) {
+  const std::string place = system.name() + "/modes";
+  std::vector<Finding> findings;
+  ParameterCheck check(place, findings);
+  const int count = options.count.value_or(std::min(10, elastic));
+  if (options.count && *options.count < 1)
+    check.fail("count", std::to_string(count), "", "must be >= 1");
+  else if (count > elastic || elastic < 1)
+    check.fail("count", std::to_string(count), "",
+               "must not exceed the number of elastic modes, which is " + std::to_string(elastic));
+  if (options.dense_limit < 0)
+    check.fail("dense_limit", std::to_string(options.dense_limit), "", "must be >= 0");
+  if (!findings.empty()) throw ModelError(findings);
+  return count;
+}
+
+void check_rigid(const System& system, Contact contact, const ModalProblem& problem,
+                 const ModalPairs& pairs) {
+  const std::vector<std::string> parts = system.floating_parts(contact);
+  const int expected = static_cast<int>(parts.size());
+  int found = 0;
+  for (int j = 0; j < pairs.count(); ++j) {
+    if (problem.stores_no_energy(pairs.vectors.col(j)))
+      ++found;
+    else if (pairs.lambda[j] < 0.0)
+      throw SolverError("modes of " + system.name() + ": omega^2 = " + to_text(pairs.lambda[j]) +
+                        " (rad/s)^2 < 0 at " + problem.largest_entry(pairs.vectors.col(j)) +
+                        ": statically unstable, an element has negative stiffness there");
+  }
+  if (found == expected) return;
+  std::string names;
+  for (const std::string& part : parts) names += (names.empty() ? "" : ", ") + part;
+  throw SolverError(
+      "modes of " + system.name() + ": " + std::to_string(found) +
+      " modes store no elastic energy, but the model has " + std::to_string(expected) +
+      " parts free to turn" + (names.empty() ? "" : " (with node " + names + ")") +
+      (found > expected ? ": an element that should connect has stiffness 0 in this contact state, "
+                          "or one too small beside the others"
+                        : ": an element ties a part to ground without saying so in its closures"));
+}
+
+/// First index beyond the modes [0, total) whose frequency differs from the last one's; -1 if
+/// unknown yet.
+int next_distinct(const Vector& lambda, int total) {
+  const double same = lambda[total - 1] * (1.0 + kSameFrequency);
+  for (int j = total; j < lambda.size(); ++j)
+    if (lambda[j] > same) return j;
+  return -1;
+}
+
+/// Compares a Sturm count between pairs[cut - 1] and pairs[cut] with cut; returns the surplus of
+/// the count.
+int sturm_surplus(ModalProblem& problem, const Vector& lambda, int cut, ModesSummary& summary) {
+  for (const double fraction : {0.5, 0.382, 0.618, 0.236, 0.764}) {
+    const double s = lambda[cut - 1] + fraction * (lambda[cut] - lambda[cut - 1]);
+    const InertiaCount count = problem.sturm().count_below(s);
+    ++summary.factorizations;
+    if (!count.trusted) continue;
+    summary.sturm_point = s;
+    summary.sturm_count = count.below;
+    return count.below - cut;
+  }
+  throw SolverError("modes: no Sturm count could be trusted between " + to_text(lambda[cut - 1]) +
+                    " and " + to_text(lambda[cut]) + " (rad/s)^2: tiny pivots");
+}
+
+void fill(const System& system, const ModalProblem& problem, const ModalPairs& pairs, int first,
+          int count, ModeSet& modes) {
+  modes.vectors = pairs.vectors.middleCols(first, count);
+  modes.shapes.setZero(system.node_count(), count);
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < system.node_count(); ++i) {
+      const NodeMap& map = system.node_map(i);
+      if (map.unknown >= 0) modes.shapes(i, j) = map.coeff * modes.vectors(map.unknown, j);
+    }
+    // The first of the largest entries (ties within rounding) decides the sign.
+    const double largest = modes.shapes.col(j).cwiseAbs().maxCoeff();
+    for (int i = 0; i < system.node_count(); ++i)
+      if (std::abs(modes.shapes(i, j)) > largest * (1.0 - 1e-6)) {
+        if (modes.shapes(i, j) < 0.0) modes.shapes.col(j) *= -1.0, modes.vectors.col(j) *= -1.0;
+        break;
+      }
+    const double lambda = pairs.lambda[first + j];
+    modes.frequency_Hz.push_back(to_hz(std::sqrt(lambda)));
+    modes.summary.largest_residual =
+        std::max(modes.summary.largest_residual, problem.residual(lambda, modes.vectors.col(j)));
+  }
+}
+
+}  // namespace
+
+const char* to_text(ModesMethod method) {
+  return method == ModesMethod::dense ? "dense" : "shift-invert Lanczos";
+}
+
+std::string ModesSummary::brief() const {
+  return std::string(to_text(method)) + ", shift " + to_text(shift) + " (rad/s)^2, " +
+         (sturm_point > 0.0 ? std::to_string(sturm_count) + " modes below " +
+                                  to_text(to_hz(std::sqrt(sturm_point))) + " Hz by Sturm count"
+                            : std::string("all modes computed")) +
+         ", " + std::to_string(solves) + " solves";
+}
+
+double ModeSet::omega(int mode) const { return hz(frequency_Hz[at(mode)]); }
+
+ModeSet solve_modes(const System& system, const ModesOptions& options) {
+  const int n = system.size();
+  ModeSet modes;
+  modes.contact = options.contact;
+  modes.rigid_modes = system.rigid_mode_count(options.contact);
+  const int wanted = modes_wanted(system, options, n - modes.rigid_modes);
+  const int total = modes.rigid_modes + wanted;
+  ModesSummary& summary = modes.summary;
+
+  ModalProblem problem(system, options.contact, summary);
+  constexpr int kRounds = 12;
+  int ask = std::min(n, total + 1);
+  for (int round = 0; round < kRounds; ++round) {
+    // Lanczos needs a basis of twice the number asked for: near n dense is cheaper and surer.
+    const bool dense = n <= options.dense_limit || 2 * ask + 1 > n;
+    summary.method = dense ? ModesMethod::dense : ModesMethod::lanczos;
+    if (summary.shift == 0.0) problem.find_shift(modes.rigid_modes, dense);
+    const ModalPairs pairs = dense ? problem.dense() : problem.lanczos(ask, round);
+    check_rigid(system, options.contact, problem, pairs);
+    const int cut = next_distinct(pairs.lambda, total);
+    const int surplus = cut < 0 ? 0 : sturm_surplus(problem, pairs.lambda, cut, summary);
+    if (surplus < 0 || (surplus > 0 && dense))
+      throw SolverError("modes of " + system.name() + ": " + std::to_string(cut) +
+                        " modes found below " + to_text(summary.sturm_point) +
+                        " (rad/s)^2, but the Sturm count is " +
+                        std::to_string(summary.sturm_count) +
+                        ": the matrices are too badly scaled to separate modes there");
+    if (surplus == 0 && (cut >= 0 || pairs.count() == n)) {
+      summary.copies_not_returned = (cut < 0 ? n : cut) - total;
+      fill(system, problem, pairs, modes.rigid_modes, wanted, modes);
+      return modes;
+    }
+    ++summary.widened;
+    ask = std::min(n, cut < 0 ? ask + std::max(2, ask / 2) : ask + surplus + 1);
+  }
+  throw SolverError("modes of " + system.name() +
+                    ": modes found and Sturm count did not agree after " + std::to_string(kRounds) +
+                    " rounds");
+}
+
+}  // namespace drev
