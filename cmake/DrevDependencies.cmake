@@ -1,21 +1,36 @@
-# Finds what drev links: Eigen, CHOLMOD, KLU, UMFPACK (SuiteSparse) and ARPACK, as Debian packages them.
-# SuiteSparse 5 ships no CMake package files, so its libraries are found by name.
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# Finds what drev links: Eigen, CHOLMOD and KLU (SuiteSparse) and ARPACK, as Debian packages them. Used by
+# the build and, installed, by find_package(drev). SuiteSparse 5 ships no CMake package files, so its
+# libraries are found by name.
 function(drev_find_library target header library)
   if(TARGET drev_deps::${target})
     return()
   endif()
-  find_path(DREV_${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse arpack)
+  find_path(DREV_${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse arpack arpack-ng)
   find_library(DREV_${target}_LIBRARY ${library})
+  mark_as_advanced(DREV_${target}_INCLUDE DREV_${target}_LIBRARY)
   if(NOT DREV_${target}_INCLUDE OR NOT DREV_${target}_LIBRARY)
-    message(FATAL_ERROR "drev needs ${library} (${header}); on Debian: apt install libsuitesparse-dev libarpack2-dev")
+    set(DREV_MISSING ${DREV_MISSING} "${library} (${header})" PARENT_SCOPE)
+    return()
   endif()
-  add_library(drev_deps::${target} INTERFACE IMPORTED)
+  add_library(drev_deps::${target} INTERFACE IMPORTED GLOBAL)
   set_target_properties(drev_deps::${target} PROPERTIES
     INTERFACE_INCLUDE_DIRECTORIES "${DREV_${target}_INCLUDE}"
     INTERFACE_LINK_LIBRARIES "${DREV_${target}_LIBRARY}")
 endfunction()
+
+set(DREV_MISSING "")
+find_package(Eigen3 3.4 QUIET NO_MODULE)
+if(NOT TARGET Eigen3::Eigen)
+  list(APPEND DREV_MISSING "Eigen 3.4 (Eigen3Config.cmake)")
+endif()
 drev_find_library(cholmod cholmod.h cholmod)
 drev_find_library(klu klu.h klu)
-drev_find_library(umfpack umfpack.h umfpack)
 drev_find_library(arpack arpack.h arpack)
+if(DREV_MISSING)
+  list(JOIN DREV_MISSING ", " DREV_MISSING)
+  set(DREV_MISSING "drev needs ${DREV_MISSING}; on Debian or Ubuntu: \
+apt-get install libeigen3-dev libsuitesparse-dev libarpack2-dev")
+  if(NOT CMAKE_FIND_PACKAGE_NAME STREQUAL "drev")
+    message(FATAL_ERROR "${DREV_MISSING}")
+  endif()
+endif()

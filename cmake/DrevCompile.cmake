@@ -1,0 +1,49 @@
+# How drev's own targets are compiled. Nothing of it reaches a project that uses drev.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+endif()
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+find_program(DREV_CCACHE_PROGRAM ccache)
+mark_as_advanced(DREV_CCACHE_PROGRAM)
+if(DREV_CCACHE AND DREV_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # Precompiled headers need this laxity, or ccache stores nothing.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${DREV_CCACHE_PROGRAM})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-fpch-preprocess)
+  endif()
+endif()
+
+if(DREV_SANITIZE)
+  add_compile_options(-fsanitize=${DREV_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${DREV_SANITIZE})
+endif()
+
+# "text" + std::string makes g++ 12 and 13 warn of overlaps and sizes that cannot occur (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
+  set(DREV_NO_WARNINGS -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)
+endif()
+
+# Headers that are slow to read and never change. Sources include what they use all the same; build
+# with -DDREV_PRECOMPILE=OFF to see that they do.
+set(DREV_PRECOMPILED <Eigen/Dense> <Eigen/SparseCore> <functional> <memory> <string> <vector>)
+
+# Language level and warnings; further arguments: what to precompile, or REUSE_FROM <target>.
+function(drev_compile target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion ${DREV_NO_WARNINGS}
+    $<$<BOOL:${DREV_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(NOT DREV_PRECOMPILE OR NOT ARGN)
+    return()
+  elseif(ARGV1 STREQUAL "REUSE_FROM")
+    target_precompile_headers(${target} REUSE_FROM ${ARGV2})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()

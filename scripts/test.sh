@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Builds and runs every test; then the unit tests once more under the address and undefined-behaviour
+# sanitizers. On a fresh Debian 12 or Ubuntu 24.04 it installs what it needs first.
+#
+#   scripts/test.sh            everything
+#   scripts/test.sh --quick    without the sanitizers
+#
+# Its last line is what CTest ran. DREV_WARNINGS_AS_ERRORS=ON in the environment makes warnings errors.
+set -euo pipefail
+quick=0
+for argument in "$@"; do
+  case $argument in
+    --quick) quick=1 ;;
+    *) sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  esac
+done
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+cd "$root"
+
+ran=""
+finish() {
+  local status=$?
+  if [ $status != 0 ] && [ -z "${failed:-}" ]; then ran="${ran:+$ran; the rest }not run"; fi
+  echo "CTest: $ran"
+  exit $status
+}
+trap finish EXIT
+
+# run_tests <preset> <suffix>: runs CTest and adds "<n> tests, <n> failed<suffix>" to $ran.
+run_tests() {
+  local report=$root/build/$1-tests.xml status=0
+  rm -f "$report"
+  ctest --preset "$1" --parallel "$jobs" --output-junit "$report" || status=$?
+  [ -f "$report" ] || fail "CTest left no report of preset $1"
+  count() { sed -n "s/^[[:space:]]*$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
+  local skipped
+  skipped=$(count skipped)
+  ran="${ran:+$ran; }$(count tests) tests, $(count failures) failed"
+  if [ "${skipped:-0}" != 0 ]; then ran="$ran, $skipped skipped"; fi
+  ran="$ran$2"
+  return $status
+}
+
+install_packages
+build release
+run_tests release "" || failed=1
+if [ $quick = 0 ]; then
+  build asan-ubsan
+  run_tests asan-ubsan " under sanitizers" || failed=1
+fi
+[ -z "${failed:-}" ]
