@@ -1,0 +1,35 @@
+#pragma once
+/// The two-stage gear drive of the source's engine (S. L. Sunde, NTNU, 2015, section 4.2, Table 4.1):
+///
+///   crank_gear (z 59, m 8) -- mesh_1 -- idler (z 68 and, on the same node, z 34, m 9) -- mesh_2 -- gear
+///
+/// Both idlers share a node. Ratio 59/68 * 34/59 = 1/2: the camshaft turns at half the engine's speed, in
+/// the same sense. Stiffnesses are those of the source's finite-element study, taken along the line of
+/// action; the idler's 68 teeth correct a misprint (64). Inertias of crank gear and idler are typical
+/// values, not the builder's.
+#include "models/scene.hpp"
+
+namespace drev {
+
+/// Variation of the mesh stiffness.
+enum class MeshVariation { mean, step, fourier };
+
+struct GearDriveParams {
+  double normal_backlash = 0.15e-3;  ///< m, total, in each mesh
+  MeshVariation variation = MeshVariation::mean;
+  double mesh_damping = 0.0;         ///< N s/m, in each mesh
+};
+
+/// Adds crank_gear, idler, mesh_1 and mesh_2 to a model that has the node `camshaft_gear`, whose inertia
+/// is the caller's. Nothing is prescribed.
+void add_gear_drive(Model& model, const std::string& camshaft_gear, const GearDriveParams& params);
+
+/// The settings of the drive, shared by the models that have one.
+std::vector<Setting> gear_drive_settings();
+GearDriveParams gear_drive_params(const Settings& settings);
+
+/// The drive alone: crank gear at constant speed, camshaft gear with its inertia and a torque on it.
+Scene build_gear_drive(Settings settings);
+const SceneEntry& gear_drive_entry();
+
+}  // namespace drev

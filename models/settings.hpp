@@ -1,0 +1,58 @@
+#pragma once
+/// Named settings of a ready-made model, with unit, default and range: what `drev list` shows and `--set
+/// name=value` changes.
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace drev {
+
+/// Description of one setting.
+struct Setting {
+  enum class Kind { number, integer, choice, order };
+  std::string name;
+  Kind kind = Kind::number;
+  std::string default_text;
+  std::string unit = {};                  ///< empty: none
+  double low = 0.0, high = 0.0;           ///< range of numbers and integers, ends included
+  std::vector<std::string> choices = {};  ///< of a choice
+  std::string meaning = {};
+  /// Range as text: "6 to 10", "gears | held | free", ...
+  std::string range() const;
+};
+
+/// Values for the settings of one model: the defaults, then what was set.
+class Settings {
+ public:
+  Settings(std::string model, std::vector<Setting> known);
+
+  /// Reads "name" = "value". What is wrong (no such name, no number, out of range) is kept for check().
+  void set(const std::string& name, const std::string& value);
+  /// Throws ModelError with everything that was wrong.
+  void check() const;
+  /// Adds a finding of the model's own, e.g. a combination that cannot be.
+  void refuse(const std::string& name, const std::string& why);
+
+  double number(const std::string& name) const;
+  int integer(const std::string& name) const;
+  const std::string& text(const std::string& name) const;
+  /// An order such as 1-5-3-6-2-4.
+  std::vector<int> order(const std::string& name) const;
+
+  const std::vector<Setting>& known() const { return known_; }
+  const std::vector<std::string>& values() const { return values_; }
+
+ private:
+  std::size_t find(const std::string& name) const;
+
+  std::string model_;
+  std::vector<Setting> known_;
+  std::vector<std::string> values_;
+  std::vector<Finding> findings_;
+};
+
+/// Reads a whole decimal number; false if the text is anything else.
+bool read_number(const std::string& text, double& value);
+
+}  // namespace drev
