@@ -8,9 +8,7 @@ namespace drev {
 
 PolylineSpring::PolylineSpring(Params params) : params_(std::move(params)) {
   if (!usable()) return;  // check() says why
-  for (std::size_t i = 0; i + 1 < params_.x.size(); ++i)
-    slopes_.push_back((params_.y[i + 1] - params_.y[i]) / (params_.x[i + 1] - params_.x[i]));
-  find_energies();
+  find_segments();
   find_gap();
 }
 
@@ -38,50 +36,57 @@ PolylineSpring::Params PolylineSpring::with_stops(double stiffness, double trave
           .damping = damping};
 }
 
-void PolylineSpring::find_energies() {
+void PolylineSpring::find_segments() {
   const auto &x = params_.x, &y = params_.y;
-  energies_.assign(1, 0.0);
-  for (std::size_t i = 0; i < slopes_.size(); ++i)
-    energies_.push_back(energies_[i] + 0.5 * (y[i] + y[i + 1]) * (x[i + 1] - x[i]));
-  // The least energy is where y = 0: in the segment in which y changes sign, or at a point.
+  double energy = 0.0;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    segments_.push_back({x[i], y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i]), energy});
+    energy += 0.5 * (y[i] + y[i + 1]) * (x[i + 1] - x[i]);
+  }
+  // The least energy is where y = 0: in the segment in which y changes sign. That one is written
+  // from its zero, so that small deflections about the equilibrium keep all their digits.
   std::size_t i = 0;
-  while (i + 1 < slopes_.size() && y[i + 1] < 0.0) ++i;
-  const double least =
-      slopes_[i] > 0.0 ? energies_[i] - 0.5 * y[i] * y[i] / slopes_[i] : energies_[i];
-  for (double& e : energies_) e = std::max(e - least, 0.0);
+  while (i + 1 < segments_.size() && y[i + 1] < 0.0) ++i;
+  Segment& s = segments_[i];
+  if (s.slope > 0.0) {
+    const double from_zero = s.y / s.slope;
+    s = {s.x - from_zero, 0.0, s.slope, s.energy - 0.5 * s.y * from_zero};
+  }
+  const double least = s.energy;
+  for (Segment& other : segments_) other.energy = std::max(other.energy - least, 0.0);
 }
 
 void PolylineSpring::find_gap() {
   const auto &x = params_.x, &y = params_.y;
-  for (std::size_t i = 0; i < slopes_.size(); ++i) {
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
     if (y[i] != 0.0 || y[i + 1] != 0.0) continue;
     const double infinity = std::numeric_limits<double>::infinity();
     if (!gap_) gap_ = Gap{i == 0 ? -infinity : x[i], 0.0};
-    gap_->high = i + 1 == slopes_.size() ? infinity : x[i + 1];
+    gap_->high = i + 1 == segments_.size() ? infinity : x[i + 1];
   }
 }
 
-std::size_t PolylineSpring::segment(double x) const {
+std::size_t PolylineSpring::segment_at(double x) const {
   const auto inner = params_.x.begin() + 1;
   return static_cast<std::size_t>(std::upper_bound(inner, params_.x.end() - 1, x) - inner);
 }
 
 ScalarResponse PolylineSpring::evaluate(const ScalarInput& in) const {
-  const std::size_t i = segment(in.x);
-  const double s = in.x - params_.x[i], k = slopes_[i], c = params_.damping;
+  const Segment& segment = segments_[segment_at(in.x)];
+  const double s = in.x - segment.x, c = params_.damping;
   ScalarResponse r;
-  r.y = params_.y[i] + k * s + c * in.x_dot;
-  r.dy_dx = k;
+  r.y = segment.y + segment.slope * s + c * in.x_dot;
+  r.dy_dx = segment.slope;
   r.dy_dx_dot = c;
   // Rounding can leave -1e-17 J at the bottom of the valley.
-  r.stored_energy = std::max(energies_[i] + s * (params_.y[i] + 0.5 * k * s), 0.0);
+  r.stored_energy = std::max(segment.energy + s * (segment.y + 0.5 * segment.slope * s), 0.0);
   r.dissipated_power = c * in.x_dot * in.x_dot;
   return r;
 }
 
 double PolylineSpring::closed_stiffness() const {
-  if (!gap_) return slopes_[segment(0.0)];
-  const double low = slopes_.front(), high = slopes_.back();
+  if (!gap_) return segments_[segment_at(0.0)].slope;
+  const double low = segments_.front().slope, high = segments_.back().slope;
   if (low == 0.0 || high == 0.0) return std::max(low, high);
   return 0.5 * (low + high);
 }
@@ -106,8 +111,8 @@ void PolylineSpring::check(ParameterCheck& check) const {
       return;
     }
   if (!usable()) return;
-  const bool reaches_zero =
-      (y.front() <= 0.0 || slopes_.front() > 0.0) && (y.back() >= 0.0 || slopes_.back() > 0.0);
+  const bool reaches_zero = (y.front() <= 0.0 || segments_.front().slope > 0.0) &&
+                            (y.back() >= 0.0 || segments_.back().slope > 0.0);
   if (!reaches_zero)
     check.fail("y", to_text(y.front() > 0.0 ? y.front() : y.back()), "N m",
                "must pass through zero; this spring balances nowhere");

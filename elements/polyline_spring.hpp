@@ -45,12 +45,17 @@ class PolylineSpring final : public Element, public ScalarForce {
 
  private:
   bool usable() const;
-  std::size_t segment(double x) const;
-  void find_energies();
+  std::size_t segment_at(double x) const;
+  void find_segments();
   void find_gap();
 
+  /// y = y_0 + slope (x - x_0), with the stored energy at x_0.
+  struct Segment {
+    double x = 0.0, y = 0.0, slope = 0.0, energy = 0.0;
+  };
+
   Params params_;
-  std::vector<double> slopes_, energies_;  // per segment; at each point
+  std::vector<Segment> segments_;
   std::optional<Gap> gap_;
 };
 

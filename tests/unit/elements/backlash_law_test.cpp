@@ -1,0 +1,143 @@
+// The dead zone with its damping laws.
+#include "elements/backlash_law.hpp"
+
+#include <cmath>
+
+#include "core/law_element.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/elements/checks.hpp"
+
+using namespace drev;
+using namespace drev::test;
+
+namespace {
+
+constexpr double kStiffness = 2e8;  // N/m
+constexpr CurvePoint kConstant{kStiffness, 0.0};
+
+BacklashLaw law(MeshDamping damping_law, double backlash = 80e-6, double damping = 1000.0) {
+  return BacklashLaw({.normal_backlash = backlash, .damping = damping, .damping_law = damping_law});
+}
+
+}  // namespace
+
+TEST_CASE("dead zone by hand: 2b = 80 um, k = 2e8 N/m") {
+  const BacklashLaw undamped({.normal_backlash = 80e-6});
+  CHECK(undamped.evaluate(39e-6, 1.0, kConstant).y == 0.0);
+  CHECK(undamped.evaluate(-39e-6, 1.0, kConstant).dy_dx == 0.0);
+  const ScalarResponse front = undamped.evaluate(50e-6, 1.0, kConstant);
+  CHECK(front.y == Approx(2000.0));  // 10 um * 2e8
+  CHECK(front.dy_dx == kStiffness);
+  CHECK(front.stored_energy == Approx(0.01));  // 2e8 * (1e-5)^2/2
+  CHECK(front.dissipated_power == 0.0);
+  CHECK(undamped.evaluate(-50e-6, 1.0, kConstant).y == Approx(-2000.0));
+  REQUIRE(undamped.gap());
+  CHECK(undamped.gap()->low == -40e-6);
+  CHECK(undamped.gap()->high == 40e-6);
+  CHECK(undamped.kinks().size() == 2);
+}
+
+TEST_CASE("proportional damping grows from the edge and saturates at p_ref = b/20 = 2 um") {
+  const BacklashLaw l = law(MeshDamping::proportional);
+  // p = 1 um, half of p_ref: c_eff = 500; 200 N + 500 * 0.1 m/s.
+  CHECK(l.evaluate(41e-6, 0.1, kConstant).y == Approx(250.0));
+  CHECK(l.evaluate(41e-6, 0.1, kConstant).dy_dx_dot == Approx(500.0));
+  // p = 10 um: c_eff = c.
+  CHECK(l.evaluate(50e-6, 0.1, kConstant).y == Approx(2100.0));
+  CHECK(l.evaluate(-50e-6, -0.1, kConstant).y == Approx(-2100.0));
+  CHECK(l.evaluate(50e-6, 0.1, kConstant).dissipated_power == Approx(10.0));
+  // Continuous at the edge at any rate.
+  CHECK(std::abs(l.evaluate(40e-6 + 1e-15, 10.0, kConstant).y) < 1e-4);
+  CHECK(l.kinks().size() == 4);
+}
+
+TEST_CASE("flanks never pull") {
+  for (const auto kind : {MeshDamping::proportional, MeshDamping::contact_only}) {
+    const BacklashLaw l = law(kind);
+    // p = 10 um carries 2000 N; leaving at 3 m/s the damper wants -3000 N.
+    const ScalarResponse front = l.evaluate(50e-6, -3.0, kConstant);
+    CHECK(front.y == 0.0);
+    CHECK(front.dy_dx == 0.0);
+    CHECK(front.dy_dx_dot == 0.0);
+    CHECK(front.dissipated_power == Approx(6000.0));  // 2000 N * 3 m/s of the spring is lost
+    CHECK(l.evaluate(-50e-6, 3.0, kConstant).y == 0.0);
+    CHECK(l.evaluate(0.0, 5.0, kConstant).y == 0.0);
+  }
+}
+
+TEST_CASE("the source's law acts in the gap and pulls") {
+  const BacklashLaw l = law(MeshDamping::always);
+  CHECK(l.evaluate(0.0, 5.0, kConstant).y == Approx(5000.0));
+  CHECK(l.evaluate(50e-6, -3.0, kConstant).y == Approx(-1000.0));
+  CHECK(l.evaluate(0.0, 5.0, kConstant).dissipated_power == Approx(25000.0));
+}
+
+TEST_CASE("contact-only damping jumps at the edge") {
+  const BacklashLaw l = law(MeshDamping::contact_only);
+  CHECK(l.evaluate(40e-6, 1.0, kConstant).y == 0.0);
+  CHECK(l.evaluate(40e-6 + 1e-12, 1.0, kConstant).y == Approx(1000.0));
+}
+
+TEST_CASE("without backlash every damping law is the same linear spring and damper") {
+  for (const auto kind :
+       {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always}) {
+    const BacklashLaw l = law(kind, 0.0);
+    CHECK_FALSE(l.gap());
+    CHECK(l.kinks().empty());
+    for (const double x : {-1e-5, 0.0, 1e-5})
+      CHECK(l.evaluate(x, -3.0, kConstant).y == Approx(kStiffness * x - 3000.0));
+    CHECK(l.evaluate(1e-5, -3.0, kConstant).dissipated_power == Approx(9000.0));
+  }
+}
+
+TEST_CASE("every damping law is sound at random states") {
+  struct Functor {
+    BacklashLaw law;
+    ScalarResponse operator()(const ScalarInput& in) const {
+      return law.evaluate(in.x, in.x_dot, kConstant);
+    }
+    std::span<const double> kinks() const { return law.kinks(); }
+    std::optional<Gap> gap() const { return law.gap(); }
+  };
+  for (const auto kind :
+       {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always})
+    for (const double backlash : {0.0, 80e-6, 0.7853981633974483})
+      CHECK(
+          check_element(LawElement<Functor>({law(kind, backlash)}), 2, {.samples = 2000}).text() ==
+          "");
+}
+
+TEST_CASE("a loading cycle dissipates: work done over it is positive") {
+  // x = 60 um sin(w t) over whole periods; for `always` the work is exactly pi c X^2 w a period.
+  const double amplitude = 60e-6, omega = 2000.0, period = 2 * M_PI / omega;
+  const auto work = [&](const BacklashLaw& l) {
+    return integral(
+        [&](double t) {
+          const double x_dot = amplitude * omega * std::cos(omega * t);
+          return l.evaluate(amplitude * std::sin(omega * t), x_dot, kConstant).y * x_dot;
+        },
+        0.0, period, 200000);
+  };
+  const double linear = M_PI * 1000.0 * amplitude * amplitude * omega;
+  CHECK(work(law(MeshDamping::always)) == Approx(linear).epsilon(1e-6));
+  const double proportional = work(law(MeshDamping::proportional));
+  const double contact_only = work(law(MeshDamping::contact_only));
+  CHECK(proportional > 0.0);
+  CHECK(contact_only > proportional);
+  CHECK(contact_only < linear);
+  CHECK(std::abs(work(law(MeshDamping::proportional, 80e-6, 0.0))) < 1e-9 * linear);
+}
+
+TEST_CASE("backlash law: faults") {
+  const auto faults = [](const BacklashLaw::Params& p) {
+    std::vector<Finding> all;
+    ParameterCheck check("mesh", all);
+    BacklashLaw(p).check(check);
+    return all.empty() ? std::string() : std::string(ModelError(all).what());
+  };
+  CHECK(faults({}) == "");
+  CHECK(faults({.normal_backlash = -0.5}) ==
+        "mesh: normal_backlash = -0.5 m, must be >= 0 and finite");
+  CHECK(contains(faults({.damping = NAN}), "damping = NaN N s/m"));
+  CHECK(contains(faults({.reference_penetration = 0.0}), "reference_penetration = 0 m"));
+}
