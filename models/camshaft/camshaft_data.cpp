@@ -1,4 +1,5 @@
 #include <array>
+#include <string_view>
 
 #include "core/units.hpp"
 #include "elements/rayleigh_damping.hpp"
@@ -6,7 +7,7 @@
 #include "models/settings.hpp"
 
 namespace drev::data {
-extern const std::string_view cam_torque_csv;  // models/camshaft/data/cam_torque.csv
+extern const std::string_view camshaft_cam_torque;  // models/camshaft/data/cam_torque.csv
 }
 
 namespace drev {
@@ -37,7 +38,7 @@ std::size_t row(int cylinders) {
 /// Columns angle_deg, fuel, exhaust, inlet; the row at 360 deg repeats the one at 0 and is left out.
 CamTorques read_cam_torques() {
   std::array<std::vector<double>, 4> columns;
-  const std::string_view all = data::cam_torque_csv;
+  const std::string_view all = data::camshaft_cam_torque;
   std::size_t begin = all.find('\n') + 1;
   while (begin < all.size()) {
     const std::size_t end = std::min(all.find('\n', begin), all.size());
