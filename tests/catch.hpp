@@ -2,7 +2,7 @@
 /// Catch2 v2 (Debian 12) or v3 (Ubuntu 24.04), whichever is installed.
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
+using Catch::Approx;
 #else
 #include <catch2/catch.hpp>
 #endif
-using Catch::Approx;
