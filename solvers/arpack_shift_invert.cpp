@@ -44,7 +44,7 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
     result.reason = "count must be at least 1 and less than the number of unknowns";
     return result;
   }
-  const int ncv = std::min(n, std::max(2 * k + 1, 20));
+  const int ncv = std::min(n, std::max(problem.basis, std::max(2 * k + 1, 20)));
   const int lworkl = ncv * (ncv + 8);
   Vector residual = start_vector(n, problem.start), in(n), out(n);
   Eigen::MatrixXd basis(n, ncv);

@@ -32,8 +32,9 @@ struct ShiftInvertProblem {
   double sigma = 0.0;                                     ///< (rad/s)^2
   std::function<void(const Vector& b, Vector& x)> solve;  ///< x = (K - sigma M)^-1 b
   std::function<void(const Vector& x, Vector& y)> mass;   ///< y = M x
-  int start = 0;                                          ///< another number: another start vector
-  int max_iterations = 300;                               ///< restarts
+  int basis = 0;             ///< Lanczos vectors kept; 0: max(2 count + 1, 20); at most size
+  int start = 0;             ///< another number: another start vector
+  int max_iterations = 300;  ///< restarts
 };
 
 struct ShiftInvertResult {

@@ -70,13 +70,13 @@ void ModalProblem::factor(double sigma) {
                     " even with a shift far below zero: the mass matrix is not positive definite");
 }
 
-void ModalProblem::find_shift(int rigid_modes, bool dense_method) {
+void ModalProblem::find_shift(int rigid_modes, bool prefer_dense) {
   const double n = system_.size();
   double sigma = lambda_max_ > 0.0 ? -lambda_max_ / (n * n) : -1.0;
   for (int round = 0; round < 6; ++round) {
     factor(sigma);
     if (rigid_modes >= system_.size()) return;
-    const ModalPairs pairs = dense_method ? dense() : lanczos(rigid_modes + 1, 0);
+    const ModalPairs pairs = lowest(rigid_modes + 1, 0, prefer_dense);
     const double first = std::abs(pairs.lambda[rigid_modes]);
     const double ratio = -summary_.shift / first;
     if ((ratio <= 10.0 && ratio >= 0.01) || summary_.shift != sigma) return;
@@ -108,13 +108,28 @@ ModalPairs ModalProblem::lanczos(int count, int start) {
   problem.start = start;
   problem.solve = [this](const Vector& b, Vector& x) { shifted_.solve(b, x); };
   problem.mass = [this](const Vector& x, Vector& y) { assembler_.multiply(mass_, x, y); };
-  ShiftInvertResult result = arpack_shift_invert(problem);
-  summary_.solves += result.solves;
-  if (result.status != ArpackStatus::success)
+  ShiftInvertResult result;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    result = arpack_shift_invert(problem);
+    summary_.solves += result.solves;
+    if (result.status == ArpackStatus::success) break;
+    problem.basis = 2 * std::max(20, std::max(2 * count + 1, problem.basis));
+    problem.start += 17;
+  }
+  if (result.status != ArpackStatus::success) {
+    if (system_.size() <= kDenseRescue) return lowest(count, start, true);
     throw SolverError("modes of " + system_.name() + ": ARPACK: " + result.reason);
+  }
   ModalPairs pairs{std::move(result.lambda), std::move(result.vectors)};
   refine(pairs);
   return pairs;
+}
+
+ModalPairs ModalProblem::lowest(int count, int start, bool prefer_dense) {
+  // Lanczos needs a basis of twice the number asked for: near n dense is cheaper and surer.
+  const bool all = prefer_dense || 2 * count + 1 > system_.size();
+  summary_.method = all ? ModesMethod::dense : ModesMethod::lanczos;
+  return all ? dense() : lanczos(count, start);
 }
 
 void ModalProblem::refine(ModalPairs& pairs) const {

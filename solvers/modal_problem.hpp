@@ -28,10 +28,12 @@ class ModalProblem {
   /// of a uniform chain, and starts again where that turns out to be more than 10 times or less
   /// than a hundredth. Throws SolverError where no shift makes K - sigma M positive definite.
   void find_shift(int rigid_modes, bool dense);
-  /// All pairs; computed once for each shift.
-  const ModalPairs& dense();
-  /// start: number of the start vector. Throws SolverError with ARPACK's reason.
-  ModalPairs lanczos(int count, int start);
+  /// The lowest pairs, at least count, by the method preferred; summary says which it was. Where
+  /// Lanczos does not converge (very many copies of one frequency) the basis is enlarged, then
+  /// dense is taken up to kDenseRescue unknowns; beyond, throws SolverError with ARPACK's reason.
+  /// start: number of start vector.
+  ModalPairs lowest(int count, int start, bool prefer_dense);
+  static constexpr int kDenseRescue = 3000;
 
   InertiaCounter& sturm() { return sturm_; }
   bool stores_no_energy(const Vector& x) const;
@@ -41,6 +43,8 @@ class ModalProblem {
   const std::string& largest_entry(const Vector& x) const;
 
  private:
+  ModalPairs lanczos(int count, int start);
+  const ModalPairs& dense();  // all pairs, computed once for each shift
   void factor(double sigma);
   void refine(ModalPairs& pairs) const;
 

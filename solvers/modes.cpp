@@ -127,18 +127,16 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
   ModesSummary& summary = modes.summary;
 
   ModalProblem problem(system, options.contact, summary);
+  const bool prefer_dense = n <= options.dense_limit;
+  problem.find_shift(modes.rigid_modes, prefer_dense);
   constexpr int kRounds = 12;
   int ask = std::min(n, total + 1);
   for (int round = 0; round < kRounds; ++round) {
-    // Lanczos needs a basis of twice the number asked for: near n dense is cheaper and surer.
-    const bool dense = n <= options.dense_limit || 2 * ask + 1 > n;
-    summary.method = dense ? ModesMethod::dense : ModesMethod::lanczos;
-    if (summary.shift == 0.0) problem.find_shift(modes.rigid_modes, dense);
-    const ModalPairs pairs = dense ? problem.dense() : problem.lanczos(ask, round);
+    const ModalPairs pairs = problem.lowest(ask, round, prefer_dense);
     check_rigid(system, options.contact, problem, pairs);
     const int cut = next_distinct(pairs.lambda, total);
     const int surplus = cut < 0 ? 0 : sturm_surplus(problem, pairs.lambda, cut, summary);
-    if (surplus < 0 || (surplus > 0 && dense))
+    if (surplus < 0 || (surplus > 0 && pairs.count() == n))
       throw SolverError("modes of " + system.name() + ": " + std::to_string(cut) +
                         " modes found below " + to_text(summary.sturm_point) +
                         " (rad/s)^2, but the Sturm count is " +
