@@ -148,7 +148,14 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
       return modes;
     }
     ++summary.widened;
-    ask = std::min(n, cut < 0 ? ask + std::max(2, ask / 2) : ask + surplus + 1);
+    int more = surplus + 1;
+    if (cut < 0) {  // copies of the last mode up to the end: how many there are says the count
+      const InertiaCount count =
+          problem.sturm().count_below(pairs.lambda[total - 1] * (1.0 + 1e-5));
+      ++summary.factorizations;
+      more = std::max(count.trusted ? count.below + 1 - ask : 0, 1 + ask / 4);
+    }
+    ask = std::min(n, ask + more);
   }
   throw SolverError("modes of " + system.name() +
                     ": modes found and Sturm count did not agree after " + std::to_string(kRounds) +
