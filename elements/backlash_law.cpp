@@ -53,6 +53,13 @@ ScalarResponse BacklashLaw::evaluate(double x, double x_dot, CurvePoint stiffnes
     r.dissipated_power = -k * p * x_dot;
     return r;
   }
+  if (params_.damping_law == MeshDamping::limited && c * x_dot * side > k * depth) {
+    r.y = 2.0 * k * p;
+    r.dy_dx = 2.0 * k;
+    r.dy_dangle = 2.0 * stiffness.slope * p;
+    r.dissipated_power = k * p * x_dot;
+    return r;
+  }
   r.y = y;
   r.dy_dx = rising ? k + c * side * x_dot / p_ref_ : k;
   r.dy_dx_dot = c_eff;

@@ -20,9 +20,13 @@
 ///                 Hunt, F. R. E. Crossley, Coefficient of restitution interpreted as damping in
 ///                 vibroimpact, J. Appl. Mech. 42, 1975, whose damping grows with p without bound;
 ///                 saturated here.)
+///   limited       the damper's force is limited to the spring's: y = k p + c x_dot, but between 0 and
+///                 2 k p on the front flank (mirrored behind). Continuous at the edge, without a
+///                 parameter of its own. (Modelica Standard Library,
+///                 Mechanics.Rotational.Components.ElastoBacklash2.)
 ///   contact_only  c_eff = c in contact: the force jumps by c x_dot where the flanks meet. Never
 ///   pulls.
-///                 (As Modelica.Mechanics.Rotational.Components.ElastoBacklash2.)
+///                 A discrete step can then be left without a solution.
 ///   always        y = k p + c x_dot everywhere, in the gap too, and may pull. The law of the
 ///   source,
 ///                 S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU,
@@ -44,7 +48,7 @@
 
 namespace drev {
 
-enum class MeshDamping { proportional, contact_only, always };
+enum class MeshDamping { proportional, limited, contact_only, always };
 
 class BacklashLaw {
  public:

@@ -52,7 +52,8 @@ TEST_CASE("proportional damping grows from the edge and saturates at p_ref = b/2
 }
 
 TEST_CASE("flanks never pull") {
-  for (const auto kind : {MeshDamping::proportional, MeshDamping::contact_only}) {
+  for (const auto kind :
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only}) {
     const BacklashLaw l = law(kind);
     // p = 10 um carries 2000 N; leaving at 3 m/s the damper wants -3000 N.
     const ScalarResponse front = l.evaluate(50e-6, -3.0, kConstant);
@@ -72,6 +73,15 @@ TEST_CASE("the source's law acts in the gap and pulls") {
   CHECK(l.evaluate(0.0, 5.0, kConstant).dissipated_power == Approx(25000.0));
 }
 
+TEST_CASE("limited damping adds at most the spring's own force") {
+  const BacklashLaw l = law(MeshDamping::limited);
+  // p = 1 um: 200 N of spring; the damper would add 1000 N/(m/s) * 1 m/s.
+  CHECK(l.evaluate(41e-6, 1.0, kConstant).y == Approx(400.0));
+  CHECK(l.evaluate(41e-6, 0.1, kConstant).y == Approx(300.0));
+  CHECK(l.evaluate(-41e-6, -1.0, kConstant).y == Approx(-400.0));
+  CHECK(std::abs(l.evaluate(40e-6 + 1e-15, 10.0, kConstant).y) < 1e-4);
+}
+
 TEST_CASE("contact-only damping jumps at the edge") {
   const BacklashLaw l = law(MeshDamping::contact_only);
   CHECK(l.evaluate(40e-6, 1.0, kConstant).y == 0.0);
@@ -80,7 +90,8 @@ TEST_CASE("contact-only damping jumps at the edge") {
 
 TEST_CASE("without backlash every damping law is the same linear spring and damper") {
   for (const auto kind :
-       {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always}) {
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only,
+        MeshDamping::always}) {
     const BacklashLaw l = law(kind, 0.0);
     CHECK_FALSE(l.gap());
     CHECK(l.kinks().empty());
@@ -100,7 +111,8 @@ TEST_CASE("every damping law is sound at random states") {
     std::optional<Gap> gap() const { return law.gap(); }
   };
   for (const auto kind :
-       {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always})
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only,
+        MeshDamping::always})
     for (const double backlash : {0.0, 80e-6, 0.7853981633974483})
       CHECK(
           check_element(LawElement<Functor>({law(kind, backlash)}), 2, {.samples = 2000}).text() ==

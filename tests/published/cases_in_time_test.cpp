@@ -1,0 +1,116 @@
+// Published cases 7 to 9: other projects' numbers, recomputed independently.
+#include <cmath>
+
+#include "core/channel.hpp"
+#include "core/law_element.hpp"
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "solvers/recorder.hpp"
+#include "solvers/transient.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// BacklashLaw on a twist: k [N m/rad], c [N m s/rad], gap [rad].
+struct TwistBacklash {
+  BacklashLaw law;
+  double stiffness;
+  ScalarResponse operator()(const ScalarInput& in) const {
+    return law.evaluate(in.x, in.x_dot, {stiffness, 0.0});
+  }
+  std::span<const double> kinks() const { return law.kinks(); }
+  std::optional<Gap> gap() const { return law.gap(); }
+  double closed_stiffness() const { return stiffness; }
+};
+
+System oscillator(double stiffness, double damping, double gap) {
+  Model m("oscillator");
+  m.add_node("disc");
+  m.add<Inertia>("J", {"disc"}, {.inertia = 5.0});
+  m.add<LawElement<TwistBacklash>>(
+      "stop", {"disc"},
+      TwistBacklash{BacklashLaw({.normal_backlash = gap,
+                                 .damping = damping,
+                                 .damping_law = MeshDamping::limited}),
+                    stiffness});
+  m.set_initial("disc", kPi / 2, 0.0);
+  return m.build();
+}
+
+/// Time of the velocity's n-th change of sign, placed linearly in its step.
+class Reversals final : public Observer {
+ public:
+  void start(const Assembler&, const StepPoint&) override {}
+  void step(const Assembler&, const StepPoint& from, const StepPoint& to) override {
+    const double v0 = from.state.v[0], v1 = to.state.v[0];
+    if (v0 * v1 < 0.0)
+      times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
+  }
+  std::vector<double> times;
+};
+
+}  // namespace
+
+TEST_CASE("Case 7: backlash with a damper that never pulls (Modelica Standard Library)") {
+  // The library's ElastoBacklash2 limits the damper to the spring's force. h = 5e-6 s is small enough.
+  const double step = 5e-6, tolerance = 1e-6;
+  const System system = oscillator(2e4, 50.0, kPi / 4);
+  Recorder recorder(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.05);
+  const RunSummary run = simulate(system, {.step = step, .t_end = 1.0}, {&recorder});
+  CHECK(run.ok());
+  const double exact[4][3] = {{0.1, 0.2498358550, 52.8937186},
+                              {0.25, 0.5808155699, 30.0804578},
+                              {0.5, -0.3099580355, -17.2284257},
+                              {1.0, -0.1555814136, -7.0229373}};
+  const double amplitude = kPi / 2, speed = 66.196495;
+  for (const auto& e : exact) {
+    const auto i = static_cast<std::size_t>(std::lround(e[0] / 0.05));
+    INFO("t = " << e[0]);
+    CHECK(recorder.samples(0)[i] == Approx(e[1]).margin(tolerance * amplitude));
+    CHECK(recorder.samples(1)[i] == Approx(e[2]).margin(tolerance * speed));
+  }
+}
+
+TEST_CASE("Case 7 without a gap: damped free vibration") {
+  const System system = oscillator(2e4, 50.0, 0.0);
+  Recorder recorder(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.1);
+  CHECK(simulate(system, {.step = 1e-6, .t_end = 0.1}, {&recorder}).ok());
+  CHECK(recorder.samples(0)[1] == Approx(0.9541444033).margin(1e-8));
+  CHECK(recorder.samples(1)[1] == Approx(-1.3039986217).margin(1e-6));
+}
+
+TEST_CASE("Case 8: period of the undamped oscillator with a symmetric gap, closed form") {
+  // T = 2 pi/w + 4 g/(w (A - g)), w = 63.2455532, A = pi/2, g = pi/8.
+  const System system = oscillator(2e4, 0.0, kPi / 4);
+  Reversals reversals;
+  CHECK(simulate(system, {.step = 1e-6, .t_end = 0.5}, {&reversals}).ok());
+  REQUIRE(reversals.times.size() >= 6);
+  const double period = 0.1204277338;
+  CHECK(reversals.times[0] == Approx(0.5 * period).epsilon(1e-6));
+  CHECK(reversals.times[5] == Approx(3.0 * period).epsilon(1e-6));
+}
+
+TEST_CASE("Case 9: ideal gear, forced (Chrono unit test)") {
+  Model m("ideal gear");
+  m.add_node("first");
+  m.add_node("second");
+  m.add<Inertia>("J_1", {"first"}, {.inertia = 10.0});
+  m.add<Inertia>("J_2", {"second"}, {.inertia = 100.0});
+  m.add<IdealGear>("gear", {"first", "second"}, {.ratio = -0.1});
+  m.add<AppliedTorque>("drive", {"first"}, {.torque = [](double) { return 6.0; }});
+  const System system = m.build();
+  CHECK(system.size() == 1);
+  Recorder r(system,
+             {"first.acceleration_rad_per_s2", "second.acceleration_rad_per_s2", "first.angle_rad",
+              "first.speed_rad_per_s", "gear.torque_Nm"},
+             0.5);
+  CHECK(simulate(system, {.step = 1e-3, .t_end = 0.5}, {&r}).ok());
+  CHECK(r.samples(0)[1] == Approx(0.5454545455).epsilon(1e-9));
+  CHECK(r.samples(1)[1] == Approx(-0.0545454545).epsilon(1e-9));
+  CHECK(r.samples(2)[1] == Approx(0.0681818).epsilon(1e-6));
+  CHECK(r.samples(3)[1] == Approx(0.2727273).epsilon(1e-6));
+  // The gear turns 100 kg m^2 at -0.0545 rad/s^2.
+  CHECK(r.samples(4)[1] == Approx(-5.4545454545).epsilon(1e-9));
+}
