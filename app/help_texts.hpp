@@ -1,0 +1,46 @@
+#pragma once
+/// Texts of --help: methods and examples.
+namespace drev::app {
+
+inline constexpr const char* kMethodsHelp =
+    "Methods, all implicit and of second order but for newmark with GAMMA > 1/2:\n"
+    "  average_acceleration          the default\n"
+    "  hht[:ALPHA]                   0 to 1/3, default 0.05; damps the fastest modes\n"
+    "  generalized_alpha[:RHO_INF]   1 (none) to 0, default 0.8; damps the fastest modes\n"
+    "  newmark:BETA,GAMMA            BETA >= 0, GAMMA >= 1/2\n"
+    "  linear_acceleration, central_difference   stable for small steps only\n";
+
+inline constexpr const char* kMainExamples =
+    "Examples:\n"
+    "  drev list                          the models\n"
+    "  drev list camshaft                 its settings and channels\n"
+    "  drev modes camshaft                its natural frequencies\n"
+    "  drev run camshaft                  5 s of it, with gear drive and backlash\n";
+
+inline constexpr const char* kRunExamples =
+    "Examples:\n"
+    "  drev run camshaft\n"
+    "  drev run camshaft --set cylinders=6 --set drive=held damping=case_2\n"
+    "  drev run camshaft --out result --record end.angle_rad,mesh_1.force_N --every 0.001\n"
+    "  drev run two_mass_backlash --method hht:0.1 --step 0.001 --json\n"
+    "\n"
+    "history.csv: time_s, then the channels in the order asked for, at the times 0, 1, 2, ... "
+    "times\n"
+    "--every, with 17 significant digits. A channel is NODE.angle_rad, NODE.speed_rad_per_s,\n"
+    "NODE.position_m, NODE.velocity_m_per_s, ELEMENT.torque_Nm, ELEMENT.force_N or\n"
+    "NODE-NODE.twist_rad; angles are deviations from nominal motion. A run that is interrupted or\n"
+    "fails leaves history.partial.csv and summary.partial.json instead.\n";
+
+inline constexpr const char* kModesExamples =
+    "Examples:\n"
+    "  drev modes camshaft\n"
+    "  drev modes camshaft --set drive=free --count 5 --json\n"
+    "  drev modes gear_drive --contact open\n";
+
+inline constexpr const char* kListExamples =
+    "Examples:\n"
+    "  drev list\n"
+    "  drev list camshaft\n"
+    "  drev list camshaft --set cylinders=6 --json\n";
+
+}  // namespace drev::app

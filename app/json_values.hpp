@@ -1,0 +1,45 @@
+#pragma once
+/// Values as JSON. A number that is not finite is null: JSON has no NaN.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "models/settings.hpp"
+
+namespace drev::app {
+
+using Json = nlohmann::ordered_json;
+
+inline Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+inline Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
+inline Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/// Numbers as numbers, everything else as text.
+inline Json setting_value(const Setting& setting, const std::string& text) {
+  double value = 0.0;
+  if (setting.kind == Setting::Kind::number && read_number(text, value)) return number(value);
+  if (setting.kind == Setting::Kind::integer && read_number(text, value))
+    return static_cast<long>(value);
+  return text;
+}
+
+/// {name: value, ...}
+inline Json settings_object(const Settings& settings) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < settings.known().size(); ++i)
+    object[settings.known()[i].name] = setting_value(settings.known()[i], settings.values()[i]);
+  return object;
+}
+
+/// One object, ready to be printed or written.
+inline std::string json_text(const Json& object) {
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace drev::app

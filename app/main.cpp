@@ -1,0 +1,66 @@
+// The command drev: simulates ready-made models and lists them. See drev --help.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include "app/command_line.hpp"
+#include "app/commands.hpp"
+#include "app/exit_codes.hpp"
+#include "app/output_file.hpp"
+
+namespace drev::app {
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw OutputError(std::string("cannot write to standard output: ") + std::strerror(errno));
+}
+
+namespace {
+
+int execute(const CommandLine& line) {
+  switch (line.command) {
+    case CommandLine::Command::run:
+      return run_command(line);
+    case CommandLine::Command::modes:
+      return modes_command(line);
+    case CommandLine::Command::list:
+      return list_command(line);
+  }
+  return kBadInput;
+}
+
+void complain(const ModelError& error) {
+  const std::size_t count = error.findings().size();
+  if (count == 1) {
+    std::fprintf(stderr, "drev: %s\n", error.findings().front().text().c_str());
+    return;
+  }
+  std::fprintf(stderr, "drev: %zu faults:\n", count);
+  for (const Finding& finding : error.findings())
+    std::fprintf(stderr, "  %s\n", finding.text().c_str());
+}
+
+int guarded_main(int argc, char** argv) {
+  try {
+    const ParsedCommandLine parsed = parse_command_line(argc, argv);
+    return parsed.command ? execute(*parsed.command) : parsed.exit_code;
+  } catch (const ModelError& error) {
+    complain(error);
+    return kBadInput;
+  } catch (const OutputError& error) {
+    std::fprintf(stderr, "drev: %s\n", error.what());
+    return kNotWritten;
+  } catch (const SolverError& error) {
+    std::fprintf(stderr, "drev: the computation failed: %s\n", error.what());
+    return kNotTrusted;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "drev: failed: %s\n", error.what());
+    return kNotTrusted;
+  }
+}
+
+}  // namespace
+}  // namespace drev::app
+
+int main(int argc, char** argv) { return drev::app::guarded_main(argc, argv); }

@@ -1,0 +1,201 @@
+#include "app/requests.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/text_layout.hpp"
+#include "core/channel.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr const char* kPlace = "command line";
+constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
+
+void take_findings(const ModelError& error, std::vector<Finding>& findings) {
+  findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+}
+
+/// The settings that are right; what is wrong with the others goes to findings.
+Settings right_settings(const SceneEntry& entry, const CommandLine& line,
+                        std::vector<Finding>& findings) {
+  Settings right(entry.name, entry.settings);
+  for (const auto& [name, value] : line.settings) {
+    Settings probe(entry.name, entry.settings);
+    probe.set(name, value);
+    try {
+      probe.check();
+      right.set(name, value);
+    } catch (const ModelError& error) {
+      take_findings(error, findings);
+    }
+  }
+  return right;
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const SceneEntry& entry : scenes()) names.push_back(entry.name);
+  return names;
+}
+
+/// Null, and a finding, if there is no such model.
+const SceneEntry* find_model(const std::string& name, std::vector<Finding>& findings) {
+  const std::vector<std::string> names = model_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return &scenes()[static_cast<std::size_t>(found - names.begin())];
+  const std::string hint = did_you_mean(name, names);
+  // What is like no model may be the value of an option that does not exist.
+  if (findings.empty() || !hint.empty())
+    findings.push_back({kPlace, "MODEL", name, "",
+                        "is no model" + (hint.empty() ? "; the models are " + join(names) : hint)});
+  return nullptr;
+}
+
+/// Average acceleration, and a finding, if there is no such method.
+StepScheme read_method(const std::string& text, std::vector<Finding>& findings) {
+  const std::string form =
+      "must be average_acceleration, hht[:ALPHA], "
+      "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration "
+      "or central_difference";
+  try {
+    if (!text.ends_with(':') && !text.ends_with(',')) return step_scheme(text);
+    findings.push_back({kPlace, "--method", text, "", form});
+  } catch (const ModelError& error) {
+    for (Finding finding : error.findings()) {
+      finding.place = kPlace;
+      finding.parameter = "--method " + finding.parameter;
+      if (finding.range == "is no method") finding.range = form;
+      findings.push_back(std::move(finding));
+    }
+  }
+  return average_acceleration();
+}
+
+/// The model as far as it can be built; nothing if it cannot.
+std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings) {
+  if (line.model.empty()) {
+    // An option that does not exist may have taken the model's name.
+    if (findings.empty())
+      findings.push_back(
+          {kPlace, "MODEL", "", "", "is missing; the models are " + join(model_names())});
+    return {};
+  }
+  const SceneEntry* entry_found = find_model(line.model, findings);
+  if (entry_found == nullptr) return {};
+  try {
+    const SceneEntry& entry = *entry_found;
+    Settings settings = right_settings(entry, line, findings);
+    Scene scene = entry.build(settings);
+    System system = scene.model.build();
+    return ModelRequest{&entry, std::move(settings), std::move(scene), std::move(system)};
+  } catch (const ModelError& error) {
+    take_findings(error, findings);
+    return {};
+  }
+}
+
+/// A time in s between low and high.
+double read_time(const char* option, const std::string& text, double low, double high,
+                 const std::string& limit, std::vector<Finding>& findings) {
+  const std::string range = "must be between " + to_text(low) + " s and " +
+                            (std::isfinite(high) ? to_text(high) + " s" : std::string("the")) +
+                            (limit.empty() ? "" : " " + limit);
+  double value = 0.0;
+  if (!read_number(text, value))
+    findings.push_back(
+        {kPlace, option, text, "", "is not a plain number of seconds, such as 0.001; " + range});
+  else if (!(value >= low && value <= high))
+    findings.push_back({kPlace, option, text, "s", range});
+  return value;
+}
+
+void check_channels(const ModelRequest& model, const CommandLine& line, bool all_settings_right,
+                    std::vector<Finding>& findings) {
+  if (!line.record) return;
+  try {
+    find_channels(model.system, *line.record);
+  } catch (const ModelError& error) {
+    for (Finding finding : error.findings()) {
+      if (!all_settings_right) finding.range += " (with the settings that are right)";
+      findings.push_back(std::move(finding));
+    }
+  }
+}
+
+[[noreturn]] void refuse(std::vector<Finding> findings) { throw ModelError(std::move(findings)); }
+
+}  // namespace
+
+double round_number(double x) {
+  int exponent = static_cast<int>(std::floor(std::log10(x)));
+  const double mantissa = x / std::pow(10.0, exponent);
+  int digit = mantissa < 1.5 ? 1 : mantissa < 3.5 ? 2 : 5;
+  if (mantissa >= 7.5) digit = 1, ++exponent;
+  // Through text, for the double nearest to the decimal number.
+  double value = 0.0;
+  read_number(std::to_string(digit) + "e" + std::to_string(exponent), value);
+  return value;
+}
+
+RunRequest request_run(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  const std::size_t before = findings.size();
+  std::optional<ModelRequest> model = build_model(line, findings);
+  const bool settings_right = findings.size() == before;
+
+  const StepScheme scheme = read_method(line.method.value_or("average_acceleration"), findings);
+  const double duration = model ? model->scene.duration : 1.0;
+  const std::string limit = model ? "(the run's duration)" : "run's duration";
+  const double high = model ? duration : HUGE_VAL;
+  double step = model ? std::min(model->scene.default_step, duration) : 0.0;
+  if (line.step)
+    step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
+  double every = model ? round_number(duration / 1000) : 0.0;
+  if (line.every)
+    every = read_time("--every", *line.every, duration / kMostRows, high, limit, findings);
+  for (const char* option : {"--record", "--every"})
+    if (!line.out && (option[2] == 'r' ? line.record.has_value() : line.every.has_value()))
+      findings.push_back({kPlace, option, "", "", "needs --out DIR, where to write the channels"});
+  if (model) check_channels(*model, line, settings_right, findings);
+  if (!findings.empty()) refuse(std::move(findings));
+  std::vector<std::string> record = line.record.value_or(model->scene.channels);
+  return {std::move(*model), scheme, step, line.out, std::move(record), every};
+}
+
+ModesRequest request_modes(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  ModesOptions options;
+  static const std::vector<std::string> states{"closed", "open"};
+  const std::string contact = line.contact.value_or("closed");
+  options.contact = contact == "open" ? Contact::open : Contact::closed;
+  if (contact != "open" && contact != "closed")
+    findings.push_back({kPlace, "--contact", contact, "",
+                        "must be closed or open" + did_you_mean(contact, states)});
+  if (line.count) {
+    double number = 0.0;
+    const int elastic =
+        model ? model->system.size() - model->system.rigid_mode_count(options.contact) : 0;
+    const std::string range =
+        "must be a whole number from 1" +
+        (model ? " to " + std::to_string(elastic) + ", the model's elastic modes" : std::string());
+    if (!read_number(*line.count, number) || number != std::floor(number) || number < 1 ||
+        (model ? number > elastic : number > 1e9))
+      findings.push_back({kPlace, "--count", *line.count, "", range});
+    else
+      options.count = static_cast<int>(number);
+  }
+  if (!findings.empty()) refuse(std::move(findings));
+  return {std::move(*model), options};
+}
+
+ModelRequest request_model(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  if (!findings.empty()) refuse(std::move(findings));
+  return std::move(*model);
+}
+
+}  // namespace drev::app

@@ -1,0 +1,45 @@
+#pragma once
+/// From a command line to something that can be done: the model built with its settings, numbers checked.
+/// Everything wrong with a command line is thrown as one ModelError.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command_line.hpp"
+#include "core/system.hpp"
+#include "models/scene.hpp"
+#include "solvers/modes.hpp"
+#include "solvers/step_scheme.hpp"
+
+namespace drev::app {
+
+/// A model with settings, built.
+struct ModelRequest {
+  const SceneEntry* entry = nullptr;
+  Settings settings;
+  Scene scene;
+  System system;
+};
+
+struct RunRequest {
+  ModelRequest model;
+  StepScheme scheme;
+  double step = 0.0;                ///< s
+  std::optional<std::string> out;   ///< directory
+  std::vector<std::string> record;  ///< channels of history.csv
+  double every = 0.0;               ///< s
+};
+
+struct ModesRequest {
+  ModelRequest model;
+  ModesOptions options;
+};
+
+RunRequest request_run(const CommandLine& line);
+ModesRequest request_modes(const CommandLine& line);
+ModelRequest request_model(const CommandLine& line);
+
+/// About x, as 1, 2 or 5 times a power of ten.
+double round_number(double x);
+
+}  // namespace drev::app

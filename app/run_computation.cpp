@@ -1,0 +1,139 @@
+#include "app/run_computation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/elastic_modes.hpp"
+#include "app/interrupt.hpp"
+#include "app/progress.hpp"
+#include "solvers/peaks.hpp"
+#include "solvers/recorder.hpp"
+#include "solvers/statics.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kStaticAngles = 1440;
+
+class Timer {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::optional<Largest> largest_of(const std::vector<Channel>& channels,
+                                  const std::vector<Peak>& peaks) {
+  std::optional<Largest> largest;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const double value = peaks[c].amplitude();
+    if (!std::isfinite(value)) return {};
+    if (!largest || value > largest->value)
+      largest = Largest{value, channels[c].name(), channels[c].unit(), peaks[c].time()};
+  }
+  return largest;
+}
+
+void add_modes(const System& system, RunResult& result) {
+  const Timer timer;
+  try {
+    result.modes = find_modes(system, {});
+  } catch (const SolverError& error) {
+    result.modes_reason = error.what();
+  }
+  result.modes_time = timer.seconds();
+}
+
+void add_static_force(const ModelRequest& model, const std::vector<Channel>& torques,
+                      RunResult& result) {
+  if (model.scene.static_turn == 0.0 || torques.empty()) {
+    result.static_reason = "this model has no turn over which it would be sought";
+    return;
+  }
+  if (!model.system.floating_parts(Contact::closed).empty()) {
+    result.static_reason = "the model is free to turn, so there is no equilibrium";
+    return;
+  }
+  const Timer timer;
+  try {
+    result.static_force = largest_of(
+        torques, static_sweep(model.system, torques, 0.0, model.scene.static_turn, kStaticAngles));
+    if (!result.static_force) result.static_reason = "it is not finite";
+  } catch (const SolverError& error) {
+    result.static_reason = error.what();
+  }
+  result.static_time = timer.seconds();
+}
+
+std::vector<Contacts> contacts_of(const System& system, const ContactStatistics& statistics) {
+  const std::vector<Channel> channels = all_channels(system);
+  std::vector<Contacts> contacts;
+  for (const ContactRecord& record : statistics.records()) {
+    const bool newton = std::any_of(channels.begin(), channels.end(), [&](const Channel& c) {
+      return c.name() == record.element + ".force_N";
+    });
+    contacts.push_back({record, newton ? "N" : "N m"});
+  }
+  return contacts;
+}
+
+}  // namespace
+
+RunResult compute_run(const RunRequest& request, HistoryFile* history) {
+  const System& system = request.model.system;
+  const Scene& scene = request.model.scene;
+  RunResult result;
+  add_modes(system, result);
+  const std::vector<Channel> torques = find_channels(system, scene.torques);
+  add_static_force(request.model, torques, result);
+
+  std::vector<Channel> deflections;
+  if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
+  Peaks torque_peaks(torques), deflection_peaks(deflections);
+  ContactStatistics contacts(system);
+  std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &contacts};
+  std::optional<Recorder> recorder;
+  if (history != nullptr) {
+    recorder.emplace(system, request.record, request.every);
+    recorder->set_sink([&](double /*t*/, const std::vector<double>& row) { history->add(row); });
+    observers.push_back(&*recorder);
+  }
+  TransientOptions options{.scheme = request.scheme, .step = request.step, .t_end = scene.duration};
+  const Timer timer;
+  try {
+    Progress progress;
+    options.progress = [&](double part) {
+      progress.update(part);
+      return !interrupted() && (history == nullptr || history->error().empty());
+    };
+    result.summary = simulate(system, options, observers);
+    result.status = to_text(result.summary.status);
+    result.reason = result.summary.reason;
+  } catch (const SolverError& error) {
+    result.status = "failed";
+    result.reason = error.what();
+    result.summary.scheme = request.scheme.name;
+    result.summary.step = request.step;
+  }
+  result.run_time = timer.seconds();
+  if (history != nullptr && !history->error().empty()) {
+    result.status = "output_error";
+    result.reason =
+        history->error() + "; the run was given up at t = " + to_text(result.summary.t_end) + " s";
+  }
+  // What failed numerically has no figures.
+  if (result.ok() || result.status == "energy_error" || result.status == "interrupted" ||
+      result.status == "output_error") {
+    result.force = largest_of(torques, torque_peaks.peaks());
+    result.deflection = largest_of(deflections, deflection_peaks.peaks());
+    result.contacts = contacts_of(system, contacts);
+  }
+  return result;
+}
+
+}  // namespace drev::app

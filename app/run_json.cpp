@@ -1,0 +1,117 @@
+#include "app/run_json.hpp"
+
+#include "app/json_values.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+/// Value of a quantity in one unit; null if the model gives it in another, or not at all.
+Json in_unit(const std::optional<Largest>& largest, const std::string& unit, double factor = 1.0) {
+  return largest && largest->unit == unit ? number(factor * largest->value) : Json(nullptr);
+}
+
+Json place_of(const std::optional<Largest>& largest, const std::string& unit) {
+  return largest && largest->unit == unit ? Json(largest->place()) : Json(nullptr);
+}
+
+Json contact_object(const Contacts& c, double duration) {
+  const bool newton = c.force_unit == "N";
+  return {{"element", c.record.element},
+          {"front_contacts", c.record.front_impacts},
+          {"back_contacts", c.record.back_impacts},
+          {"time_apart_s", number(c.record.time_apart)},
+          {"time_apart_share", duration > 0.0 ? number(c.record.time_apart / duration) : Json()},
+          {"max_force_N", newton ? number(c.record.largest_force) : Json()},
+          {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
+          {"max_at_time_s", number(c.record.largest_force_time)}};
+}
+
+void add_contacts(Json& results, const RunResult& r) {
+  if (r.contacts.empty()) {
+    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s", "max_mesh_force_N"})
+      results[key] = nullptr;
+    results["contacts"] = Json::array();
+    return;
+  }
+  long front = 0, back = 0;
+  double apart = 0.0;
+  std::optional<double> force;
+  Json list = Json::array();
+  for (const Contacts& c : r.contacts) {
+    front += c.record.front_impacts;
+    back += c.record.back_impacts;
+    apart += c.record.time_apart;
+    if (c.force_unit == "N") force = std::max(force.value_or(0.0), c.record.largest_force);
+    list.push_back(contact_object(c, r.summary.t_end));
+  }
+  results["front_contacts"] = front;
+  results["back_contacts"] = back;
+  results["time_apart_s"] = number(apart);
+  results["max_mesh_force_N"] = number(force);
+  results["contacts"] = std::move(list);
+}
+
+Json results_object(const RunResult& r) {
+  Json results;
+  results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
+  results["deflection_m"] = in_unit(r.deflection, "m");
+  results["deflection_of"] = r.deflection ? Json(r.deflection->place()) : Json();
+  results["max_torque_Nm"] = in_unit(r.force, "N m");
+  results["max_torque_at"] = place_of(r.force, "N m");
+  results["max_force_N"] = in_unit(r.force, "N");
+  results["max_force_at"] = place_of(r.force, "N");
+  results["max_at_time_s"] = r.force ? number(r.force->at) : Json();
+  results["static_torque_Nm"] = in_unit(r.static_force, "N m");
+  results["static_force_N"] = in_unit(r.static_force, "N");
+  results["static_at"] = r.static_force ? Json(r.static_force->place()) : Json();
+  results["dynamic_amplification"] = number(r.amplification());
+  add_contacts(results, r);
+  results["frequencies_Hz"] = Json();
+  results["rigid_modes"] = Json();
+  if (r.modes) {
+    results["frequencies_Hz"] = r.modes->frequency_Hz;
+    results["rigid_modes"] = r.modes->rigid_modes;
+  }
+  return results;
+}
+
+Json energy_object(const EnergyBalance& e) {
+  return {{"kinetic_J", number(e.kinetic)},
+          {"stored_J", number(e.stored)},
+          {"input_J", number(e.input)},
+          {"dissipated_J", number(e.dissipated)},
+          {"imbalance_J", number(e.imbalance)},
+          {"worst_imbalance_J", number(e.worst_imbalance)},
+          {"worst_at_time_s", number(e.worst_time)},
+          {"scale_J", number(e.scale)}};
+}
+
+}  // namespace
+
+std::string run_as_json(const RunRequest& request, const RunResult& r) {
+  const RunSummary& s = r.summary;
+  Json object;
+  object["model"] = request.model.entry->name;
+  object["settings"] = settings_object(request.model.settings);
+  object["method"] = s.scheme;
+  object["step_s"] = number(s.step);
+  object["status"] = r.status;
+  object["reason"] = text_or_null(r.reason);
+  object["results"] = results_object(r);
+  object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
+  object["energy"] = energy_object(s.energy);
+  object["t_end_s"] = number(s.t_end);
+  object["steps"] = s.steps;
+  object["halved_steps"] = s.halved;
+  object["iterations"] = s.iterations;
+  object["run_time_s"] = number(r.run_time);
+  object["phases"] = {{"modes_s", number(r.modes_time)},
+                      {"static_s", number(r.static_time)},
+                      {"simulation_s", number(r.run_time)}};
+  object["note"] = text_or_null(request.model.scene.note);
+  return json_text(object);
+}
+
+}  // namespace drev::app

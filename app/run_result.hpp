@@ -1,0 +1,49 @@
+#pragma once
+/// Everything that `drev run` reports, as data. What has no meaning for a model, or could not be found, is
+/// absent, with the reason.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/requests.hpp"
+#include "solvers/contact_statistics.hpp"
+#include "solvers/transient.hpp"
+
+namespace drev::app {
+
+/// Largest |value| of a channel (or of several: of which).
+struct Largest {
+  double value = 0.0;  ///< unit below
+  std::string channel, unit;
+  double at = 0.0;  ///< s; angle of the reference shaft [rad] of a static value
+  /// The part of the channel's name before its quantity: element, node or NODE-NODE.
+  std::string place() const { return channel.substr(0, channel.rfind('.')); }
+};
+
+struct Contacts {
+  ContactRecord record;
+  std::string force_unit;  ///< N or N m
+};
+
+struct RunResult {
+  /// success, energy_error, unstable, no_convergence, not_finite, interrupted; failed: ended by an error;
+  /// output_error: ended because an output could not be written.
+  std::string status = "success";
+  std::string reason;
+  RunSummary summary;
+  std::optional<ModeSet> modes;
+  std::string modes_reason;
+  std::optional<Largest> deflection, force, static_force;
+  std::string static_reason;  ///< why there is no static force
+  std::vector<Contacts> contacts;
+  double modes_time = 0.0, static_time = 0.0, run_time = 0.0;  ///< s of wall time
+
+  bool ok() const { return status == "success"; }
+  /// Largest force over largest static force.
+  std::optional<double> amplification() const {
+    if (!force || !static_force || !(static_force->value > 0.0)) return {};
+    return force->value / static_force->value;
+  }
+};
+
+}  // namespace drev::app

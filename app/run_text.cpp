@@ -1,0 +1,164 @@
+#include "app/run_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/text_layout.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr std::size_t kLabel = 24;
+constexpr std::size_t kModesShown = 6;
+
+std::string row(const std::string& label, const std::string& text) {
+  return pad_right(label, kLabel) + wrap(text, kLabel);
+}
+
+std::string value_text(const Largest& l) {
+  if (l.unit == "rad") return digits(to_deg(l.value), 4) + " deg";
+  return digits(l.value, 5) + " " + l.unit;
+}
+
+/// The element, and between which nodes it is.
+std::string place_text(const Model& model, const Largest& l) {
+  const std::string place = l.place();
+  for (const Placement& placement : model.placements()) {
+    if (placement.name != place) continue;
+    std::vector<std::string> nodes;
+    for (const NodeRef& node : placement.nodes)
+      nodes.push_back(node.id ? model.node_names()[static_cast<std::size_t>(*node.id)] : node.name);
+    return place + " (" + join(nodes, " to ") + ")";
+  }
+  return place;
+}
+
+/// "between A and B" for the difference of two nodes, "of A" for one.
+std::string deflection_place(const Model& model, const Largest& l) {
+  const std::string place = l.place();
+  const auto& names = model.node_names();
+  const auto is_node = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (std::size_t cut = place.find('-'); cut != std::string::npos;
+       cut = place.find('-', cut + 1)) {
+    const std::string first = place.substr(0, cut), second = place.substr(cut + 1);
+    if (is_node(first) && is_node(second)) return "between " + second + " and " + first;
+  }
+  return "of " + place;
+}
+
+std::string modes_row(const RunResult& r) {
+  if (!r.modes) return row("Modes", "not found: " + r.modes_reason);
+  std::vector<std::string> shown;
+  for (const double f : r.modes->frequency_Hz)
+    if (shown.size() < kModesShown) shown.push_back(digits(f, 5));
+  return row("Lowest modes", (shown.empty() ? "none" : join(shown) + " Hz") + ", and " +
+                                 std::to_string(r.modes->rigid_modes) + " rigid; contacts closed");
+}
+
+std::string force_rows(const Scene& scene, const RunResult& r) {
+  const Model& model = scene.model;
+  const bool torque = scene.torques.empty() || scene.torques.front().ends_with("_Nm");
+  const std::string name = torque ? "torque" : "force";
+  std::string text;
+  if (r.force)
+    text += row("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) +
+                                       " at " + digits(r.force->at, 4) + " s");
+  if (!r.static_force)
+    return text +
+           row("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
+  text += row("Static " + name, value_text(*r.static_force) + " in " +
+                                    place_text(model, *r.static_force) + " (largest " + name +
+                                    " in static equilibrium, over all sections and one turn)");
+  if (const auto amplification = r.amplification())
+    text += row("Dynamic amplification",
+                digits(*amplification, 3) + " (largest " + name + " / static " + name + ")");
+  return text;
+}
+
+std::string contact_line(const std::string& name, long front, long back, double apart, double share,
+                         const std::string& force) {
+  return "  " + pad_right(name, kLabel - 2) + pad_left(std::to_string(front), 8) +
+         pad_left(std::to_string(back), 8) + pad_left(digits(apart, 4), 12) +
+         pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
+}
+
+std::string contact_rows(const RunResult& r) {
+  if (r.contacts.empty()) return {};
+  std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
+                     pad_left("apart [s]", 12) + pad_left("[%]", 10) +
+                     pad_left("largest force", 18) + "\n";
+  const double duration = r.summary.t_end > 0.0 ? r.summary.t_end : 1.0;
+  long front = 0, back = 0;
+  double apart = 0.0;
+  const Contacts* hardest = &r.contacts.front();
+  for (const Contacts& c : r.contacts) {
+    const ContactRecord& k = c.record;
+    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_apart,
+                         k.time_apart / duration, digits(k.largest_force, 5) + " " + c.force_unit);
+    front += k.front_impacts;
+    back += k.back_impacts;
+    apart += k.time_apart;
+    if (k.largest_force > hardest->record.largest_force) hardest = &c;
+  }
+  if (r.contacts.size() > 1)
+    text += contact_line("together", front, back, apart,
+                         apart / (duration * static_cast<double>(r.contacts.size())),
+                         digits(hardest->record.largest_force, 5) + " " + hardest->force_unit);
+  return text;
+}
+
+std::string energy_row(const EnergyBalance& e) {
+  if (!(e.scale > 0.0)) return row("Energy balance", "no energy in the run");
+  return row("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
+                                   digits(e.scale, 3) + " J" +
+                                   (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
+                                   ", worst at " + digits(e.worst_time, 4) + " s");
+}
+
+}  // namespace
+
+std::string settings_text(const Settings& settings) {
+  std::vector<std::string> items;
+  for (std::size_t i = 0; i < settings.known().size(); ++i)
+    items.push_back(settings.known()[i].name + " " + settings.values()[i]);
+  return join(items);
+}
+
+std::string warning_of(const RunResult& r) {
+  if (r.ok()) return {};
+  std::string head = "RUN FAILED (" + r.status + ")";
+  if (r.status == "energy_error") head = "DO NOT TRUST THIS RUN (energy_error)";
+  if (r.status == "interrupted") head = "RUN INTERRUPTED";
+  if (r.status == "output_error") head = "RUN GIVEN UP (output_error)";
+  return head + ": " + r.reason + "\n";
+}
+
+std::string run_as_text(const RunRequest& request, const RunResult& r) {
+  const RunSummary& s = r.summary;
+  const Model& model = request.model.scene.model;
+  std::string text;
+  if (!r.ok()) text += "*** " + warning_of(r) + "\n";
+  text += request.model.entry->name + ": " +
+          wrap(settings_text(request.model.settings), request.model.entry->name.size() + 2);
+  text += "\n" + modes_row(r);
+  if (r.deflection)
+    text += row("Largest deflection", value_text(*r.deflection) + " " +
+                                          deflection_place(model, *r.deflection) + " at " +
+                                          digits(r.deflection->at, 4) + " s");
+  if (!r.force && !r.ok())
+    text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
+  text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
+  text += row("Method", s.scheme + ", step " + short_digits(s.step, 4) +
+                            " s, to t = " + short_digits(s.t_end, 6) + " s");
+  text += row("Effort", std::to_string(s.steps) + " steps, " + std::to_string(s.halved) +
+                            " halved, " + std::to_string(s.iterations) + " iterations, " +
+                            digits(r.run_time, 3) + " s");
+  if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
+  return text;
+}
+
+}  // namespace drev::app
