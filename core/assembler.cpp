@@ -15,6 +15,11 @@ void Assembler::set_time(double t) {
       if (system_.prescribed()[k].at) u_[k] = system_.prescribed()[k].at(t);
 }
 
+void Assembler::stand_at_angle(double phi) {
+  nominal_ = {phi, 0.0, 0.0};
+  for (MotionPoint& u : u_) u.rate = u.acceleration = 0.0;
+}
+
 MotionPoint Assembler::node_motion(int node, const State& s) const {
   const NodeMap& map = system_.node_map(node);
   if (map.unknown >= 0)

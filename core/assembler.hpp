@@ -18,9 +18,9 @@ class Assembler {
   const System& system() const { return system_; }
   /// Moves to time t [s]: nominal motion phi(t) and prescribed motions u(t).
   void set_time(double t);
-  /// Stands still at nominal angle phi [rad] of the reference shaft (statics): no nominal rate, known
-  /// motions as at the time set last.
-  void stand_at_angle(double phi) { nominal_ = {phi, 0.0, 0.0}; }
+  /// Stands still at nominal angle phi [rad] of the reference shaft (statics): no nominal rate; known
+  /// motions keep their value at the time set last, but neither rate nor acceleration.
+  void stand_at_angle(double phi);
   double time() const { return t_; }
   const MotionPoint& nominal() const { return nominal_; }
   const MotionPoint& prescribed(int k) const { return u_[at(k)]; }
@@ -45,7 +45,7 @@ class Assembler {
   void add_general_forces(const Vector& z, const Vector& v, const Vector& history, Vector& f,
                           Vector& history_new) const;
 
-  /// r += general elements' forces over nodes, before elimination.
+  /// r += general elements' forces over nodes, before elimination; r has one entry a node.
   void add_general_node_forces(const State& s, Vector& r) const;
   /// Stored energy [J] and dissipated power [W] of the general elements; history as before the step.
   std::pair<double, double> general_energy(const State& s, const Vector& history) const;
