@@ -40,25 +40,27 @@ class ChannelFinder {
 
   std::vector<Channel> channels;
 
-  /// NODE_A-NODE_B.twist_rad; node names may hold '-' themselves.
-  bool find_difference(const std::string& name, Channel& channel) const {
+  /// NODE_A-NODE_B.twist_rad; node names may hold '-' themselves. Returns in how many ways the name can
+  /// be read; the channel is the first.
+  int find_difference(const std::string& name, Channel& channel) const {
     const std::size_t dot = name.rfind('.');
-    if (dot == std::string::npos) return false;
+    if (dot == std::string::npos) return 0;
     const std::string kind = name.substr(dot + 1), pair = name.substr(0, dot);
-    if (kind != "twist_rad" && kind != "distance_m") return false;
+    if (kind != "twist_rad" && kind != "distance_m") return 0;
+    int readings = 0;
     for (std::size_t cut = pair.find('-'); cut != std::string::npos; cut = pair.find('-', cut + 1)) {
       const int a = node(pair.substr(0, cut)), b = node(pair.substr(cut + 1));
       if (a < 0 || b < 0) continue;
       const bool turns = rotational(a);
-      if (turns != rotational(b) || turns != (kind == "twist_rad")) return false;
+      if (turns != rotational(b) || turns != (kind == "twist_rad")) continue;
+      if (++readings > 1) continue;
       channel.name_ = name;
       channel.unit_ = turns ? "rad" : "m";
       channel.kind_ = Channel::Kind::difference;
       channel.index_ = a;
       channel.second_ = b;
-      return true;
     }
-    return false;
+    return readings;
   }
 
  private:
@@ -176,6 +178,12 @@ double reaction(const Assembler& assembler, const State& s, int k) {
     const NodeMap& map = system.node_map(term.node);
     if (map.prescribed == k) r -= map.coeff * assembler.load(term, s.z, s.v).torque;
   }
+  if (!system.generals().empty()) {
+    Vector general = Vector::Zero(system.node_count());
+    assembler.add_general_node_forces(s, general);
+    for (int i = 0; i < system.node_count(); ++i)
+      if (system.node_map(i).prescribed == k) r += system.node_map(i).coeff * general[i];
+  }
   return r;
 }
 
@@ -216,10 +224,19 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
   for (const std::string& name : names) {
     const auto it = std::find(known.begin(), known.end(), name);
     Channel difference;
-    if (it != known.end())
+    if (it != known.end()) {
       found.push_back(finder.channels[static_cast<std::size_t>(it - known.begin())]);
-    else if (finder.find_difference(name, difference))
+      const auto same = std::count(known.begin(), known.end(), name);
+      if (same > 1)
+        findings.push_back({system.name(), "channel", name, "",
+                            "is the name of " + std::to_string(same) +
+                                " channels of this model; rename an element"});
+    } else if (const int readings = finder.find_difference(name, difference); readings == 1)
       found.push_back(difference);
+    else if (readings > 1)
+      findings.push_back({system.name(), "channel", name, "",
+                          "can be read as " + std::to_string(readings) +
+                              " pairs of nodes; rename one of them"});
     else
       findings.push_back({system.name(), "channel", name, "",
                           "is no channel of this model" + did_you_mean(name, known)});
