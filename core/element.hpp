@@ -74,6 +74,8 @@ class Element {
   virtual int min_nodes() const = 0;          ///< named nodes it needs
   virtual int max_nodes() const { return min_nodes(); }
   virtual int internal_nodes() const { return 0; }  ///< nodes that it brings along
+  /// True for an element between rotational and translational nodes (a rack); else build() refuses it.
+  virtual bool mixes_kinds() const { return false; }
   /// Reports every parameter out of range. Called by Model::build(); describe() only if none is.
   virtual void check(ParameterCheck& check) const = 0;
   /// Adds its terms; nodes = named nodes given + internal nodes.

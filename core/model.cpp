@@ -13,7 +13,8 @@ NodeId Model::add_node(std::string name, NodeKind kind) {
 ElementId Model::add(std::string name, std::vector<NodeRef> nodes,
                      std::shared_ptr<const Element> element) {
   Placement placement{std::move(name), std::move(element), std::move(nodes), {}};
-  for (int i = 1; i <= placement.element->internal_nodes(); ++i)
+  const int internal = placement.element ? placement.element->internal_nodes() : 0;
+  for (int i = 1; i <= internal; ++i)
     placement.internal.push_back(add_node(placement.name + "_" + std::to_string(i)));
   placements_.push_back(std::move(placement));
   return ElementId{static_cast<int>(placements_.size()) - 1};

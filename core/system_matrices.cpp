@@ -1,4 +1,4 @@
-// The second half of SystemBuilder: elimination, terms and matrices over the unknowns.
+// The last part of SystemBuilder: elimination, terms and matrices over the unknowns.
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -36,20 +36,33 @@ void add_entry(std::vector<Entry>& row, int dof, double coeff) {
 
 void SystemBuilder::eliminate() {
   const int nodes = static_cast<int>(system_.node_names_.size());
-  std::vector<std::vector<std::pair<int, double>>> ties(at(nodes));
-  for (std::size_t e = 0; e < described_.size(); ++e)
+  struct Tie {
+    int to;
+    double factor;
+    std::size_t ratio;
+  };
+  std::vector<std::vector<Tie>> ties(at(nodes));
+  for (std::size_t e = 0; e < described_.size(); ++e) {
+    if (!described_[e]) continue;
     for (const LocalRow& b : described_[e]->terms.constraints) {
-      IdealRatio r{ElementId{static_cast<int>(e)}, described_[e]->nodes[0],
-                   described_[e]->nodes[1], b[0], b[1]};
-      ties[at(r.first)].emplace_back(r.second, -r.b_first / r.b_second);
-      ties[at(r.second)].emplace_back(r.first, -r.b_second / r.b_first);
+      Eigen::Index first = 0, second = b.size() - 1;  // the two entries that are not zero
+      while (b[first] == 0.0) ++first;
+      while (b[second] == 0.0) --second;
+      const IdealRatio r{ElementId{static_cast<int>(e)},
+                         described_[e]->nodes[static_cast<std::size_t>(first)],
+                         described_[e]->nodes[static_cast<std::size_t>(second)], b[first],
+                         b[second]};
+      const std::size_t number = system_.ideal_ratios_.size();
+      ties[at(r.first)].push_back({r.second, -r.b_first / r.b_second, number});
+      ties[at(r.second)].push_back({r.first, -r.b_second / r.b_first, number});
       system_.ideal_ratios_.push_back(r);
     }
+  }
 
   // Every set of nodes tied by ideal ratios has one unknown: that of its prescribed node, or its first.
   system_.node_map_.assign(at(nodes), {});
   std::vector<bool> placed(at(nodes), false);
-  int ties_used = 0;
+  std::vector<bool> tie_used(system_.ideal_ratios_.size(), false);
   const auto spread = [&](int start, NodeMap map) {
     std::queue<int> queue;
     queue.push(start);
@@ -58,10 +71,10 @@ void SystemBuilder::eliminate() {
     while (!queue.empty()) {
       const int i = queue.front();
       queue.pop();
-      for (const auto& [to, factor] : ties[at(i)]) {
+      for (const auto& [to, factor, ratio] : ties[at(i)]) {
         if (placed[at(to)]) continue;
         placed[at(to)] = true;
-        ++ties_used;
+        tie_used[ratio] = true;
         NodeMap next = system_.node_map_[at(i)];
         next.coeff *= factor;
         system_.node_map_[at(to)] = next;
@@ -71,9 +84,10 @@ void SystemBuilder::eliminate() {
   };
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const int node = resolved_prescriptions_[i];
+    if (node < 0) continue;
     if (placed[at(node)]) {
       findings_.push_back({place(system_.node_names_[at(node)]), "prescribed motion", "", "",
-                           "the node, or one tied to it by an ideal gear, is prescribed already"});
+                           "a node tied to this one by ideal gears is prescribed already"});
       continue;
     }
     const int k = static_cast<int>(system_.prescribed_.size());
@@ -88,11 +102,12 @@ void SystemBuilder::eliminate() {
       system_.unknown_node_.push_back(i);
       spread(i, {.unknown = static_cast<int>(system_.unknown_node_.size()) - 1});
     }
-  if (ties_used < static_cast<int>(system_.ideal_ratios_.size()))
-    findings_.push_back({model_.name(), "ideal gears",
-                         std::to_string(system_.ideal_ratios_.size()), "",
-                         "some close a loop of ideal gears: the torque in such a loop is "
-                         "undetermined; make one of them elastic"});
+  for (std::size_t r = 0; r < tie_used.size(); ++r)
+    if (!tie_used[r])
+      findings_.push_back({place(model_.placements()[at(index(system_.ideal_ratios_[r].element))].name),
+                           "ideal gear", "", "",
+                           "closes a loop of ideal gears: the torque in such a loop is "
+                           "undetermined; make one of them elastic"});
 }
 
 void SystemBuilder::map_terms() {
@@ -228,6 +243,25 @@ void SystemBuilder::assemble_matrices() {
         const int r = system_.node_map_[at(i)].unknown, c = system_.node_map_[at(j)].unknown;
         g.slots.push_back(r >= 0 && c >= 0 ? slot_of(system_.pattern_, r, c) : -1);
       }
+}
+
+void SystemBuilder::check_values() {
+  const auto finite = [this](const char* what, const Vector& values) {
+    if (!values.allFinite())
+      findings_.push_back({model_.name(), what, "infinite", "",
+                           "the sum over the model exceeds what a number can hold; check the ideal "
+                           "gears' ratios and the largest parameters"});
+  };
+  finite("mass matrix", system_.mass_);
+  finite("damping matrix", system_.damping_);
+  finite("stiffness matrix", system_.stiffness_);
+  for (int i = 0; i < system_.node_count(); ++i) {
+    const double coeff = system_.node_map_[at(i)].coeff;
+    if (!std::isfinite(coeff) || coeff == 0.0 || !std::isfinite(system_.ratio(i)))
+      findings_.push_back({place(system_.node_names_[at(i)]), "ratio", to_text(coeff), "",
+                           "the ratios of gears up to this node multiply to what a number cannot "
+                           "hold"});
+  }
 }
 
 }  // namespace drev
