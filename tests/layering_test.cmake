@@ -47,9 +47,9 @@ macro(check_quoted room included)
 endmacro()
 
 macro(check_angled room included)
-  if("${included}" MATCHES "^Eigen/(Cholmod|KLU|UmfPack|SuperLU|PaStiX|Pardiso|SPQR|Metis)")
+  if("${included}" MATCHES "Eigen/(Cholmod|KLU|UmfPack|SuperLU|PaStiX|Pardiso|SPQR|Metis)")
     finding("<${included}>: SuiteSparse is called directly, in solvers/")
-  elseif("${included}" MATCHES "^Eigen/" OR "${included}" MATCHES "^[a-z_]+$")
+  elseif("${included}" MATCHES "^(unsupported/)?Eigen/" OR "${included}" MATCHES "^[a-z_]+$")
     if(${room} IN_LIST silent AND "${included}" MATCHES "${io_headers}"
        OR ${room} STREQUAL "core" AND "${included}" MATCHES "${core_io_headers}")
       finding("<${included}>: ${room}/ prints nothing, opens no file and ends no process")
