@@ -210,14 +210,35 @@ void Assembler::contact_values(const Weights& w, Contact contact, Vector& values
 }
 
 void Assembler::multiply(const Vector& values, const Vector& x, Vector& out) const {
+  // Symmetric: a column is a row, and a row is a sum without stores in between.
   const SparseMatrix& p = system_.pattern();
   const int* outer = p.outerIndexPtr();
   const int* inner = p.innerIndexPtr();
-  out.setZero(p.rows());
-  for (int col = 0; col < p.cols(); ++col) {
-    const double xc = x[col];
-    for (int s = outer[col]; s < outer[col + 1]; ++s) out[inner[s]] += values[s] * xc;
+  out.resize(p.rows());
+  for (int row = 0; row < p.cols(); ++row) {
+    double sum = 0.0;
+    for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values[s] * x[inner[s]];
+    out[row] = sum;
   }
+}
+
+void Assembler::multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const {
+  const std::vector<int>& slots = system_.diagonal_slots();
+  out.resize(x.size());
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    out[i] = values[slots[k]] * x[i];
+  }
+}
+
+void Assembler::multiply_mass(const Vector& x, Vector& out) const {
+  if (system_.mass_is_diagonal()) return multiply_diagonal(system_.mass_values(), x, out);
+  multiply(system_.mass_values(), x, out);
+}
+
+void Assembler::multiply_damping(const Vector& x, Vector& out) const {
+  if (system_.damping_is_diagonal()) return multiply_diagonal(system_.damping_values(), x, out);
+  multiply(system_.damping_values(), x, out);
 }
 
 }  // namespace drev

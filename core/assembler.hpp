@@ -59,10 +59,17 @@ class Assembler {
   /// Values with every law linearised in a stated contact state: what modes are computed of.
   void contact_values(const Weights& w, Contact contact, Vector& values) const;
 
-  /// out = A x with A's values on the pattern.
+  /// out = A x with the symmetric A's values on the pattern.
   void multiply(const Vector& values, const Vector& x, Vector& out) const;
+  /// out = M x, C x, K x.
+  void multiply_mass(const Vector& x, Vector& out) const;
+  void multiply_damping(const Vector& x, Vector& out) const;
+  void multiply_stiffness(const Vector& x, Vector& out) const {
+    multiply(system_.stiffness_values(), x, out);
+  }
 
  private:
+  void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
   LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
                         const Vector& history, Vector& history_new) const;
   void add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const;

@@ -59,6 +59,7 @@ class ChannelFinder {
       channel.kind_ = Channel::Kind::difference;
       channel.index_ = a;
       channel.second_ = b;
+      make_direct(channel);
     }
     return readings;
   }
@@ -70,7 +71,33 @@ class ChannelFinder {
     c.unit_ = std::move(unit);
     c.kind_ = kind;
     c.index_ = index;
+    make_direct(c);
     channels.push_back(std::move(c));
+  }
+  void make_direct(Channel& c) const {
+    using Kind = Channel::Kind;
+    c.direct_ = true;
+    const auto add_node = [&](std::vector<Entry>& row, int node, double coeff) {
+      const NodeMap& map = system_.node_map(node);
+      if (map.unknown >= 0)
+        row.push_back({map.unknown, coeff * map.coeff});
+      else if (system_.prescribed()[at(map.prescribed)].at)
+        c.direct_ = false;  // the node moves by itself
+    };
+    if (c.kind_ == Kind::value) {
+      add_node(c.z_, c.index_, 1.0);
+    } else if (c.kind_ == Kind::rate) {
+      add_node(c.v_, c.index_, 1.0);
+    } else if (c.kind_ == Kind::difference) {
+      add_node(c.z_, c.index_, 1.0);
+      add_node(c.z_, c.second_, -1.0);
+    } else if (c.kind_ == Kind::output) {
+      const OutputTerm& o = system_.outputs()[at(c.index_)];
+      for (const Entry& e : o.stiffness) add_node(c.z_, e.index, e.coeff);
+      for (const Entry& e : o.damping) add_node(c.v_, e.index, e.coeff);
+    } else {
+      c.direct_ = false;
+    }
   }
   void add_node(int i) {
     using Kind = Channel::Kind;
@@ -188,6 +215,12 @@ double reaction(const Assembler& assembler, const State& s, int k) {
 }
 
 double Channel::evaluate(const Assembler& assembler, const State& state) const {
+  if (direct_) {
+    double y = 0.0;
+    for (const Entry& e : z_) y += e.coeff * state.z[e.index];
+    for (const Entry& e : v_) y += e.coeff * state.v[e.index];
+    return y;
+  }
   const System& system = assembler.system();
   switch (kind_) {
     case Kind::value: return assembler.node_motion(index_, state).value;

@@ -33,6 +33,9 @@ class Channel {
   std::string name_, unit_;
   Kind kind_ = Kind::value;
   int index_ = 0, second_ = 0;
+  /// Where the value is linear in the unknowns: its rows over z and v, so that no node is looked up.
+  bool direct_ = false;
+  std::vector<Entry> z_, v_;
 };
 
 /// Every channel of a system, in the order of its nodes and elements (differences left out).

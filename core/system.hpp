@@ -115,6 +115,10 @@ class System {
   const Vector& mass_values() const { return mass_; }
   const Vector& damping_values() const { return damping_; }
   const Vector& stiffness_values() const { return stiffness_; }
+  /// Slots of the diagonal; and whether M, C hold nothing else (lumped inertias).
+  const std::vector<int>& diagonal_slots() const { return diagonal_slots_; }
+  bool mass_is_diagonal() const { return mass_is_diagonal_; }
+  bool damping_is_diagonal() const { return damping_is_diagonal_; }
   /// Columns of the prescribed motions: rows are unknowns (zu) or prescribed motions (uu).
   const MatrixSet& coupling_zu() const { return zu_; }
   const MatrixSet& coupling_uu() const { return uu_; }
@@ -170,7 +174,9 @@ class System {
   std::vector<OutputTerm> outputs_;
   std::vector<IdealRatio> ideal_ratios_;
   std::vector<double> breakpoints_;
+  std::vector<int> diagonal_slots_;
   int history_size_ = 0;
+  bool mass_is_diagonal_ = false, damping_is_diagonal_ = false;
   bool any_prescribed_moves_ = false, loads_depend_on_motion_ = false, symmetric_tangent_ = true;
 };
 

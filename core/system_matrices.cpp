@@ -219,6 +219,14 @@ void SystemBuilder::assemble_matrices() {
   system_.mass_ = values(zz[0]);
   system_.damping_ = values(zz[1]);
   system_.stiffness_ = values(zz[2]);
+  for (int k = 0; k < nz; ++k) system_.diagonal_slots_.push_back(slot_of(system_.pattern_, k, k));
+  const auto only_diagonal = [&](const Vector& matrix) {
+    Vector rest = matrix;
+    for (const int slot : system_.diagonal_slots_) rest[slot] = 0.0;
+    return rest.isZero(0.0);
+  };
+  system_.mass_is_diagonal_ = only_diagonal(system_.mass_);
+  system_.damping_is_diagonal_ = only_diagonal(system_.damping_);
   system_.zu_ = {from_triplets(nz, nu, zu[0]), from_triplets(nz, nu, zu[1]),
                  from_triplets(nz, nu, zu[2])};
   system_.uu_ = {from_triplets(nu, nu, uu[0]), from_triplets(nu, nu, uu[1]),

@@ -2,72 +2,84 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace drev {
 
 PeriodicTable::PeriodicTable(std::vector<double> arguments, std::vector<double> values,
                              double period)
-    : arguments_(std::move(arguments)), values_(std::move(values)), period_(period) {
-  const std::size_t n = arguments_.size();
-  if (n < 2 || values_.size() != n) return;  // unusable; check() says so
+    : period_(period), inverse_period_(1.0 / period) {
+  auto points = std::make_shared<Points>(Points{std::move(arguments), std::move(values), {}});
+  points_ = points;
+  const std::vector<double>& u = points->arguments;
+  const std::vector<double>& v = points->values;
+  const std::size_t n = u.size();
+  if (n < 2 || v.size() != n) return;  // unusable; check() says so
   const double spacing = period_ / static_cast<double>(n);
   bool even = true;
   for (std::size_t i = 0; i < n; ++i) {
     const bool last = i + 1 == n;
-    const double step = (last ? arguments_[0] + period_ : arguments_[i + 1]) - arguments_[i];
-    slopes_.push_back((values_[last ? 0 : i + 1] - values_[i]) / step);
+    const double step = (last ? u[0] + period_ : u[i + 1]) - u[i];
+    points->slopes.push_back((v[last ? 0 : i + 1] - v[i]) / step);
     // Loose enough for angles written down with a few digits: segment() corrects by one.
-    even = even && std::abs(arguments_[i] - arguments_[0] - static_cast<double>(i) * spacing) <
+    even = even && std::abs(u[i] - u[0] - static_cast<double>(i) * spacing) <
                        0.25 * spacing;
   }
   if (even) inverse_spacing_ = 1.0 / spacing;
 }
 
 std::size_t PeriodicTable::segment(double u) const {
-  const std::size_t n = arguments_.size();
+  const std::vector<double>& a = points_->arguments;
+  const std::size_t n = a.size();
   if (inverse_spacing_ > 0.0) {
-    const double guess = std::floor((u - arguments_[0]) * inverse_spacing_);
-    const double last = static_cast<double>(n - 1);
-    auto i = static_cast<std::size_t>(guess > 0.0 ? std::min(guess, last) : 0.0);
-    while (i > 0 && u < arguments_[i]) --i;
-    while (i + 1 < n && u >= arguments_[i + 1]) ++i;
+    const double guess = (u - a[0]) * inverse_spacing_;
+    std::size_t i = guess > 0.0 ? std::min(static_cast<std::size_t>(guess), n - 1) : 0;
+    while (i > 0 && u < a[i]) --i;
+    while (i + 1 < n && u >= a[i + 1]) ++i;
     return i;
   }
-  const auto after = std::upper_bound(arguments_.begin(), arguments_.end(), u);
-  return after == arguments_.begin() ? 0 : static_cast<std::size_t>(after - arguments_.begin()) - 1;
+  const auto after = std::upper_bound(a.begin(), a.end(), u);
+  return after == a.begin() ? 0 : static_cast<std::size_t>(after - a.begin()) - 1;
 }
 
 CurvePoint PeriodicTable::at(double argument) const {
-  const double first = arguments_[0];
-  const double u = argument - period_ * std::floor((argument - first) / period_);
+  const Points& p = *points_;
+  const double turns = (argument - p.arguments[0]) * inverse_period_;
+  // Conversion truncates; std::floor is a library call on the oldest x86-64.
+  double whole = turns;
+  if (std::abs(turns) < 4e15) {
+    whole = static_cast<double>(static_cast<std::int64_t>(turns));
+    if (whole > turns) whole -= 1.0;
+  }
+  const double u = argument - period_ * whole;
   const std::size_t i = segment(u);
-  return {values_[i] + slopes_[i] * (u - arguments_[i]), slopes_[i]};
+  return {p.values[i] + p.slopes[i] * (u - p.arguments[i]), p.slopes[i]};
 }
 
 double PeriodicTable::mean() const {
-  const std::size_t n = arguments_.size();
+  const std::size_t n = arguments().size();
   double integral = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const bool last = i + 1 == n;
-    const double step = (last ? arguments_[0] + period_ : arguments_[i + 1]) - arguments_[i];
-    integral += 0.5 * step * (values_[i] + values_[last ? 0 : i + 1]);
+    const double step = (last ? arguments()[0] + period_ : arguments()[i + 1]) - arguments()[i];
+    integral += 0.5 * step * (values()[i] + values()[last ? 0 : i + 1]);
   }
   return integral / period_;
 }
 
 void PeriodicTable::check(ParameterCheck& check, const std::string& parameter,
                           const std::string& argument_unit, const std::string& value_unit) const {
-  const std::size_t n = arguments_.size();
+  const std::size_t n = arguments().size();
   if (n < 2)
     check.fail(parameter, std::to_string(n), "points", "a periodic table needs at least 2");
-  if (values_.size() != n)
-    check.fail(parameter, std::to_string(values_.size()) + " values", "",
+  if (values().size() != n)
+    check.fail(parameter, std::to_string(values().size()) + " values", "",
                "must be as many as the arguments, " + std::to_string(n));
   check.positive(parameter + ".period", period_, argument_unit);
-  check.increasing(parameter + ".arguments", arguments_, argument_unit);
-  check.all_finite(parameter + ".values", values_, value_unit);
-  if (n >= 2 && !(arguments_[n - 1] - arguments_[0] < period_))
-    check.fail(parameter + ".arguments", to_text(arguments_[n - 1] - arguments_[0]), argument_unit,
+  check.increasing(parameter + ".arguments", arguments(), argument_unit);
+  check.all_finite(parameter + ".values", values(), value_unit);
+  if (n >= 2 && !(arguments()[n - 1] - arguments()[0] < period_))
+    check.fail(parameter + ".arguments", to_text(arguments()[n - 1] - arguments()[0]), argument_unit,
                "from first to last must be less than the period, " + to_text(period_) +
                    "; leave out the point that repeats the first one");
 }

@@ -8,6 +8,7 @@
 /// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
 /// in constant time, others by bisection.
 #include <string>
+#include <memory>
 #include <vector>
 
 #include "core/error.hpp"
@@ -25,16 +26,19 @@ class PeriodicTable {
   CurvePoint at(double argument) const;
   double mean() const;  ///< over one period
   double period() const { return period_; }
-  const std::vector<double>& arguments() const { return arguments_; }
-  const std::vector<double>& values() const { return values_; }
+  const std::vector<double>& arguments() const { return points_->arguments; }
+  const std::vector<double>& values() const { return points_->values; }
   void check(ParameterCheck& check, const std::string& parameter, const std::string& argument_unit,
              const std::string& value_unit) const;
 
  private:
+  struct Points {
+    std::vector<double> arguments, values, slopes;
+  };
   std::size_t segment(double u) const;
 
-  std::vector<double> arguments_, values_, slopes_;
-  double period_ = kTwoPi;
+  std::shared_ptr<const Points> points_ = std::make_shared<const Points>();  // shared by its copies
+  double period_ = kTwoPi, inverse_period_ = 1.0 / kTwoPi;
   double inverse_spacing_ = 0.0;  // > 0 for an evenly spaced table
 };
 

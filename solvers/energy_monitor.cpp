@@ -13,7 +13,7 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
 }
 
 double EnergyMonitor::kinetic(const State& state) {
-  assembler_.multiply(assembler_.system().mass_values(), state.v, mv_);
+  assembler_.multiply_mass(state.v, mv_);
   return 0.5 * state.v.dot(mv_);
 }
 

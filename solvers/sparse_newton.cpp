@@ -27,10 +27,10 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
   };
   z_ = *p.z_0 + p.kappa_z * w;
   v_ = *p.v_0 + p.kappa_v * w;
-  assembler.multiply(system_.stiffness_values(), z_, r_);
+  assembler.multiply_stiffness(z_, r_);
   note(r_);
   if (p.mu != 0.0 || p.kappa_v != 0.0) {
-    assembler.multiply(system_.damping_values(), v_, part_);
+    assembler.multiply_damping(v_, part_);
     note(part_);
     r_ += part_;
   }
@@ -44,7 +44,7 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
   r_ -= part_;
   r_ *= p.phi;
   if (p.mu != 0.0) {
-    assembler.multiply(system_.mass_values(), w, part_);
+    assembler.multiply_mass(w, part_);
     note(part_);
     r_ += p.mu * part_;
   }

@@ -69,8 +69,8 @@ void StepSolver::evaluate(StepPoint& point) {
 
 void StepSolver::evaluate_totals(const Vector& history, StepPoint& point) {
   const State& s = point.state;
-  assembler_.multiply(system_.stiffness_values(), s.z, point.kz);
-  assembler_.multiply(system_.damping_values(), s.v, point.cv);
+  assembler_.multiply_stiffness(s.z, point.kz);
+  assembler_.multiply_damping(s.v, point.cv);
   point.total = point.kz + point.cv - point.p;
   for (std::size_t j = 0; j < system_.scalars().size(); ++j)
     for (const Entry& e : system_.scalars()[j].z)
@@ -112,7 +112,7 @@ NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, dou
   // What of the residual is known: alpha_m M a0 + alpha_f F0.
   rhs_base_.setZero(system_.size());
   if (scheme_.alpha_m != 0.0) {
-    assembler_.multiply(system_.mass_values(), s.a, scratch_);
+    assembler_.multiply_mass(s.a, scratch_);
     rhs_base_ -= scheme_.alpha_m * scratch_;
   }
   if (scheme_.alpha_f != 0.0) rhs_base_ -= scheme_.alpha_f * from.total;
@@ -121,9 +121,28 @@ NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, dou
       dense_ ? solve_dense(from, h, to) : solve_sparse(from, h, to);
   if (result.status != NewtonStatus::converged) return result;
   to.state.t = t_new;
-  evaluate_totals(s.history, to);
+  if (dense_)
+    totals_from_motion(from, to);
+  else
+    evaluate_totals(s.history, to);
   update_scale(to);
   return result;
+}
+
+void StepSolver::totals_from_motion(const StepPoint& from, StepPoint& to) {
+  // The step's own equation gives the total force: no product with K is needed.
+  const StepScheme& c = scheme_;
+  assembler_.multiply_mass(to.state.a, to.total);
+  to.total *= -(1.0 - c.alpha_m) / (1.0 - c.alpha_f);
+  if (c.alpha_m != 0.0) {
+    assembler_.multiply_mass(from.state.a, scratch_);
+    to.total -= (c.alpha_m / (1.0 - c.alpha_f)) * scratch_;
+  }
+  if (c.alpha_f != 0.0) to.total -= (c.alpha_f / (1.0 - c.alpha_f)) * from.total;
+  assembler_.multiply_damping(to.state.v, to.cv);
+  to.kz = to.total + to.p - to.cv;
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j)
+    for (const Entry& e : system_.scalars()[j].z) to.kz[e.index] -= e.coeff * to.responses[j].y;
 }
 
 void StepSolver::correct(double h, StepPoint& to) const {
@@ -135,9 +154,9 @@ NewtonResult StepSolver::solve_dense(const StepPoint& from, double h, StepPoint&
   Factor& f = factor(h);
   const double phi = 1.0 - scheme_.alpha_f;
   const std::size_t m = system_.scalars().size();
-  assembler_.multiply(system_.stiffness_values(), z_predicted_, scratch_);
+  assembler_.multiply_stiffness(z_predicted_, scratch_);
   rhs_base_ -= phi * scratch_;
-  assembler_.multiply(system_.damping_values(), v_predicted_, scratch_);
+  assembler_.multiply_damping(v_predicted_, scratch_);
   rhs_base_ -= phi * scratch_;
 
   // Loads start at the state that the old acceleration predicts. The mesh phase is taken there too: it is

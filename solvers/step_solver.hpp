@@ -70,6 +70,7 @@ class StepSolver {
   void evaluate(StepPoint& point);
   /// history: of the general elements before the step that led to the point.
   void evaluate_totals(const Vector& history, StepPoint& point);
+  void totals_from_motion(const StepPoint& from, StepPoint& to);
   NewtonResult solve_dense(const StepPoint& from, double h, StepPoint& to);
   NewtonResult solve_sparse(const StepPoint& from, double h, StepPoint& to);
   void correct(double h, StepPoint& to) const;
