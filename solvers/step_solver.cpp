@@ -17,7 +17,8 @@ StepSolver::StepSolver(const System& system, StepScheme scheme, StepOptions opti
       dense_(system.generals().empty() &&
              static_cast<int>(system.scalars().size()) <= options.max_dense_contacts),
       lambda_(Vector::Zero(static_cast<Eigen::Index>(system.scalars().size()))),
-      free_(system.scalars().size()) {
+      free_(system.scalars().size()),
+      clock_(options.time_phases) {
   if (!dense_) sparse_ = std::make_unique<SparseNewton>(system);
 }
 
@@ -105,6 +106,7 @@ void StepSolver::start(StepPoint& point) {
 
 NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, double t_evaluate,
                               StepPoint& to) {
+  clock_.enter(Phase::linear);
   assembler_.set_time(t_evaluate);
   const State& s = from.state;
   z_predicted_ = s.z + h * s.v + (h * h * (0.5 - scheme_.beta)) * s.a;
@@ -121,6 +123,7 @@ NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, dou
       dense_ ? solve_dense(from, h, to) : solve_sparse(from, h, to);
   if (result.status != NewtonStatus::converged) return result;
   to.state.t = t_new;
+  clock_.enter(Phase::linear);
   if (dense_)
     totals_from_motion(from, to);
   else
@@ -163,6 +166,7 @@ NewtonResult StepSolver::solve_dense(const StepPoint& from, double h, StepPoint&
   // off by O(h^3), and a stepped stiffness cannot flip to and fro inside the iteration.
   to.state.a = from.state.a;
   correct(h, to);
+  clock_.enter(Phase::loads);
   assembler_.external(to.state.z, to.state.v, to.p);
   to.inputs.resize(m);
   to.responses.resize(m);
@@ -173,10 +177,12 @@ NewtonResult StepSolver::solve_dense(const StepPoint& from, double h, StepPoint&
   NewtonResult result;
   for (int pass = 1;; ++pass) {
     ++load_passes_;
+    clock_.enter(Phase::linear);
     rhs_ = rhs_base_ + phi * to.p;
     f.cholesky.solve(rhs_, to.state.a);
     if (m > 0) {
       correct(h, to);
+      clock_.enter(Phase::contacts);
       for (std::size_t j = 0; j < m; ++j) {
         free_[j] = assembler_.input(system_.scalars()[j], to.state.z, to.state.v);
         free_[j].angle = phase[j].angle;
@@ -200,6 +206,7 @@ NewtonResult StepSolver::solve_dense(const StepPoint& from, double h, StepPoint&
       return result;
     }
     if (!system_.loads_depend_on_motion()) break;
+    clock_.enter(Phase::loads);
     p_last_ = to.p;
     assembler_.external(to.state.z, to.state.v, to.p);
     const double scale = std::max(force_scale_, to.p.lpNorm<Eigen::Infinity>());

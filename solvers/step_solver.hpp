@@ -10,6 +10,7 @@
 
 #include "core/assembler.hpp"
 #include "solvers/contact_newton.hpp"
+#include "solvers/phase_clock.hpp"
 #include "solvers/sparse_cholesky.hpp"
 #include "solvers/sparse_newton.hpp"
 #include "solvers/step_scheme.hpp"
@@ -35,6 +36,7 @@ struct StepOptions {
   int max_load_passes = 30;
   /// More laws than this are solved with the sparse tangent; measured in docs/performance.md.
   int max_dense_contacts = 48;
+  bool time_phases = false;  ///< keep where the time goes (slows the run a little)
 };
 
 class StepSolver {
@@ -58,6 +60,7 @@ class StepSolver {
   long load_passes() const { return load_passes_; }
   long factorizations() const { return factorizations_; }
   bool dense_contacts() const { return dense_; }
+  PhaseClock& clock() { return clock_; }
 
  private:
   struct Factor {
@@ -86,6 +89,7 @@ class StepSolver {
   Vector z_predicted_, v_predicted_, rhs_base_, rhs_, scratch_, a_linear_, p_last_, lambda_, values_;
   std::vector<ScalarInput> free_;
   double force_scale_ = 0.0;
+  PhaseClock clock_;
   long load_passes_ = 0, factorizations_ = 0;
 };
 

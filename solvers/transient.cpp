@@ -57,6 +57,15 @@ class Run {
     summary_.factorizations = solver_.factorizations();
     summary_.newton_on_contacts = solver_.dense_contacts();
     summary_.energy = energy.balance();
+    if (solver_.clock().on()) {
+      solver_.clock().enter(Phase::observers);
+      const PhaseClock& clock = solver_.clock();
+      summary_.phases = {{"loads", clock.seconds(Phase::loads)},
+                         {"linear", clock.seconds(Phase::linear)},
+                         {"contacts", clock.seconds(Phase::contacts)},
+                         {"balance", clock.seconds(Phase::balance)},
+                         {"observers", clock.seconds(Phase::observers)}};
+    }
     judge_energy();
     return summary_;
   }
@@ -125,7 +134,9 @@ class Run {
         if (!std::isfinite(next_.state.z[k]) || !std::isfinite(next_.state.v[k]))
           return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
     }
+    solver_.clock().enter(Phase::balance);
     energy_->step(now_, next_, h);
+    solver_.clock().enter(Phase::observers);
     for (Observer* o : observers_) o->step(solver_.assembler(), now_, next_);
     std::swap(now_, next_);
     const EnergyBalance& b = energy_->balance();

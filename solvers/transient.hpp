@@ -47,6 +47,9 @@ struct RunSummary {
   long iterations = 0;       ///< Newton
   long load_passes = 0;
   long factorizations = 0;
+  /// Seconds by phase, if StepOptions::time_phases asked for them: loads, linear, contacts, balance,
+  /// observers.
+  std::vector<std::pair<std::string, double>> phases;
   bool newton_on_contacts = true;  ///< false: sparse tangent
   EnergyBalance energy;
   bool ok() const { return status == RunStatus::success; }
