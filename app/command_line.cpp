@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cctype>
 #include <iostream>
+#include <sstream>
 
+#include "app/commands.hpp"
 #include "app/exit_codes.hpp"
 #include "app/help_texts.hpp"
 #include "models/scene.hpp"
@@ -25,14 +27,14 @@ struct Raw {
 
 void add_text(CLI::App& sub, const std::string& option, std::vector<std::string>& target,
               const std::string& type, const std::string& meaning) {
-  sub.add_option(option, target, meaning)->type_name(type)->allow_extra_args(false);
+  sub.add_option(option, target, meaning)->option_text(type)->allow_extra_args(false);
 }
 
 void add_model_options(CLI::App& sub, Raw& raw) {
   sub.allow_extras();  // unknown options are reported with the nearest right one
-  sub.add_option("MODEL", raw.model, "Name of the model; drev list shows them")->type_name("");
+  sub.add_option("MODEL", raw.model, "Name of the model; drev list shows them")->option_text(" ");
   sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
-      ->type_name("NAME=VALUE");
+      ->option_text("NAME=VALUE ...");
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
 }
 
@@ -198,7 +200,12 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return {.exit_code = app.exit(error)};
+    if (error.get_exit_code() == 0) {  // help, version
+      std::ostringstream text;
+      app.exit(error, text, text);
+      print(text.str());
+      return {};
+    }
     std::cerr << "drev: " << error.what() << "\nRun with --help for more information.\n";
     return {.exit_code = kBadInput};
   }

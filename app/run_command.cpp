@@ -60,10 +60,10 @@ class RunFiles {
   /// What was written where, for the table.
   std::string text() const {
     if (!history_) return {};
-    return pad_right("History", 24) +
-           wrap(std::to_string(history_->rows()) + " rows, every " + to_text(request_.every) +
-                    " s, of " + join(request_.record) + " in " + history_->path(),
-                24);
+    return pad_right("History", 24) + wrap(std::to_string(history_->rows()) + " rows, every " +
+                                               short_digits(request_.every, 12) + " s, of " +
+                                               join(request_.record) + " in " + history_->path(),
+                                           24);
   }
 
  private:

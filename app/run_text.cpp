@@ -113,6 +113,7 @@ std::string contact_rows(const RunResult& r) {
 
 std::string energy_row(const EnergyBalance& e) {
   if (!(e.scale > 0.0)) return row("Energy balance", "no energy in the run");
+  if (std::abs(e.relative_error()) < 1e-12) return row("Energy balance", "holds to rounding");
   return row("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
                                    digits(e.scale, 3) + " J" +
                                    (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
@@ -134,14 +135,14 @@ std::string warning_of(const RunResult& r) {
   if (r.status == "energy_error") head = "DO NOT TRUST THIS RUN (energy_error)";
   if (r.status == "interrupted") head = "RUN INTERRUPTED";
   if (r.status == "output_error") head = "RUN GIVEN UP (output_error)";
-  return head + ": " + r.reason + "\n";
+  return head + ": " + r.reason;
 }
 
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.scene.model;
   std::string text;
-  if (!r.ok()) text += "*** " + warning_of(r) + "\n";
+  if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
           wrap(settings_text(request.model.settings), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);

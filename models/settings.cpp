@@ -7,7 +7,8 @@
 namespace drev {
 
 bool read_number(const std::string& text, double& value) {
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* begin = text.data() + (plus ? 1 : 0);
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(begin, end, value);
   return result.ec == std::errc{} && result.ptr == end && begin != end;

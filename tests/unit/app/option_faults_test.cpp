@@ -1,0 +1,123 @@
+// Faults of the command line: each is refused with exit code 2, nothing on stdout, and a message that
+// says what, where, and what would be right.
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+
+namespace {
+
+struct Fault {
+  std::vector<std::string> words;
+  std::vector<std::string> said;
+};
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> all{
+      // commands and models
+      {{}, {"no command", "run, modes, list"}},
+      {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
+      {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
+      {{"--verison"}, {"--verison", "did you mean '--version'?"}},
+      {{"run"}, {"MODEL", "missing", "two_inertia"}},
+      {{"run", "camshft"}, {"camshft", "did you mean 'camshaft'?"}},
+      {{"run", "x"}, {"x", "the models are", "camshaft"}},
+      {{"list", "gear_driv"}, {"did you mean 'gear_drive'?"}},
+      {{"modes", "two_mass"}, {"two_mass", "is no model"}},
+      {{"run", "two_inertia", "camshaft"}, {"camshaft", "one too many"}},
+      {{"run", "two_inertia", "duration_s=1"}, {"--set duration_s=1"}},
+      {{"--json", "run", "two_inertia"}, {"--json", "after the command run"}},
+      {{"run", "modes"}, {"modes", "give one command"}},
+      // options
+      {{"run", "camshaft", "--stp", "1e-3"}, {"--stp", "drev run", "did you mean '--step'?"}},
+      {{"run", "camshaft", "--count", "3"}, {"--count", "drev modes has it"}},
+      {{"run", "camshaft", "--step"}, {"--step"}},
+      {{"run", "camshaft", "--step", "1e-5", "--step", "1e-6"}, {"--step", "1e-6", "already"}},
+      {{"run", "camshaft", "--out", "--json"}, {"--out", "needs a value"}},
+      {{"run", "camshaft", "--out", ""}, {"--out", "needs a value"}},
+      // times
+      {{"run", "camshaft", "--step", "0"}, {"--step = 0 s", "5e-10 s", "5 s"}},
+      {{"run", "camshaft", "--step", "-1e-5"}, {"--step = -1e-5 s", "between"}},
+      {{"run", "camshaft", "--step", "nan"}, {"--step = nan s", "between"}},
+      {{"run", "camshaft", "--step", "inf"}, {"--step = inf s", "between"}},
+      {{"run", "camshaft", "--step", "1ms"}, {"--step = 1ms", "seconds", "0.001"}},
+      {{"run", "camshaft", "--step", "1e-5s"}, {"--step = 1e-5s", "seconds"}},
+      {{"run", "camshaft", "--step", "0,001"}, {"--step = 0,001", "seconds"}},
+      {{"run", "camshaft", "--step", "6"}, {"--step = 6 s", "5 s (the run's duration)"}},
+      {{"run", "camshaft", "--step", "1e-300"}, {"--step = 1e-300 s", "between 5e-10 s"}},
+      {{"run", "camshaft", "--every", "0.1"}, {"--every", "needs --out DIR"}},
+      {{"run", "camshaft", "--out", "no_folder", "--every", "0"}, {"--every = 0 s", "5e-08 s"}},
+      {{"run", "camshaft", "--out", "no_folder", "--every", "9"}, {"--every = 9 s", "5 s"}},
+      // methods
+      {{"run", "camshaft", "--method", "euler"}, {"euler", "average_acceleration", "hht"}},
+      {{"run", "camshaft", "--method", "hhtt:0.1"}, {"hhtt", "did you mean 'hht'?"}},
+      {{"run", "camshaft", "--method", "hht:0.5"}, {"alpha = 0.5", "between 0 and 0.333"}},
+      {{"run", "camshaft", "--method", "hht:"}, {"hht:", "hht[:ALPHA]"}},
+      {{"run", "camshaft", "--method", "generalized_alpha:1.1"}, {"rho_inf = 1.1", "0 and 1"}},
+      {{"run", "camshaft", "--method", "newmark:0.25"}, {"newmark", "2"}},
+      {{"run", "camshaft", "--method", "newmark:0.25,0.4"}, {"gamma = 0.4", "0.5"}},
+      // settings
+      {{"run", "camshaft", "--set", "cylindres=6"}, {"cylindres", "did you mean 'cylinders'?"}},
+      {{"run", "camshaft", "--set", "cylinders=11"}, {"cylinders = 11", "6 to 10"}},
+      {{"run", "camshaft", "--set", "cylinders=6.5"}, {"cylinders = 6.5", "whole number"}},
+      {{"run", "camshaft", "--set", "cylinders"}, {"cylinders", "name=value"}},
+      {{"run", "camshaft", "--set", "cylinders="}, {"cylinders=", "name=value"}},
+      {{"run", "camshaft", "--set", "=6"}, {"=6", "name=value"}},
+      {{"run", "camshaft", "--set", "cylinders=6", "cylinders=7"}, {"already, to 6"}},
+      {{"run", "camshaft", "--set", "drive=gear"}, {"drive = gear", "did you mean 'gears'?"}},
+      {{"run", "camshaft", "--set", "backlash_mm=-0.1"}, {"backlash_mm = -0.1 mm", "0 to 10"}},
+      {{"run", "camshaft", "--set", "backlash_mm=+-1"}, {"backlash_mm = +-1", "not a number"}},
+      {{"run", "camshaft", "--set", "engine_rpm=nan"}, {"engine_rpm = nan rpm", "1 to 5000"}},
+      {{"run", "camshaft", "--set", "engine_rpm=fast"}, {"engine_rpm = fast", "not a number"}},
+      {{"run", "camshaft", "--set", "duration_s=0"}, {"duration_s = 0 s", "to 10000"}},
+      {{"run", "camshaft", "--set", "firing_order=1-2-3"}, {"1-2-3", "9 cylinders"}},
+      {{"run", "camshaft", "--set", "firing_order=1-1-3"}, {"1-1-3", "once"}},
+      {{"modes", "two_inertia", "--set", "inertia_1_kg_m2=0"}, {"inertia_1_kg_m2 = 0 kg m^2"}},
+      {{"list", "two_inertia", "--set", "stiffnes_Nm_per_rad=1"}, {"'stiffness_Nm_per_rad'"}},
+      // channels
+      {{"run", "camshaft", "--record", "end.angle_rad"}, {"--record", "needs --out DIR"}},
+      {{"run", "camshaft", "--out", "no_folder", "--record", "end.angle"},
+       {"end.angle", "did you mean 'end.angle_rad'?"}},
+      {{"run", "camshaft", "--out", "no_folder", "--record", "gear-ned.twist_rad"},
+       {"gear-ned.twist_rad", "is no channel"}},
+      {{"run", "camshaft", "--out", "no_folder", "--record", "end.angle_rad,"}, {"CHANNEL"}},
+      {{"run", "camshaft", "--out", "no_folder", "--record", "end.angle_rad,end.angle_rad"},
+       {"end.angle_rad", "twice"}},
+      // modes
+      {{"modes", "two_inertia", "--count", "0"}, {"--count = 0", "from 1 to 1"}},
+      {{"modes", "two_inertia", "--count", "2"}, {"--count = 2", "from 1 to 1"}},
+      {{"modes", "two_inertia", "--count", "2.5"}, {"--count = 2.5", "whole number"}},
+      {{"modes", "two_inertia", "--count", "many"}, {"--count = many", "whole number"}},
+      {{"modes", "camshaft", "--contact", "close"}, {"did you mean 'closed'?"}},
+  };
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("Faults of the command line are named") {
+  for (const Fault& fault : faults()) {
+    std::string line = "drev";
+    for (const std::string& word : fault.words) line += " " + word;
+    const auto run = drev_command(fault.words);
+    INFO(line << "\n" << run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(run.out.empty());
+    for (const std::string& part : fault.said) CHECK(contains(run.err, part));
+  }
+  CHECK_FALSE(std::filesystem::exists("no_folder"));
+}
+
+TEST_CASE("All faults of one command line are listed at once") {
+  const auto run = drev_command({"run", "camshaft", "--stp", "--step", "1ms", "--every", "-1",
+                                 "--method", "hht:2", "--set", "cylinders=5", "drve=held",
+                                 "backlash_mm=x", "--record", "end.angle,mesh_9.force_N"});
+  INFO(run.err);
+  CHECK(run.exit_code == 2);
+  CHECK(contains(run.err, "11 faults"));
+  for (const char* part :
+       {"--stp", "--step = 1ms", "--every = -1 s", "alpha = 2", "cylinders = 5", "drve",
+        "backlash_mm = x", "end.angle", "mesh_9.force_N", "--every, needs", "--record, needs"})
+    CHECK(contains(run.err, part));
+}
