@@ -75,6 +75,8 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
            "must be n x n for n = " + std::to_string(n) + " nodes");
     else if (!m.allFinite())
       fail(name, "not finite", "must be finite");
+    else if (!m.isApprox(m.transpose(), 1e-12) && !m.isZero(0.0))
+      fail(name, "not symmetric", "must be symmetric; a general force may be otherwise");
   };
   // Number of entries that are not zero; -1 after a finding.
   const auto row = [&](const char* name, const LocalRow& b, bool may_be_empty) {
