@@ -175,8 +175,9 @@ int no_command(const CLI::App& app) {
   else if (looks_like_option(word))
     std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
   else
-    std::cerr << did_you_mean(word, {"run", "modes", "list"})
-              << " The commands are run, modes, list.\n";
+    std::cerr << (word == "help" ? "; did you mean --help?"
+                                 : did_you_mean(word, {"run", "modes", "list"}))
+              << "\nThe commands are run, modes, list.\n";
   return kBadInput;
 }
 

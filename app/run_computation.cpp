@@ -70,6 +70,19 @@ void add_static_force(const ModelRequest& model, const std::vector<Channel>& tor
   result.static_time = timer.seconds();
 }
 
+/// Forces [N] of meshes, backlash or not, and of whatever else has a gap.
+std::vector<Channel> mesh_channels(const System& system) {
+  std::vector<Channel> found;
+  for (const Channel& channel : all_channels(system))
+    for (const ScalarTerm& term : system.scalars()) {
+      const std::string& element = system.placements()[static_cast<std::size_t>(term.element)].name;
+      if (channel.name() == element + ".force_N" &&
+          (term.along_line_of_action || term.force->gap()))
+        found.push_back(channel);
+    }
+  return found;
+}
+
 std::vector<Contacts> contacts_of(const System& system, const ContactStatistics& statistics) {
   const std::vector<Channel> channels = all_channels(system);
   std::vector<Contacts> contacts;
@@ -94,9 +107,9 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
 
   std::vector<Channel> deflections;
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
-  Peaks torque_peaks(torques), deflection_peaks(deflections);
+  Peaks torque_peaks(torques), deflection_peaks(deflections), mesh_peaks(mesh_channels(system));
   ContactStatistics contacts(system);
-  std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &contacts};
+  std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts};
   std::optional<Recorder> recorder;
   if (history != nullptr) {
     recorder.emplace(system, request.record, request.every);
@@ -131,6 +144,7 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
       result.status == "output_error") {
     result.force = largest_of(torques, torque_peaks.peaks());
     result.deflection = largest_of(deflections, deflection_peaks.peaks());
+    result.mesh_force = largest_of(mesh_peaks.channels(), mesh_peaks.peaks());
     result.contacts = contacts_of(system, contacts);
   }
   return result;

@@ -29,27 +29,26 @@ Json contact_object(const Contacts& c, double duration) {
 }
 
 void add_contacts(Json& results, const RunResult& r) {
-  if (r.contacts.empty()) {
-    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s", "max_mesh_force_N"})
+  results["max_mesh_force_N"] = in_unit(r.mesh_force, "N");
+  results["max_mesh_force_at"] = place_of(r.mesh_force, "N");
+  if (r.contacts.empty()) {  // no gap anywhere, or no figures
+    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s"})
       results[key] = nullptr;
     results["contacts"] = Json::array();
     return;
   }
   long front = 0, back = 0;
   double apart = 0.0;
-  std::optional<double> force;
   Json list = Json::array();
   for (const Contacts& c : r.contacts) {
     front += c.record.front_impacts;
     back += c.record.back_impacts;
     apart += c.record.time_apart;
-    if (c.force_unit == "N") force = std::max(force.value_or(0.0), c.record.largest_force);
     list.push_back(contact_object(c, r.summary.t_end));
   }
   results["front_contacts"] = front;
   results["back_contacts"] = back;
   results["time_apart_s"] = number(apart);
-  results["max_mesh_force_N"] = number(force);
   results["contacts"] = std::move(list);
 }
 

@@ -34,7 +34,8 @@ struct RunResult {
   std::optional<ModeSet> modes;
   std::string modes_reason;
   std::optional<Largest> deflection, force, static_force;
-  std::string static_reason;  ///< why there is no static force
+  std::optional<Largest> mesh_force;  ///< over meshes and whatever else has a gap [N]
+  std::string static_reason;          ///< why there is no static force
   std::vector<Contacts> contacts;
   double modes_time = 0.0, static_time = 0.0, run_time = 0.0;  ///< s of wall time
 

@@ -66,7 +66,7 @@ std::string force_rows(const Scene& scene, const RunResult& r) {
   std::string text;
   if (r.force)
     text += row("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) +
-                                       " at " + digits(r.force->at, 4) + " s");
+                                       " at " + short_digits(r.force->at, 4) + " s");
   if (!r.static_force)
     return text +
            row("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
@@ -87,7 +87,12 @@ std::string contact_line(const std::string& name, long front, long back, double 
 }
 
 std::string contact_rows(const RunResult& r) {
-  if (r.contacts.empty()) return {};
+  if (r.contacts.empty()) {
+    if (!r.mesh_force) return {};
+    return row("Largest mesh force", value_text(*r.mesh_force) + " in " + r.mesh_force->place() +
+                                         " at " + short_digits(r.mesh_force->at, 4) +
+                                         " s; no backlash, so no impacts");
+  }
   std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
                      pad_left("apart [s]", 12) + pad_left("[%]", 10) +
                      pad_left("largest force", 18) + "\n";
@@ -117,7 +122,7 @@ std::string energy_row(const EnergyBalance& e) {
   return row("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
                                    digits(e.scale, 3) + " J" +
                                    (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
-                                   ", worst at " + digits(e.worst_time, 4) + " s");
+                                   ", worst at " + short_digits(e.worst_time, 4) + " s");
 }
 
 }  // namespace
@@ -149,7 +154,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
   if (r.deflection)
     text += row("Largest deflection", value_text(*r.deflection) + " " +
                                           deflection_place(model, *r.deflection) + " at " +
-                                          digits(r.deflection->at, 4) + " s");
+                                          short_digits(r.deflection->at, 4) + " s");
   if (!r.force && !r.ok())
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);

@@ -178,6 +178,16 @@ TEST_CASE("What has no meaning for a model is null") {
   CHECK(shaft.at("static_torque_Nm").is_null());
 }
 
+TEST_CASE("Meshes without backlash have a force and no impacts") {
+  const Json results = Json::parse(drev_command({"run", "gear_drive", "--set=duration_s=0.1",
+                                                 "--set=backlash_mm=0", "--step=1e-5", "--json"})
+                                       .out)
+                           .at("results");
+  CHECK(results.at("max_mesh_force_N").get<double>() > 1000.0);
+  CHECK(results.at("front_contacts").is_null());
+  CHECK(results.at("contacts").empty());
+}
+
 TEST_CASE("The table has its units, and says what the data are") {
   const auto run = drev_command({"run", "camshaft", "--set", "duration_s=0.02"});
   CHECK(run.exit_code == 0);
