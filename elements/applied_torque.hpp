@@ -1,8 +1,9 @@
 #pragma once
 /// AppliedTorque: a torque that is a function of time, on one node.
 ///
-///   tau(t) on the RIGHT side: positive drives the node forward. On a translational node a force
-///   [N].
+///   tau(t) on the RIGHT side: positive drives the node forward
+///
+/// On a translational node a force [N].
 ///
 /// Either a function, with the times at which it jumps or kinks as breakpoints (at a jump it must
 /// give the value after it), or a TimeTable, which knows its own.

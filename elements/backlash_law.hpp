@@ -1,36 +1,34 @@
 #pragma once
-/// BacklashLaw: two flanks with a gap between them (dead zone), linear stiffness, damping in
-/// contact.
+/// BacklashLaw: two flanks with a gap between them (dead zone), linear stiffness, damping.
 ///
 ///   p = x - b  (x > b),   p = x + b  (x < -b),   p = 0 between;       b = normal_backlash/2
-///   y = k p + c_eff x_dot    in contact, clipped so that no flank pulls: y >= 0 in front, y <= 0
-///   behind
+///   y = k p + c_eff x_dot                                             in contact
 ///
+/// clipped so that no flank pulls: y >= 0 in front, y <= 0 behind (all laws but `always`).
 /// x and y as in ScalarForce: N and m along a line of action (or N m and rad). k is passed in,
 /// because it may follow the mesh's phase. Stored energy k p^2/2; dissipated power (y - k p) x_dot,
 /// never < 0.
 ///
 /// Damping laws:
 ///   proportional  c_eff = c min(|p|/p_ref, 1). The default: the force stays continuous where the
-///   flanks
-///                 meet, so no order of accuracy is lost there and energy cannot leak through a
-///                 jump. For |p| < p_ref, y = p (k + c x_dot/p_ref): the clip acts exactly where
+///                 flanks meet, so no order of accuracy is lost there and energy cannot leak
+///                 through a jump. For |p| < p_ref, y = p (k + c x_dot/p_ref): the clip acts exactly where
 ///                 the bracket is negative, so y never falls with x. Beyond p_ref it is the linear
 ///                 damper c, which is what modes with closed contact see. (After the idea of K. H.
 ///                 Hunt, F. R. E. Crossley, Coefficient of restitution interpreted as damping in
 ///                 vibroimpact, J. Appl. Mech. 42, 1975, whose damping grows with p without bound;
 ///                 saturated here.)
-///   limited       the damper's force is limited to the spring's: y = k p + c x_dot, but between 0 and
-///                 2 k p on the front flank (mirrored behind). Continuous at the edge, without a
-///                 parameter of its own. (Modelica Standard Library,
+///   limited       the damper's force is limited to the spring's: y = k p + c x_dot, but between 0
+///                 and 2 k p on the front flank (mirrored behind). Continuous at the edge, without
+///                 a parameter of its own. (Modelica Standard Library,
 ///                 Mechanics.Rotational.Components.ElastoBacklash2.)
 ///   contact_only  c_eff = c in contact: the force jumps by c x_dot where the flanks meet. Never
-///   pulls.
-///                 A discrete step can then be left without a solution.
+///                 pulls. A discrete step can then be left without a solution.
 ///   always        y = k p + c x_dot everywhere, in the gap too, and may pull. The law of the
-///   source,
-///                 S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU,
+///                 source, S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU,
 ///                 2015, equation 4.4; here to reproduce it. Drags on gears that do not touch.
+///
+/// docs/catalogue.md compares them.
 ///
 /// p_ref (reference_penetration) wants to be small against the penetration under load, so that c is
 /// the mesh's damping, and large against the distance of one time step at impact, so that it is

@@ -1,11 +1,11 @@
 #pragma once
 /// EngineOrderTorque: a torque made of engine orders, on one node.
 ///
-///   tau = mean + sum A_i cos(order_i theta + phase_i)      on the RIGHT side: positive drives
-///   forward
+///   tau = mean + sum A_i cos(order_i theta + phase_i)
 ///
-/// theta is the node's actual angle (nominal + deviation); twist_feedback = false takes the nominal
-/// one. Orders are per revolution of the node; a four-stroke engine has half orders.
+/// on the RIGHT side: positive drives the node forward. theta is the node's actual angle (nominal
+/// + deviation); twist_feedback = false takes the nominal one. Orders are per revolution of the
+/// node; a four-stroke engine has half orders.
 #include "core/element.hpp"
 #include "elements/harmonic.hpp"
 

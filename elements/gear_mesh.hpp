@@ -1,13 +1,12 @@
 #pragma once
 /// GearMesh: two gears in mesh, with compliance, backlash and damping along the line of action.
 ///
-///   external pair   x = r_b1 theta_1 + r_b2 theta_2 - e        both angles about one common axis
-///   sense internal pair   x = r_b1 theta_1 - r_b2 theta_2 - e        gear 2 is the ring f = b y(x,
-///   x_dot),   b = (r_b1, +-r_b2)                    y: BacklashLaw [N], reported as the force
+///   external pair   x = r_b1 theta_1 + r_b2 theta_2 - e      both angles about one axis sense
+///   internal pair   x = r_b1 theta_1 - r_b2 theta_2 - e      gear 2 is the ring
+///   f = b y(x, x_dot),   b = (r_b1, +-r_b2)                y: BacklashLaw [N], the force reported
 ///
 /// y > 0: the flanks in front carry (gear 1 turned forward relative to the mesh); y brakes gear 1
-/// with the torque r_b1 y. e is the transmission error. The nominal speeds obey r_b1 n_1 +- r_b2
-/// n_2 = 0.
+/// with the torque r_b1 y. e is the transmission error. Nominal speeds: r_b1 n_1 +- r_b2 n_2 = 0.
 ///
 /// Radii: give base_radius_1 and _2, or module, teeth_1, teeth_2 and pressure_angle (r_b = m z
 /// cos(alpha)/2; helical gears: transverse module and pressure angle). Both are accepted if they

@@ -5,8 +5,8 @@
 ///
 ///   constant   k
 ///   step       k_double for 0 <= s < eps - 1, k_single for eps - 1 <= s < 1: two pairs of teeth
-///   carry
-///              for the fraction eps - 1 of the period. Jumps: locate it, or use the Fourier form.
+///              carry for the fraction eps - 1 of the period. It jumps: where the order of accuracy
+///              matters, use the Fourier form.
 ///   fourier    mean + sum A_n cos(2 pi n s + phase_n)
 ///   table      linear between points over one period
 ///

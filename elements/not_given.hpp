@@ -1,6 +1,5 @@
 #pragma once
-/// The default of a mandatory parameter: whoever forgets it reads "stiffness = NaN ..." from
-/// build().
+/// Default of a mandatory parameter: whoever forgets it reads "stiffness = NaN ..." from build().
 #include <limits>
 
 namespace drev {

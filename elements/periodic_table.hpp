@@ -1,6 +1,5 @@
 #pragma once
-/// PeriodicTable: a measured periodic curve, linear between its points and from the last to the
-/// first.
+/// PeriodicTable: a measured periodic curve, linear between its points and from last to first.
 ///
 ///   value(u) = v_i + s_i (u - u_i)      u_i <= u < u_{i+1},   u = argument modulo the period
 ///

@@ -1,9 +1,9 @@
 #pragma once
 /// PolylineSpring: a spring whose force is given by points, linear between them.
 ///
-///   y(x) through (x_i, y_i), its outer segments continued;  x = q_b - q_a, or q of one node to
-///   ground total: y(x) + c x_dot                                   the damper acts always, in a
-///   gap too
+///   y(x) through (x_i, y_i), its outer segments continued
+///   total: y(x) + c x_dot             the damper acts always, in a gap too
+///   x = q_b - q_a between two nodes,  x = q on one node, to ground
 ///
 /// y must not fall with x and must pass through zero. Stored energy: the exact integral of y from
 /// where y = 0, hence >= 0. A stretch with y = 0 is the gap; it reaches to infinity where an outer

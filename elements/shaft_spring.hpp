@@ -5,8 +5,8 @@
 ///
 /// tau acts on a as +tau, on b as -tau: a positive twist pulls a forward and b back. Reported with
 /// the sign of the twist. Both ends have the same nominal speed. The stiffness takes part in
-/// Rayleigh damping; the shaft's own damping c adds to that. Between translational nodes: N/m, N
-/// s/m.
+/// Rayleigh damping; the shaft's own damping c adds to that. Between translational nodes: N/m and
+/// N s/m.
 #include "core/element.hpp"
 #include "elements/not_given.hpp"
 

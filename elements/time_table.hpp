@@ -1,9 +1,8 @@
 #pragma once
-/// TimeTable: a curve over time, linear between its points, constant before the first and after the
-/// last.
+/// TimeTable: a curve over time, linear between its points, constant before and after them.
 ///
 /// The same time given twice makes a jump: the first value holds before it, the second from it on
-/// (the curve is right-continuous). Every knot is a breakpoint, where integration stops and starts
+/// (the curve is right-continuous). Every knot is a breakpoint: integration stops there and starts
 /// anew.
 #include <string>
 #include <vector>
