@@ -12,12 +12,12 @@
 /// Damping laws:
 ///   proportional  c_eff = c min(|p|/p_ref, 1). The default: the force stays continuous where the
 ///                 flanks meet, so no order of accuracy is lost there and energy cannot leak
-///                 through a jump. For |p| < p_ref, y = p (k + c x_dot/p_ref): the clip acts exactly where
-///                 the bracket is negative, so y never falls with x. Beyond p_ref it is the linear
-///                 damper c, which is what modes with closed contact see. (After the idea of K. H.
-///                 Hunt, F. R. E. Crossley, Coefficient of restitution interpreted as damping in
-///                 vibroimpact, J. Appl. Mech. 42, 1975, whose damping grows with p without bound;
-///                 saturated here.)
+///                 through a jump. For |p| < p_ref, y = p (k + c x_dot/p_ref): the clip acts
+///                 exactly where the bracket is negative, so y never falls with x. Beyond p_ref it
+///                 is the linear damper c, which is what modes with closed contact see. (After the
+///                 idea of K. H. Hunt, F. R. E. Crossley, Coefficient of restitution interpreted as
+///                 damping in vibroimpact, J. Appl. Mech. 42, 1975, whose damping grows with p
+///                 without bound; saturated here.)
 ///   limited       the damper's force is limited to the spring's: y = k p + c x_dot, but between 0
 ///                 and 2 k p on the front flank (mirrored behind). Continuous at the edge, without
 ///                 a parameter of its own. (Modelica Standard Library,
@@ -25,8 +25,9 @@
 ///   contact_only  c_eff = c in contact: the force jumps by c x_dot where the flanks meet. Never
 ///                 pulls. A discrete step can then be left without a solution.
 ///   always        y = k p + c x_dot everywhere, in the gap too, and may pull. The law of the
-///                 source, S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU,
-///                 2015, equation 4.4; here to reproduce it. Drags on gears that do not touch.
+///                 source, S. L. Sunde, Mechanical analysis of camshaft system on a marine engine,
+///                 NTNU, 2015, equation 4.4; here to reproduce it. Drags on gears that do not
+///                 touch.
 ///
 /// docs/catalogue.md compares them.
 ///
