@@ -1,10 +1,10 @@
 #include "app/commands.hpp"
-#include "app/elastic_modes.hpp"
 #include "app/exit_codes.hpp"
 #include "app/json_values.hpp"
 #include "app/requests.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
+#include "solvers/modes.hpp"
 
 namespace drev::app {
 
@@ -28,7 +28,7 @@ std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::
 
 int modes_command(const CommandLine& line) {
   const ModesRequest request = request_modes(line);
-  const ModeSet modes = find_modes(request.model.system, request.options);
+  const ModeSet modes = solve_modes(request.model.system, request.options);
   const std::string contact = request.options.contact == Contact::closed ? "closed" : "open";
   if (line.json) {
     Json object;

@@ -6,6 +6,7 @@
 #include "app/interrupt.hpp"
 #include "app/run_computation.hpp"
 #include "app/run_json.hpp"
+#include "app/run_report.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
 
@@ -43,10 +44,15 @@ class RunFiles {
     if (!written) say(history_->error());
     try {
       summary_->write(run_as_json(request_, result));
-      if (complete && written)
+      if (complete && written) {
         summary_->commit();
-      else
+        OutputFile report(*request_.out, "report", "html");
+        report.write(run_report(request_, result, history_->path()));
+        report.commit();
+        report_path_ = report.path();
+      } else {
         summary_->flush();
+      }
     } catch (const OutputError& error) {
       say(error.what());
       written = false;
@@ -63,13 +69,15 @@ class RunFiles {
     return pad_right("History", 24) + wrap(std::to_string(history_->rows()) + " rows, every " +
                                                short_digits(request_.every, 12) + " s, of " +
                                                join(request_.record) + " in " + history_->path(),
-                                           24);
+                                           24) +
+           pad_right("Report", 24) + report_path_ + "\n";
   }
 
  private:
   const RunRequest& request_;
   std::optional<HistoryFile> history_;
   std::optional<OutputFile> summary_;
+  std::string report_path_;
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "app/elastic_modes.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
+#include "solvers/modes.hpp"
 #include "solvers/peaks.hpp"
 #include "solvers/recorder.hpp"
 #include "solvers/statics.hpp"
@@ -42,7 +42,7 @@ std::optional<Largest> largest_of(const std::vector<Channel>& channels,
 void add_modes(const System& system, RunResult& result) {
   const Timer timer;
   try {
-    result.modes = find_modes(system, {});
+    result.modes = solve_modes(system, {});
   } catch (const SolverError& error) {
     result.modes_reason = error.what();
   }

@@ -101,8 +101,12 @@ void ParameterCheck::all_finite(std::string_view parameter, const std::vector<do
 std::string to_text(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  char buffer[64];
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= 1e-5 && size < 1e16);
+  const auto result = plain ? std::to_chars(buffer, buffer + sizeof buffer, value,
+                                            std::chars_format::fixed)
+                            : std::to_chars(buffer, buffer + sizeof buffer, value);
   return {buffer, result.ptr};
 }
 

@@ -22,6 +22,7 @@ struct LocalResponse {
   LocalVector f;                      ///< N m or N
   LocalMatrix stiffness, damping;     ///< df/dq, df/dv
   std::span<double> history;          ///< written: the history if this step is accepted
+  /// Both enter the energy balance: an element that leaves them at zero ends every run as energy_error.
   double stored_energy = 0.0;         ///< J
   double dissipated_power = 0.0;      ///< W, >= 0 for a passive element
 };

@@ -19,7 +19,7 @@ int modes_wanted(const System& system, const ModesOptions& options, int elastic)
   const int count = options.count.value_or(std::min(10, elastic));
   if (options.count && *options.count < 1)
     check.fail("count", std::to_string(count), "", "must be >= 1");
-  else if (count > elastic || elastic < 1)
+  else if (count > elastic)
     check.fail("count", std::to_string(count), "",
                "must not exceed the number of elastic modes, which is " + std::to_string(elastic));
   if (options.dense_limit < 0)
@@ -123,6 +123,11 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
   modes.contact = options.contact;
   modes.rigid_modes = system.rigid_mode_count(options.contact);
   const int wanted = modes_wanted(system, options, n - modes.rigid_modes);
+  if (wanted == 0) {
+    modes.shapes.resize(system.node_count(), 0);
+    modes.vectors.resize(n, 0);
+    return modes;
+  }
   const int total = modes.rigid_modes + wanted;
   ModesSummary& summary = modes.summary;
 

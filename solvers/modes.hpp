@@ -32,7 +32,7 @@ const char* to_text(ModesMethod method);
 
 struct ModesOptions {
   /// Number of elastic modes, the lowest ones. Given: exactly as many, an error if the system has
-  /// fewer. Not given: 10, or all where there are fewer.
+  /// fewer. Not given: 10, or all where there are fewer (none is no error).
   std::optional<int> count = {};
   Contact contact = Contact::closed;
   /// Systems of up to as many unknowns are solved dense. Measured for 10 modes of a free chain,
@@ -71,9 +71,8 @@ struct ModeSet {
 };
 
 /// Throws ModelError for options out of range; SolverError if the number of rigid modes is not what
-/// the graph says, if K has a negative eigenvalue (static
-/// instability) or is unsymmetric, or if no agreement with the
-/// Sturm count is reached.
+/// the graph says, if K has a negative eigenvalue (static instability) or is unsymmetric, or if no
+/// agreement with the Sturm count is reached.
 ModeSet solve_modes(const System& system, const ModesOptions& options = {});
 
 }  // namespace drev

@@ -15,15 +15,16 @@ std::vector<double> numbers(const std::string& text, const std::string& list) {
   std::vector<double> values;
   const char* at = list.data();
   const char* end = at + list.size();
-  while (at < end) {
+  while (true) {
     double value = 0.0;
     const auto result = std::from_chars(at, end, value);
     if (result.ec != std::errc{} || (result.ptr != end && *result.ptr != ','))
-      throw ModelError({{"method", "parameters", text, "", "must be numbers separated by commas"}});
+      throw ModelError(
+          {{"method", "parameters", text, "", "must be numbers separated by commas, after a colon"}});
     values.push_back(value);
-    at = result.ptr == end ? end : result.ptr + 1;
+    if (result.ptr == end) return values;
+    at = result.ptr + 1;
   }
-  return values;
 }
 
 }  // namespace
@@ -67,8 +68,10 @@ StepScheme step_scheme(const std::string& text) {
   const auto expect = [&](std::size_t low, std::size_t high) {
     if (p.size() < low || p.size() > high)
       throw ModelError({{"method", "parameters", text, "",
-                         name + " takes " + std::to_string(low) +
-                             (high > low ? " to " + std::to_string(high) : std::string())}});
+                         name + " takes " +
+                             (high == 0  ? std::string("no numbers")
+                              : low == high ? std::to_string(low) + " numbers"
+                                            : "one number or none")}});
   };
   if (name == "average_acceleration") return expect(0, 0), average_acceleration();
   if (name == "linear_acceleration") {
@@ -83,7 +86,10 @@ StepScheme step_scheme(const std::string& text) {
   if (name == "hht") return expect(0, 1), p.empty() ? hht() : hht(p[0]);
   if (name == "generalized_alpha")
     return expect(0, 1), p.empty() ? generalized_alpha() : generalized_alpha(p[0]);
-  throw ModelError({{"method", "name", name, "", "is no method" + did_you_mean(name, names)}});
+  throw ModelError({{"method", "name", name, "", "is no method" + did_you_mean(name, names) +
+                         "; there are average_acceleration, linear_acceleration, "
+                         "central_difference, newmark:BETA,GAMMA, hht:ALPHA and "
+                         "generalized_alpha:RHO_INF"}});
 }
 
 }  // namespace drev

@@ -35,7 +35,7 @@ struct StepOptions {
   double load_tolerance = 1e-10;
   int max_load_passes = 30;
   /// More laws than this are solved with the sparse tangent; measured in docs/performance.md.
-  int max_dense_contacts = 48;
+  int max_dense_contacts = 32;
   bool time_phases = false;  ///< keep where the time goes (slows the run a little)
 };
 

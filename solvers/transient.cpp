@@ -9,7 +9,7 @@ namespace drev {
 
 namespace {
 
-constexpr long kProgressSteps = 1000;
+constexpr long kProgressSteps = 100;
 constexpr double kSameTime = 1e-9;  // relative to the step
 
 void check_options(const System& system, const TransientOptions& o, const State& state) {
@@ -25,8 +25,11 @@ void check_options(const System& system, const TransientOptions& o, const State&
   if (state.z.size() != system.size() || state.v.size() != system.size())
     check.fail("state", std::to_string(state.z.size()), "unknowns",
                "must have " + std::to_string(system.size()));
-  else if (!state.z.allFinite() || !state.v.allFinite())
+  else if (!state.z.allFinite() || !state.v.allFinite() || !state.history.allFinite())
     check.fail("state", "not finite", "", "must be finite");
+  if (state.history.size() != system.history_size())
+    check.fail("state's history", std::to_string(state.history.size()), "numbers",
+               "must have " + std::to_string(system.history_size()));
   if (!findings.empty()) throw ModelError(findings);
 }
 
@@ -97,10 +100,6 @@ class Run {
       const double t_evaluate =
           last && at_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity()) : t_new;
       advance(h, t_new, t_evaluate, 0);
-      if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-          !options_.progress((now_.state.t - options_.t_start) /
-                             (options_.t_end - options_.t_start)))
-        fail(RunStatus::interrupted, "interrupted");
     }
     if (at_break && summary_.status == RunStatus::success && now_.state.t < options_.t_end) {
       next_ = now_;
@@ -139,10 +138,16 @@ class Run {
     solver_.clock().enter(Phase::observers);
     for (Observer* o : observers_) o->step(solver_.assembler(), now_, next_);
     std::swap(now_, next_);
+    if (options_.progress && summary_.steps % kProgressSteps == 0 &&
+        !options_.progress((now_.state.t - options_.t_start) /
+                           (options_.t_end - options_.t_start)))
+      return fail(RunStatus::interrupted, "interrupted");
     const EnergyBalance& b = energy_->balance();
+    if (!std::isfinite(b.imbalance)) return fail(RunStatus::not_finite, "the energy");
     if (b.imbalance > options_.energy_growth_limit * b.given && b.given > 0.0)
-      fail(RunStatus::unstable, "energy grew from nothing to " + to_text(b.imbalance / b.given) +
-                                    " times what was put in; take a smaller step or a method that damps");
+      fail(RunStatus::unstable,
+           "energy grew from nothing to more than " + to_text(options_.energy_growth_limit) +
+               " times what was put in; take a smaller step or a method that damps");
   }
 
   void judge_energy() {
@@ -204,9 +209,14 @@ RunSummary simulate(const System& system, const TransientOptions& options, State
                     const std::vector<Observer*>& observers) {
   check_options(system, options, state);
   Run run(system, options, state, observers);
-  RunSummary summary = run.run();
-  state = run.take_state();
-  return summary;
+  try {
+    RunSummary summary = run.run();
+    state = run.take_state();
+    return summary;
+  } catch (...) {  // a user's function threw: the last accepted state is not lost
+    state = run.take_state();
+    throw;
+  }
 }
 
 RunSummary simulate(const System& system, const TransientOptions& options,

@@ -22,7 +22,7 @@ struct TransientOptions {
   double energy_tolerance = 1e-2;
   /// A run whose energy grows by this factor over everything that was put in is stopped as unstable [-].
   double energy_growth_limit = 1e6;
-  /// Called about every 1000 steps with the part done, 0..1; return false to stop the run.
+  /// Called every 100 steps with the part done, 0..1; return false to stop the run.
   std::function<bool(double)> progress = {};
 };
 

@@ -22,7 +22,7 @@ Scene build_two_mass_backlash(Settings s) {
                        {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, force, force, 0.0})});
   return {.model = std::move(m),
           .duration = s.number("duration_s"),
-          // h omega_2 = 0.002: average acceleration is off by 1e-6 m at 2 s (docs/validation.md).
+          // h omega_2 = 0.002: average acceleration is off by 3e-7 m at 2 s (docs/validation.md).
           .default_step = 1e-4,
           .deflection = "mass_2-mass_1.distance_m",
           .torques = {"spring_1.force_N", "spring_2.force_N"},

@@ -92,7 +92,7 @@ std::vector<Fault> parameter_faults() {
       {[](Model& m) { m.add<RayleighDamping>("r", {}, {.alpha_mass = -1.0}); },
        {"drive/r: alpha_mass = -1 1/s", ">= 0"}},
       {meshed([](auto& p) { p.normal_backlash = -1e-4; }),
-       {"drive/mesh: normal_backlash = -1e-04 m", ">= 0"}},
+       {"drive/mesh: normal_backlash = -0.0001 m", ">= 0"}},
       {meshed([](auto& p) { p.base_radius_1 = 0.0; }), {"drive/mesh: base_radius_1 = 0 m"}},
       {meshed([](auto& p) { p.base_radius_2 = kNan; }), {"drive/mesh", "base_radius"}},
       {meshed([](auto& p) { p.internal = true, p.base_radius_2 = 0.05; }),

@@ -222,7 +222,9 @@ TEST_CASE("Options out of range and systems without modes are refused", "[modes]
   CHECK_THROWS_AS(solve_modes(system, {.count = 0}), ModelError);
   CHECK_THROWS_AS(solve_modes(system, {.count = -3}), ModelError);
   CHECK_THROWS_AS(solve_modes(system, {.dense_limit = -1}), ModelError);
-  CHECK_THROWS_AS(solve_modes(chain(1, 1.0, 1.0, false)), ModelError);
+  CHECK(solve_modes(chain(1, 1.0, 1.0, false)).count() == 0);
+  CHECK(solve_modes(chain(1, 1.0, 1.0, false)).rigid_modes == 1);
+  CHECK_THROWS_AS(solve_modes(chain(1, 1.0, 1.0, false), {.count = 1}), ModelError);
 }
 
 namespace {

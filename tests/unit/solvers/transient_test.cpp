@@ -280,6 +280,6 @@ TEST_CASE("Bad options are refused together") {
   CHECK_THROWS_AS(Recorder(system, {"m.position_m"}, 0.0), ModelError);
   CHECK_THROWS_AS(Recorder(system, {"m.angle_rad", "n.position_m"}, 0.1), ModelError);
   for (const char* bad : {"hht:0.5", "newmark:-1,0.5", "newmark:0.25", "generalized_alpha:1.5",
-                          "averageacceleration", "hht:x", ""})
+                          "averageacceleration", "hht:x", "hht:", "newmark:0.25,0.5,", ""})
     CHECK_THROWS_AS(step_scheme(bad), ModelError);
 }
