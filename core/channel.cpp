@@ -214,6 +214,14 @@ double reaction(const Assembler& assembler, const State& s, int k) {
   return r;
 }
 
+std::optional<double> Channel::rate(const State& state) const {
+  if (!direct_) return std::nullopt;
+  double y = 0.0;
+  for (const Entry& e : z_) y += e.coeff * state.v[e.index];
+  for (const Entry& e : v_) y += e.coeff * state.a[e.index];
+  return y;
+}
+
 double Channel::evaluate(const Assembler& assembler, const State& state) const {
   if (direct_) {
     double y = 0.0;

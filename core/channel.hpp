@@ -12,6 +12,7 @@
 /// mesh's force is positive on the front flank (x > 0); a load's torque is as it enters the right-hand side;
 /// an ideal gear's torque is the one it applies to its second node; a reaction is the torque that must be
 /// applied to the prescribed node to make it move as given.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time.
   double evaluate(const Assembler& assembler, const State& state) const;
+  /// Its rate of change at a state, for a value that is linear in deviations and rates; none for others.
+  std::optional<double> rate(const State& state) const;
 
  private:
   friend class ChannelFinder;

@@ -243,6 +243,39 @@ TEST_CASE("Output at exactly the times asked for, whatever the step") {
   CHECK(odd.times()[30] == 30 * 0.0333);
 }
 
+TEST_CASE("Peaks at the ends of steps, or inside them to fourth order") {
+  // Points of the exact motion sin(2 pi t): the peak 1 at t = 1/4 lies inside a step.
+  const System system = [] { return unit_oscillator().build(); }();
+  const Assembler assembler(system);
+  const auto point = [](double t) {
+    StepPoint p;
+    p.state.t = t;
+    p.state.z = Vector::Constant(1, std::sin(kTwoPi * t));
+    p.state.v = Vector::Constant(1, kTwoPi * std::cos(kTwoPi * t));
+    p.state.a = Vector::Constant(1, -kTwoPi * kTwoPi * std::sin(kTwoPi * t));
+    return p;
+  };
+  double last = 0.0;
+  for (const double h : {0.06, 0.03}) {
+    Peaks ends({find_channel(system, "m.position_m")}), inside(ends.channels(), true);
+    StepPoint from = point(0.25 - 3.4 * h);
+    ends.start(assembler, from);
+    inside.start(assembler, from);
+    for (int i = 1; i <= 6; ++i) {
+      const StepPoint to = point(0.25 - 3.4 * h + i * h);
+      ends.step(assembler, from, to);
+      inside.step(assembler, from, to);
+      from = to;
+    }
+    CHECK(ends.peaks()[0].max == Approx(std::cos(kTwoPi * 0.4 * h)).epsilon(1e-12));
+    const double error = std::abs(inside.peaks()[0].max - 1.0);
+    CHECK(error < 1e-4);
+    CHECK(inside.peaks()[0].max_time == Approx(0.25).margin(1e-3));
+    if (last > 0.0) CHECK(std::log2(last / error) == Approx(4.0).margin(0.3));
+    last = error;
+  }
+}
+
 TEST_CASE("A run that is stopped says so and leaves what it had") {
   Model m = unit_oscillator();
   m.set_initial("m", 1.0, 0.0);
