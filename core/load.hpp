@@ -1,6 +1,9 @@
 #pragma once
 /// A load on one node: p(t, theta, theta_dot) on the RIGHT side of the equation of motion; positive
 /// accelerates the node in the positive sense.
+#include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace drev {
@@ -20,6 +23,26 @@ struct LoadResponse {
   double dtorque_dspeed = 0.0; ///< N m s/rad
 };
 
+/// A load over a stretch of its angle: torque + time_slope (t - t_0) + angle_slope (theta - theta_0),
+/// for low <= theta <= high and up to the load's next breakpoint. theta is the actual angle, or the
+/// nominal one of a load that does not depend on motion. The load is continuous at low and high.
+struct LoadStretch {
+  double torque = 0.0;       ///< at t_0, theta_0 [N m or N]
+  double time_slope = 0.0;   ///< N m/s
+  double angle_slope = 0.0;  ///< N m/rad
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// Taylor series of a load along a motion: with theta(s) = sum theta_k s^k, torque(s) = sum T_k s^k.
+/// Holds the series of one step; one per load and run.
+class LoadSeries {
+ public:
+  virtual ~LoadSeries() = default;
+  /// T_k [N m or N] from theta_0 ... theta_k. Called for k = 0, 1, 2, ...; k = 0 starts a new step.
+  virtual double coefficient(int k, const std::vector<double>& angle) = 0;
+};
+
 class Load {
  public:
   virtual ~Load() = default;
@@ -28,6 +51,14 @@ class Load {
   virtual bool depends_on_motion() const { return true; }
   /// Times at which the load jumps or kinks [s]: integration stops there and starts anew.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// The stretch about (t, theta), for exact propagation. On a knot, or within rounding of it, the
+  /// stretch ahead of it: on the side of growing theta where direction > 0, else on the other.
+  virtual std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/,
+                                             double /*direction*/) const {
+    return std::nullopt;
+  }
+  /// For a load that has no stretches but a series in theta; null: neither.
+  virtual std::unique_ptr<LoadSeries> series() const { return nullptr; }
 };
 
 }  // namespace drev

@@ -12,7 +12,7 @@ Motion constant_speed(double omega, double phi_0) {
   check.finite("omega", omega, "rad/s");
   check.finite("phi_0", phi_0, "rad");
   if (!findings.empty()) throw ModelError(findings);
-  return {[omega, phi_0](double t) { return MotionPoint{phi_0 + omega * t, omega, 0.0}; }, {}};
+  return {[omega, phi_0](double t) { return MotionPoint{phi_0 + omega * t, omega, 0.0}; }, {}, true};
 }
 
 Motion run_up(double omega_0, double omega_1, double t_0, double t_1) {
@@ -33,7 +33,7 @@ Motion run_up(double omega_0, double omega_1, double t_0, double t_1) {
     if (t >= t_1) p = {p.value + omega_1 * (t - t_1), omega_1, 0.0};
     return p;
   };
-  return {at, {t_0, t_1}};
+  return {at, {t_0, t_1}, true};
 }
 
 }  // namespace drev

@@ -18,6 +18,8 @@ struct MotionPoint {
 struct Motion {
   std::function<MotionPoint(double t)> at;
   std::vector<double> breakpoints = {};  ///< s
+  /// The acceleration is constant between breakpoints, so that the motion is a polynomial of t there.
+  bool piecewise_quadratic = false;
 };
 
 /// phi = phi_0 + omega t.  omega in rad/s, phi_0 in rad.

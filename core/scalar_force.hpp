@@ -6,6 +6,8 @@
 #include <concepts>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace drev {
 
@@ -37,6 +39,21 @@ struct Offset {
   double e = 0.0, de_dangle = 0.0;
 };
 
+/// a + b_x x + b_v x_dot >= 0 holds on a piece; where it ceases to hold, piece `next` takes over.
+struct LawBound {
+  double a = 0.0, b_x = 0.0, b_v = 0.0;
+  int next = 0;
+};
+
+/// One piece of a piecewise-linear law, y = y_0 + k x + c x_dot while all its bounds hold. The part
+/// elastic_0 + elastic_k x of it is the slope of the stored energy; the rest dissipates. The pieces
+/// of a law cover the plane (x, x_dot) without overlap.
+struct LawPiece {
+  double y_0 = 0.0, k = 0.0, c = 0.0;
+  double elastic_0 = 0.0, elastic_k = 0.0;
+  std::vector<LawBound> bounds = {};
+};
+
 /// The law as the engine calls it. Users write a LawOf functor instead (law_element.hpp).
 class ScalarForce {
  public:
@@ -54,6 +71,10 @@ class ScalarForce {
   virtual bool varies() const { return false; }
   /// Static transmission error at the NOMINAL angle of the phase node.
   virtual Offset offset(double /*nominal_angle*/) const { return {}; }
+  /// The law as pieces, for exact propagation; empty: not piecewise linear in x and x_dot alone.
+  virtual std::span<const LawPiece> pieces() const { return {}; }
+  /// Why pieces() is empty and what to use instead, to follow "its law ...".
+  virtual std::string_view why_no_pieces() const { return "states no linear pieces"; }
 };
 
 /// A law in a few lines: any copyable type that can be called with a ScalarInput.
@@ -63,11 +84,16 @@ concept ScalarLaw = requires(const L& law, const ScalarInput& in) {
 };
 
 /// Makes a ScalarForce of a functor. Optional members of the functor are used where it has them:
-/// kinks(), gap(), closed_stiffness(), closed_damping().
+/// kinks(), gap(), closed_stiffness(), closed_damping(), pieces() (a vector or span of LawPiece).
 template <ScalarLaw L>
 class LawForce final : public ScalarForce {
  public:
-  explicit LawForce(L law) : law_(std::move(law)) {}
+  explicit LawForce(L law) : law_(std::move(law)) {
+    if constexpr (requires { law_.pieces(); }) {
+      const auto& pieces = law_.pieces();
+      pieces_.assign(pieces.begin(), pieces.end());
+    }
+  }
   ScalarResponse evaluate(const ScalarInput& in) const override { return law_(in); }
   double closed_stiffness() const override {
     if constexpr (requires { law_.closed_stiffness(); }) return law_.closed_stiffness();
@@ -85,9 +111,11 @@ class LawForce final : public ScalarForce {
     if constexpr (requires { law_.gap(); }) return law_.gap();
     return std::nullopt;
   }
+  std::span<const LawPiece> pieces() const override { return pieces_; }
 
  private:
   L law_;
+  std::vector<LawPiece> pieces_;
 };
 
 }  // namespace drev

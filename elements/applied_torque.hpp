@@ -39,6 +39,12 @@ class AppliedTorque final : public Element, public Load {
     return {.torque = params_.table ? params_.table->at(in.t).value : params_.torque(in.t)};
   }
   bool depends_on_motion() const override { return false; }
+  std::optional<LoadStretch> stretch(double t, double /*angle*/,
+                                     double /*direction*/) const override {
+    if (!params_.table) return std::nullopt;
+    const CurvePoint p = params_.table->at(t);
+    return LoadStretch{.torque = p.value, .time_slope = p.slope};
+  }
   std::vector<double> breakpoints() const override {
     std::vector<double> all = params_.breakpoints;
     if (params_.table) {

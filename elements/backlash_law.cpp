@@ -68,6 +68,40 @@ ScalarResponse BacklashLaw::evaluate(double x, double x_dot, CurvePoint stiffnes
   return r;
 }
 
+std::vector<LawPiece> BacklashLaw::pieces(double k) const {
+  const double c = params_.damping, b = half_gap_;
+  if (!has_gap()) return {{.k = k, .c = c, .elastic_k = k}};
+  const MeshDamping law = c > 0.0 ? params_.damping_law : MeshDamping::always;
+  if (law == MeshDamping::proportional) return {};
+  // 0: the gap; in front 1: spring and damper, 2: let go, 3: damper limited to the spring's force; behind
+  // 4, 5, 6 alike. With `always` only 1 and 4 (as 2) are there.
+  if (law == MeshDamping::always) {
+    LawPiece gap{.c = c, .bounds = {{b, -1.0, 0.0, 1}, {b, 1.0, 0.0, 2}}};
+    LawPiece front{-k * b, k, c, -k * b, k, {{-b, 1.0, 0.0, 0}}};
+    LawPiece back{k * b, k, c, k * b, k, {{-b, -1.0, 0.0, 0}}};
+    return {gap, front, back};
+  }
+  const bool limited = law == MeshDamping::limited;
+  std::vector<LawPiece> all(limited ? 7 : 5);
+  const int per_side = limited ? 3 : 2;
+  for (const int side : {1, -1}) {
+    const int full = side > 0 ? 1 : 1 + per_side, free = full + 1, capped = full + 2;
+    const double s = side, edge = -s * k * b;  // y = edge + k x + ...
+    all[0].bounds.push_back({b, -s, 0.0, limited ? capped : full});
+    const LawBound apart{-b, s, 0.0, 0};
+    const auto piece = [&](int i) -> LawPiece& { return all[static_cast<std::size_t>(i)]; };
+    piece(full) = {edge, k, c, edge, k, {{-k * b, s * k, s * c, free}}};
+    piece(free) = {0.0, 0.0, 0.0, edge, k, {apart, {k * b, -s * k, -s * c, full}}};
+    if (limited) {
+      piece(full).bounds.push_back({-k * b, s * k, -s * c, capped});
+      piece(capped) = {2 * edge, 2 * k, 0.0, edge, k, {apart, {k * b, -s * k, s * c, full}}};
+    } else {
+      piece(full).bounds.push_back(apart);
+    }
+  }
+  return all;
+}
+
 void BacklashLaw::check(ParameterCheck& check) const {
   check.non_negative("normal_backlash", params_.normal_backlash, "m");
   check.non_negative("damping", params_.damping, "N s/m");

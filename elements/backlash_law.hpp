@@ -39,6 +39,7 @@
 /// bilateral, no gap and no clip.
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/scalar_force.hpp"
@@ -66,6 +67,9 @@ class BacklashLaw {
   std::optional<Gap> gap() const;
   /// Edges of the gap; with proportional damping also where it saturates.
   std::span<const double> kinks() const { return {kinks_, kink_count_}; }
+  /// The law as linear pieces at a constant stiffness [N/m]; empty for damping that grows with
+  /// penetration (proportional, where there is a gap), whose product p x_dot is not linear.
+  std::vector<LawPiece> pieces(double stiffness) const;
   void check(ParameterCheck& check) const;
 
  private:

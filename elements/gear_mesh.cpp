@@ -31,7 +31,19 @@ GearMesh::GearMesh(Params params)
           radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
       radius_2_(
           radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
-      teeth_per_radian_(params_.teeth_1 / kTwoPi) {}
+      teeth_per_radian_(params_.teeth_1 / kTwoPi) {
+  if (!params_.stiffness.varies() && !params_.transmission_error.varies())
+    pieces_ = law_.pieces(params_.stiffness.mean());
+}
+
+std::string_view GearMesh::why_no_pieces() const {
+  if (params_.stiffness.varies())
+    return "has a stiffness that follows the mesh phase; give its mean as a constant";
+  if (params_.transmission_error.varies())
+    return "has a transmission error that varies; leave it out";
+  return "has a damping that grows with penetration (proportional), which is not linear; use "
+         "damping_law limited, contact_only or always";
+}
 
 void GearMesh::check(ParameterCheck& check) const {
   check_radii(check);

@@ -64,6 +64,8 @@ class GearMesh final : public Element, public ScalarForce {
   std::optional<Gap> gap() const override { return law_.gap(); }
   bool varies() const override { return params_.stiffness.varies(); }
   Offset offset(double nominal_angle) const override;
+  std::span<const LawPiece> pieces() const override { return pieces_; }
+  std::string_view why_no_pieces() const override;
 
  private:
   void check_radii(ParameterCheck& check) const;
@@ -72,6 +74,7 @@ class GearMesh final : public Element, public ScalarForce {
   Params params_;
   BacklashLaw law_;
   double radius_1_, radius_2_, teeth_per_radian_;
+  std::vector<LawPiece> pieces_;
 };
 
 }  // namespace drev

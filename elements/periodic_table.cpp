@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace drev {
 
@@ -54,6 +55,46 @@ CurvePoint PeriodicTable::at(double argument) const {
   const double u = argument - period_ * whole;
   const std::size_t i = segment(u);
   return {p.values[i] + p.slopes[i] * (u - p.arguments[i]), p.slopes[i]};
+}
+
+TableStretch PeriodicTable::stretch(double argument, double direction) const {
+  constexpr double kOnKnot = 1e-13;     // relative to the period and the argument
+  constexpr double kSameSlope = 1e-13;  // relative to the steepest
+  const Points& p = *points_;
+  const std::size_t n = p.arguments.size();
+  const double nudge = kOnKnot * std::max(period_, std::abs(argument));
+  const double beyond = argument + (direction > 0.0 ? nudge : -nudge);
+  const double base = period_ * std::floor((beyond - p.arguments[0]) * inverse_period_);
+  std::size_t i = segment(beyond - base);
+  const double slope = p.slopes[i];
+  const double value = p.values[i] + slope * (argument - base - p.arguments[i]);
+  double steepest = 0.0;
+  for (const double s : {p.slopes.front(), slope, p.slopes.back()})
+    steepest = std::max(steepest, std::abs(s));
+  const auto same = [&](std::size_t j) {
+    return std::abs(p.slopes[j] - slope) <= kSameSlope * steepest;
+  };
+  const auto knot = [&](std::size_t j, double turns) {
+    return base + turns * period_ + p.arguments[j];
+  };
+  TableStretch s{value, slope, 0.0, 0.0};
+  std::size_t low = i, high = i, steps = 0;
+  double turns_low = 0.0, turns_high = 0.0;
+  const auto raise = [&] {
+    if (++high == n) high = 0, turns_high = 1.0;
+  };
+  for (raise(); steps < n && same(high); ++steps) raise();
+  if (steps == n) {
+    s.low = -std::numeric_limits<double>::infinity();
+    s.high = std::numeric_limits<double>::infinity();
+    return s;
+  }
+  const auto before = [&](std::size_t j) { return j == 0 ? n - 1 : j - 1; };
+  for (; same(before(low)); low = before(low))
+    if (low == 0) turns_low = -1.0;
+  s.low = knot(low, turns_low);
+  s.high = knot(high, turns_high);
+  return s;
 }
 
 double PeriodicTable::mean() const {

@@ -16,6 +16,12 @@
 
 namespace drev {
 
+/// The straight stretch of a table about an argument; it holds from low to high.
+struct TableStretch {
+  double value = 0.0, slope = 0.0;  ///< at the argument
+  double low = 0.0, high = 0.0;     ///< infinite where the slope never changes
+};
+
 class PeriodicTable {
  public:
   PeriodicTable() = default;  ///< empty: check() reports it
@@ -23,6 +29,9 @@ class PeriodicTable {
   PeriodicTable(std::vector<double> arguments, std::vector<double> values, double period = kTwoPi);
 
   CurvePoint at(double argument) const;
+  /// Knots where the slope does not change are passed over. Within rounding of a knot the stretch ahead
+  /// of it: above it where direction > 0, else below.
+  TableStretch stretch(double argument, double direction) const;
   double mean() const;  ///< over one period
   double period() const { return period_; }
   const std::vector<double>& arguments() const { return points_->arguments; }

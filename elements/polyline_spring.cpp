@@ -10,6 +10,7 @@ PolylineSpring::PolylineSpring(Params params) : params_(std::move(params)) {
   if (!usable()) return;  // check() says why
   find_segments();
   find_gap();
+  find_pieces();
 }
 
 bool PolylineSpring::usable() const {
@@ -63,6 +64,22 @@ void PolylineSpring::find_gap() {
     const double infinity = std::numeric_limits<double>::infinity();
     if (!gap_) gap_ = Gap{i == 0 ? -infinity : x[i], 0.0};
     gap_->high = i + 1 == segments_.size() ? infinity : x[i + 1];
+  }
+}
+
+void PolylineSpring::find_pieces() {
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const Segment& s = segments_[i];
+    const double y_0 = s.y - s.slope * s.x;
+    LawPiece piece{.y_0 = y_0,
+                   .k = s.slope,
+                   .c = params_.damping,
+                   .elastic_0 = y_0,
+                   .elastic_k = s.slope};
+    const int own = static_cast<int>(i);
+    if (i > 0) piece.bounds.push_back({-params_.x[i], 1.0, 0.0, own - 1});
+    if (i + 1 < segments_.size()) piece.bounds.push_back({params_.x[i + 1], -1.0, 0.0, own + 1});
+    pieces_.push_back(std::move(piece));
   }
 }
 

@@ -42,12 +42,14 @@ class PolylineSpring final : public Element, public ScalarForce {
   double closed_damping() const override { return params_.damping; }
   std::span<const double> kinks() const override;
   std::optional<Gap> gap() const override { return gap_; }
+  std::span<const LawPiece> pieces() const override { return pieces_; }
 
  private:
   bool usable() const;
   std::size_t segment_at(double x) const;
   void find_segments();
   void find_gap();
+  void find_pieces();
 
   /// y = y_0 + slope (x - x_0), with the stored energy at x_0.
   struct Segment {
@@ -56,6 +58,7 @@ class PolylineSpring final : public Element, public ScalarForce {
 
   Params params_;
   std::vector<Segment> segments_;
+  std::vector<LawPiece> pieces_;
   std::optional<Gap> gap_;
 };
 

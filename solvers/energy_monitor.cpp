@@ -52,6 +52,10 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
     }
   }
   dissipated += 0.5 * h * (from.general_power + to.general_power);
+  step(to, input, dissipated);
+}
+
+void EnergyMonitor::step(const StepPoint& to, double input, double dissipated) {
   balance_.input += input;
   balance_.dissipated += dissipated;
   balance_.kinetic = kinetic(to.state);

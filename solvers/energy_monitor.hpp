@@ -32,6 +32,8 @@ class EnergyMonitor {
   EnergyMonitor(const Assembler& assembler, const StepPoint& start);
   /// Accounts for one accepted step.
   void step(const StepPoint& from, const StepPoint& to, double h);
+  /// The same where the method itself integrated what was put in and what dissipated in the step [J].
+  void step(const StepPoint& to, double input, double dissipated);
   /// The same point after a breakpoint: forces jumped, the state did not. Energy that a law's stored
   /// energy gained by the jump counts as input.
   void restart(const StepPoint& before, const StepPoint& after);

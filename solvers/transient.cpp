@@ -198,9 +198,14 @@ const char* to_text(RunStatus status) {
 
 std::string RunSummary::brief_report() const {
   std::ostringstream text;
-  text << scheme << ", h = " << step << " s: " << to_text(status) << " at t = " << t_end << " s, "
-       << steps << " steps (" << halved << " halved), " << iterations << " iterations, "
-       << "energy error " << energy.relative_error();
+  text << scheme;
+  if (step > 0.0) text << ", h = " << step << " s";
+  text << ": " << to_text(status) << " at t = " << t_end << " s, " << steps << " steps";
+  if (step > 0.0)
+    text << " (" << halved << " halved), " << iterations << " iterations, ";
+  else
+    text << ", " << contact_changes << " contact changes, ";
+  text << "energy error " << energy.relative_error();
   if (!reason.empty()) text << "; " << reason;
   return text.str();
 }

@@ -40,13 +40,14 @@ struct RunSummary {
   RunStatus status = RunStatus::success;
   std::string reason;        ///< a sentence: what went wrong, when and where; empty on success
   std::string scheme;
-  double step = 0.0;         ///< s, as asked for
+  double step = 0.0;         ///< s, as asked for; 0: the method's own
   double t_end = 0.0;        ///< s, reached
   long steps = 0;            ///< accepted
   long halved = 0;           ///< steps that did not converge and were halved
   long iterations = 0;       ///< Newton
   long load_passes = 0;
   long factorizations = 0;
+  long contact_changes = 0;  ///< located changes of a law's piece (exact propagation)
   /// Seconds by phase, if StepOptions::time_phases asked for them: loads, linear, contacts, balance,
   /// observers.
   std::vector<std::pair<std::string, double>> phases;
