@@ -36,7 +36,7 @@ class ExactRun {
     summary_.factorizations = system.mass_is_diagonal() ? 0 : 1;
     change_limit_ = 20 + 20 * static_cast<int>(system.scalars().size() + system.loads().size());
     laws_.add_stiffest(series_);
-    const double fastest = series_.fastest();
+    const double fastest = series_.bound_rates();
     const double duration = options.t_end - options.t_start;
     largest_step_ = fastest > 0.0 ? std::min(duration, kFastestTimesStep / fastest) : duration;
     growing_step_ = largest_step_;

@@ -9,6 +9,7 @@ namespace drev {
 namespace {
 constexpr int kMinDegree = 5;          // the known right side reaches degree 4
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
+constexpr double kNegligible = 1e-16;  // part of a sum that is rounding
 constexpr double kShorten = 0.9;       // of the step at which the last terms are just small enough
 }  // namespace
 
@@ -21,6 +22,8 @@ TaylorSeries::TaylorSeries(const System& system)
   };
   fill(system.stiffness_values(), k_base_);
   fill(system.damping_values(), c_base_);
+  undamped_ = system.damping_values().isZero(0.0);
+  base_main_damping_ = system.damping_is_diagonal() && main_ >= 0;
   diagonal_mass_ = system.mass_is_diagonal();
   if (diagonal_mass_) {
     for (const int slot : system.diagonal_slots())
@@ -63,6 +66,8 @@ void TaylorSeries::find_storage() {
     diagonals_.clear();
     length = entries;
   }
+  for (std::size_t d = 0; d < diagonals_.size(); ++d)
+    if (diagonals_[d].offset == 0) main_ = static_cast<int>(d);
   position_.resize(entries);
   for (int row = 0; row < n_; ++row)
     for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s) {
@@ -77,16 +82,18 @@ void TaylorSeries::find_storage() {
 void TaylorSeries::reset() {
   k_ = k_base_;
   c_ = c_base_;
-  damped_ = !system_.damping_values().isZero(0.0);
+  damped_ = !undamped_;
+  main_damping_ = base_main_damping_;
 }
 
 void TaylorSeries::add_damping(int slot, double value) {
   c_[position_[at(slot)]] += value;
-  damped_ = damped_ || value != 0.0;
+  damped_ = true;
+  main_damping_ = false;
 }
 
-void TaylorSeries::product(const std::vector<double>& values, const double* x, double factor,
-                           double* out) const {
+void TaylorSeries::product(const std::vector<double>& values, bool main_only, const double* x,
+                           double factor, double* out) const {
   if (diagonals_.empty()) {
     const int* outer = system_.pattern().outerIndexPtr();
     const int* inner = system_.pattern().innerIndexPtr();
@@ -97,7 +104,8 @@ void TaylorSeries::product(const std::vector<double>& values, const double* x, d
     }
     return;
   }
-  for (const Diagonal& d : diagonals_) {
+  const std::span<const Diagonal> all(diagonals_);
+  for (const Diagonal& d : main_only ? all.subspan(at(main_), 1) : all) {
     const double* value = values.data() + d.values;
     const double* from = x + d.begin + d.offset;
     double* to = out + d.begin;
@@ -106,20 +114,30 @@ void TaylorSeries::product(const std::vector<double>& values, const double* x, d
   }
 }
 
-double TaylorSeries::fastest() const {
-  // |lambda|^2 <= |lambda| c + k with c, k the largest row sums of M^-1 C and M^-1 K.
+double TaylorSeries::bound_rates() {
   const int* outer = system_.pattern().outerIndexPtr();
-  double k = 0.0, c = 0.0;
+  const int* inner = system_.pattern().innerIndexPtr();
+  double k_scaled = 0.0, c_scaled = 0.0;
+  k_norm_ = c_norm_ = 0.0;
   for (int row = 0; row < n_; ++row) {
-    double k_row = 0.0, c_row = 0.0;
+    double sum[4] = {};  // of K and C, with the row's inertia and with the roots of both
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      k_row += std::abs(k_[position_[at(s)]]);
-      c_row += std::abs(c_[position_[at(s)]]);
+      const double k = std::abs(k_[position_[at(s)]]), c = std::abs(c_[position_[at(s)]]);
+      const double own = diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
+      const double both =
+          diagonal_mass_ ? std::sqrt(own * inverse_mass_[at(inner[s])]) : mass_norm_;
+      sum[0] += k * own;
+      sum[1] += c * own;
+      sum[2] += k * both;
+      sum[3] += c * both;
     }
-    const double inverse = diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
-    k = std::max(k, k_row * inverse);
-    c = std::max(c, c_row * inverse);
+    k_norm_ = std::max(k_norm_, sum[0]);
+    c_norm_ = std::max(c_norm_, sum[1]);
+    k_scaled = std::max(k_scaled, sum[2]);
+    c_scaled = std::max(c_scaled, sum[3]);
   }
+  // |lambda|^2 <= |lambda| c + k.
+  const double k = std::min(k_norm_, k_scaled), c = std::min(c_norm_, c_scaled);
   return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
 }
 
@@ -167,8 +185,8 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     else
       rhs_.setZero();
     if (source) source->add(k - 2, z_.data(), rhs_.data());
-    product(k_, column(k - 2), 1.0, rhs_.data());
-    if (damped_) product(c_, column(k - 1), (k - 1) / h, rhs_.data());
+    product(k_, false, column(k - 2), 1.0, rhs_.data());
+    if (damped_) product(c_, main_damping_, column(k - 1), (k - 1) / h, rhs_.data());
     const double factor = h * h / (static_cast<double>(k) * (k - 1));
     double* next = column(k);
     if (diagonal_mass_) {
@@ -186,7 +204,16 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
                             k * size[i] / (tolerance * v_scale[i])});
     }
     degree_ = k;
-    if (k >= kMinDegree && excess[k] <= 1.0 && excess[k - 1] <= 1.0) return h_;
+    if (k < kMinDegree) continue;
+    if (source) {
+      if (excess[k] <= 1.0 && excess[k - 1] <= 1.0) return h_;
+      continue;
+    }
+    const double first = k_norm_ * h * h / (k * (k + 1.0)) * excess[k - 1] +
+                         c_norm_ * h / (k + 1.0) * excess[k];
+    const double second = k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * excess[k] +
+                          c_norm_ * h / (k + 2.0) * first;
+    if (first <= 1.0 && second <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
@@ -201,18 +228,24 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
 }
 
 double TaylorSeries::dissipated(double s) {
-  if (system_.damping_values().isZero(0.0)) return 0.0;
+  if (undamped_) return 0.0;
   // Column j: j Z_j s^(j-1), and C times it; the integral of s^(j-1) s^(k-1) is 1/(j+k-1).
   rates_.resize(n_, degree_);
   forces_.setZero(n_, degree_);
-  double power = 1.0, sum = 0.0;
+  double power = 1.0, sum = 0.0, largest = 0.0;
+  std::array<double, kMaxDegree + 1> size;
   for (int j = 1; j <= degree_; ++j, power *= s) {
     rates_.col(j - 1) = (j * power) * Eigen::Map<const Vector>(z_.data() + j * n_, n_);
-    product(c_base_, rates_.col(j - 1).data(), -1.0, forces_.col(j - 1).data());
+    product(c_base_, base_main_damping_, rates_.col(j - 1).data(), -1.0,
+            forces_.col(j - 1).data());
+    size[at(j)] = rates_.col(j - 1).lpNorm<Eigen::Infinity>();
+    largest = std::max(largest, size[at(j)]);
   }
+  const double negligible = kNegligible * largest * largest;
   for (int j = 1; j <= degree_; ++j)
     for (int k = 1; k <= j; ++k)
-      sum += (j == k ? 1.0 : 2.0) / (j + k - 1) * rates_.col(j - 1).dot(forces_.col(k - 1));
+      if (size[at(j)] * size[at(k)] > negligible)
+        sum += (j == k ? 1.0 : 2.0) / (j + k - 1) * rates_.col(j - 1).dot(forces_.col(k - 1));
   return sum * s / h_;
 }
 

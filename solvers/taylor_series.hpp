@@ -6,9 +6,11 @@
 ///
 /// K and C are those of the system with the tangents of the pieces that hold (set by the caller). One sparse
 /// product a degree, by diagonals where the pattern has few of them; M diagonal is a scaling, else one solve
-/// with its factor. The series is carried until two terms in a row fall below the tolerance: of the
-/// deflection scale, and, as rates, of the speed scale. If it has not by kMaxDegree, the step is shortened:
-/// Z_k r^k is the same solution over r h.
+/// with its factor. The series is carried until the next two terms are below the tolerance, as deflections
+/// and as rates, by the bound
+///   |Z_{k+2}| <= h^2 |M^-1 K| |Z_k|/((k+1)(k+2)) + h |M^-1 C| |Z_{k+1}|/(k+2)        (largest row sums)
+/// or, where a load has a series of its own, until the last two are. If that is not so by kMaxDegree, the
+/// step is shortened: Z_k r^k is the same solution over r h.
 ///
 /// Rounding grows as exp(fastest() h); the caller bounds the step by it. Source: D. Barton, I. M. Willers,
 /// R. V. M. Zahar, The automatic solution of systems of ordinary differential equations by the method of
@@ -42,8 +44,9 @@ class TaylorSeries {
   /// P_0, P_1, P_2 [N m or N]: polynomial right side over the step.
   std::array<Vector, 3>& right_side() { return p_; }
 
-  /// Upper estimate of the fastest rate |lambda| [1/s] (Gershgorin) with the values that stand now.
-  double fastest() const;
+  /// Takes the values that stand now as the largest there will be: bounds |M^-1 K| and |M^-1 C| by them and
+  /// returns an upper estimate of the fastest rate |lambda| [1/s] (Gershgorin, scaled by the inertias).
+  double bound_rates();
 
   /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h. tolerance: relative.
   double expand(const Vector& z, const Vector& v, double h, double tolerance,
@@ -69,7 +72,8 @@ class TaylorSeries {
   };
   using Norm = std::array<double, 2>;  // rotational, translational
   void find_storage();
-  void product(const std::vector<double>& values, const double* x, double factor, double* out) const;
+  void product(const std::vector<double>& values, bool main_only, const double* x, double factor,
+               double* out) const;
   Norm norm(const double* x) const;
 
   const System& system_;
@@ -77,7 +81,10 @@ class TaylorSeries {
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<std::size_t> position_;  // of a slot of the pattern in k_, c_
   std::vector<Diagonal> diagonals_;    // empty: rows of the pattern
-  bool damped_ = false, diagonal_mass_ = false;
+  int main_ = -1;  // which diagonal is the main one
+  bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
+  bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
+  double k_norm_ = 0.0, c_norm_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
   std::array<Vector, 3> p_;

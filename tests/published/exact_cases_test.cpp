@@ -1,0 +1,61 @@
+// Exact propagation of the published cases 7 and 8 (cases_in_time_test.cpp), to the digits printed.
+#include <cmath>
+
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "solvers/exact_propagation.hpp"
+#include "solvers/recorder.hpp"
+#include "tests/catch.hpp"
+#include "tests/twist_backlash.hpp"
+
+using namespace drev;
+
+namespace {
+
+System oscillator(double damping) {
+  Model m("oscillator");
+  m.add_node("disc");
+  m.add<Inertia>("J", {"disc"}, {.inertia = 5.0});
+  m.add<LawElement<TwistBacklash>>(
+      "stop", {"disc"},
+      TwistBacklash{BacklashLaw({.normal_backlash = kPi / 4,
+                                 .damping = damping,
+                                 .damping_law = MeshDamping::limited}),
+                    2e4});
+  m.set_initial("disc", kPi / 2, 0.0);
+  return m.build();
+}
+
+}  // namespace
+
+TEST_CASE("Exact propagation, case 7: a damper limited to the spring's force") {
+  const System system = oscillator(50.0);
+  Recorder recorder(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.05);
+  const RunSummary run =
+      propagate(system, {.tolerance = 1e-14, .t_end = 1.0, .energy_tolerance = 1e-12}, {&recorder});
+  INFO(run.brief_report());
+  CHECK(run.ok());
+  CHECK(run.contact_changes > 20);
+  const double exact[4][3] = {{0.1, 0.2498358550, 52.8937186},
+                              {0.25, 0.5808155699, 30.0804578},
+                              {0.5, -0.3099580355, -17.2284257},
+                              {1.0, -0.1555814136, -7.0229373}};
+  for (const auto& e : exact) {
+    const auto i = static_cast<std::size_t>(std::lround(e[0] / 0.05));
+    CHECK(recorder.samples(0)[i] == Approx(e[1]).margin(1e-9 * kPi / 2));
+    CHECK(recorder.samples(1)[i] == Approx(e[2]).margin(1e-9 * 66.196495));
+  }
+}
+
+TEST_CASE("Exact propagation, case 8: the undamped oscillator with a gap has its closed-form period") {
+  // T = 2 pi/w + 4 g/(w (A - g)); after 50 periods it is where it started.
+  const double w = std::sqrt(2e4 / 5.0), gap = kPi / 8, amplitude = kPi / 2;
+  const double period = kTwoPi / w + 4 * gap / (w * (amplitude - gap));
+  const System system = oscillator(0.0);
+  State state = State::initial(system);
+  const RunSummary run = propagate(system, {.tolerance = 1e-15, .t_end = 50 * period}, state);
+  CHECK(run.ok());
+  CHECK(run.contact_changes == 200);
+  CHECK(state.z[0] == Approx(amplitude).epsilon(1e-13));
+  CHECK(std::abs(state.v[0]) < 1e-11 * w * amplitude);
+}
