@@ -95,8 +95,10 @@ class PieceCheck final : public Observer {
     const Eigen::MatrixXd forward = exponential(a / kSamples);
     Vector y(2 * n + 2);
     y << from.state.z, h * from.state.v, 1.0, 0.0;
-    z_scale_ = std::max(z_scale_, from.state.z.lpNorm<Eigen::Infinity>());
-    v_scale_ = std::max(v_scale_, from.state.v.lpNorm<Eigen::Infinity>());
+    for (const State* s : {&from.state, &to.state}) {
+      z_scale_ = std::max(z_scale_, s->z.lpNorm<Eigen::Infinity>());
+      v_scale_ = std::max(v_scale_, s->v.lpNorm<Eigen::Infinity>());
+    }
     for (int i = 1; i <= kSamples; ++i) {
       y = forward * y;
       for (std::size_t j = 0; j < pieces_.size(); ++j) {
