@@ -14,10 +14,11 @@ namespace {
 constexpr double kFastestTimesStep = 3.0;  // omega h: bounds degree and growth of rounding
 constexpr double kKnotMargin = 1.05;       // step past the knot expected next
 constexpr double kGrowth = 1.5;            // of the step after one that had to be shortened
+constexpr double kRetreat = 1.0 / 16.0;    // of the step where the series overflowed
 constexpr double kSameTime = 1e-14;        // relative to the run's times
 constexpr double kNoProgress = 1e-12;      // relative to the largest step
 constexpr double kLeastTolerance = 1e-16;  // a step's own: below it is rounding
-constexpr long kProgressSteps = 1000;
+constexpr long kProgressSteps = 100;
 
 class ExactRun {
  public:
@@ -154,7 +155,11 @@ class ExactRun {
       const double got =
           series_.expand(from.z, from.v, h, std::max(share, kLeastTolerance),
                          known_.composed() ? &known_ : nullptr);
-      if (!(got > 0.0)) throw SolverError(where(from.t) + "the series does not converge");
+      if (got == 0.0) {
+        growing_step_ = kRetreat * h;
+        if (growing_step_ > kNoProgress * largest_step_) continue;
+        throw SolverError(where(from.t) + "the series does not converge; is a load not finite?");
+      }
       if (got < h) known_.shorten(got / h);
       growing_step_ = std::min(largest_step_, kGrowth * (got < h ? got : growing_step_));
       laws_.expand(series_, known_);
@@ -256,6 +261,9 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
                "must have " + std::to_string(system.size()));
   else if (!state.z.allFinite() || !state.v.allFinite())
     check.fail("state", "not finite", "", "must be finite");
+  if (state.history.size() != system.history_size())
+    check.fail("state's history", std::to_string(state.history.size()), "numbers",
+               "must have " + std::to_string(system.history_size()));
   if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);
   if (!findings.empty()) throw ModelError(findings);
 }
@@ -290,9 +298,14 @@ RunSummary propagate(const System& system, const ExactOptions& options, State& s
                      const std::vector<Observer*>& observers) {
   check_options(system, options, state);
   ExactRun run(system, options, state, observers);
-  RunSummary summary = run.run();
-  state = run.take_state();
-  return summary;
+  try {
+    RunSummary summary = run.run();
+    state = run.take_state();
+    return summary;
+  } catch (...) {  // no solution, or a user's function threw: the last state is not lost
+    state = run.take_state();
+    throw;
+  }
 }
 
 RunSummary propagate(const System& system, const ExactOptions& options,

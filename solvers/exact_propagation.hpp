@@ -35,7 +35,7 @@ struct ExactOptions {
   double t_end = 0.0;    ///< s, > t_start
   /// Largest energy error that passes without warning, relative to the run's energy scale [-].
   double energy_tolerance = 1e-6;
-  /// Called about every 1000 steps with the part done, 0..1; return false to stop the run.
+  /// Called every 100 steps with the part done, 0..1; return false to stop the run.
   std::function<bool(double)> progress = {};
   /// Called at every change of a piece.
   std::function<void(const ContactChange&)> on_change = {};

@@ -56,6 +56,9 @@ void TaylorSeries::find_storage() {
       auto [it, added] = range.try_emplace(offset, row, row);
       it->second.second = row;
     }
+  // The three in the middle at full length (they may hold zeros), so that they can share a loop.
+  three_in_one_ = n_ > 2 && range.contains(-1) && range.contains(0) && range.contains(1);
+  if (three_in_one_) range[-1] = {1, n_ - 1}, range[0] = {0, n_ - 1}, range[1] = {0, n_ - 2};
   std::size_t length = 0;
   for (const auto& [offset, rows] : range) {
     diagonals_.push_back({offset, rows.first, rows.second + 1, length});
@@ -105,7 +108,18 @@ void TaylorSeries::product(const std::vector<double>& values, bool main_only, co
     return;
   }
   const std::span<const Diagonal> all(diagonals_);
+  if (three_in_one_ && !main_only) {
+    const double* below = values.data() + all[at(main_ - 1)].values;  // from row 1 on
+    const double* own = values.data() + all[at(main_)].values;
+    const double* above = values.data() + all[at(main_ + 1)].values;
+    const int last = n_ - 1;
+    out[0] -= factor * (own[0] * x[0] + above[0] * x[1]);
+    for (int i = 1; i < last; ++i)
+      out[i] -= factor * (below[i - 1] * x[i - 1] + own[i] * x[i] + above[i] * x[i + 1]);
+    out[last] -= factor * (below[last - 1] * x[last - 1] + own[last] * x[last]);
+  }
   for (const Diagonal& d : main_only ? all.subspan(at(main_), 1) : all) {
+    if (three_in_one_ && !main_only && std::abs(d.offset) <= 1) continue;
     const double* value = values.data() + d.values;
     const double* from = x + d.begin + d.offset;
     double* to = out + d.begin;
@@ -204,6 +218,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
                             k * size[i] / (tolerance * v_scale[i])});
     }
     degree_ = k;
+    if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
     if (k < kMinDegree) continue;
     if (source) {
       if (excess[k] <= 1.0 && excess[k - 1] <= 1.0) return h_;

@@ -48,7 +48,8 @@ class TaylorSeries {
   /// returns an upper estimate of the fastest rate |lambda| [1/s] (Gershgorin, scaled by the inertias).
   double bound_rates();
 
-  /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h. tolerance: relative.
+  /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h; 0 if the terms overflow.
+  /// tolerance: relative.
   double expand(const Vector& z, const Vector& v, double h, double tolerance,
                 SeriesSource* source);
   /// Deflections and speeds that the tolerance is relative to grow with these.
@@ -81,7 +82,8 @@ class TaylorSeries {
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<std::size_t> position_;  // of a slot of the pattern in k_, c_
   std::vector<Diagonal> diagonals_;    // empty: rows of the pattern
-  int main_ = -1;  // which diagonal is the main one
+  int main_ = -1;               // which diagonal is the main one
+  bool three_in_one_ = false;   // it and its two neighbours are there: one loop for them
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0;
