@@ -1,10 +1,12 @@
 #pragma once
-/// HarmonicSeries: Taylor series of mean + sum A_i cos(w_i), w_i = order_i theta + phase_i, along a motion.
+/// HarmonicSeries: Taylor series of mean + sum A_i cos(w_i), w_i = order_i theta + phase_i, along a
+/// motion.
 ///
 ///   k c_k = -sum_{j=1..k} j w_j s_{k-j}        k s_k = sum_{j=1..k} j w_j c_{k-j}
 ///
-/// for cos w = sum c_k s^k and sin w = sum s_k s^k. Exact to every degree. Source: recurrences of automatic
-/// differentiation, e.g. A. Griewank, A. Walther, Evaluating Derivatives, SIAM, 2008, table 13.2.
+/// for cos w = sum c_k s^k and sin w = sum s_k s^k. Exact to every degree. Source: recurrences of
+/// automatic differentiation, e.g. A. Griewank, A. Walther, Evaluating Derivatives, SIAM, 2008,
+/// chapter 13.
 #include "core/load.hpp"
 #include "elements/harmonic.hpp"
 

@@ -112,9 +112,8 @@ class ExactRun {
     series_.evaluate(s, to.z, to.v);
     if (!to.z.allFinite() || !to.v.allFinite()) return not_finite(to);
     const bool ahead_of_break = at_break && t_new == stop;
-    evaluate(next_, ahead_of_break
-                        ? std::nextafter(stop, -std::numeric_limits<double>::infinity())
-                        : t_new);
+    evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity())
+                                   : t_new);
     energy_->step(next_, known_.work(series_, s) + laws_.input(s),
                   series_.dissipated(s) + laws_.dissipated(s));
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
@@ -132,8 +131,7 @@ class ExactRun {
       for (Observer* o : observers_) o->step(assembler_, now_, next_);
     std::swap(now_, next_);
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-        !options_.progress((now_.state.t - options_.t_start) /
-                           (options_.t_end - options_.t_start)))
+        !options_.progress((now_.state.t - options_.t_start) / (options_.t_end - options_.t_start)))
       fail(RunStatus::interrupted, "interrupted");
   }
 
@@ -152,9 +150,8 @@ class ExactRun {
       known_.add_to(series_, h);
       laws_.add_to(series_, known_, h);
       const double share = options_.tolerance * h / (options_.t_end - options_.t_start);
-      const double got =
-          series_.expand(from.z, from.v, h, std::max(share, kLeastTolerance),
-                         known_.composed() ? &known_ : nullptr);
+      const double got = series_.expand(from.z, from.v, h, std::max(share, kLeastTolerance),
+                                        known_.composed() ? &known_ : nullptr);
       if (got == 0.0) {
         growing_step_ = kRetreat * h;
         if (growing_step_ > kNoProgress * largest_step_) continue;
@@ -207,9 +204,9 @@ class ExactRun {
     const EnergyBalance& b = summary_.energy;
     if (std::abs(b.relative_error()) <= options_.energy_tolerance) return;
     std::ostringstream text;
-    text << "the energy balance is off by " << b.relative_error() << " of the energy, worst at t = "
-         << b.worst_time << " s; at most " << options_.energy_tolerance
-         << " passes: ask for a smaller tolerance";
+    text << "the energy balance is off by " << b.relative_error()
+         << " of the energy, worst at t = " << b.worst_time << " s; at most "
+         << options_.energy_tolerance << " passes: ask for a smaller tolerance";
     summary_.status = RunStatus::energy_error;
     summary_.reason = text.str();
   }
@@ -254,7 +251,8 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
   check.within("tolerance", o.tolerance, 1e-15, 1e-3, "");
   check.finite("t_start", o.t_start, "s");
   if (!(o.t_end > o.t_start) || !std::isfinite(o.t_end))
-    check.fail("t_end", to_text(o.t_end), "s", "must be greater than t_start = " + to_text(o.t_start));
+    check.fail("t_end", to_text(o.t_end), "s",
+               "must be greater than t_start = " + to_text(o.t_start));
   check.positive("energy_tolerance", o.energy_tolerance, "");
   if (state.z.size() != system.size() || state.v.size() != system.size())
     check.fail("state", std::to_string(state.z.size()), "unknowns",
@@ -269,30 +267,6 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
 }
 
 }  // namespace
-
-std::optional<std::string> why_not_exact(const System& system) {
-  const auto name = [&](ElementId e) { return system.placements()[at(index(e))].name; };
-  for (const GeneralTerm& g : system.generals())
-    return name(g.element) + " is a general element, whose force is not linear in pieces";
-  for (const ScalarTerm& s : system.scalars()) {
-    if (s.force->pieces().empty())
-      return name(s.element) + ": its law " + std::string(s.force->why_no_pieces());
-    if (s.phase_node >= 0) return name(s.element) + ": its law follows an angle";
-  }
-  for (const LoadTerm& l : system.loads())
-    if (system.node_map(l.node).unknown >= 0 && !l.load->stretch(0.0, 0.0, 1.0) && !l.load->series())
-      return name(l.element) +
-             ": its torque is an unknown function; give it as a table over time (linear between its "
-             "points), a cam torque or engine orders";
-  if (system.reference() && !system.reference()->piecewise_quadratic)
-    return "the reference motion is an unknown function; constant_speed and run_up are known";
-  for (int k = 0; k < system.prescribed_count(); ++k)
-    if (system.prescribed()[at(k)].at && !system.prescribed()[at(k)].piecewise_quadratic)
-      return "the motion of " + system.node_names()[at(system.prescribed_node(k))] +
-             " is an unknown function; one with constant acceleration between its breakpoints can say so "
-             "(Motion::piecewise_quadratic)";
-  return std::nullopt;
-}
 
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers) {

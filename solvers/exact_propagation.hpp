@@ -1,17 +1,18 @@
 #pragma once
 /// Exact propagation of piecewise-linear systems with located changes.
 ///
-/// Between changes M z'' + C z' + K z + sum b_j y_j = p is linear, and each step is its Taylor series,
-/// carried to the degree at which it is exact to the tolerance (taylor_series.hpp). Contact changes and knots
-/// of load tables are roots of polynomials, isolated with a certificate (polynomial.hpp): none is missed, and
-/// the step ends there. Step and degree follow from the series' own decay; there is no step to choose.
+/// Between changes M z'' + C z' + K z + sum b_j y_j = p is linear, and each step is its Taylor
+/// series, carried to the degree at which it is exact to the tolerance (taylor_series.hpp). Contact
+/// changes and knots of load tables are roots of polynomials, isolated with a certificate
+/// (polynomial.hpp): none is missed, and the step ends there. Step and degree follow from the
+/// series' own decay; there is no step to choose.
 ///
-/// What it needs: laws that state pieces(), loads that state a stretch() or series(), motions that are
-/// piecewise quadratic, no general elements. why_not_exact() says what of a model is not so.
+/// What it needs: laws that state pieces(), loads that state a stretch() or series(), motions that
+/// are piecewise quadratic, no general elements. why_not_exact() says what of a model is not so.
 ///
-/// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff parts are
-/// dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling system only
-/// statistics are comparable, with any method.
+/// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
+/// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
+/// system only statistics are comparable, with any method.
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,14 +23,15 @@ namespace drev {
 
 /// A law went over from one piece to another.
 struct ContactChange {
-  double t = 0.0;  ///< s
-  int law = 0;     ///< of System::scalars()
+  double t = 0.0;        ///< s
+  int law = 0;           ///< of System::scalars()
   int from = 0, to = 0;  ///< of its pieces()
 };
 
 struct ExactOptions {
-  /// Error that the series' truncation may add over the whole run, relative to the largest deflection and
-  /// speed so far [-], before the motion itself amplifies it. Shared out evenly over the time.
+  /// Error that the series' truncation may add over the whole run, relative to the largest
+  /// deflection and speed so far [-], before the motion itself amplifies it. Shared out evenly over
+  /// the time.
   double tolerance = 1e-10;
   double t_start = 0.0;  ///< s
   double t_end = 0.0;    ///< s, > t_start
@@ -44,10 +46,10 @@ struct ExactOptions {
 /// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing.
 std::optional<std::string> why_not_exact(const System& system);
 
-/// Runs from the state given and leaves the last state in it. Observers see the end of every step: contact
-/// changes, knots of loads, breakpoints and their own stops among them. Throws ModelError for bad options
-/// and for a system that why_not_exact() refuses, SolverError (with time and element) if laws change without
-/// end at one time. RunSummary.scheme is "exact".
+/// Runs from the state given and leaves the last state in it. Observers see the end of every step:
+/// contact changes, knots of loads, breakpoints and their own stops among them. Throws ModelError
+/// for bad options and for a system that why_not_exact() refuses, SolverError (with time and
+/// element) if laws change without end at one time. RunSummary.scheme is "exact".
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers = {});
 

@@ -175,8 +175,7 @@ std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double
       std::size_t lead = 0;
       while (lead <= degree && g[lead] == 0.0) ++lead;
       if (lead > degree) continue;
-      const std::optional<double> s =
-          g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
+      const std::optional<double> s = g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
       if (!s) continue;
       first = s;
       end = *s;

@@ -1,10 +1,12 @@
 #pragma once
-/// KnownForces: loads, nominal motion and prescribed motions as polynomials over a step, for TaylorSeries.
+/// KnownForces: loads, nominal motion and prescribed motions as polynomials over a step, for
+/// TaylorSeries.
 ///
-/// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope against
-/// the deviation to the stiffness's diagonal, and the knots at the stretch's ends are events, found as roots
-/// of theta(s) - knot. A load with a series of its own (engine orders) is composed with theta(s) degree by
-/// degree, exactly. Motions are polynomials of degree 2 between their breakpoints.
+/// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope
+/// against the deviation to the stiffness's diagonal, and the knots at the stretch's ends are
+/// events, found as roots of theta(s) - knot. A load with a series of its own (engine orders) is
+/// composed with theta(s) degree by degree, exactly. Motions are polynomials of degree 2 between
+/// their breakpoints.
 #include <memory>
 #include <optional>
 
@@ -16,11 +18,11 @@ class KnownForces final : public SeriesSource {
  public:
   explicit KnownForces(const System& system);
 
-  /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start and
-  /// after breakpoints.
+  /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start
+  /// and after breakpoints.
   void locate(double t, const Vector& z, const Vector& v);
-  /// Moves to a state further on, between breakpoints. Loads that stand at the end of their stretch (within
-  /// rounding) go on to the next one; true if any did.
+  /// Moves to a state further on, between breakpoints. Loads that stand at the end of their stretch
+  /// (within rounding) go on to the next one; true if any did.
   bool advance(double t, const Vector& z, const Vector& v);
 
   /// Seconds until the first load reaches the end of its stretch, going on at its speed.
@@ -35,7 +37,8 @@ class KnownForces final : public SeriesSource {
   /// Prescribed motion k as a polynomial over the step.
   const std::array<double, 3>& prescribed(int k) const { return u_[at(k)]; }
 
-  /// First s in (0, end] (0 for a load about to leave backwards) at which a load leaves its stretch.
+  /// First s in (0, end] (0 for a load about to leave backwards) at which a load leaves its
+  /// stretch.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
   /// After first_knot() and advance() to it: that load goes on to the next stretch, if it has not.
   void pass_knot();
@@ -51,7 +54,7 @@ class KnownForces final : public SeriesSource {
     double coeff, ratio;
     bool feedback;
     LoadStretch stretch;
-    double t_0, angle_0;  // where `stretch` gives its torque
+    double t_0, angle_0;                     // where `stretch` gives its torque
     double angle, speed, deviation, torque;  // at the step's start
   };
   struct Composed {

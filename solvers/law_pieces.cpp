@@ -12,7 +12,8 @@ namespace {
 
 // A coefficient below this part of the terms it was summed from is zero: rounding.
 constexpr double kZero = 1e-13;
-// The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not seen).
+// The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not
+// seen).
 constexpr double kFloor = 4e-15;
 constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
 
@@ -47,8 +48,8 @@ void LawPieces::locate(const std::vector<ScalarInput>& inputs) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       double least = std::numeric_limits<double>::infinity();
       for (const LawBound& b : pieces[i].bounds) {
-        const double size = std::abs(b.a) + std::abs(b.b_x * inputs[j].x) +
-                            std::abs(b.b_v * inputs[j].x_dot);
+        const double size =
+            std::abs(b.a) + std::abs(b.b_x * inputs[j].x) + std::abs(b.b_v * inputs[j].x_dot);
         const double g = b.a + b.b_x * inputs[j].x + b.b_v * inputs[j].x_dot;
         least = std::min(least, size > 0.0 ? g / size : 0.0);
       }

@@ -1,11 +1,11 @@
 #pragma once
 /// LawPieces: which piece of its law each scalar element is on, and when it leaves it.
 ///
-/// On a piece, y = y_0 + k x + c x': k and c go into the matrices, y_0 and what is known of x to the right
-/// side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first fall below zero is
-/// the change (polynomial.hpp). Behind a change the crossed bound of the new piece stands at zero: that root
-/// is divided out, and the sign of the first coefficient that is not zero says whether the piece holds or
-/// changes back at once.
+/// On a piece, y = y_0 + k x + c x': k and c go into the matrices, y_0 and what is known of x to
+/// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
+/// fall below zero is the change (polynomial.hpp). Behind a change the crossed bound of the new
+/// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
+/// not zero says whether the piece holds or changes back at once.
 #include <functional>
 #include <optional>
 
@@ -16,9 +16,9 @@ namespace drev {
 class LawPieces {
  public:
   struct Change {
-    double s = 0.0;   ///< where in the step
-    int law = 0;      ///< of System::scalars()
-    int bound = 0;    ///< of its piece
+    double s = 0.0;  ///< where in the step
+    int law = 0;     ///< of System::scalars()
+    int bound = 0;   ///< of its piece
   };
 
   explicit LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {}
@@ -43,17 +43,18 @@ class LawPieces {
   /// The step was accepted and no bound is known to be at zero any more.
   void forget_roots();
 
-  /// From 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed ends.
+  /// From 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
+  /// ends.
   double dissipated(double s) const;
   double input(double s) const;
 
  private:
   struct Law {
     int piece = 0;
-    int root = -1;                           // bound of the piece that is zero at s = 0
-    std::vector<double> x, known;            // series of x, and of its known part
-    std::vector<double> x_size;              // sum of the parts' sizes: what rounding is relative to
-    std::vector<std::vector<double>> bounds; // series of the piece's bounds
+    int root = -1;                            // bound of the piece that is zero at s = 0
+    std::vector<double> x, known;             // series of x, and of its known part
+    std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
+    std::vector<std::vector<double>> bounds;  // series of the piece's bounds
   };
   const LawPiece& current(std::size_t j) const {
     return system_.scalars()[j].force->pieces()[at(laws_[j].piece)];

@@ -51,8 +51,7 @@ class Search {
       if (polynomial_value(g_, high) >= 0.0) return std::nullopt;
       return polynomial_value(g_, low) < 0.0 ? low : bracketed_root(g_, low, high);
     }
-    if (r <= smallest_)
-      return polynomial_value(g_, high) < 0.0 ? std::optional(c) : std::nullopt;
+    if (r <= smallest_) return polynomial_value(g_, high) < 0.0 ? std::optional(c) : std::nullopt;
     if (const auto left = first(low, c)) return left;
     return first(c, high);
   }

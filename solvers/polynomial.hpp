@@ -1,14 +1,15 @@
 #pragma once
-/// Polynomials on [0, end] by their coefficients g_0, g_1, ...: value, and the first crossing from g >= 0
-/// to g < 0 with a certificate that none was missed.
+/// Polynomials on [0, end] by their coefficients g_0, g_1, ...: value, and the first crossing from
+/// g >= 0 to g < 0 with a certificate that none was missed.
 ///
-/// With B >= |g''| on [0, end] (B = sum k (k-1) |g_k| end^(k-2)), an interval of centre c and radius r
+/// With B >= |g''| on [0, end] (B = sum k (k-1) |g_k| end^(k-2)), an interval of centre c and
+/// radius r
 ///   has no root                if |g(c)| > |g'(c)| r + B r^2/2,
-///   is monotone                if |g'(c)| > B r: its ends tell, and safeguarded Newton finds the root,
+///   is monotone                if |g'(c)| > B r: its ends tell; safeguarded Newton finds it,
 ///   is halved                  otherwise, the left half first.
-/// At the smallest radius g and g' both vanish but for rounding (a graze): it crosses if g < 0 behind.
-/// Source: interval Newton isolation with a centred second-order form, R. E. Moore, R. B. Kearfott, M. J.
-/// Cloud, Introduction to Interval Analysis, SIAM, 2009, chapters 6 and 8.
+/// At the smallest radius g and g' both vanish but for rounding (a graze): it crosses if g < 0
+/// behind. Source: interval Newton isolation with a centred second-order form, R. E. Moore, R. B.
+/// Kearfott, M. J. Cloud, Introduction to Interval Analysis, SIAM, 2009.
 #include <optional>
 #include <span>
 
@@ -19,8 +20,8 @@ double polynomial_value(std::span<const double> g, double s);
 /// g'(s).
 double polynomial_slope(std::span<const double> g, double s);
 
-/// First s in (0, end] at which g falls below zero. g_0 must be > 0, or 0 with the first coefficient that is
-/// not 0 positive: the root at 0 is divided out and not found again.
+/// First s in (0, end] at which g falls below zero. g_0 must be > 0, or 0 with the first
+/// coefficient that is not 0 positive: the root at 0 is divided out and not found again.
 std::optional<double> first_crossing(std::span<const double> g, double end);
 
 }  // namespace drev

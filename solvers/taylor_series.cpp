@@ -214,8 +214,8 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       if (size[i] == 0.0) continue;
       z_scale[i] = std::max(z_scale[i], size[i]);
       v_scale[i] = std::max(v_scale[i], k * size[i]);
-      excess[k] = std::max({excess[k], size[i] / (tolerance * z_scale[i]),
-                            k * size[i] / (tolerance * v_scale[i])});
+      excess[k] = std::max(
+          {excess[k], size[i] / (tolerance * z_scale[i]), k * size[i] / (tolerance * v_scale[i])});
     }
     degree_ = k;
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
@@ -224,10 +224,10 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       if (excess[k] <= 1.0 && excess[k - 1] <= 1.0) return h_;
       continue;
     }
-    const double first = k_norm_ * h * h / (k * (k + 1.0)) * excess[k - 1] +
-                         c_norm_ * h / (k + 1.0) * excess[k];
-    const double second = k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * excess[k] +
-                          c_norm_ * h / (k + 2.0) * first;
+    const double first =
+        k_norm_ * h * h / (k * (k + 1.0)) * excess[k - 1] + c_norm_ * h / (k + 1.0) * excess[k];
+    const double second =
+        k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * excess[k] + c_norm_ * h / (k + 2.0) * first;
     if (first <= 1.0 && second <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
@@ -251,8 +251,7 @@ double TaylorSeries::dissipated(double s) {
   std::array<double, kMaxDegree + 1> size;
   for (int j = 1; j <= degree_; ++j, power *= s) {
     rates_.col(j - 1) = (j * power) * Eigen::Map<const Vector>(z_.data() + j * n_, n_);
-    product(c_base_, base_main_damping_, rates_.col(j - 1).data(), -1.0,
-            forces_.col(j - 1).data());
+    product(c_base_, base_main_damping_, rates_.col(j - 1).data(), -1.0, forces_.col(j - 1).data());
     size[at(j)] = rates_.col(j - 1).lpNorm<Eigen::Infinity>();
     largest = std::max(largest, size[at(j)]);
   }

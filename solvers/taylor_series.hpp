@@ -4,17 +4,18 @@
 ///   M z'' + C z' + K z = P_0 + P_1 s + P_2 s^2 + sum F_k s^k,      z = sum Z_k s^k
 ///   (k+2)(k+1)/h^2 M Z_{k+2} = P_k + F_k - (k+1)/h C Z_{k+1} - K Z_k
 ///
-/// K and C are those of the system with the tangents of the pieces that hold (set by the caller). One sparse
-/// product a degree, by diagonals where the pattern has few of them; M diagonal is a scaling, else one solve
-/// with its factor. The series is carried until the next two terms are below the tolerance, as deflections
-/// and as rates, by the bound
-///   |Z_{k+2}| <= h^2 |M^-1 K| |Z_k|/((k+1)(k+2)) + h |M^-1 C| |Z_{k+1}|/(k+2)        (largest row sums)
-/// or, where a load has a series of its own, until the last two are. If that is not so by kMaxDegree, the
-/// step is shortened: Z_k r^k is the same solution over r h.
+/// K and C are those of the system with the tangents of the pieces that hold (set by the caller).
+/// One sparse product a degree, by diagonals where the pattern has few of them; M diagonal is a
+/// scaling, else one solve with its factor. The series is carried until the next two terms are
+/// below the tolerance, as deflections and as rates, by the bound (norms: largest
+/// row sums)
+///   |Z_{k+2}| <= h^2 |M^-1 K| |Z_k|/((k+1)(k+2)) + h |M^-1 C| |Z_{k+1}|/(k+2)
+/// or, where a load has a series of its own, until the last two are. If that is not so by
+/// kMaxDegree, the step is shortened: Z_k r^k is the same solution over r h.
 ///
-/// Rounding grows as exp(fastest() h); the caller bounds the step by it. Source: D. Barton, I. M. Willers,
-/// R. V. M. Zahar, The automatic solution of systems of ordinary differential equations by the method of
-/// Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
+/// Rounding grows as exp(fastest rate h); the caller bounds the step by it. Source: D. Barton,
+/// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential equations by
+/// the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
 #include <array>
 
 #include "core/assembler.hpp"
@@ -44,14 +45,14 @@ class TaylorSeries {
   /// P_0, P_1, P_2 [N m or N]: polynomial right side over the step.
   std::array<Vector, 3>& right_side() { return p_; }
 
-  /// Takes the values that stand now as the largest there will be: bounds |M^-1 K| and |M^-1 C| by them and
-  /// returns an upper estimate of the fastest rate |lambda| [1/s] (Gershgorin, scaled by the inertias).
+  /// Takes the values that stand now as the largest there will be: bounds |M^-1 K| and |M^-1 C| by
+  /// them and returns an upper estimate of the fastest rate |lambda| [1/s] (Gershgorin, scaled by
+  /// the inertias).
   double bound_rates();
 
-  /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h; 0 if the terms overflow.
-  /// tolerance: relative.
-  double expand(const Vector& z, const Vector& v, double h, double tolerance,
-                SeriesSource* source);
+  /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h; 0 if the terms
+  /// overflow. tolerance: relative.
+  double expand(const Vector& z, const Vector& v, double h, double tolerance, SeriesSource* source);
   /// Deflections and speeds that the tolerance is relative to grow with these.
   void note_scale(const Vector& z, const Vector& v);
 
@@ -61,7 +62,8 @@ class TaylorSeries {
   const double* coefficients() const { return z_.data(); }  ///< column k at k * size()
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
-  /// int z'^T C z' dt from 0 to s of the step with the system's own C: what linear dampers took [J].
+  /// int z'^T C z' dt from 0 to s of the step with the system's own C: what linear dampers took
+  /// [J].
   double dissipated(double s);
   /// out = M^-1 rhs.
   void solve_mass(const Vector& rhs, Vector& out);
@@ -82,8 +84,8 @@ class TaylorSeries {
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<std::size_t> position_;  // of a slot of the pattern in k_, c_
   std::vector<Diagonal> diagonals_;    // empty: rows of the pattern
-  int main_ = -1;               // which diagonal is the main one
-  bool three_in_one_ = false;   // it and its two neighbours are there: one loop for them
+  int main_ = -1;                      // which diagonal is the main one
+  bool three_in_one_ = false;          // it and its two neighbours are there: one loop for them
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0;

@@ -1,5 +1,6 @@
-// Exact propagation beside average acceleration at 1e-5 s, with the main job's observers: processor time, and
-// the error of each at 0.05 s (of exact propagation at tolerance 1e-14). Fastest of 3 runs.
+// Exact propagation beside average acceleration at 1e-5 s, with the main job's observers: processor
+// time, and the error of each at 0.05 s (of exact propagation at tolerance 1e-14). Fastest of 3
+// runs.
 //   build/release/bin/bench_exact
 #include <algorithm>
 #include <cstdio>
@@ -30,10 +31,11 @@ double fastest_seconds(const Run& run) {
 }  // namespace
 
 TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
-  std::printf("| drive, loads | exact [s] | steps | us a step | average acceleration [s] | ratio | "
-              "error of exact | of average acceleration |\n");
-  for (const auto& [drive, loads] : {std::pair{"held", "source"}, {"held", "actual"},
-                                     {"gears", "actual"}}) {
+  std::printf(
+      "| drive, loads | exact [s] | steps | us a step | average acceleration [s] | ratio | "
+      "error of exact | of average acceleration |\n");
+  for (const auto& [drive, loads] :
+       {std::pair{"held", "source"}, {"held", "actual"}, {"gears", "actual"}}) {
     Settings s("camshaft", camshaft_entry().settings);
     s.set("drive", drive);
     s.set("loads", loads);
@@ -58,8 +60,8 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
     propagate(system, {.tolerance = 1e-14, .t_end = 0.05}, tight);
     simulate(system, {.step = 1e-5, .t_end = 0.05}, stepped);
     const double peak = tight.z.lpNorm<Eigen::Infinity>();
-    std::printf("| %s, %s | %.2f | %ld | %.2f | %.2f | %.2f | %.0e | %.0e |\n", drive, loads, t_exact,
-                exact.steps, 1e6 * t_exact / static_cast<double>(exact.steps), t_steps,
+    std::printf("| %s, %s | %.2f | %ld | %.2f | %.2f | %.2f | %.0e | %.0e |\n", drive, loads,
+                t_exact, exact.steps, 1e6 * t_exact / static_cast<double>(exact.steps), t_steps,
                 t_steps / t_exact, (at_default.z - tight.z).lpNorm<Eigen::Infinity>() / peak,
                 (stepped.z - tight.z).lpNorm<Eigen::Infinity>() / peak);
   }

@@ -16,12 +16,11 @@ System oscillator(double damping) {
   Model m("oscillator");
   m.add_node("disc");
   m.add<Inertia>("J", {"disc"}, {.inertia = 5.0});
-  m.add<LawElement<TwistBacklash>>(
-      "stop", {"disc"},
-      TwistBacklash{BacklashLaw({.normal_backlash = kPi / 4,
-                                 .damping = damping,
-                                 .damping_law = MeshDamping::limited}),
-                    2e4});
+  m.add<LawElement<TwistBacklash>>("stop", {"disc"},
+                                   TwistBacklash{BacklashLaw({.normal_backlash = kPi / 4,
+                                                              .damping = damping,
+                                                              .damping_law = MeshDamping::limited}),
+                                                 2e4});
   m.set_initial("disc", kPi / 2, 0.0);
   return m.build();
 }
@@ -47,7 +46,7 @@ TEST_CASE("Exact propagation, case 7: a damper limited to the spring's force") {
   }
 }
 
-TEST_CASE("Exact propagation, case 8: the undamped oscillator with a gap has its closed-form period") {
+TEST_CASE("Exact propagation, case 8: undamped with a gap, closed-form period") {
   // T = 2 pi/w + 4 g/(w (A - g)); after 50 periods it is where it started.
   const double w = std::sqrt(2e4 / 5.0), gap = kPi / 8, amplitude = kPi / 2;
   const double period = kTwoPi / w + 4 * gap / (w * (amplitude - gap));

@@ -1,6 +1,6 @@
-// Random piecewise-linear models: exact propagation against matrix exponentials of the pieces that it says
-// hold. Between the ends of each step no bound of a piece may be violated (a missed change), the step's end
-// must be that of the exponential, and the energy must balance.
+// Random piecewise-linear models: exact propagation against matrix exponentials of the pieces that
+// it says hold. Between the ends of each step no bound of a piece may be violated (a missed
+// change), the step's end must be that of the exponential, and the energy must balance.
 #include <Eigen/Dense>
 #include <cmath>
 #include <random>
@@ -182,18 +182,18 @@ RandomModel random_model(unsigned seed) {
     if (kind == 0)
       m.add(name, ends, std::make_shared<PolylineSpring>(PolylineSpring::dead_band(k, half, c)));
     else if (kind == 1)
-      m.add(name, ends,
-            std::make_shared<PolylineSpring>(
-                PolylineSpring::with_stops(0.1 * k, half + 0.1, k, c)));
+      m.add(
+          name, ends,
+          std::make_shared<PolylineSpring>(PolylineSpring::with_stops(0.1 * k, half + 0.1, k, c)));
     else
       m.add(name, ends,
-            std::make_shared<LawElement<TwistBacklash>>(TwistBacklash{
-                BacklashLaw({.normal_backlash = 2 * half,
-                             .damping = c,
-                             .damping_law = kind == 2   ? MeshDamping::always
-                                            : kind == 3 ? MeshDamping::contact_only
-                                                        : MeshDamping::limited}),
-                k}));
+            std::make_shared<LawElement<TwistBacklash>>(
+                TwistBacklash{BacklashLaw({.normal_backlash = 2 * half,
+                                           .damping = c,
+                                           .damping_law = kind == 2   ? MeshDamping::always
+                                                          : kind == 3 ? MeshDamping::contact_only
+                                                                      : MeshDamping::limited}),
+                              k}));
   }
   const double fastest = std::sqrt(4.0 * std::max(stiffest, base) / lightest), end = 300 / fastest;
   for (int l = random.below(3); l > 0; --l) {
@@ -212,7 +212,6 @@ RandomModel random_model(unsigned seed) {
 
 TEST_CASE("Exact propagation, 300 random models: no change missed, energy kept, ends exact") {
   long changes = 0, steps = 0;
-  double worst_energy = 0.0, worst_bound = 0.0, worst_end = 0.0;
   for (unsigned seed = 1; seed <= 300; ++seed) {
     const RandomModel model = random_model(seed);
     INFO("seed " << seed);
@@ -225,16 +224,13 @@ TEST_CASE("Exact propagation, 300 random models: no change missed, energy kept, 
                                      {&check});
     INFO(run.brief_report());
     CHECK(run.ok());
-    CHECK(std::abs(run.energy.relative_error()) < 1e-9);
-    CHECK(check.worst_bound < 1e-9);
-    CHECK(check.worst_end < 1e-9);
-    worst_energy = std::max(worst_energy, std::abs(run.energy.relative_error()));
-    worst_bound = std::max(worst_bound, check.worst_bound);
-    worst_end = std::max(worst_end, check.worst_end);
+    CHECK(std::abs(run.energy.relative_error()) < 1e-10);
+    CHECK(check.worst_bound < 1e-11);
+    CHECK(check.worst_end < 1e-10);
     changes += run.contact_changes;
     steps += check.steps;
   }
-  WARN(changes << " changes, " << steps << " steps; worst: energy " << worst_energy << ", bound "
-               << worst_bound << ", end of step " << worst_end);
-  CHECK(changes > 3000);
+  // The models do what they are meant to.
+  CHECK(changes > 10000);
+  CHECK(steps > 10000);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Classical Runge-Kutta of fourth order over a System's own terms: an independent integration to compare
-/// with. Knows nothing of pieces or knots; small steps resolve them.
+/// Classical Runge-Kutta of fourth order over a System's own terms: an independent integration to
+/// compare with. Knows nothing of pieces or knots; small steps resolve them.
 #include "core/assembler.hpp"
 
 /// Advances the state to t_end in steps of at most h. M must be diagonal.

@@ -10,7 +10,8 @@ using namespace drev;
 
 namespace {
 
-/// Every random (x, x_dot) lies on exactly one piece, whose line is the law; what is not elastic dissipates.
+/// Every random (x, x_dot) lies on exactly one piece, whose line is the law; what is not elastic
+/// dissipates.
 template <class Law>
 void check_pieces(std::span<const LawPiece> pieces, double x_range, double v_range, Law law) {
   std::mt19937 random(3);
@@ -29,8 +30,9 @@ void check_pieces(std::span<const LawPiece> pieces, double x_range, double v_ran
       CHECK(y == Approx(r.y).margin(1e-9));
       CHECK((y - elastic) * v == Approx(r.dissipated_power).margin(1e-9));
       const double dx = 1e-6;
-      CHECK(elastic == Approx((law(x + dx, v).stored_energy - law(x - dx, v).stored_energy) /
-                              (2 * dx)).margin(1e-3));
+      CHECK(elastic ==
+            Approx((law(x + dx, v).stored_energy - law(x - dx, v).stored_energy) / (2 * dx))
+                .margin(1e-3));
     }
     CHECK(inside == 1);
   }
@@ -45,8 +47,9 @@ TEST_CASE("Backlash law: its pieces are the law") {
     for (const double gap : {0.1, 0.0})
       for (const double c : {30.0, 0.0}) {
         const BacklashLaw law({.normal_backlash = gap, .damping = c, .damping_law = damping});
-        check_pieces(law.pieces(k), 0.2, 10.0,
-                     [&](double x, double v) { return law.evaluate(x, v, {k, 0.0}); });
+        check_pieces(law.pieces(k), 0.2, 10.0, [&](double x, double v) {
+          return law.evaluate(x, v, {k, 0.0});
+        });
       }
 }
 
@@ -60,13 +63,12 @@ TEST_CASE("Backlash law: proportional damping has pieces only without a gap or a
 }
 
 TEST_CASE("Polyline spring: its pieces are the spring") {
-  for (const auto& params : {PolylineSpring::dead_band(500.0, 0.03, 2.0),
-                             PolylineSpring::with_stops(100.0, 0.1, 5000.0),
-                             PolylineSpring::Params{.x = {-0.1, 0.02, 0.05}, .y = {-9.0, 0.5, 8.0}}}) {
+  for (const auto& params :
+       {PolylineSpring::dead_band(500.0, 0.03, 2.0), PolylineSpring::with_stops(100.0, 0.1, 5000.0),
+        PolylineSpring::Params{.x = {-0.1, 0.02, 0.05}, .y = {-9.0, 0.5, 8.0}}}) {
     const PolylineSpring spring(params);
-    check_pieces(spring.pieces(), 0.2, 10.0, [&](double x, double v) {
-      return spring.evaluate({.x = x, .x_dot = v});
-    });
+    check_pieces(spring.pieces(), 0.2, 10.0,
+                 [&](double x, double v) { return spring.evaluate({.x = x, .x_dot = v}); });
   }
 }
 

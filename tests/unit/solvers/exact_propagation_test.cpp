@@ -1,4 +1,5 @@
-// Exact propagation: closed forms, breakpoints, known motions, dampers, refusals, laws without a solution.
+// Exact propagation: closed forms, breakpoints, known motions, dampers, refusals, laws without a
+// solution.
 #include "solvers/exact_propagation.hpp"
 
 #include <cmath>
@@ -49,7 +50,8 @@ TEST_CASE("Exact propagation: damped free vibration in closed form to 1e-13") {
 }
 
 TEST_CASE("Exact propagation: a table's ramp and release, breakpoints hit, to rounding") {
-  // Ramp of k t over 1 s: u = t - sin(2 pi t)/(2 pi), at rest with u = 1 at t = 1; released at 1.3 s.
+  // Ramp of k t over 1 s: u = t - sin(2 pi t)/(2 pi), at rest with u = 1 at t = 1; released at 1.3
+  // s.
   Model m = unit_oscillator();
   const double k = 4 * kPi * kPi;
   m.add<AppliedTorque>("load", {"m"}, {.table = TimeTable({0.0, 1.0, 1.3, 1.3}, {0.0, k, k, 0.0})});
@@ -100,8 +102,7 @@ TEST_CASE("Exact propagation: engine orders over a run-up, against small steps")
   m.set_reference("engine", run_up(40.0, 160.0, 0.1, 0.9));
   const System system = m.build();
   State exact = State::initial(system), fine = exact, coarse = exact;
-  const RunSummary run =
-      propagate(system, {.t_end = 1.0, .energy_tolerance = 1e-11}, exact);
+  const RunSummary run = propagate(system, {.t_end = 1.0, .energy_tolerance = 1e-11}, exact);
   INFO(run.brief_report());
   CHECK(run.ok());
   CHECK(simulate(system, {.step = 1e-4, .t_end = 1.0}, coarse).ok());
@@ -190,9 +191,9 @@ TEST_CASE("Exact propagation: a law without a solution ends with an error that n
   m.add<LawElement<Relay>>("relay", {"m"}, {});
   m.set_initial("m", 0.5, 0.0);
   const System system = m.build();
-  CHECK_THROWS_WITH(propagate(system, {.t_end = 5.0}),
-                    Catch::Contains("relay") && Catch::Contains("to and fro") &&
-                        Catch::Contains("at t ="));
+  CHECK_THROWS_WITH(propagate(system, {.t_end = 5.0}), Catch::Contains("relay") &&
+                                                           Catch::Contains("to and fro") &&
+                                                           Catch::Contains("at t ="));
 }
 
 TEST_CASE("Exact propagation: what cannot be propagated is refused with the reason") {

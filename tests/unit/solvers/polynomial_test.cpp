@@ -41,7 +41,7 @@ TEST_CASE("First crossing: none") {
   CHECK(!first_crossing(std::vector<double>{1.0}, 1.0));
   CHECK(!first_crossing(std::vector<double>{}, 1.0));
   CHECK(!first_crossing(std::vector<double>{0.0, 0.0}, 1.0));
-  CHECK(!first_crossing(std::vector<double>{1.0, -1.0, 0.26}, 1.0));  // dips to 0.04
+  CHECK(!first_crossing(std::vector<double>{1.0, -1.0, 0.26}, 1.0));        // dips to 0.04
   CHECK(!first_crossing(std::vector<double>{1.0, -4.0, 4.0 + 1e-9}, 1.0));  // dips to 2.5e-10
 }
 
@@ -53,7 +53,8 @@ TEST_CASE("First crossing: a double root is a graze, no crossing; a triple root 
   CHECK(*s == Approx(0.75).epsilon(1e-12));
   const auto triple = first_crossing(with_roots({0.5, 0.5, 0.5}), 1.0);
   REQUIRE(triple.has_value());
-  CHECK(*triple == Approx(0.5).epsilon(1e-4));  // a triple root is known to the cube root of rounding
+  // A triple root is known to the cube root of rounding.
+  CHECK(*triple == Approx(0.5).epsilon(1e-4));
 }
 
 TEST_CASE("First crossing: two roots close together are not missed though both ends are positive") {
