@@ -14,8 +14,8 @@
 /// kMaxDegree, the step is shortened: Z_k r^k is the same solution over r h.
 ///
 /// Rounding grows as exp(fastest rate h); the caller bounds the step by it. Source: D. Barton,
-/// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential equations by
-/// the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
+/// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential
+/// equations by the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
 #include <array>
 
 #include "core/assembler.hpp"
