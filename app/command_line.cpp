@@ -21,7 +21,7 @@ constexpr const char* kPlace = "command line";
 struct Raw {
   std::string model;
   std::vector<std::string> sets, records;
-  std::vector<std::string> method, step, out, every, count, contact;  // more than one is an error
+  std::vector<std::string> method, step, tolerance, out, every, count, contact;  // more than one is an error
   bool json = false;
 };
 
@@ -42,6 +42,7 @@ void add_run_options(CLI::App& sub, Raw& raw) {
   add_model_options(sub, raw);
   add_text(sub, "--method", raw.method, "METHOD", "Time integration; see below");
   add_text(sub, "--step", raw.step, "SECONDS", "Time step; default: the model's");
+  add_text(sub, "--tolerance", raw.tolerance, "T", "Of method exact, relative; default: 1e-10");
   add_text(sub, "--out", raw.out, "DIR", "Creates DIR with history.csv and summary.json");
   add_text(sub, "--record", raw.records, "CHANNEL,...",
            "Columns of history.csv; default: the model's");
@@ -229,6 +230,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   take_sets(raw, line);
   take_text("--method", raw.method, line.method, line.findings);
   take_text("--step", raw.step, line.step, line.findings);
+  take_text("--tolerance", raw.tolerance, line.tolerance, line.findings);
   take_text("--out", raw.out, line.out, line.findings);
   take_text("--every", raw.every, line.every, line.findings);
   take_text("--count", raw.count, line.count, line.findings);

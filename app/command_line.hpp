@@ -15,7 +15,8 @@ struct CommandLine {
   Command command = Command::list;
   std::string model;                                               ///< empty: not given
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
-  std::optional<std::string> method = {}, step = {}, out = {}, every = {}, count = {}, contact = {};
+  std::optional<std::string> method = {}, step = {}, tolerance = {}, out = {}, every = {}, count = {},
+                             contact = {};
   std::optional<std::vector<std::string>> record = {};
   bool json = false;
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...

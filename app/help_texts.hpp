@@ -3,7 +3,10 @@
 namespace drev::app {
 
 inline constexpr const char* kMethodsHelp =
-    "Methods, all implicit and of second order but for newmark with GAMMA > 1/2:\n"
+    "Methods:\n"
+    "  exact                         Taylor series between located contact changes, to --tolerance;\n"
+    "                                says what of a model keeps it from that\n"
+    "implicit, with a --step, of second order but for newmark with GAMMA > 1/2:\n"
     "  average_acceleration          the default\n"
     "  hht[:ALPHA]                   0 to 1/3, default 0.05; damps the fastest modes\n"
     "  generalized_alpha[:RHO_INF]   1 (none) to 0, default 0.8; damps the fastest modes\n"
@@ -22,6 +25,7 @@ inline constexpr const char* kRunExamples =
     "  drev run camshaft\n"
     "  drev run camshaft --set cylinders=6 --set drive=held damping=case_2\n"
     "  drev run camshaft --out result --record end.angle_rad,mesh_1.force_N --every 0.001\n"
+    "  drev run camshaft --method exact --set duration_s=1\n"
     "  drev run two_mass_backlash --method hht:0.1 --step 0.001 --json\n"
     "\n"
     "history.csv: time_s, then the channels in the order asked for, at the times 0, 1, 2, ... "

@@ -5,6 +5,7 @@
 
 #include "app/text_layout.hpp"
 #include "core/channel.hpp"
+#include "solvers/exact_propagation.hpp"
 
 namespace drev::app {
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr const char* kPlace = "command line";
 constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
+constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;
 
 void take_findings(const ModelError& error, std::vector<Finding>& findings) {
   findings.insert(findings.end(), error.findings().begin(), error.findings().end());
@@ -56,7 +58,7 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
 /// Average acceleration, and a finding, if there is no such method.
 StepScheme read_method(const std::string& text, std::vector<Finding>& findings) {
   const std::string form =
-      "must be average_acceleration, hht[:ALPHA], "
+      "must be exact, average_acceleration, hht[:ALPHA], "
       "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration "
       "or central_difference";
   try {
@@ -124,6 +126,33 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
   }
 }
 
+/// The tolerance of method exact.
+double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>& findings) {
+  const ExactOptions defaults;
+  if (!line.tolerance) return defaults.tolerance;
+  double value = 0.0;
+  if (!exact)
+    findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
+                        "belongs to --method exact; the other methods take --step"});
+  else if (!read_number(*line.tolerance, value) ||
+           !(value >= kLeastTolerance && value <= kLargestTolerance))
+    findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
+                        "must be a number from " + short_digits(kLeastTolerance, 3) + " to " +
+                            short_digits(kLargestTolerance, 3)});
+  return value;
+}
+
+/// What keeps the model from exact propagation.
+void check_exact(const std::optional<ModelRequest>& model, const CommandLine& line,
+                 std::vector<Finding>& findings) {
+  if (line.step)
+    findings.push_back({kPlace, "--step", *line.step, "s",
+                        "has no meaning for --method exact, which finds its own; see --tolerance"});
+  if (!model) return;
+  if (const std::optional<std::string> why = why_not_exact(model->system))
+    findings.push_back({kPlace, "--method", "exact", "", "cannot be used: " + *why});
+}
+
 [[noreturn]] void refuse(std::vector<Finding> findings) { throw ModelError(std::move(findings)); }
 
 }  // namespace
@@ -145,12 +174,16 @@ RunRequest request_run(const CommandLine& line) {
   std::optional<ModelRequest> model = build_model(line, findings);
   const bool settings_right = findings.size() == before;
 
-  const StepScheme scheme = read_method(line.method.value_or("average_acceleration"), findings);
+  const std::string method = line.method.value_or("average_acceleration");
+  const bool exact = method == "exact";
+  const StepScheme scheme = exact ? average_acceleration() : read_method(method, findings);
+  const double tolerance = read_tolerance(line, exact, findings);
+  if (exact) check_exact(model, line, findings);
   const double duration = model ? model->scene.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
   double step = model ? std::min(model->scene.default_step, duration) : 0.0;
-  if (line.step)
+  if (line.step && !exact)
     step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.every)
@@ -161,7 +194,8 @@ RunRequest request_run(const CommandLine& line) {
   if (model) check_channels(*model, line, settings_right, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.record.value_or(model->scene.channels);
-  return {std::move(*model), scheme, step, line.out, std::move(record), every};
+  return {std::move(*model), scheme, step, exact ? std::optional(tolerance) : std::nullopt,
+          line.out, std::move(record), every};
 }
 
 ModesRequest request_modes(const CommandLine& line) {

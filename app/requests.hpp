@@ -23,8 +23,9 @@ struct ModelRequest {
 
 struct RunRequest {
   ModelRequest model;
-  StepScheme scheme;
-  double step = 0.0;                ///< s
+  StepScheme scheme;                ///< of an implicit method
+  double step = 0.0;                ///< s, of an implicit method
+  std::optional<double> tolerance;  ///< relative, of exact propagation; none: an implicit method
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv
   double every = 0.0;               ///< s

@@ -6,6 +6,7 @@
 
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
+#include "solvers/exact_propagation.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/peaks.hpp"
 #include "solvers/recorder.hpp"
@@ -107,8 +108,11 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
 
   std::vector<Channel> deflections;
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
-  Peaks torque_peaks(torques), deflection_peaks(deflections), mesh_peaks(mesh_channels(system));
-  ContactStatistics contacts(system);
+  // Exact propagation takes long steps: its peaks may lie inside them.
+  const bool exact = request.tolerance.has_value();
+  Peaks torque_peaks(torques, exact), deflection_peaks(deflections, exact);
+  Peaks mesh_peaks(mesh_channels(system), exact);
+  ContactStatistics contacts(system, exact);
   std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts};
   std::optional<Recorder> recorder;
   if (history != nullptr) {
@@ -116,21 +120,31 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
     recorder->set_sink([&](double /*t*/, const std::vector<double>& row) { history->add(row); });
     observers.push_back(&*recorder);
   }
-  TransientOptions options{.scheme = request.scheme, .step = request.step, .t_end = scene.duration};
   const Timer timer;
   try {
-    Progress progress;
-    options.progress = [&](double part) {
-      progress.update(part);
+    Progress shown;
+    const auto progress = [&](double part) {
+      shown.update(part);
       return !interrupted() && (history == nullptr || history->error().empty());
     };
-    result.summary = simulate(system, options, observers);
+    result.summary =
+        exact ? propagate(system,
+                          {.tolerance = *request.tolerance,
+                           .t_end = scene.duration,
+                           .progress = progress},
+                          observers)
+              : simulate(system,
+                         {.scheme = request.scheme,
+                          .step = request.step,
+                          .t_end = scene.duration,
+                          .progress = progress},
+                         observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {
     result.status = "failed";
     result.reason = error.what();
-    result.summary.scheme = request.scheme.name;
+    result.summary.scheme = exact ? "exact" : request.scheme.name;
     result.summary.step = request.step;
   }
   result.run_time = timer.seconds();

@@ -95,7 +95,8 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["model"] = request.model.entry->name;
   object["settings"] = settings_object(request.model.settings);
   object["method"] = s.scheme;
-  object["step_s"] = number(s.step);
+  object["step_s"] = request.tolerance ? Json() : number(s.step);
+  object["tolerance"] = request.tolerance ? number(*request.tolerance) : Json();
   object["status"] = r.status;
   object["reason"] = text_or_null(r.reason);
   object["results"] = results_object(r);
@@ -104,6 +105,7 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["t_end_s"] = number(s.t_end);
   object["steps"] = s.steps;
   object["halved_steps"] = s.halved;
+  object["contact_changes"] = request.tolerance ? Json(s.contact_changes) : Json();
   object["iterations"] = s.iterations;
   object["run_time_s"] = number(r.run_time);
   object["phases"] = {{"modes_s", number(r.modes_time)},

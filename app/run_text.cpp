@@ -158,10 +158,16 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
   if (!r.force && !r.ok())
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
-  text += row("Method", s.scheme + ", step " + short_digits(s.step, 4) +
-                            " s, to t = " + short_digits(s.t_end, 6) + " s");
-  text += row("Effort", std::to_string(s.steps) + " steps, " + std::to_string(s.halved) +
-                            " halved, " + std::to_string(s.iterations) + " iterations, " +
+  text += row("Method", s.scheme +
+                            (request.tolerance
+                                 ? ", tolerance " + short_digits(*request.tolerance, 3)
+                                 : ", step " + short_digits(s.step, 4) + " s") +
+                            ", to t = " + short_digits(s.t_end, 6) + " s");
+  text += row("Effort", std::to_string(s.steps) + " steps, " +
+                            (request.tolerance
+                                 ? std::to_string(s.contact_changes) + " contact changes located, "
+                                 : std::to_string(s.halved) + " halved, " +
+                                       std::to_string(s.iterations) + " iterations, ") +
                             digits(r.run_time, 3) + " s");
   if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
   return text;

@@ -214,7 +214,15 @@ double reaction(const Assembler& assembler, const State& s, int k) {
   return r;
 }
 
-std::optional<double> Channel::rate(const State& state) const {
+std::optional<double> Channel::rate(const Assembler& assembler, const State& state) const {
+  if (kind_ == Kind::force) {
+    const ScalarTerm& term = assembler.system().scalars()[at(index_)];
+    const ScalarInput in = assembler.input(term, state.z, state.v);
+    const ScalarResponse r = term.force->evaluate(in);
+    double x_dot_dot = 0.0;
+    for (const Entry& e : term.z) x_dot_dot += e.coeff * state.a[e.index];
+    return r.dy_dx * in.x_dot + r.dy_dx_dot * x_dot_dot;
+  }
   if (!direct_) return std::nullopt;
   double y = 0.0;
   for (const Entry& e : z_) y += e.coeff * state.v[e.index];

@@ -26,8 +26,9 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time.
   double evaluate(const Assembler& assembler, const State& state) const;
-  /// Its rate of change at a state, for a value that is linear in deviations and rates; none for others.
-  std::optional<double> rate(const State& state) const;
+  /// Its rate of change at a state, for values linear in deviations and rates, and for laws (dy/dx x' + dy/dx'
+  /// x'', at constant phase and time); none for others.
+  std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
  private:
   friend class ChannelFinder;

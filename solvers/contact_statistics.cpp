@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "solvers/cubic_peak.hpp"
+
 namespace drev {
 
 namespace {
@@ -16,7 +18,8 @@ double share_apart(double x0, double x1, const Gap& gap) {
 
 }  // namespace
 
-ContactStatistics::ContactStatistics(const System& system) {
+ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
+    : inside_steps_(inside_steps) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j)
     if (const auto gap = system.scalars()[j].force->gap()) {
       terms_.push_back(j);
@@ -47,11 +50,19 @@ void ContactStatistics::step(const Assembler& /*assembler*/, const StepPoint& fr
     if (front || back)
       r.largest_gap_speed = std::max(r.largest_gap_speed, std::abs(from.inputs[j].x_dot));
     r.time_apart += h * share_apart(x0, x1, gaps_[i]);
-    if (std::abs(to.responses[j].y) > r.largest_force) {
-      r.largest_force = std::abs(to.responses[j].y);
-      r.largest_force_time = to.state.t;
-    }
+    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+    note_force(r, r1.y, to.state.t);
+    if (!inside_steps_) continue;
+    if (const auto peak = cubic_peak(r0.y, r0.dy_dx * from.inputs[j].x_dot, r1.y,
+                                     r1.dy_dx * to.inputs[j].x_dot, h))
+      note_force(r, peak->value, from.state.t + peak->s * h);
   }
+}
+
+void ContactStatistics::note_force(ContactRecord& record, double y, double t) const {
+  if (std::abs(y) <= record.largest_force) return;
+  record.largest_force = std::abs(y);
+  record.largest_force_time = t;
 }
 
 }  // namespace drev

@@ -21,12 +21,16 @@ struct ContactRecord {
 /// touched and left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
-  explicit ContactStatistics(const System& system);
+  /// inside_steps: as in Peaks, for the largest force.
+  explicit ContactStatistics(const System& system, bool inside_steps = false);
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
+  void note_force(ContactRecord& record, double y, double t) const;
+
+  bool inside_steps_ = false;
   std::vector<std::size_t> terms_;
   std::vector<Gap> gaps_;
   std::vector<ContactRecord> records_;

@@ -1,6 +1,6 @@
 #include "solvers/peaks.hpp"
 
-#include <cmath>
+#include "solvers/cubic_peak.hpp"
 
 namespace drev {
 
@@ -32,23 +32,17 @@ void Peaks::step(const Assembler& assembler, const StepPoint& from, const StepPo
 
 void Peaks::look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from,
                         const StepPoint& to) {
-  const std::optional<double> rate_0 = channels_[c].rate(from.state);
-  const std::optional<double> rate_1 = channels_[c].rate(to.state);
-  if (!rate_0 || !rate_1 || *rate_0 * *rate_1 >= 0.0) return;
-  // y(s) = y_0 + d_0 s + (3 D - 2 d_0 - d_1) s^2 + (d_0 + d_1 - 2 D) s^3 with d = rate h, D = y_1 - y_0.
+  const std::optional<double> rate_0 = channels_[c].rate(assembler, from.state);
+  const std::optional<double> rate_1 = channels_[c].rate(assembler, to.state);
+  if (!rate_0 || !rate_1) return;
   const double h = to.state.t - from.state.t;
-  const double y_0 = channels_[c].evaluate(assembler, from.state);
-  const double y_1 = channels_[c].evaluate(assembler, to.state);
-  const double d_0 = *rate_0 * h, d_1 = *rate_1 * h, rise = y_1 - y_0;
-  const double b = 3 * rise - 2 * d_0 - d_1, a = d_0 + d_1 - 2 * rise;
-  // The root of d_0 + 2 b s + 3 a s^2 between 0 and 1, where the slope changes sign once.
-  const double root = std::sqrt(std::max(b * b - 3 * a * d_0, 0.0));
-  const double s = d_0 / (d_0 > 0.0 ? root - b : -root - b);
-  if (!(s > 0.0 && s < 1.0)) return;
-  const double y = y_0 + s * (d_0 + s * (b + s * a));
+  const auto inside = cubic_peak(channels_[c].evaluate(assembler, from.state), *rate_0,
+                                 channels_[c].evaluate(assembler, to.state), *rate_1, h);
+  if (!inside) return;
+  const double y = inside->value, t = from.state.t + inside->s * h;
   Peak& p = peaks_[c];
-  if (y > p.max) p.max = y, p.max_time = from.state.t + s * h;
-  if (y < p.min) p.min = y, p.min_time = from.state.t + s * h;
+  if (y > p.max) p.max = y, p.max_time = t;
+  if (y < p.min) p.min = y, p.min_time = t;
 }
 
 std::size_t Peaks::largest() const {

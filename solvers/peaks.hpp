@@ -16,9 +16,10 @@ struct Peak {
 
 class Peaks final : public Observer {
  public:
-  /// inside_steps: false: values at the ends of steps count. true: between them a channel that is linear in
-  /// the motion is taken as the cubic through both values and rates, so that a peak inside a step is found to
-  /// the fourth order of its length; for methods whose steps are long beside their accuracy.
+  /// inside_steps: false: values at the ends of steps count. true: between them a channel whose rate is
+  /// known (deviations, shaft torques, laws) is taken as the cubic through both values and rates, so that a
+  /// peak inside a step is found to the fourth order of its length; for methods whose steps are long beside
+  /// their accuracy. Laws: a change of mesh phase or time inside the step is left out of the rate.
   explicit Peaks(std::vector<Channel> channels, bool inside_steps = false)
       : channels_(std::move(channels)),
         peaks_(channels_.size()),

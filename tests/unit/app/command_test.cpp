@@ -237,3 +237,30 @@ TEST_CASE("Methods and settings reach the computation") {
   CHECK(json.at("step_s") == 0.001);
   CHECK(json.at("steps") == 500);
 }
+
+TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a model from it") {
+  const auto run = drev_command({"run", "two_mass_backlash", "--method", "exact", "--json"});
+  CHECK(run.exit_code == 0);
+  const Json object = Json::parse(run.out);
+  CHECK(object.at("method") == "exact");
+  CHECK(object.at("step_s").is_null());
+  CHECK(object.at("tolerance") == 1e-10);
+  CHECK(object.at("contact_changes") == 72);  // of the exact solution over 10 s
+  CHECK(std::abs(object.at("energy_error").get<double>()) < 1e-9);
+  // Largest values of 1e6 steps of average acceleration: off by h^2.
+  const auto fine = drev_command(
+      {"run", "two_mass_backlash", "--step", "1e-5", "--set", "duration_s=2", "--json"});
+  const auto exact = drev_command(
+      {"run", "two_mass_backlash", "--method", "exact", "--set", "duration_s=2", "--json"});
+  for (const char* figure : {"deflection_m", "max_force_N", "max_mesh_force_N"})
+    CHECK(Json::parse(exact.out)["results"][figure].get<double>() ==
+          Approx(Json::parse(fine.out)["results"][figure].get<double>()).epsilon(3e-5));
+
+  const auto refused = drev_command({"run", "gear_drive", "--method", "exact", "--step", "1e-5",
+                                     "--set", "mesh_stiffness=fourier", "--tolerance", "2"});
+  CHECK(refused.exit_code == 2);
+  for (const char* part : {"3 faults", "--step = 1e-5 s, has no meaning", "--tolerance = 2, must be",
+                           "mesh_1: its law has a stiffness that follows the mesh phase"})
+    CHECK(contains(refused.err, part));
+  CHECK(drev_command({"run", "camshaft", "--tolerance", "1e-8"}).exit_code == 2);
+}
