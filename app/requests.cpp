@@ -58,7 +58,7 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
 /// Average acceleration, and a finding, if there is no such method.
 StepScheme read_method(const std::string& text, std::vector<Finding>& findings) {
   const std::string form =
-      "must be exact, average_acceleration, hht[:ALPHA], "
+      "must be exact (without numbers: see --tolerance), average_acceleration, hht[:ALPHA], "
       "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration "
       "or central_difference";
   try {
@@ -68,7 +68,12 @@ StepScheme read_method(const std::string& text, std::vector<Finding>& findings) 
     for (Finding finding : error.findings()) {
       finding.place = kPlace;
       finding.parameter = "--method " + finding.parameter;
-      if (finding.range == "is no method") finding.range = form;
+      if (finding.range.starts_with("is no method"))
+        finding.range = "is no method" +
+                        did_you_mean(text.substr(0, text.find(':')),
+                                     {"exact", "average_acceleration", "linear_acceleration",
+                                      "central_difference", "newmark", "hht", "generalized_alpha"}) +
+                        "; " + form;
       findings.push_back(std::move(finding));
     }
   }

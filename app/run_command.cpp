@@ -59,7 +59,8 @@ class RunFiles {
     }
     if (!complete)
       say("what there is of the run is in " + history_->partial_path() + " and " +
-          summary_->partial_path() + "; " + history_->path() + ", if it is there, is older");
+          summary_->partial_path() + "; " + history_->path() +
+          ", summary.json and report.html, if they are there, are of an older run");
     return written;
   }
 

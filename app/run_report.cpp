@@ -8,6 +8,7 @@
 #include "app/output_file.hpp"
 #include "app/run_text.hpp"
 #include "app/svg_chart.hpp"
+#include "app/text_layout.hpp"
 #include "models/settings.hpp"
 
 namespace drev::app {
@@ -108,7 +109,12 @@ std::string run_report(const RunRequest& request, const RunResult& result,
   if (const std::string warning = warning_of(result); !warning.empty())
     html += "<p class=\"warning\">" + escaped(warning) + "</p>\n";
   html += "<pre>" + escaped(run_as_text(request, result)) + "</pre>\n";
-  if (!table.columns[0].empty()) html += charts(table);
+  if (!table.columns[0].empty())
+    html += "<p>Drawn from the samples of history.csv, one every " +
+            short_digits(request.every, 12) +
+            " s. What happens between two samples is not in the curves; the table holds the largest values "
+            "of the whole run.</p>\n" +
+            charts(table);
   return html + "</body></html>\n";
 }
 

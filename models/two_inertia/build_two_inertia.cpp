@@ -1,5 +1,6 @@
 #include "models/two_inertia/build_two_inertia.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/units.hpp"
@@ -27,8 +28,8 @@ Scene build_two_inertia(Settings s) {
       std::sqrt(s.number("stiffness_Nm_per_rad") * (j_1 + j_2) / (j_1 * j_2));
   return {.model = std::move(m),
           .duration = s.number("duration_s"),
-          // 200 steps in a period of the one mode: its period is off by 8e-5.
-          .default_step = kTwoPi / omega / 200,
+          // 200 steps in a period of the mode and of the torque: the mode's period is off by 8e-5.
+          .default_step = kTwoPi / std::max(omega, hz(frequency)) / 200,
           .deflection = "load-motor.twist_rad",
           .torques = {"shaft.torque_Nm"},
           .channels = {"motor.angle_rad", "load.angle_rad", "shaft.torque_Nm"}};

@@ -264,3 +264,28 @@ TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a mode
     CHECK(contains(refused.err, part));
   CHECK(drev_command({"run", "camshaft", "--tolerance", "1e-8"}).exit_code == 2);
 }
+
+TEST_CASE("A mistyped method names the nearest one, exact among them") {
+  const auto near = drev_command({"run", "camshaft", "--method", "exac"});
+  CHECK(near.exit_code == 2);
+  CHECK(contains(near.err, "did you mean 'exact'?"));
+  CHECK(contains(drev_command({"run", "camshaft", "--method", "exact:1e-9"}).err, "--tolerance"));
+}
+
+TEST_CASE("The default step follows the fastest thing in a model") {
+  // A torque of 31 kHz on two inertias: the twist is that of the forced vibration far above the mode,
+  // at most twice A/(J_1 (w^2 - w_n^2)) k while the start rings.
+  const auto fast = drev_command({"run", "two_inertia", "--set", "torque_frequency_Hz=31044.4",
+                                  "duration_s=0.02", "--json"});
+  const Json object = Json::parse(fast.out);
+  CHECK(object.at("step_s").get<double>() < 1.0 / 31044.4 / 100);
+  CHECK(object["results"]["max_torque_Nm"].get<double>() < 0.1);
+  // A light mass between the springs rattles fast: the impacts of exact propagation.
+  const std::vector<std::string> light{"run",   "two_mass_backlash",          "--json",
+                                       "--set", "mass_1_kg=1e-4", "duration_s=1.5"};
+  std::vector<std::string> exact = light;
+  exact.insert(exact.end(), {"--method", "exact"});
+  const Json stepped = Json::parse(drev_command(light).out), truth = Json::parse(drev_command(exact).out);
+  for (const char* count : {"front_contacts", "back_contacts"})
+    CHECK(stepped["results"][count] == truth["results"][count]);
+}
