@@ -15,6 +15,7 @@
 #include "solvers/statics.hpp"
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/backlash_oscillator.hpp"
 #include "tests/published/read_csv.hpp"
 
 using namespace drev;
@@ -70,45 +71,10 @@ Deviations deviations(const std::string& name, const TwoMasses& c, const StepSch
   return d;
 }
 
-/// BacklashLaw on a twist, as in the Modelica Standard Library's example.
-struct TwistBacklash {
-  BacklashLaw law;
-  double stiffness;
-  ScalarResponse operator()(const ScalarInput& in) const {
-    return law.evaluate(in.x, in.x_dot, {stiffness, 0.0});
-  }
-  std::span<const double> kinks() const { return law.kinks(); }
-  std::optional<Gap> gap() const { return law.gap(); }
-};
-
-System oscillator(double damping, double gap) {
-  Model m("oscillator");
-  m.add_node("disc");
-  m.add<Inertia>("J", {"disc"}, {.inertia = 5.0});
-  m.add<LawElement<TwistBacklash>>(
-      "stop", {"disc"},
-      TwistBacklash{BacklashLaw({.normal_backlash = gap, .damping = damping,
-                                 .damping_law = MeshDamping::limited}), 2e4});
-  m.set_initial("disc", kPi / 2, 0.0);
-  return m.build();
-}
-
-/// Times at which the speed changes sign, placed linearly in the step.
-class Reversals final : public Observer {
- public:
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler&, const StepPoint& from, const StepPoint& to) override {
-    const double v0 = from.state.v[0], v1 = to.state.v[0];
-    if (v0 * v1 < 0.0)
-      times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
-  }
-  std::vector<double> times;
-};
-
 }  // namespace
 
 TEST_CASE("Published cases 7 to 9") {
-  const System gap = oscillator(50.0, kPi / 4);
+  const System gap = backlash_oscillator(50.0, kPi / 4);
   std::printf("case 7: | t [s] | phi published | drev, h = 5e-6 s | w published | drev |\n");
   Recorder r(gap, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.05);
   simulate(gap, {.step = 5e-6, .t_end = 1.0}, {&r});
@@ -120,13 +86,13 @@ TEST_CASE("Published cases 7 to 9") {
     std::printf("| %.2f | %.10f | %.10f | %.7f | %.7f |\n", t, phi, r.samples(0)[i], w,
                 r.samples(1)[i]);
   }
-  const System no_gap = oscillator(50.0, 0.0);
+  const System no_gap = backlash_oscillator(50.0, 0.0);
   Recorder n(no_gap, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.1);
   simulate(no_gap, {.step = 1e-6, .t_end = 0.1}, {&n});
   std::printf("without a gap: | 0.10 | 0.9541444033 | %.10f | -1.3039986217 | %.10f |\n",
               n.samples(0)[1], n.samples(1)[1]);
 
-  const System undamped = oscillator(0.0, kPi / 4);
+  const System undamped = backlash_oscillator(0.0, kPi / 4);
   Reversals reversals;
   simulate(undamped, {.step = 1e-6, .t_end = 0.5}, {&reversals});
   std::printf("case 8: period 0.1204277338 s, drev %.10f s (three periods, h = 1e-6 s)\n",

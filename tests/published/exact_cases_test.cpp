@@ -6,29 +6,12 @@
 #include "solvers/exact_propagation.hpp"
 #include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
-#include "tests/twist_backlash.hpp"
+#include "tests/problems/backlash_oscillator.hpp"
 
 using namespace drev;
 
-namespace {
-
-System oscillator(double damping) {
-  Model m("oscillator");
-  m.add_node("disc");
-  m.add<Inertia>("J", {"disc"}, {.inertia = 5.0});
-  m.add<LawElement<TwistBacklash>>("stop", {"disc"},
-                                   TwistBacklash{BacklashLaw({.normal_backlash = kPi / 4,
-                                                              .damping = damping,
-                                                              .damping_law = MeshDamping::limited}),
-                                                 2e4});
-  m.set_initial("disc", kPi / 2, 0.0);
-  return m.build();
-}
-
-}  // namespace
-
 TEST_CASE("Exact propagation, case 7: a damper limited to the spring's force") {
-  const System system = oscillator(50.0);
+  const System system = backlash_oscillator(50.0, kPi / 4);
   Recorder recorder(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.05);
   const RunSummary run =
       propagate(system, {.tolerance = 1e-14, .t_end = 1.0, .energy_tolerance = 1e-12}, {&recorder});
@@ -50,7 +33,7 @@ TEST_CASE("Exact propagation, case 8: undamped with a gap, closed-form period") 
   // T = 2 pi/w + 4 g/(w (A - g)); after 50 periods it is where it started.
   const double w = std::sqrt(2e4 / 5.0), gap = kPi / 8, amplitude = kPi / 2;
   const double period = kTwoPi / w + 4 * gap / (w * (amplitude - gap));
-  const System system = oscillator(0.0);
+  const System system = backlash_oscillator(0.0, kPi / 4);
   State state = State::initial(system);
   const RunSummary run = propagate(system, {.tolerance = 1e-15, .t_end = 50 * period}, state);
   CHECK(run.ok());

@@ -8,7 +8,7 @@
 #include "elements/catalogue.hpp"
 #include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
-#include "tests/twist_backlash.hpp"
+#include "tests/problems/twist_backlash.hpp"
 
 using namespace drev;
 

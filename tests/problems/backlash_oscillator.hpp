@@ -1,0 +1,37 @@
+#pragma once
+/// Published cases 7 and 8: a disc of 5 kg m^2 on a stop of 2e4 N m/rad with a gap, let go at pi/2.
+#include <vector>
+
+#include "core/system.hpp"
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "solvers/observer.hpp"
+#include "tests/problems/twist_backlash.hpp"
+
+/// damping [N m s/rad], limited to the spring's force; gap: total [rad].
+inline drev::System backlash_oscillator(double damping, double gap) {
+  drev::Model m("oscillator");
+  m.add_node("disc");
+  m.add<drev::Inertia>("J", {"disc"}, {.inertia = 5.0});
+  m.add<drev::LawElement<TwistBacklash>>(
+      "stop", {"disc"},
+      TwistBacklash{drev::BacklashLaw({.normal_backlash = gap,
+                                       .damping = damping,
+                                       .damping_law = drev::MeshDamping::limited}),
+                    2e4});
+  m.set_initial("disc", drev::kPi / 2, 0.0);
+  return m.build();
+}
+
+/// Times at which the speed of the first unknown changes sign, placed linearly in the step.
+class Reversals final : public drev::Observer {
+ public:
+  void start(const drev::Assembler&, const drev::StepPoint&) override {}
+  void step(const drev::Assembler&, const drev::StepPoint& from,
+            const drev::StepPoint& to) override {
+    const double v0 = from.state.v[0], v1 = to.state.v[0];
+    if (v0 * v1 < 0.0)
+      times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
+  }
+  std::vector<double> times;
+};
