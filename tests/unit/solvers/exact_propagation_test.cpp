@@ -9,21 +9,9 @@
 #include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/twist_backlash.hpp"
+#include "tests/problems/unit_oscillator.hpp"
 
 using namespace drev;
-
-namespace {
-
-/// m = 1, k = (2 pi)^2, to ground: period 1 s.
-Model unit_oscillator() {
-  Model m("oscillator");
-  m.add_node("m", NodeKind::translational);
-  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
-  m.add<GroundSpring>("spring", {"m"}, {.stiffness = 4 * kPi * kPi});
-  return m;
-}
-
-}  // namespace
 
 TEST_CASE("Exact propagation: damped free vibration in closed form to 1e-13") {
   Model m = unit_oscillator();

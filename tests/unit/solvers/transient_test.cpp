@@ -8,19 +8,11 @@
 #include "solvers/peaks.hpp"
 #include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/unit_oscillator.hpp"
 
 using namespace drev;
 
 namespace {
-
-/// m = 1, k = (2 pi)^2, to ground: period 1 s.
-Model unit_oscillator() {
-  Model m("oscillator");
-  m.add_node("m", NodeKind::translational);
-  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
-  m.add<GroundSpring>("spring", {"m"}, {.stiffness = 4 * kPi * kPi});
-  return m;
-}
 
 double position_at(const System& system, double t, double step, const StepScheme& scheme) {
   Recorder r(system, {"m.position_m"}, t);
