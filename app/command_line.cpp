@@ -20,8 +20,9 @@ constexpr const char* kPlace = "command line";
 /// What CLI11 fills; an option that was not given stays empty.
 struct Raw {
   std::string model;
-  std::vector<std::string> sets, records;
-  std::vector<std::string> method, step, tolerance, out, every, count, contact;  // more than one is an error
+  std::vector<std::string> sets, records, methods;
+  // More than one is an error.
+  std::vector<std::string> method, step, tolerance, out, every, count, contact, limit;
   bool json = false;
 };
 
@@ -40,7 +41,7 @@ void add_model_options(CLI::App& sub, Raw& raw) {
 
 void add_run_options(CLI::App& sub, Raw& raw) {
   add_model_options(sub, raw);
-  add_text(sub, "--method", raw.method, "METHOD", "Time integration; see below");
+  add_text(sub, "--method", raw.method, "METHOD", "Time integration; default: what suits the model; see below");
   add_text(sub, "--step", raw.step, "SECONDS", "Time step; default: the model's");
   add_text(sub, "--tolerance", raw.tolerance, "T", "Of method exact, relative; default: 1e-10");
   add_text(sub, "--out", raw.out, "DIR", "Creates DIR with history.csv and summary.json");
@@ -54,6 +55,16 @@ void add_modes_options(CLI::App& sub, Raw& raw) {
   add_model_options(sub, raw);
   add_text(sub, "--count", raw.count, "N", "Elastic modes; default: 10, or all if fewer");
   add_text(sub, "--contact", raw.contact, "STATE", "Contacts: closed (default) or open");
+}
+
+void add_chart_options(CLI::App& sub, Raw& raw) {
+  add_model_options(sub, raw);
+  sub.add_option("--methods", raw.methods, "Methods drawn; default: all that fit the model")
+      ->option_text("METHOD ...");
+  add_text(sub, "--limit", raw.limit, "SECONDS",
+           "Processor time of the longest run drawn; default: 1");
+  add_text(sub, "--out", raw.out, "DIR",
+           "Creates DIR with chart.csv, error_over_time.svg and error_over_work.svg");
 }
 
 std::vector<std::string> option_names(const CLI::App& sub) {
@@ -160,10 +171,23 @@ void take_records(const Raw& raw, CommandLine& line) {
     }
 }
 
+void take_methods(const Raw& raw, CommandLine& line) {
+  if (raw.methods.empty()) return;
+  line.methods.emplace();
+  for (const std::string& name : raw.methods) {
+    if (name.empty() || name.starts_with("--"))
+      line.findings.push_back({kPlace, "--methods", name, "", "must be a method"});
+    else if (std::count(line.methods->begin(), line.methods->end(), name) > 0)
+      line.findings.push_back({kPlace, "--methods", name, "", "is named twice"});
+    else
+      line.methods->push_back(name);
+  }
+}
+
 int no_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
   if (words.empty()) {
-    std::cerr << "drev: no command given; it is one of run, modes, list. drev --help says more.\n";
+    std::cerr << "drev: no command given; it is one of run, modes, list, chart. drev --help says more.\n";
     return kBadInput;
   }
   const std::string& word = words.front();
@@ -177,8 +201,8 @@ int no_command(const CLI::App& app) {
     std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
   else
     std::cerr << (word == "help" ? "; did you mean --help?"
-                                 : did_you_mean(word, {"run", "modes", "list"}))
-              << "\nThe commands are run, modes, list.\n";
+                                 : did_you_mean(word, {"run", "modes", "list", "chart"}))
+              << "\nThe commands are run, modes, list, chart.\n";
   return kBadInput;
 }
 
@@ -199,6 +223,10 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   CLI::App* list = app.add_subcommand("list", "The models; or one model's settings and channels");
   add_model_options(*list, raw);
   list->footer(kListExamples);
+  CLI::App* chart =
+      app.add_subcommand("chart", "Error of the methods against run time and work, on one model");
+  add_chart_options(*chart, raw);
+  chart->footer(std::string(kMethodsHelp) + "\n" + kChartExamples);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -219,6 +247,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   CommandLine line{.model = raw.model, .json = raw.json};
   line.command = &sub == run     ? CommandLine::Command::run
                  : &sub == modes ? CommandLine::Command::modes
+                 : &sub == chart ? CommandLine::Command::chart
                                  : CommandLine::Command::list;
   if (chosen.size() > 1)
     line.findings.push_back(
@@ -235,7 +264,9 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   take_text("--every", raw.every, line.every, line.findings);
   take_text("--count", raw.count, line.count, line.findings);
   take_text("--contact", raw.contact, line.contact, line.findings);
+  take_text("--limit", raw.limit, line.limit, line.findings);
   take_records(raw, line);
+  take_methods(raw, line);
   return {.command = std::move(line)};
 }
 

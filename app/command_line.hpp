@@ -11,13 +11,13 @@
 namespace drev::app {
 
 struct CommandLine {
-  enum class Command { run, modes, list };
+  enum class Command { run, modes, list, chart };
   Command command = Command::list;
   std::string model;                                               ///< empty: not given
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
   std::optional<std::string> method = {}, step = {}, tolerance = {}, out = {}, every = {}, count = {},
-                             contact = {};
-  std::optional<std::vector<std::string>> record = {};
+                             contact = {}, limit = {};
+  std::optional<std::vector<std::string>> record = {}, methods = {};
   bool json = false;
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...
 };

@@ -8,6 +8,7 @@ namespace drev::app {
 int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);
 int list_command(const CommandLine& line);
+int chart_command(const CommandLine& line);
 
 /// Writes to stdout; throws OutputError if that fails (a full disk behind a redirection).
 void print(const std::string& text);

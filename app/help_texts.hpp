@@ -3,11 +3,12 @@
 namespace drev::app {
 
 inline constexpr const char* kMethodsHelp =
-    "Methods:\n"
+    "Methods (default: exact, where the model is linear in pieces and not too stiff for the time simulated;\n"
+    "else average_acceleration; the run says which, and why):\n"
     "  exact                         Taylor series between located contact changes, to --tolerance;\n"
     "                                says what of a model keeps it from that\n"
     "implicit, with a --step, of second order but for newmark with GAMMA > 1/2:\n"
-    "  average_acceleration          the default\n"
+    "  average_acceleration          keeps energy; the default where exact cannot be used\n"
     "  hht[:ALPHA]                   0 to 1/3, default 0.05; damps the fastest modes\n"
     "  generalized_alpha[:RHO_INF]   1 (none) to 0, default 0.8; damps the fastest modes\n"
     "  newmark:BETA,GAMMA            BETA >= 0, GAMMA >= 1/2\n"
@@ -18,7 +19,8 @@ inline constexpr const char* kMainExamples =
     "  drev list                          the models\n"
     "  drev list camshaft                 its settings and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
-    "  drev run camshaft                  5 s of it, with gear drive and backlash\n";
+    "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
+    "  drev chart camshaft                which method to use for it, measured\n";
 
 inline constexpr const char* kRunExamples =
     "Examples:\n"
@@ -40,6 +42,14 @@ inline constexpr const char* kModesExamples =
     "  drev modes camshaft\n"
     "  drev modes camshaft --set drive=free --count 5 --json\n"
     "  drev modes gear_drive --contact open\n";
+
+inline constexpr const char* kChartExamples =
+    "Examples:\n"
+    "  drev chart camshaft --set drive=held\n"
+    "  drev chart two_mass_backlash --out result\n"
+    "  drev chart gear_drive --methods exact average_acceleration hht:0.1 --limit 5\n"
+    "\n"
+    "Errors are relative to the largest value and to a reference that a second method checks.\n";
 
 inline constexpr const char* kListExamples =
     "Examples:\n"

@@ -26,6 +26,8 @@ int execute(const CommandLine& line) {
       return modes_command(line);
     case CommandLine::Command::list:
       return list_command(line);
+    case CommandLine::Command::chart:
+      return chart_command(line);
   }
   return kBadInput;
 }

@@ -55,19 +55,22 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
   return nullptr;
 }
 
-/// Average acceleration, and a finding, if there is no such method.
-StepScheme read_method(const std::string& text, std::vector<Finding>& findings) {
+/// A finding if there is no such method with constant steps.
+void check_method(const char* option, const std::string& text, std::vector<Finding>& findings) {
   const std::string form =
       "must be exact (without numbers: see --tolerance), average_acceleration, hht[:ALPHA], "
       "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration "
       "or central_difference";
   try {
-    if (!text.ends_with(':') && !text.ends_with(',')) return step_scheme(text);
-    findings.push_back({kPlace, "--method", text, "", form});
+    if (!text.ends_with(':') && !text.ends_with(',')) {
+      step_scheme(text);
+      return;
+    }
+    findings.push_back({kPlace, option, text, "", form});
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
       finding.place = kPlace;
-      finding.parameter = "--method " + finding.parameter;
+      finding.parameter = option + (" " + finding.parameter);
       if (finding.range.starts_with("is no method"))
         finding.range = "is no method" +
                         did_you_mean(text.substr(0, text.find(':')),
@@ -77,7 +80,6 @@ StepScheme read_method(const std::string& text, std::vector<Finding>& findings) 
       findings.push_back(std::move(finding));
     }
   }
-  return average_acceleration();
 }
 
 /// The model as far as it can be built; nothing if it cannot.
@@ -132,13 +134,13 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
 }
 
 /// The tolerance of method exact.
-double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>& findings) {
-  const ExactOptions defaults;
-  if (!line.tolerance) return defaults.tolerance;
+double read_tolerance(const CommandLine& line, const std::optional<std::string>& why_not,
+                      std::vector<Finding>& findings) {
+  if (!line.tolerance) return ExactOptions{}.tolerance;
   double value = 0.0;
-  if (!exact)
+  if (why_not)
     findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
-                        "belongs to --method exact; the other methods take --step"});
+                        "belongs to --method exact; " + *why_not});
   else if (!read_number(*line.tolerance, value) ||
            !(value >= kLeastTolerance && value <= kLargestTolerance))
     findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
@@ -148,14 +150,45 @@ double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>&
 }
 
 /// What keeps the model from exact propagation.
-void check_exact(const std::optional<ModelRequest>& model, const CommandLine& line,
+void check_exact(const std::optional<ModelRequest>& model, const char* option,
                  std::vector<Finding>& findings) {
+  if (!model) return;
+  if (const std::optional<std::string> why = why_not_exact(model->system))
+    findings.push_back({kPlace, option, "exact", "", "cannot be used: " + *why});
+}
+
+/// What `drev chart` draws unless told otherwise.
+std::vector<std::string> chart_methods(const System& system) {
+  std::vector<std::string> methods{"average_acceleration", "hht:0.05", "generalized_alpha:0.8",
+                                   "central_difference"};
+  if (!why_not_exact(system)) methods.insert(methods.begin(), "exact");
+  return methods;
+}
+
+/// The method asked for, or the one that suits the model. --step alone asks for a stepping method,
+/// --tolerance alone for exact propagation.
+MethodChoice find_method(const std::optional<ModelRequest>& model, const CommandLine& line,
+                         std::vector<Finding>& findings) {
+  const double duration = model ? model->scene.duration : 1.0;
+  const double step = model ? std::min(model->scene.default_step, duration) : 0.0;
+  const std::string name = line.method.value_or(line.step        ? "average_acceleration"
+                                                : line.tolerance ? "exact"
+                                                                 : "");
+  if (name.empty())
+    return model ? choose_method(model->system, duration, step) : MethodChoice{};
+  const std::string reason = line.method ? "asked for"
+                             : line.step ? "the default where a step is asked for"
+                                         : "the default where a tolerance is asked for";
+  if (name != "exact") {
+    check_method("--method", name, findings);
+    read_tolerance(line, "the other methods take --step", findings);
+    return {{.name = name, .step = step}, reason};
+  }
   if (line.step)
     findings.push_back({kPlace, "--step", *line.step, "s",
                         "has no meaning for --method exact, which finds its own; see --tolerance"});
-  if (!model) return;
-  if (const std::optional<std::string> why = why_not_exact(model->system))
-    findings.push_back({kPlace, "--method", "exact", "", "cannot be used: " + *why});
+  check_exact(model, line.method ? "--method" : "--tolerance", findings);
+  return {{.name = name, .tolerance = read_tolerance(line, {}, findings)}, reason};
 }
 
 [[noreturn]] void refuse(std::vector<Finding> findings) { throw ModelError(std::move(findings)); }
@@ -179,17 +212,13 @@ RunRequest request_run(const CommandLine& line) {
   std::optional<ModelRequest> model = build_model(line, findings);
   const bool settings_right = findings.size() == before;
 
-  const std::string method = line.method.value_or("average_acceleration");
-  const bool exact = method == "exact";
-  const StepScheme scheme = exact ? average_acceleration() : read_method(method, findings);
-  const double tolerance = read_tolerance(line, exact, findings);
-  if (exact) check_exact(model, line, findings);
   const double duration = model ? model->scene.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
-  double step = model ? std::min(model->scene.default_step, duration) : 0.0;
-  if (line.step && !exact)
-    step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
+  const MethodChoice method = find_method(model, line, findings);
+  Method chosen = method.method;
+  if (line.step && !chosen.exact())
+    chosen.step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.every)
     every = read_time("--every", *line.every, duration / kMostRows, high, limit, findings);
@@ -199,8 +228,7 @@ RunRequest request_run(const CommandLine& line) {
   if (model) check_channels(*model, line, settings_right, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.record.value_or(model->scene.channels);
-  return {std::move(*model), scheme, step, exact ? std::optional(tolerance) : std::nullopt,
-          line.out, std::move(record), every};
+  return {std::move(*model), chosen, method.reason, line.out, std::move(record), every};
 }
 
 ModesRequest request_modes(const CommandLine& line) {
@@ -228,6 +256,22 @@ ModesRequest request_modes(const CommandLine& line) {
   }
   if (!findings.empty()) refuse(std::move(findings));
   return {std::move(*model), options};
+}
+
+ChartRequest request_chart(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  for (const std::string& name : line.methods.value_or(std::vector<std::string>{})) {
+    if (name == "exact")
+      check_exact(model, "--methods", findings);
+    else
+      check_method("--methods", name, findings);
+  }
+  double limit = 1.0;
+  if (line.limit) limit = read_time("--limit", *line.limit, 1e-3, 1e4, "", findings);
+  if (!findings.empty()) refuse(std::move(findings));
+  std::vector<std::string> methods = line.methods.value_or(chart_methods(model->system));
+  return {std::move(*model), std::move(methods), limit, line.out};
 }
 
 ModelRequest request_model(const CommandLine& line) {

@@ -8,8 +8,8 @@
 #include "app/command_line.hpp"
 #include "core/system.hpp"
 #include "models/scene.hpp"
+#include "solvers/method_choice.hpp"
 #include "solvers/modes.hpp"
-#include "solvers/step_scheme.hpp"
 
 namespace drev::app {
 
@@ -23,9 +23,8 @@ struct ModelRequest {
 
 struct RunRequest {
   ModelRequest model;
-  StepScheme scheme;                ///< of an implicit method
-  double step = 0.0;                ///< s, of an implicit method
-  std::optional<double> tolerance;  ///< relative, of exact propagation; none: an implicit method
+  Method method;
+  std::string method_reason;        ///< why this one; a sentence without full stop
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv
   double every = 0.0;               ///< s
@@ -36,8 +35,16 @@ struct ModesRequest {
   ModesOptions options;
 };
 
+struct ChartRequest {
+  ModelRequest model;
+  std::vector<std::string> methods;
+  double limit = 1.0;              ///< s of processor time, of the longest run drawn
+  std::optional<std::string> out;  ///< directory
+};
+
 RunRequest request_run(const CommandLine& line);
 ModesRequest request_modes(const CommandLine& line);
+ChartRequest request_chart(const CommandLine& line);
 ModelRequest request_model(const CommandLine& line);
 
 /// About x, as 1, 2 or 5 times a power of ten.

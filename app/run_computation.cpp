@@ -6,7 +6,6 @@
 
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
-#include "solvers/exact_propagation.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/peaks.hpp"
 #include "solvers/recorder.hpp"
@@ -109,7 +108,7 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
   std::vector<Channel> deflections;
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
   // Exact propagation takes long steps: its peaks may lie inside them.
-  const bool exact = request.tolerance.has_value();
+  const bool exact = request.method.exact();
   Peaks torque_peaks(torques, exact), deflection_peaks(deflections, exact);
   Peaks mesh_peaks(mesh_channels(system), exact);
   ContactStatistics contacts(system, exact);
@@ -127,25 +126,15 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
       shown.update(part);
       return !interrupted() && (history == nullptr || history->error().empty());
     };
-    result.summary =
-        exact ? propagate(system,
-                          {.tolerance = *request.tolerance,
-                           .t_end = scene.duration,
-                           .progress = progress},
-                          observers)
-              : simulate(system,
-                         {.scheme = request.scheme,
-                          .step = request.step,
-                          .t_end = scene.duration,
-                          .progress = progress},
-                         observers);
+    result.summary = run_method(system, request.method,
+                                {.t_end = scene.duration, .progress = progress}, observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {
     result.status = "failed";
     result.reason = error.what();
-    result.summary.scheme = exact ? "exact" : request.scheme.name;
-    result.summary.step = request.step;
+    result.summary.scheme = request.method.name;
+    result.summary.step = request.method.step;
   }
   result.run_time = timer.seconds();
   if (history != nullptr && !history->error().empty()) {

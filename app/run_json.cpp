@@ -95,8 +95,10 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["model"] = request.model.entry->name;
   object["settings"] = settings_object(request.model.settings);
   object["method"] = s.scheme;
-  object["step_s"] = request.tolerance ? Json() : number(s.step);
-  object["tolerance"] = request.tolerance ? number(*request.tolerance) : Json();
+  const bool exact = request.method.exact();
+  object["method_reason"] = request.method_reason;
+  object["step_s"] = exact ? Json() : number(s.step);
+  object["tolerance"] = exact ? number(request.method.tolerance) : Json();
   object["status"] = r.status;
   object["reason"] = text_or_null(r.reason);
   object["results"] = results_object(r);
@@ -105,7 +107,7 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["t_end_s"] = number(s.t_end);
   object["steps"] = s.steps;
   object["halved_steps"] = s.halved;
-  object["contact_changes"] = request.tolerance ? Json(s.contact_changes) : Json();
+  object["contact_changes"] = exact ? Json(s.contact_changes) : Json();
   object["iterations"] = s.iterations;
   object["run_time_s"] = number(r.run_time);
   object["phases"] = {{"modes_s", number(r.modes_time)},

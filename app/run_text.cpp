@@ -146,6 +146,7 @@ std::string warning_of(const RunResult& r) {
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.scene.model;
+  const bool exact = request.method.exact();
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
@@ -159,12 +160,12 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
   text += row("Method", s.scheme +
-                            (request.tolerance
-                                 ? ", tolerance " + short_digits(*request.tolerance, 3)
-                                 : ", step " + short_digits(s.step, 4) + " s") +
+                            (exact ? ", tolerance " + short_digits(request.method.tolerance, 3)
+                                   : ", step " + short_digits(s.step, 4) + " s") +
                             ", to t = " + short_digits(s.t_end, 6) + " s");
+  text += row("Why this method", request.method_reason);
   text += row("Effort", std::to_string(s.steps) + " steps, " +
-                            (request.tolerance
+                            (exact
                                  ? std::to_string(s.contact_changes) + " contact changes located, "
                                  : std::to_string(s.halved) + " halved, " +
                                        std::to_string(s.iterations) + " iterations, ") +

@@ -207,9 +207,11 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
   return kept;
 }
 
-/// The symbol of style k at a point, about 7 px wide.
-std::string symbol(int style, double x, double y) {
-  const std::string c = " class=\"m c" + std::to_string(style) + "\"";
+/// The symbol of a series at a point, about 7 px wide.
+std::string symbol(int series, double x, double y) {
+  const int style = series % kStyles;
+  const std::string c =
+      " class=\"m c" + std::to_string(style) + (series >= kStyles ? " o" : "") + "\"";
   const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
     std::string points;
     for (const auto& [dx, dy] : corners)
@@ -257,6 +259,7 @@ constexpr const char* kStyle =
     "@media(prefers-color-scheme:dark){text{fill:#ddd}.bg{fill:#16181c}.g{stroke:#34373d}"
     ".n{stroke:#25282d}.z{stroke:#777}.f,.v{stroke:#999}.c0{stroke:#56B4E9}.c5{stroke:#0072B2}"
     ".c6{stroke:#eee}.m.c0{fill:#56B4E9}.m.c5{fill:#0072B2}.m.c6{fill:#eee}}\n"
+    ".m.o{fill:none;stroke-width:1.5}.r{fill:none;stroke:#888;stroke-width:1.5}\n"
     "</style>\n";
 
 /// Grid, frame, tick labels and axis titles.
@@ -286,7 +289,12 @@ std::string axes_text(const Axis& x, const Axis& y) {
   return out;
 }
 
-std::string series_text(const ChartSeries& s, int style, const Axis& x, const Axis& y) {
+std::string ring(double x, double y) {
+  return "<circle class=\"r\" cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"8\"/>";
+}
+
+std::string series_text(const ChartSeries& s, int series, const Axis& x, const Axis& y) {
+  const int style = series % kStyles;
   std::vector<std::pair<double, double>> points(s.x.size());
   for (std::size_t i = 0; i < s.x.size(); ++i) points[i] = {x.pixel(s.x[i]), y.pixel(s.y[i])};
   points = thinned(points);
@@ -301,7 +309,9 @@ std::string series_text(const ChartSeries& s, int style, const Axis& x, const Ax
     out += "\"/>\n";
   }
   if (s.markers)
-    for (const auto& [at_x, at_y] : points) out += symbol(style, at_x, at_y) + "\n";
+    for (const auto& [at_x, at_y] : points) out += symbol(series, at_x, at_y) + "\n";
+  if (s.rings)
+    for (const auto& [at_x, at_y] : points) out += ring(at_x, at_y) + "\n";
   return out;
 }
 
@@ -323,7 +333,8 @@ double add_legend(const std::vector<ChartSeries>& series, double left, double ri
         out += " stroke-dasharray=\"" + std::string(kDashes[style]) + "\"";
       out += "/>\n";
     }
-    if (s.markers) out += symbol(style, x + 15, y + 8) + "\n";
+    if (s.markers) out += symbol(static_cast<int>(i), x + 15, y + 8) + "\n";
+    if (s.rings) out += ring(x + 15, y + 8) + "\n";
     out += text(x + 36, y + 12, "start", escaped(s.name));
     x += width;
     any = true;
@@ -388,7 +399,7 @@ std::string svg_chart(const ChartOptions& o, const std::vector<ChartSeries>& ser
     if (!m.label.empty()) out += text(at, y.end - 6, "middle", escaped(m.label));
   }
   for (std::size_t i = 0; i < series.size(); ++i)
-    out += series_text(series[i], static_cast<int>(i % kStyles), x, y);
+    out += series_text(series[i], static_cast<int>(i), x, y);
   return out + "</svg>\n";
 }
 

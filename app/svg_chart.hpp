@@ -8,7 +8,8 @@
 ///                                       .markers = true}});
 ///
 /// Readable on a light and on a dark page (the page's colour scheme decides) and without colour vision:
-/// the colours are those of Okabe and Ito, and every series has a dash pattern and a marker of its own.
+/// the colours are those of Okabe and Ito, and every series has a dash pattern and a marker of its own; from
+/// the eighth series on the markers are open.
 ///
 /// A line with more points than the chart has pixels is thinned: of the points in one pixel column the
 /// first, the lowest, the highest and the last are kept, so that no peak is lost. The file's size depends
@@ -26,6 +27,7 @@ struct ChartSeries {
   std::vector<double> x = {}, y = {};  ///< same length, at least one point, finite; > 0 on a logarithmic axis
   bool line = true;          ///< points joined in the order given
   bool markers = false;      ///< a symbol at every point
+  bool rings = false;        ///< a wide circle around every point, of no colour of its own
 };
 
 /// A vertical line across the chart, for an event or a reference value of x.

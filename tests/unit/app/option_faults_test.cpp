@@ -16,7 +16,7 @@ struct Fault {
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> all{
       // commands and models
-      {{}, {"no command", "run, modes, list"}},
+      {{}, {"no command", "run, modes, list, chart"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
       {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
       {{"--verison"}, {"--verison", "did you mean '--version'?"}},
@@ -57,6 +57,14 @@ const std::vector<Fault>& faults() {
       {{"run", "camshaft", "--method", "generalized_alpha:1.1"}, {"rho_inf = 1.1", "0 and 1"}},
       {{"run", "camshaft", "--method", "newmark:0.25"}, {"newmark", "2"}},
       {{"run", "camshaft", "--method", "newmark:0.25,0.4"}, {"gamma = 0.4", "0.5"}},
+      // charts
+      {{"chart", "camshaft", "--step", "1e-5"}, {"--step", "drev run has it"}},
+      {{"chart", "camshaft", "--methods", "exact", "hht", "exact"}, {"exact", "twice"}},
+      {{"chart", "camshaft", "--methods", "hht:2"}, {"--methods alpha = 2", "0 and 0.333"}},
+      {{"chart", "gear_drive", "--set", "mesh_stiffness=step", "--methods", "exact"},
+       {"--methods = exact", "mesh_1"}},
+      {{"chart", "camshaft", "--limit", "0"}, {"--limit = 0 s", "0.001 s"}},
+      {{"chart", "camshaft", "--limit", "soon"}, {"--limit = soon", "seconds"}},
       // settings
       {{"run", "camshaft", "--set", "cylindres=6"}, {"cylindres", "did you mean 'cylinders'?"}},
       {{"run", "camshaft", "--set", "cylinders=11"}, {"cylinders = 11", "6 to 10"}},

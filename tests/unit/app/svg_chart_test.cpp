@@ -181,3 +181,19 @@ TEST_CASE("SVG chart: bad input is refused, with every finding") {
   CHECK(refused({}, {{.name = "s", .x = {-1.7e308, 1.7e308}, .y = {1, 2}}}) == 1);
   CHECK(refused({}, {good}) == 0);
 }
+
+TEST_CASE("Chart: from the eighth series on the markers are open; rings surround points") {
+  std::vector<ChartSeries> series;
+  for (int i = 0; i < 8; ++i)
+    series.push_back({.name = "s" + std::to_string(i), .x = {0.0, 1.0}, .y = {0.0, 1.0 + i}, .markers = true});
+  series.push_back({.name = "ring", .x = {0.5}, .y = {2.0}, .line = false, .rings = true});
+  const std::string svg = svg_chart({}, series);
+  const auto count = [&](const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, at + 1)) ++n;
+    return n;
+  };
+  CHECK(count("class=\"m c0\"") == 3);    // two points and the legend
+  CHECK(count("class=\"m c0 o\"") == 3);  // of the eighth
+  CHECK(count("class=\"r\"") == 2);
+}

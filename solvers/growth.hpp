@@ -1,0 +1,44 @@
+#pragma once
+/// How a small difference of the state grows along a run: what makes rattling trajectories comparable up to a
+/// horizon only.
+///
+///   d_0 = 1e-9 of the largest |z| and |v| so far, in a fixed arbitrary direction;  run both for T / N;
+///   d_k: the separation then, scaled back to d_0 without change of direction;  k = 1 ... N
+///
+/// The product of the d_k / d_0 is the growth, the mean of ln(d_k / d_0) N / T the rate, for long runs the
+/// largest Lyapunov exponent. Separation: largest |dz| / largest |z| or |dv| / largest |v|.
+/// Source: G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Lyapunov characteristic exponents for
+/// smooth dynamical systems and for Hamiltonian systems, Meccanica 15, 1980, doi:10.1007/BF02128236.
+#include "solvers/method_choice.hpp"
+
+namespace drev {
+
+struct GrowthOptions {
+  /// Constant steps or exact: one that does the same for states that are nearly the same.
+  Method method;
+  double t_end = 0.0;       ///< s
+  int pieces = 400;         ///< N
+  std::function<bool(double)> progress = {};
+};
+
+struct Growth {
+  std::vector<double> t;        ///< s, ends of the pieces that were run
+  std::vector<double> growth;   ///< the largest separation up to t, over the first
+  double rate = 0.0;            ///< 1/s
+  double rate_error = 0.0;      ///< 1/s, half of the 95 % interval, by batch means
+  RunStatus status = RunStatus::success;
+  std::string reason;           ///< why it ended early
+  /// The first time at which a difference has grown by more than the factor; infinity: never in the run.
+  double time_of(double factor) const;
+};
+
+Growth measure_growth(const System& system, const GrowthOptions& options);
+
+/// Mean of samples in order of time with the half-width of its 95 % confidence interval, by the means of
+/// batches and Student's t. infinity with less than two samples.
+struct MeanInterval {
+  double mean = 0.0, half_width = 0.0;
+};
+MeanInterval batch_mean(const std::vector<double>& samples, int batches = 20);
+
+}  // namespace drev

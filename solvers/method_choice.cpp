@@ -1,0 +1,115 @@
+#include "solvers/method_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/units.hpp"
+#include "solvers/sparse_cholesky.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kPowerSteps = 20;
+constexpr double kRateTimesStep = 3.0;     // of exact propagation
+constexpr double kProductsInStep = 20.0;   // of the same, about
+constexpr double kMostWork = 2e10;         // products times what one costs: half a minute
+constexpr double kUnknownsOfStep = 20.0;   // what a step costs beside its products
+constexpr double kUnknownsOfContact = 10.0;
+
+/// Size of the largest eigenvalue of M^-1 A, A on the system's pattern.
+double largest_of(const Assembler& assembler, SparseCholesky& mass, const Vector& values) {
+  const int n = assembler.system().size();
+  Vector x(n), ax(n);
+  for (int k = 0; k < n; ++k) x[k] = 1.0 + 0.3 * std::sin(1.0 + 2.0 * k);  // not a rigid motion
+  double size = 0.0;
+  for (int i = 0; i < kPowerSteps; ++i) {
+    assembler.multiply(values, x / x.norm(), ax);
+    if (!(ax.norm() > 0.0)) return 0.0;
+    mass.solve(ax, x);
+    size = x.norm();
+  }
+  return size;
+}
+
+bool is_linear(const System& system) {
+  return !system.loads_depend_on_motion() &&
+         std::all_of(system.scalars().begin(), system.scalars().end(),
+                     [](const ScalarTerm& s) { return s.force->pieces().size() == 1; });
+}
+
+std::string counted(long n, const std::string& thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+}  // namespace
+
+double fastest_rate(const System& system) {
+  if (system.size() == 0) return 0.0;
+  const Assembler assembler(system);
+  SparseCholesky mass(system.pattern());
+  if (const FactorStatus status = mass.factorize(system.pattern(), system.mass_values());
+      status != FactorStatus::success)
+    throw SolverError(system.name() + ": the mass matrix: " + to_text(status));
+  Vector values;
+  assembler.contact_values({.k = 1.0}, Contact::closed, values);
+  const double elastic = std::sqrt(largest_of(assembler, mass, values));
+  assembler.contact_values({.c = 1.0}, Contact::closed, values);
+  return std::max(elastic, largest_of(assembler, mass, values));
+}
+
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o,
+                      State& state, const std::vector<Observer*>& observers) {
+  if (method.exact()) {
+    ExactOptions options{.tolerance = method.tolerance,
+                         .t_start = o.t_start,
+                         .t_end = o.t_end,
+                         .progress = o.progress};
+    if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
+    return propagate(system, options, state, observers);
+  }
+  TransientOptions options{.scheme = step_scheme(method.name),
+                           .step = method.step,
+                           .t_start = o.t_start,
+                           .t_end = o.t_end,
+                           .progress = o.progress};
+  if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
+  return simulate(system, options, state, observers);
+}
+
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
+                      const std::vector<Observer*>& observers) {
+  State state = State::initial(system, options.t_start);
+  return run_method(system, method, options, state, observers);
+}
+
+MethodChoice choose_method(const System& system, double duration, double step) {
+  const Method stepping{.step = step};
+  if (const auto why = why_not_exact(system))
+    return {stepping, "the model is not piecewise linear: " + *why};
+  const long contacts = std::count_if(system.scalars().begin(), system.scalars().end(),
+                                      [](const ScalarTerm& s) { return s.force->pieces().size() > 1; });
+  double rate = 0.0;
+  try {
+    rate = fastest_rate(system);
+  } catch (const SolverError& error) {
+    return {stepping, std::string("exact propagation cannot be used: ") + error.what()};
+  }
+  const double products = kProductsInStep * std::max(1.0, rate * duration / kRateTimesStep);
+  const double work = products * (kUnknownsOfStep + system.size() +
+                                  kUnknownsOfContact * static_cast<double>(contacts));
+  std::ostringstream text;
+  text.precision(2);
+  text << "the model is " << (is_linear(system) ? "linear" : "piecewise linear") << ", with "
+       << counted(system.size(), "unknown") << " and " << counted(contacts, "contact");
+  if (work > kMostWork && products > duration / step) {
+    text << ", but its fastest mode, " << to_hz(rate) << " Hz, would cost exact propagation "
+         << products << " products";
+    return {stepping, text.str()};
+  }
+  text << ": exact between located changes";
+  return {{.name = "exact", .tolerance = ExactOptions{}.tolerance}, text.str()};
+}
+
+}  // namespace drev

@@ -1,0 +1,68 @@
+// Which method a system is given, and the rate that decides.
+#include "solvers/method_choice.hpp"
+
+#include <cmath>
+
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "tests/catch.hpp"
+#include "tests/problems/backlash_oscillator.hpp"
+#include "tests/problems/unit_oscillator.hpp"
+
+using namespace drev;
+
+TEST_CASE("Fastest rate: closed forms") {
+  CHECK(fastest_rate(unit_oscillator().build()) == Approx(kTwoPi).epsilon(1e-12));
+  // Chain of 10 discs, fixed at one end: 2 sqrt(k/J) cos(pi/21) (k = 1000, J = 0.1).
+  Model chain("chain");
+  for (int i = 0; i < 10; ++i) {
+    const std::string n = "d" + std::to_string(i), before = "d" + std::to_string(i - 1);
+    chain.add_node(n);
+    chain.add<Inertia>("J" + n, {n}, {.inertia = 0.1});
+    if (i == 0)
+      chain.add<GroundSpring>("k" + n, {n}, {.stiffness = 1000.0});
+    else
+      chain.add<ShaftSpring>("k" + n, {before, n}, {.stiffness = 1000.0});
+  }
+  const double exact = 2.0 * std::sqrt(1e4) * std::cos(kPi / 21.0);
+  const double found = fastest_rate(chain.build());
+  CHECK(found <= exact * (1.0 + 1e-12));
+  CHECK(found > 0.95 * exact);
+  // A damper can be faster than any spring.
+  Model damped = unit_oscillator();
+  damped.add<Dashpot>("c", {"m"}, {.damping = 100.0});
+  CHECK(fastest_rate(damped.build()) == Approx(100.0).epsilon(1e-12));
+}
+
+TEST_CASE("The method follows what the model is") {
+  const MethodChoice linear = choose_method(unit_oscillator().build(), 10.0, 1e-3);
+  CHECK(linear.method.exact());
+  CHECK(linear.reason.find("linear, with 1 unknown and 0 contacts") != std::string::npos);
+  const MethodChoice contact = choose_method(backlash_oscillator(0.0, 1.0), 10.0, 1e-3);
+  CHECK(contact.method.exact());
+  CHECK(contact.reason.find("piecewise linear, with 1 unknown and 1 contact") != std::string::npos);
+  Model general = unit_oscillator();
+  general.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return std::sin(t); }});
+  const MethodChoice other = choose_method(general.build(), 10.0, 1e-3);
+  CHECK_FALSE(other.method.exact());
+  CHECK(other.method.step == 1e-3);
+  CHECK(other.reason.find("load") != std::string::npos);
+  // Too stiff for the time: 1e9 periods, and a step that does not follow them.
+  const MethodChoice stiff = choose_method(unit_oscillator().build(), 1e9, 1.0);
+  CHECK_FALSE(stiff.method.exact());
+  CHECK(stiff.reason.find("1 Hz") != std::string::npos);
+}
+
+TEST_CASE("A method by name runs as its own function would") {
+  Model m = unit_oscillator();
+  m.set_initial("m", 1.0, 0.0);
+  const System system = m.build();
+  State exact = State::initial(system), stepped = exact, own = exact;
+  CHECK(run_method(system, {.name = "exact", .tolerance = 1e-12}, {.t_end = 0.3}, exact).ok());
+  CHECK(exact.z[0] == Approx(std::cos(kTwoPi * 0.3)).epsilon(1e-11));
+  const RunSummary run = run_method(system, {.name = "hht:0.1", .step = 1e-3}, {.t_end = 0.3}, stepped);
+  CHECK(run.steps == 300);
+  simulate(system, {.scheme = hht(0.1), .step = 1e-3, .t_end = 0.3}, own);
+  CHECK(stepped.z[0] == own.z[0]);
+  CHECK_THROWS_AS(run_method(system, {.name = "euler", .step = 1e-3}, {.t_end = 0.3}), ModelError);
+}
