@@ -3,17 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/law_element.hpp"
 #include "core/units.hpp"
+#include "solvers/exact_propagation.hpp"
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/stepped_spring.hpp"
+#include "tests/problems/twist_backlash.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 
 using namespace drev;
 using namespace drev::problems;
 
 namespace {
+
+/// A wall at x = 0 with k = 1e4 and a damper c = 20 that acts, and pulls, while x > 0.
+struct SwitchedDamper {
+  ScalarResponse operator()(const ScalarInput& in) const {
+    if (in.x <= 0.0) return {};
+    return {.y = 1e4 * in.x + 20.0 * in.x_dot,
+            .dy_dx = 1e4,
+            .dy_dx_dot = 20.0,
+            .stored_energy = 5e3 * in.x * in.x,
+            .dissipated_power = 20.0 * in.x_dot * in.x_dot};
+  }
+  std::optional<Gap> gap() const { return Gap{-1e3, 0.0}; }
+  std::vector<LawPiece> pieces() const {
+    return {{.bounds = {{0.0, -1.0, 0.0, 1}}},
+            {.k = 1e4, .c = 20.0, .elastic_k = 1e4, .bounds = {{0.0, 1.0, 0.0, 0}}}};
+  }
+};
+
+/// Thrown against it at 1 m/s from `start`.
+template <class Law>
+System thrown(const Law& law, double start) {
+  Model m("thrown");
+  m.add_node("m", NodeKind::translational);
+  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
+  m.add<LawElement<Law>>("wall", {"m"}, law);
+  m.set_initial("m", start, 1.0);
+  return m.build();
+}
 
 /// Steady load k, let go of at `release`, from rest at 0: error of u(2.25), w = 2 pi.
 double release_error(double release, double h, bool stated) {
@@ -118,4 +149,32 @@ TEST_CASE("Average acceleration moves the primary tongue's upper end by -1.575/N
     if (steps == 20) CHECK(inside == Approx(2.12133464).margin(1e-8));
     CHECK((inside - 2.1252722147406) * steps * steps == Approx(-1.575).margin(0.005));
   }
+}
+
+TEST_CASE("A damper that is switched on by contact: exact propagation to rounding") {
+  // Thrown from x = -0.01. In contact e^(-10 s) sin(w s)/w, w^2 = 1e4 - 100, s = t - 0.01; out at
+  // s = pi/w with -e^(-10 pi/w).
+  const double w = std::sqrt(9900.0), exit = -.7292476142876709;
+  CHECK(-std::exp(-10.0 * kPi / w) == Approx(exit).epsilon(1e-14));
+  const System pulling = thrown(SwitchedDamper{}, -0.01);
+  State s = State::initial(pulling);
+  CHECK(propagate(pulling, {.tolerance = 1e-14, .t_end = 0.06}, s).ok());
+  CHECK(s.v[0] == Approx(exit).epsilon(1e-12));
+  CHECK(s.z[0] == Approx(-.01343697494286793).margin(1e-14));
+
+  // The catalogue's law never pulls: out where k x + c x' = 0, at tan w t = -w/490, and no slower from there.
+  const double gap = 0.1;
+  const System clipped =
+      thrown(TwistBacklash{BacklashLaw({.normal_backlash = 2 * gap,
+                                        .damping = 20.0,
+                                        .damping_law = MeshDamping::contact_only}),
+                           1e4},
+             0.0);
+  const double out = (kPi - std::atan(w / 490.0)) / w, decay = std::exp(-10.0 * out);
+  const double v_out = decay * (std::cos(w * out) - 10.0 / w * std::sin(w * out));
+  const double x_out = decay * std::sin(w * out) / w;
+  s = State::initial(clipped);
+  CHECK(propagate(clipped, {.tolerance = 1e-14, .t_end = gap + 0.06}, s).ok());
+  CHECK(s.v[0] == Approx(v_out).epsilon(1e-12));
+  CHECK(s.z[0] == Approx(gap + x_out + v_out * (0.06 - out)).margin(1e-13));
 }

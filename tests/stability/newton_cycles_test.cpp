@@ -202,3 +202,31 @@ TEST_CASE("Random gaps in a pair, chain, loop and star: ours converges from any 
     CHECK(most <= 15);
   }
 }
+
+TEST_CASE(
+    "A spring that softens: plain Newton cycles beyond the closed-form threshold, ours never") {
+  // Slope a + 10 within +-1, a + 1 beyond: from x = 3 the iterates run 3, -9/(a + 1), 9/(a + 1), ...
+  // for ever if they stay outside, that is if a + 10 > 2 (a + 1): a < 8.
+  for (const double a : {1.0, 7.99, 8.01, 20.0}) {
+    Model m("softening");
+    m.add_node("m");
+    m.add<Inertia>("J", {"m"}, {.inertia = 1.0});
+    m.add<GroundSpring>("ground", {"m"}, {.stiffness = a});
+    m.add<PolylineSpring>("spring", {"m"}, PolylineSpring::with_stops(10.0, 1.0, 1.0));
+    const System system = m.build();
+    const Assembler assembler(system);
+    const Vector zero = Vector::Zero(1);
+    Vector history;
+    SparseNewton newton(system);
+    const auto solve = [&](bool line_search, Vector& u) {
+      u = Vector::Constant(1, 3.0);
+      return newton.solve(assembler, {.z_0 = &zero, .v_0 = &zero, .history = &history},
+                          {.max_iterations = 100, .line_search = line_search}, u, history);
+    };
+    Vector u;
+    INFO("a = " << a);
+    CHECK(converged(solve(false, u)) == (a > 8.0));
+    REQUIRE(converged(solve(true, u)));
+    CHECK(std::abs(u[0]) < 1e-12);
+  }
+}
