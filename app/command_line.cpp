@@ -22,7 +22,7 @@ struct Raw {
   std::string model;
   std::vector<std::string> sets, records, methods;
   // More than one is an error.
-  std::vector<std::string> method, step, tolerance, out, every, count, contact, limit;
+  std::vector<std::string> method, step, tolerance, out, every, count, contact, limit, accuracy;
   bool json = false;
 };
 
@@ -41,9 +41,12 @@ void add_model_options(CLI::App& sub, Raw& raw) {
 
 void add_run_options(CLI::App& sub, Raw& raw) {
   add_model_options(sub, raw);
-  add_text(sub, "--method", raw.method, "METHOD", "Time integration; default: what suits the model; see below");
+  add_text(sub, "--method", raw.method, "METHOD",
+           "Time integration; default: what suits the model; see below");
   add_text(sub, "--step", raw.step, "SECONDS", "Time step; default: the model's");
   add_text(sub, "--tolerance", raw.tolerance, "T", "Of method exact, relative; default: 1e-10");
+  add_text(sub, "--accuracy", raw.accuracy, "A",
+           "Finds the figures to the relative error A and states the error of each");
   add_text(sub, "--out", raw.out, "DIR", "Creates DIR with history.csv and summary.json");
   add_text(sub, "--record", raw.records, "CHANNEL,...",
            "Columns of history.csv; default: the model's");
@@ -264,6 +267,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   take_text("--every", raw.every, line.every, line.findings);
   take_text("--count", raw.count, line.count, line.findings);
   take_text("--contact", raw.contact, line.contact, line.findings);
+  take_text("--accuracy", raw.accuracy, line.accuracy, line.findings);
   take_text("--limit", raw.limit, line.limit, line.findings);
   take_records(raw, line);
   take_methods(raw, line);

@@ -16,7 +16,7 @@ struct CommandLine {
   std::string model;                                               ///< empty: not given
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
   std::optional<std::string> method = {}, step = {}, tolerance = {}, out = {}, every = {}, count = {},
-                             contact = {}, limit = {};
+                             contact = {}, limit = {}, accuracy = {};
   std::optional<std::vector<std::string>> record = {}, methods = {};
   bool json = false;
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...

@@ -14,6 +14,7 @@ namespace {
 constexpr const char* kPlace = "command line";
 constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
 constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;
+constexpr double kLeastAccuracy = 1e-12, kLargestAccuracy = 0.5;
 
 void take_findings(const ModelError& error, std::vector<Finding>& findings) {
   findings.insert(findings.end(), error.findings().begin(), error.findings().end());
@@ -165,6 +166,19 @@ std::vector<std::string> chart_methods(const System& system) {
   return methods;
 }
 
+std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding>& findings) {
+  if (!line.accuracy) return {};
+  double value = 0.0;
+  if (!read_number(*line.accuracy, value) || !(value >= kLeastAccuracy && value <= kLargestAccuracy))
+    findings.push_back({kPlace, "--accuracy", *line.accuracy, "",
+                        "must be a number from " + short_digits(kLeastAccuracy, 3) + " to " +
+                            short_digits(kLargestAccuracy, 3)});
+  const std::string why = "cannot be given with --accuracy, which finds it";
+  if (line.step) findings.push_back({kPlace, "--step", *line.step, "s", why});
+  if (line.tolerance) findings.push_back({kPlace, "--tolerance", *line.tolerance, "", why});
+  return value;
+}
+
 /// The method asked for, or the one that suits the model. --step alone asks for a stepping method,
 /// --tolerance alone for exact propagation.
 MethodChoice find_method(const std::optional<ModelRequest>& model, const CommandLine& line,
@@ -219,6 +233,7 @@ RunRequest request_run(const CommandLine& line) {
   Method chosen = method.method;
   if (line.step && !chosen.exact())
     chosen.step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
+  const std::optional<double> accuracy = read_accuracy(line, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.every)
     every = read_time("--every", *line.every, duration / kMostRows, high, limit, findings);
@@ -228,7 +243,7 @@ RunRequest request_run(const CommandLine& line) {
   if (model) check_channels(*model, line, settings_right, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.record.value_or(model->scene.channels);
-  return {std::move(*model), chosen, method.reason, line.out, std::move(record), every};
+  return {std::move(*model), chosen, accuracy, method.reason, line.out, std::move(record), every};
 }
 
 ModesRequest request_modes(const CommandLine& line) {

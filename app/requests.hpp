@@ -24,6 +24,7 @@ struct ModelRequest {
 struct RunRequest {
   ModelRequest model;
   Method method;
+  std::optional<double> accuracy;   ///< relative, of every figure; the method's step or tolerance follows
   std::string method_reason;        ///< why this one; a sentence without full stop
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv

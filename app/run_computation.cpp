@@ -95,6 +95,44 @@ std::vector<Contacts> contacts_of(const System& system, const ContactStatistics&
   return contacts;
 }
 
+/// Time of the turn that static torques are sought over, where the shaft's speed is constant; else 0.
+double cycle_of(const ModelRequest& model) {
+  const auto& reference = model.system.reference();
+  if (!reference || !reference->at || !(model.scene.static_turn > 0.0)) return 0.0;
+  const double speed = reference->at(0.0).rate;
+  if (speed == 0.0 || reference->at(model.scene.duration).rate != speed) return 0.0;
+  return model.scene.static_turn / std::abs(speed);
+}
+
+/// Figures with their errors; false: the run failed, as the result says.
+bool find_accuracy(const RunRequest& request, RunResult& result) {
+  const Scene& scene = request.model.scene;
+  Progress shown;
+  const Timer timer;
+  try {
+    result.accuracy = run_to_accuracy(request.model.system,
+                                      {.accuracy = *request.accuracy,
+                                       .t_end = scene.duration,
+                                       .deflection = scene.deflection,
+                                       .torques = scene.torques,
+                                       .cycle = cycle_of(request.model),
+                                       .method = request.method,
+                                       .progress = [&](double part) {
+                                         shown.update(part);
+                                         return !interrupted();
+                                       }});
+    result.method = result.accuracy->fine;
+    result.summary = result.accuracy->summary;
+    result.status = to_text(result.summary.status);
+    result.reason = result.summary.reason;
+  } catch (const SolverError& error) {
+    result.status = "failed";
+    result.reason = error.what();
+  }
+  result.accuracy_time = timer.seconds();
+  return result.ok();
+}
+
 }  // namespace
 
 RunResult compute_run(const RunRequest& request, HistoryFile* history) {
@@ -109,6 +147,7 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
   // Exact propagation takes long steps: its peaks may lie inside them.
   const bool exact = request.method.exact();
+  result.method = request.method;
   Peaks torque_peaks(torques, exact), deflection_peaks(deflections, exact);
   Peaks mesh_peaks(mesh_channels(system), exact);
   ContactStatistics contacts(system, exact);
@@ -119,6 +158,7 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
     recorder->set_sink([&](double /*t*/, const std::vector<double>& row) { history->add(row); });
     observers.push_back(&*recorder);
   }
+  if (request.accuracy && !find_accuracy(request, result)) return result;
   const Timer timer;
   try {
     Progress shown;
@@ -126,15 +166,15 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
       shown.update(part);
       return !interrupted() && (history == nullptr || history->error().empty());
     };
-    result.summary = run_method(system, request.method,
+    result.summary = run_method(system, result.method,
                                 {.t_end = scene.duration, .progress = progress}, observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {
     result.status = "failed";
     result.reason = error.what();
-    result.summary.scheme = request.method.name;
-    result.summary.step = request.method.step;
+    result.summary.scheme = result.method.name;
+    result.summary.step = result.method.step;
   }
   result.run_time = timer.seconds();
   if (history != nullptr && !history->error().empty()) {

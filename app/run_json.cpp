@@ -87,6 +87,27 @@ Json energy_object(const EnergyBalance& e) {
           {"scale_J", number(e.scale)}};
 }
 
+Json accuracy_object(double asked, const AccuracyResult& a) {
+  Json figures = Json::array();
+  for (const Figure& f : a.figures)
+    figures.push_back({{"name", f.name},
+                       {"unit", text_or_null(f.unit)},
+                       {"value", number(f.value)},
+                       {"error", number(f.error)},
+                       {"kind", f.kind == Figure::Kind::interval ? "95 % interval" : "estimate"},
+                       {"keeps_accuracy", f.kind == Figure::Kind::estimate ? Json(f.keeps(asked)) : Json()}});
+  return {{"asked", asked},
+          {"reached", a.reached},
+          {"reason", text_or_null(a.reason)},
+          {"horizon_s", number(a.horizon)},
+          {"growth", a.growth.growth.empty() ? Json() : number(a.growth.growth.back())},
+          {"growth_rate_per_s", number(a.growth.rate)},
+          {"growth_rate_error_per_s", number(a.growth.rate_error)},
+          {"coarse", to_text(a.coarse)},
+          {"fine", to_text(a.fine)},
+          {"figures", std::move(figures)}};
+}
+
 }  // namespace
 
 std::string run_as_json(const RunRequest& request, const RunResult& r) {
@@ -95,13 +116,14 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["model"] = request.model.entry->name;
   object["settings"] = settings_object(request.model.settings);
   object["method"] = s.scheme;
-  const bool exact = request.method.exact();
+  const bool exact = r.method.exact();
   object["method_reason"] = request.method_reason;
   object["step_s"] = exact ? Json() : number(s.step);
-  object["tolerance"] = exact ? number(request.method.tolerance) : Json();
+  object["tolerance"] = exact ? number(r.method.tolerance) : Json();
   object["status"] = r.status;
   object["reason"] = text_or_null(r.reason);
   object["results"] = results_object(r);
+  object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
   object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
   object["energy"] = energy_object(s.energy);
   object["t_end_s"] = number(s.t_end);
@@ -112,6 +134,7 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["run_time_s"] = number(r.run_time);
   object["phases"] = {{"modes_s", number(r.modes_time)},
                       {"static_s", number(r.static_time)},
+                      {"accuracy_s", number(r.accuracy_time)},
                       {"simulation_s", number(r.run_time)}};
   object["note"] = text_or_null(request.model.scene.note);
   return json_text(object);

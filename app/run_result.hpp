@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/requests.hpp"
+#include "solvers/accuracy.hpp"
 #include "solvers/contact_statistics.hpp"
 #include "solvers/transient.hpp"
 
@@ -30,14 +31,16 @@ struct RunResult {
   /// output_error: ended because an output could not be written.
   std::string status = "success";
   std::string reason;
+  Method method;  ///< with the step or tolerance that an accuracy asked for led to
   RunSummary summary;
+  std::optional<AccuracyResult> accuracy;
   std::optional<ModeSet> modes;
   std::string modes_reason;
   std::optional<Largest> deflection, force, static_force;
   std::optional<Largest> mesh_force;  ///< over meshes and whatever else has a gap [N]
   std::string static_reason;          ///< why there is no static force
   std::vector<Contacts> contacts;
-  double modes_time = 0.0, static_time = 0.0, run_time = 0.0;  ///< s of wall time
+  double modes_time = 0.0, static_time = 0.0, accuracy_time = 0.0, run_time = 0.0;  ///< s of wall time
 
   bool ok() const { return status == "success"; }
   /// Largest force over largest static force.

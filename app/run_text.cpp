@@ -125,6 +125,34 @@ std::string energy_row(const EnergyBalance& e) {
                                    ", worst at " + short_digits(e.worst_time, 4) + " s");
 }
 
+/// A value with the digits that its error leaves, and the error.
+std::string figure_text(const Figure& f) {
+  int places = 12;
+  if (f.error > 0.0 && f.value != 0.0)
+    places = std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(f.value) / f.error))) + 1, 2, 15);
+  const bool known = std::isfinite(f.error);
+  return short_digits(f.value, known ? places : 3) + " +- " +
+         (known ? short_digits(f.error, 2) : std::string("unknown")) +
+         (f.unit.empty() ? "" : " " + f.unit);
+}
+
+std::string accuracy_rows(double asked, const AccuracyResult& a) {
+  std::string text =
+      row("Accuracy asked", short_digits(asked, 3) +
+                                (a.reached ? ": reached" : ": not reached: " + a.reason));
+  text += row("Growth", "a small difference grows " +
+                            short_digits(a.growth.growth.empty() ? 1.0 : a.growth.growth.back(), 3) +
+                            " times at most, exp(" + short_digits(a.growth.rate, 3) + " t) +- " +
+                            short_digits(a.growth.rate_error, 2) + " 1/s on the whole");
+  for (const Figure& f : a.figures)
+    text += "  " + f.name + ": " + figure_text(f) +
+            (f.kind == Figure::Kind::interval ? " (95 % interval)"
+             : f.keeps(asked)                 ? ""
+                                              : " (not kept)") +
+            "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string settings_text(const Settings& settings) {
@@ -146,7 +174,7 @@ std::string warning_of(const RunResult& r) {
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.scene.model;
-  const bool exact = request.method.exact();
+  const bool exact = r.method.exact();
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
@@ -160,7 +188,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
   text += row("Method", s.scheme +
-                            (exact ? ", tolerance " + short_digits(request.method.tolerance, 3)
+                            (exact ? ", tolerance " + short_digits(r.method.tolerance, 3)
                                    : ", step " + short_digits(s.step, 4) + " s") +
                             ", to t = " + short_digits(s.t_end, 6) + " s");
   text += row("Why this method", request.method_reason);
@@ -170,6 +198,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
                                  : std::to_string(s.halved) + " halved, " +
                                        std::to_string(s.iterations) + " iterations, ") +
                             digits(r.run_time, 3) + " s");
+  if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
   if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
   return text;
 }

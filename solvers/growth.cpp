@@ -63,6 +63,15 @@ double Growth::time_of(double factor) const {
   return std::numeric_limits<double>::infinity();
 }
 
+double Growth::factor(double time) const {
+  double grown = 1.0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    grown = growth[k];
+    if (t[k] >= time) break;
+  }
+  return grown;
+}
+
 Growth measure_growth(const System& system, const GrowthOptions& o) {
   Growth result;
   const int n = system.size();
@@ -108,6 +117,7 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
     result.growth.push_back(std::exp(largest));
   }
   const MeanInterval rate = batch_mean(rates);
+  result.z_scale = scale.z(), result.v_scale = scale.v();
   result.rate = rate.mean, result.rate_error = rate.half_width;
   return result;
 }

@@ -26,8 +26,11 @@ struct Growth {
   std::vector<double> growth;   ///< the largest separation up to t, over the first
   double rate = 0.0;            ///< 1/s
   double rate_error = 0.0;      ///< 1/s, half of the 95 % interval, by batch means
+  double z_scale = 1.0, v_scale = 1.0;  ///< largest |z| and |v| at the ends of the pieces
   RunStatus status = RunStatus::success;
   std::string reason;           ///< why it ended early
+  /// Factor up to t; 1 at least.
+  double factor(double time) const;
   /// The first time at which a difference has grown by more than the factor; infinity: never in the run.
   double time_of(double factor) const;
 };

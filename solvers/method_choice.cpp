@@ -59,6 +59,14 @@ double fastest_rate(const System& system) {
   return std::max(elastic, largest_of(assembler, mass, values));
 }
 
+std::string to_text(const Method& method) {
+  std::ostringstream text;
+  text << method.name;
+  if (method.tolerance > 0.0) text << ", tolerance " << method.tolerance;
+  if (method.step > 0.0) text << ", step " << method.step << " s";
+  return text.str();
+}
+
 RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o,
                       State& state, const std::vector<Observer*>& observers) {
   if (method.exact()) {

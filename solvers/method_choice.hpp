@@ -24,6 +24,9 @@ struct Method {
   bool exact() const { return name == "exact"; }
 };
 
+/// "exact, tolerance 1e-8", "hht:0.1, step 0.001 s".
+std::string to_text(const Method& method);
+
 struct MethodRunOptions {
   double t_start = 0.0, t_end = 0.0;  ///< s
   double energy_tolerance = 0.0;      ///< relative; 0: the method's own

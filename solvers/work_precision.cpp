@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <sstream>
 
 #include "solvers/recorder.hpp"
 
@@ -210,14 +209,6 @@ void check(const System& system, const WorkPrecisionOptions& o) {
 }
 
 }  // namespace
-
-std::string to_text(const Method& method) {
-  std::ostringstream text;
-  text << method.name;
-  if (method.tolerance > 0.0) text << ", tolerance " << method.tolerance;
-  if (method.step > 0.0) text << ", step " << method.step << " s";
-  return text.str();
-}
 
 const WorkPoint* WorkPrecision::cheapest(const WorkCurve& curve, double error) const {
   const WorkPoint* best = nullptr;

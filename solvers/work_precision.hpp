@@ -66,7 +66,5 @@ struct WorkPrecision {
 /// Throws ModelError for bad options, SolverError where no reference can be had.
 WorkPrecision work_precision(const System& system, const WorkPrecisionOptions& options);
 
-/// "exact, tolerance 1e-8", "hht:0.1, step 0.001 s".
-std::string to_text(const Method& method);
 
 }  // namespace drev

@@ -57,6 +57,11 @@ const std::vector<Fault>& faults() {
       {{"run", "camshaft", "--method", "generalized_alpha:1.1"}, {"rho_inf = 1.1", "0 and 1"}},
       {{"run", "camshaft", "--method", "newmark:0.25"}, {"newmark", "2"}},
       {{"run", "camshaft", "--method", "newmark:0.25,0.4"}, {"gamma = 0.4", "0.5"}},
+      // accuracy
+      {{"run", "camshaft", "--accuracy", "0"}, {"--accuracy = 0", "from 1e-12 to 0.5"}},
+      {{"run", "camshaft", "--accuracy", "1 %"}, {"--accuracy = 1 %", "from 1e-12 to 0.5"}},
+      {{"run", "camshaft", "--accuracy", "1e-3", "--step", "1e-5"},
+       {"--step = 1e-5 s", "cannot be given with --accuracy"}},
       // charts
       {{"chart", "camshaft", "--step", "1e-5"}, {"--step", "drev run has it"}},
       {{"chart", "camshaft", "--methods", "exact", "hht", "exact"}, {"exact", "twice"}},

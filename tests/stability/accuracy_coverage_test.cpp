@@ -1,0 +1,87 @@
+// Does the stated error cover the true one? Random linear and contact models, each to several accuracies;
+// truth by a much tighter exact run, whose own statement is far below.
+#include <cmath>
+#include <random>
+
+#include "elements/catalogue.hpp"
+#include "solvers/accuracy.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// A chain of 1 to 5 discs, tied to ground by a spring or by a backlash, driven by tables and orders.
+System random_chain(unsigned seed, bool contacts) {
+  std::mt19937 engine(seed);
+  const auto random = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  Model m("chain " + std::to_string(seed));
+  const int discs = 1 + static_cast<int>(engine() % 5);
+  std::string last;
+  for (int i = 0; i < discs; ++i) {
+    const std::string n = "n" + std::to_string(i);
+    m.add_node(n);
+    m.add<Inertia>("J" + n, {n}, {.inertia = random(0.5, 3.0)});
+    const double k = random(20.0, 300.0);
+    const std::vector<NodeRef> ends = i == 0 ? std::vector<NodeRef>{n} : std::vector<NodeRef>{last, n};
+    if (contacts && (i == 0 || engine() % 2))
+      m.add("spring" + n, ends,
+            std::make_shared<PolylineSpring>(PolylineSpring::dead_band(k, random(0.005, 0.05))));
+    else if (i == 0)
+      m.add<GroundSpring>("spring" + n, {n}, {.stiffness = k});
+    else
+      m.add<ShaftSpring>("spring" + n, {last, n}, {.stiffness = k});
+    if (engine() % 2) m.add<Dashpot>("dashpot" + n, {n}, {.damping = random(0.05, 0.5)});
+    last = n;
+  }
+  const double torque = random(1.0, 10.0);
+  m.add<AppliedTorque>("load", {last},
+                       {.table = TimeTable({0.0, 0.5, 1.0, 1.0}, {0.0, torque, -torque, 0.0})});
+  m.set_initial("n0", random(-0.1, 0.1), random(-1.0, 1.0));
+  return m.build();
+}
+
+}  // namespace
+
+TEST_CASE("Accuracy: the stated error covers the true one on 80 random models") {
+  long figures = 0, missed = 0, reached = 0;
+  for (unsigned seed = 1; seed <= 80; ++seed) {
+    const System system = random_chain(seed, seed % 2 == 0);
+    const std::string last = system.node_names().back();
+    AccuracyOptions o{.t_end = 3.0, .deflection = last + ".angle_rad", .torques = {"springn0.torque_Nm"}};
+    o.method = {.name = "exact"};
+    o.accuracy = 1e-10;
+    const AccuracyResult truth = run_to_accuracy(system, o);
+    REQUIRE(truth.summary.ok());
+    for (const bool exact : {true, false})
+      for (const double accuracy : {1e-3, 1e-5}) {
+        o.method = exact ? Method{.name = "exact"} : Method{.step = 2e-3};
+        o.accuracy = accuracy;
+        o.most_seconds = 0.2;
+        const AccuracyResult r = run_to_accuracy(system, o);
+        INFO("seed " << seed << ", " << o.method.name << " to " << accuracy);
+        REQUIRE(r.summary.ok());
+        reached += r.reached;
+        for (const Figure& f : r.figures) {
+          if (f.kind != Figure::Kind::estimate || f.name.starts_with("last")) continue;
+          const Figure* t = truth.find(f.name);
+          if (t == nullptr || t->kind != Figure::Kind::estimate) continue;
+          if (f.name == "contact changes, comparable") continue;  // says how far, not how much
+          INFO(f.name << ": " << f.value << " +- " << f.error << ", truth " << t->value << " +- "
+                      << t->error);
+          ++figures;
+          const bool covered = std::abs(f.value - t->value) <= f.error + t->error;
+          missed += !covered;
+          // An estimate may miss, but not by much, and what is said to be reached is.
+          CHECK(std::abs(f.value - t->value) <= 3.0 * f.error + t->error);
+          if (r.reached) CHECK(std::abs(f.value - t->value) <= accuracy * t->scale);
+        }
+      }
+  }
+  CHECK(figures > 1400);
+  CHECK(reached > 200);
+  INFO(missed << " of " << figures);
+  CHECK(missed <= figures / 100);
+}

@@ -1,0 +1,75 @@
+// drev run --accuracy: figures with their errors in text, JSON and report.
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+using Json = nlohmann::json;
+
+namespace {
+
+Json figure(const Json& json, const std::string& name) {
+  for (const Json& f : json.at("accuracy").at("figures"))
+    if (f.at("name").get<std::string>().starts_with(name)) return f;
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("An accuracy asked for: published times of contact within the stated errors") {
+  const drev::test::TemporaryFolder folder;
+  const std::vector<std::string> words{"run", "two_mass_backlash", "--accuracy", "1e-6"};
+  std::vector<std::string> json_words = words;
+  json_words.insert(json_words.end(), {"--json", "--out", (folder / "out").string()});
+  const auto run = drev_command(json_words);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json.at("accuracy").at("reached") == true);
+  CHECK(json.at("accuracy").at("horizon_s").is_null());
+  const Json first = figure(json, "first contact change");
+  CHECK(std::abs(first.at("value").get<double>() - 0.26207413942088966) <= first.at("error").get<double>());
+  CHECK(figure(json, "contact changes, comparable").at("value") == 72);  // published
+  for (const Json& f : json["accuracy"]["figures"]) CHECK(f.at("keeps_accuracy") == true);
+  const std::string text = drev_command(words).out;
+  for (const char* part : {"Accuracy asked          1e-06: reached", "peak deflection: 0.1855", "+-"})
+    CHECK(contains(text, part));
+  CHECK(contains(read_file(folder / "out/report.html"), "peak deflection: 0.1855"));
+}
+
+TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given") {
+  const auto run = drev_command(
+      {"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  const Json json = Json::parse(run.out);
+  const Json& accuracy = json.at("accuracy");
+  CHECK(accuracy.at("reached") == false);
+  CHECK(accuracy.at("horizon_s").get<double>() < 0.3);
+  CHECK(accuracy.at("growth_rate_per_s").get<double>() > 0.0);
+  CHECK(contains(accuracy.at("reason").get<std::string>(), "two runs differ by more than 0.001"));
+  const Json apart = figure(json, "mesh_1: share of time apart");
+  CHECK(apart.at("kind") == "95 % interval");
+  // The run's own share over all its time, less than the batches' over nine tenths of it knows.
+  CHECK(std::abs(apart.at("value").get<double>() -
+                 json.at("results").at("contacts")[0].at("time_apart_share").get<double>()) < 0.1);
+}
+
+TEST_CASE("An accuracy where exact propagation is refused comes from halved steps") {
+  const auto run = drev_command(
+      {"run", "two_inertia", "--set", "duration_s=0.05", "--accuracy", "1e-4", "--json"});
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json.at("method") == "average_acceleration");
+  CHECK(json.at("accuracy").at("reached") == true);
+  const Json peak = figure(json, "peak torque");
+  const auto fine = drev_command(
+      {"run", "two_inertia", "--set", "duration_s=0.05", "--step", "1e-7", "--json"});
+  CHECK(std::abs(peak.at("value").get<double>() -
+                 Json::parse(fine.out).at("results").at("max_torque_Nm").get<double>()) <=
+        peak.at("error").get<double>());
+}
