@@ -14,7 +14,7 @@ namespace drev::app {
 namespace {
 
 constexpr double kPeriods = 20.0;       // of the lowest elastic mode
-constexpr double kMostGrowth = 1000.0;   // of a small difference
+constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
 constexpr double kGrowthTolerance = 1e-13;
 
@@ -48,10 +48,9 @@ ChartResult compute_chart(const ChartRequest& request) {
   };
   Method method = choose_method(system, horizon, std::min(scene.default_step, horizon)).method;
   if (method.exact()) method.tolerance = kGrowthTolerance;
-  const Growth growth =
-      measure_growth(system, {.method = method, .t_end = horizon, .progress = [&](double) {
-                       return !interrupted();
-                     }});
+  const Growth growth = measure_growth(
+      system,
+      {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
   if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
     horizon = comparable;
     result.horizon_reason = "later, a small difference has grown by more than a factor of " +

@@ -12,8 +12,8 @@
 namespace drev::app {
 
 struct ChartResult {
-  std::string quantity;       ///< what the error is of
-  std::string horizon_reason; ///< what ended the runs, "" where it is the duration
+  std::string quantity;        ///< what the error is of
+  std::string horizon_reason;  ///< what ended the runs, "" where it is the duration
   WorkPrecision data;
 };
 

@@ -26,8 +26,7 @@ std::string time_text(double seconds) {
 }
 
 std::string knob_text(const Method& m) {
-  return m.tolerance > 0.0 ? "tol " + short_digits(m.tolerance, 2)
-                           : short_digits(m.step, 3) + " s";
+  return m.tolerance > 0.0 ? "tol " + short_digits(m.tolerance, 2) : short_digits(m.step, 3) + " s";
 }
 
 bool at_source_step(const WorkPoint& p) {
@@ -77,7 +76,8 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
     for (const double accuracy : kAccuracies) {
       const WorkPoint* p = data.cheapest(curve, accuracy);
       text += pad_right(
-          p ? time_text(p->seconds) + " (" + knob_text(p->method) + ")" : std::string("-"), kColumn);
+          p ? time_text(p->seconds) + " (" + knob_text(p->method) + ")" : std::string("-"),
+          kColumn);
     }
     text += source_step_text(curve) + "\n";
   }
@@ -104,13 +104,14 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
   for (const WorkCurve& curve : data.curves) {
     Json points = Json::array();
     for (const WorkPoint& p : curve.points)
-      points.push_back({{"step_s", p.method.step > 0.0 ? number(p.method.step) : Json()},
-                        {"tolerance", p.method.tolerance > 0.0 ? number(p.method.tolerance) : Json()},
-                        {"error", p.ok ? number(p.error) : Json()},
-                        {"processor_time_s", p.ok ? number(p.seconds) : Json()},
-                        {"work", p.ok ? number(p.work) : Json()},
-                        {"trusted", data.trusted(p)},
-                        {"reason", text_or_null(p.reason)}});
+      points.push_back(
+          {{"step_s", p.method.step > 0.0 ? number(p.method.step) : Json()},
+           {"tolerance", p.method.tolerance > 0.0 ? number(p.method.tolerance) : Json()},
+           {"error", p.ok ? number(p.error) : Json()},
+           {"processor_time_s", p.ok ? number(p.seconds) : Json()},
+           {"work", p.ok ? number(p.work) : Json()},
+           {"trusted", data.trusted(p)},
+           {"reason", text_or_null(p.reason)}});
     object["curves"].push_back({{"method", curve.name}, {"points", std::move(points)}});
   }
   object["cheapest"] = Json::array();
@@ -119,7 +120,8 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
     object["cheapest"].push_back(
         {{"accuracy", accuracy},
          {"method", best ? Json(best->point->method.name) : Json()},
-         {"step_s", best && best->point->method.step > 0.0 ? number(best->point->method.step) : Json()},
+         {"step_s",
+          best && best->point->method.step > 0.0 ? number(best->point->method.step) : Json()},
          {"tolerance", best && best->point->method.tolerance > 0.0
                            ? number(best->point->method.tolerance)
                            : Json()},
@@ -132,7 +134,9 @@ std::string chart_as_csv(const ChartResult& r) {
   std::string text = "method,step_s,tolerance,error,processor_time_s,work,trusted\n";
   for (const WorkCurve& curve : r.data.curves)
     for (const WorkPoint& p : curve.points) {
-      const auto cell = [](double x, bool there) { return there ? short_digits(x, 17) : std::string(); };
+      const auto cell = [](double x, bool there) {
+        return there ? short_digits(x, 17) : std::string();
+      };
       // Method names hold commas: newmark:0.25,0.5.
       text += "\"" + curve.name + "\"," + cell(p.method.step, p.method.step > 0.0) + "," +
               cell(p.method.tolerance, p.method.tolerance > 0.0) + "," + cell(p.error, p.ok) + "," +
@@ -167,8 +171,7 @@ std::string chart_as_svg(const ChartRequest& request, const ChartResult& r, Char
   const std::string name = request.model.entry->name;
   return svg_chart({.title = name + ": error of " + r.quantity + " from 0 to " +
                              short_digits(r.data.t_end, 3) + " s",
-                    .x_label = axis == ChartAxis::time ? "processor time [s]"
-                                                       : "steps",
+                    .x_label = axis == ChartAxis::time ? "processor time [s]" : "steps",
                     .y_label = "largest error over peak",
                     .log_x = true,
                     .log_y = true,

@@ -3,8 +3,8 @@
 namespace drev::app {
 
 inline constexpr const char* kMethodsHelp =
-    "Methods (default: exact, where the model is linear in pieces and not too stiff for the time simulated;\n"
-    "else average_acceleration; the run says which, and why):\n"
+    "Methods (default: exact, where the model is linear in pieces and not too stiff for the time\n"
+    "simulated, else average_acceleration; the run says which, and why):\n"
     "  exact                         Taylor series between located contact changes, to --tolerance;\n"
     "                                says what of a model keeps it from that\n"
     "implicit, with a --step, of second order but for newmark with GAMMA > 1/2:\n"
@@ -32,8 +32,8 @@ inline constexpr const char* kRunExamples =
     "  drev run two_mass_backlash --method hht:0.1 --step 0.001 --json\n"
     "\n"
     "--accuracy runs the model at one tolerance or step, then at tighter ones, and takes the\n"
-    "differences for the errors; where small differences grow too fast for that, figures are statistics with their 95 %\n"
-    "confidence intervals. history.csv is of one more run at the tightest.\n"
+    "differences for the errors; where small differences grow too fast for that, figures are\n"
+    "statistics with their 95 % confidence intervals. history.csv is of one more run at the tightest.\n"
     "\n"
     "history.csv: time_s, then the channels in the order asked for, at the times 0, 1, 2, ... "
     "times\n"

@@ -17,22 +17,23 @@ namespace drev {
 
 namespace {
 
-constexpr double kSafety = 2.0;          // on the difference of two runs
-constexpr double kLeastOrder = 0.25;     // of a difference over the one before: second order
-constexpr double kRounding = 1e-14;      // relative, before growth
-constexpr double kFirstTolerance = 1e-2; // of exact propagation, over the accuracy
-constexpr double kTightening = 1e-3;     // of its tolerance from run to run
+constexpr double kSafety = 2.0;           // on the difference of two runs
+constexpr double kLeastOrder = 0.25;      // of a difference over the one before: second order
+constexpr double kRounding = 1e-14;       // relative, before growth
+constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
+constexpr double kTightening = 1e-3;      // of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
-constexpr double kChaos = 1e6;           // growth past which tightening moves the horizon only
+constexpr double kChaos = 1e6;  // growth past which tightening moves the horizon only
 constexpr int kBatches = 20, kOrders = 5;
-constexpr double kSettled = 0.1;         // of the run: left out of time averages
+constexpr double kSettled = 0.1;  // of the run: left out of time averages
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
 constexpr double kPerturbation = 1e-9;
 
 /// Everything watched in one run.
 struct Watched {
   Watched(const System& system, const AccuracyOptions& o, const std::string& followed, double every)
-      : deflection(o.deflection.empty() ? std::vector<Channel>{} : find_channels(system, {o.deflection})),
+      : deflection(o.deflection.empty() ? std::vector<Channel>{}
+                                        : find_channels(system, {o.deflection})),
         torque(find_channels(system, o.torques)),
         edges(system),
         batches(system, find_channels(system, {followed}), kSettled * o.t_end, o.t_end, kBatches),
@@ -71,7 +72,8 @@ class AccurateRun {
   AccuracyResult run() {
     Method method = o_.method;
     if (method.exact())
-      method.tolerance = std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
+      method.tolerance =
+          std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
     else
       method.step = every_ / std::ceil(every_ / method.step);  // halves as it is asked to
     Method for_growth = method;
@@ -110,9 +112,11 @@ class AccurateRun {
   /// Samples four times as often as the fastest mode swings, if that is not too many; whole numbers a cycle.
   void choose_sampling() {
     const double rate = fastest_rate(system_);
-    const double wanted = std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
+    const double wanted =
+        std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
     double count = std::min(wanted, static_cast<double>(kMostSamples));
-    if (!o_.method.exact()) count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
+    if (!o_.method.exact())
+      count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
     every_ = o_.t_end / std::ceil(count);
     if (o_.cycle > 0.0 && o_.cycle <= o_.t_end) every_ = o_.cycle / std::ceil(o_.cycle / every_);
   }
@@ -120,10 +124,11 @@ class AccurateRun {
   std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
     auto w = std::make_unique<Watched>(system_, o_, followed_, every_);
     const std::clock_t start = std::clock();
-    w->summary = run_method(system_, method, {.t_end = o_.t_end, .progress = [&](double part) {
-                              return going_on(begin + (end - begin) * part);
-                            }},
-                            w->observers());
+    w->summary = run_method(
+        system_, method,
+        {.t_end = o_.t_end,
+         .progress = [&](double part) { return going_on(begin + (end - begin) * part); }},
+        w->observers());
     w->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     // An energy balance that is off is an error of the figures like any other.
     if (w->summary.status == RunStatus::energy_error) w->summary.status = RunStatus::success;
@@ -147,8 +152,8 @@ class AccurateRun {
   }
 
   /// A figure at time t, from both runs.
-  void add(const std::string& name, const std::string& unit, double coarse, double fine, double scale,
-           double t) {
+  void add(const std::string& name, const std::string& unit, double coarse, double fine,
+           double scale, double t) {
     double error = error_of(coarse, fine, scale, t);
     if (!result_.fine.exact()) {
       double& before = differences_[name];
@@ -167,8 +172,8 @@ class AccurateRun {
     result_.figures.clear();
     find_horizon(a, b);
     if (!b.deflection.empty())
-      add("peak deflection", b.deflection.channel().unit(), a.deflection.value(), b.deflection.value(),
-          b.deflection.value(), b.deflection.time());
+      add("peak deflection", b.deflection.channel().unit(), a.deflection.value(),
+          b.deflection.value(), b.deflection.value(), b.deflection.time());
     if (!b.torque.empty())
       add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(),
           b.torque.value(), b.torque.time());
@@ -200,7 +205,8 @@ class AccurateRun {
            error_of(a[same].t, b[same].t, b[same].t, b[same].t) <= o_.accuracy * b[same].t)
       ++same;
     const double count = static_cast<double>(same);
-    result_.figures.push_back({"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
+    result_.figures.push_back(
+        {"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
     if (same > 0) {
       add("first contact change", "s", a[0].t, b[0].t, b[0].t, b[0].t);
       add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t,
@@ -225,7 +231,8 @@ class AccurateRun {
     return {steps - cycles * per_cycle, steps, cycles};
   }
 
-  static std::vector<double> part(const std::vector<double>& all, std::size_t begin, std::size_t end) {
+  static std::vector<double> part(const std::vector<double>& all, std::size_t begin,
+                                  std::size_t end) {
     return {all.begin() + static_cast<std::ptrdiff_t>(begin),
             all.begin() + static_cast<std::ptrdiff_t>(end + 1)};
   }
@@ -245,8 +252,8 @@ class AccurateRun {
     const Spectrum coarse = of(x), fine = of(y);
     std::vector<std::size_t> lines;
     for (std::size_t k = r.cycles; k + 1 < fine.amplitude.size(); k += r.cycles)
-      if (ordered || (fine.amplitude[k] > fine.amplitude[k - 1] &&
-                      fine.amplitude[k] >= fine.amplitude[k + 1]))
+      if (ordered ||
+          (fine.amplitude[k] > fine.amplitude[k - 1] && fine.amplitude[k] >= fine.amplitude[k + 1]))
         lines.push_back(k);
     std::sort(lines.begin(), lines.end(),
               [&](std::size_t i, std::size_t j) { return fine.amplitude[i] > fine.amplitude[j]; });
@@ -366,7 +373,8 @@ class AccurateRun {
            << " (a small difference of the state has grown by "
            << result_.growth.factor(result_.horizon) << " there, by "
            << result_.growth.factor(o_.t_end)
-           << " at the end): what depends on it is given as a statistic with its 95 % confidence interval";
+           << " at the end): what depends on it is given as a statistic with its 95 % confidence "
+              "interval";
     } else {
       text << "not every figure keeps " << o_.accuracy << " yet, and a finer run would ";
       if (result_.fine.exact())
@@ -382,15 +390,16 @@ class AccurateRun {
   std::string followed_;
   double every_ = 0.0;
   AccuracyResult result_;
-  std::map<std::string, double> differences_;  // of the last two runs with constant steps, by figure
+  std::map<std::string, double>
+      differences_;  // of the last two runs with constant steps, by figure
   std::map<std::string, std::size_t> orders_;  // figure, line of one cycle's spectrum
 };
 
 }  // namespace
 
 const Figure* AccuracyResult::find(const std::string& name) const {
-  auto found = std::find_if(figures.begin(), figures.end(),
-                            [&](const Figure& f) { return f.name == name; });
+  auto found =
+      std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
   if (found == figures.end())
     found = std::find_if(figures.begin(), figures.end(),
                          [&](const Figure& f) { return f.name.starts_with(name); });
@@ -404,7 +413,8 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   check.positive("t_end", o.t_end, "s");
   check.non_negative("cycle", o.cycle, "s");
   check.positive("most_seconds", o.most_seconds, "s");
-  if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
+  if (o.ensemble < 2)
+    check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
   if (!o.method.exact()) check.positive("method.step", o.method.step, "s");
   if (o.method.exact())
     if (const auto why = why_not_exact(system)) check.fail("method", "exact", "", *why);

@@ -24,14 +24,14 @@
 namespace drev {
 
 struct AccuracyOptions {
-  double accuracy = 1e-4;  ///< relative, 1e-12 to 0.5
-  double t_end = 0.0;      ///< s
+  double accuracy = 1e-4;                 ///< relative, 1e-12 to 0.5
+  double t_end = 0.0;                     ///< s
   std::string deflection = {};            ///< channel; its peak, orders and quantiles; empty: none
   std::vector<std::string> torques = {};  ///< channels; the largest peak of all
-  double cycle = 0.0;      ///< s, of which orders are the multiples; 0: frequencies of the last half
-  Method method = {};      ///< where to begin: exact, or a step
+  double cycle = 0.0;  ///< s, of which orders are the multiples; 0: frequencies of the last half
+  Method method = {};  ///< where to begin: exact, or a step
   double most_seconds = 30.0;  ///< processor time of the longest run
-  int ensemble = 8;        ///< perturbed runs for peaks past the horizon
+  int ensemble = 8;            ///< perturbed runs for peaks past the horizon
   std::function<bool(double)> progress = {};
 };
 
@@ -54,8 +54,8 @@ struct AccuracyResult {
   std::string reason;  ///< why not
   Growth growth;
   double horizon = std::numeric_limits<double>::infinity();  ///< s
-  Method coarse, fine;  ///< the two runs compared
-  RunSummary summary;   ///< of the fine one
+  Method coarse, fine;                                       ///< the two runs compared
+  RunSummary summary;                                        ///< of the fine one
   /// By name, or by how the name begins; null: none.
   const Figure* find(const std::string& name) const;
 };

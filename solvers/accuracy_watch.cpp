@@ -57,8 +57,9 @@ void PeakWatch::refine(const System& system, const Method& method) {
   PeakWatch close({channel()});
   Stops stops(begin, distance);
   State state = before_;
-  const RunSummary run = run_method(
-      system, method, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300}, state, {&close, &stops});
+  const RunSummary run =
+      run_method(system, method, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300},
+                 state, {&close, &stops});
   if (run.ok()) value_ = close.value(), time_ = close.time();
 }
 
@@ -92,8 +93,8 @@ void BatchWatch::Sum::add(double y_0, double r_0, double y_1, double r_1, double
   square += 0.5 * h * (y_0 * y_0 + y_1 * y_1) + h * h / 6.0 * (y_0 * r_0 - y_1 * r_1);
 }
 
-BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end,
-                       int batches)
+BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, double begin,
+                       double end, int batches)
     : channels_(std::move(channels)),
       begin_(begin),
       length_((end - begin) / batches),
@@ -106,8 +107,8 @@ BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, doub
   for (const ContactRecord& r : statistics_.records()) {
     const auto same = [&](const Channel& c) { return c.name() == r.element + ".force_N"; };
     const std::vector<Channel> all = all_channels(system);
-    contacts_.push_back({.element = r.element,
-                         .unit = std::any_of(all.begin(), all.end(), same) ? "N" : "N m"});
+    contacts_.push_back(
+        {.element = r.element, .unit = std::any_of(all.begin(), all.end(), same) ? "N" : "N m"});
   }
   for (const Channel& c : channels_) averages_.push_back({.channel = c.name(), .unit = c.unit()});
 }
@@ -134,7 +135,8 @@ void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const S
     forces_[i].add(a.y, a.dy_dx * from.inputs[j].x_dot, b.y, b.dy_dx * to.inputs[j].x_dot, h);
   }
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const auto r_0 = channels_[c].rate(assembler, from.state), r_1 = channels_[c].rate(assembler, to.state);
+    const auto r_0 = channels_[c].rate(assembler, from.state),
+               r_1 = channels_[c].rate(assembler, to.state);
     values_[c].add(channels_[c].evaluate(assembler, from.state), r_0.value_or(0.0),
                    channels_[c].evaluate(assembler, to.state), r_1.value_or(0.0), h);
   }

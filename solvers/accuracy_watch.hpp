@@ -31,10 +31,10 @@ class PeakWatch final : public Observer {
 
 /// The deflection of a law passed an edge of its gap.
 struct EdgePassed {
-  double t = 0.0;         ///< s, on the cubic through deflections and rates at both ends of the step
-  std::size_t law = 0;    ///< of System::scalars()
-  bool high = false;      ///< which edge
-  bool outward = false;   ///< contact made
+  double t = 0.0;        ///< s, on the cubic through deflections and rates at both ends of the step
+  std::size_t law = 0;   ///< of System::scalars()
+  bool high = false;     ///< which edge
+  bool outward = false;  ///< contact made
 };
 
 class EdgeWatch final : public Observer {
@@ -52,7 +52,8 @@ class EdgeWatch final : public Observer {
 /// Time averages in equal batches over [begin, end]; steps end where batches do.
 class BatchWatch final : public Observer {
  public:
-  BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end, int batches);
+  BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end,
+             int batches);
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
   double next_stop(double t) const override;
@@ -74,7 +75,8 @@ class BatchWatch final : public Observer {
 
   std::vector<Channel> channels_;
   double begin_, length_;
-  int batches_, done_ = 0;  // the next stop ends the first stretch, ahead of the batches, or batch done_
+  int batches_,
+      done_ = 0;  // the next stop ends the first stretch, ahead of the batches, or batch done_
   ContactStatistics statistics_;
   std::vector<ContactRecord> before_;
   std::vector<std::size_t> laws_;

@@ -16,19 +16,19 @@ namespace drev {
 struct GrowthOptions {
   /// Constant steps or exact: one that does the same for states that are nearly the same.
   Method method;
-  double t_end = 0.0;       ///< s
-  int pieces = 400;         ///< N
+  double t_end = 0.0;  ///< s
+  int pieces = 400;    ///< N
   std::function<bool(double)> progress = {};
 };
 
 struct Growth {
-  std::vector<double> t;        ///< s, ends of the pieces that were run
-  std::vector<double> growth;   ///< the largest separation up to t, over the first
-  double rate = 0.0;            ///< 1/s
-  double rate_error = 0.0;      ///< 1/s, half of the 95 % interval, by batch means
+  std::vector<double> t;                ///< s, ends of the pieces that were run
+  std::vector<double> growth;           ///< the largest separation up to t, over the first
+  double rate = 0.0;                    ///< 1/s
+  double rate_error = 0.0;              ///< 1/s, half of the 95 % interval, by batch means
   double z_scale = 1.0, v_scale = 1.0;  ///< largest |z| and |v| at the ends of the pieces
   RunStatus status = RunStatus::success;
-  std::string reason;           ///< why it ended early
+  std::string reason;  ///< why it ended early
   /// Factor up to t; 1 at least.
   double factor(double time) const;
   /// The first time at which a difference has grown by more than the factor; infinity: never in the run.

@@ -12,10 +12,10 @@ namespace drev {
 namespace {
 
 constexpr int kPowerSteps = 20;
-constexpr double kRateTimesStep = 3.0;     // of exact propagation
-constexpr double kProductsInStep = 20.0;   // of the same, about
-constexpr double kMostWork = 2e10;         // products times what one costs: half a minute
-constexpr double kUnknownsOfStep = 20.0;   // what a step costs beside its products
+constexpr double kRateTimesStep = 3.0;    // of exact propagation
+constexpr double kProductsInStep = 20.0;  // of the same, about
+constexpr double kMostWork = 2e10;        // products times what one costs: half a minute
+constexpr double kUnknownsOfStep = 20.0;  // what a step costs beside its products
 constexpr double kUnknownsOfContact = 10.0;
 
 /// Size of the largest eigenvalue of M^-1 A, A on the system's pattern.
@@ -96,8 +96,9 @@ MethodChoice choose_method(const System& system, double duration, double step) {
   const Method stepping{.step = step};
   if (const auto why = why_not_exact(system))
     return {stepping, "the model is not piecewise linear: " + *why};
-  const long contacts = std::count_if(system.scalars().begin(), system.scalars().end(),
-                                      [](const ScalarTerm& s) { return s.force->pieces().size() > 1; });
+  const long contacts =
+      std::count_if(system.scalars().begin(), system.scalars().end(),
+                    [](const ScalarTerm& s) { return s.force->pieces().size() > 1; });
   double rate = 0.0;
   try {
     rate = fastest_rate(system);

@@ -11,11 +11,11 @@ namespace drev {
 namespace {
 
 constexpr double kReferenceTolerance = 1e-13;
-constexpr double kReferenceTime = 4.0;      // of the most that a drawn run may take
-constexpr int kMostHalvings = 24;           // of the sample interval
-constexpr double kShortRun = 0.05;          // s: shorter ones are timed several times
+constexpr double kReferenceTime = 4.0;  // of the most that a drawn run may take
+constexpr int kMostHalvings = 24;       // of the sample interval
+constexpr double kShortRun = 0.05;      // s: shorter ones are timed several times
 constexpr int kRepetitions = 5;
-constexpr double kHopeless = 10.0;          // relative error: nothing of the motion is left
+constexpr double kHopeless = 10.0;  // relative error: nothing of the motion is left
 
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -46,9 +46,9 @@ class Measurement {
       : system_(system), options_(options), channels_(options.channels) {
     if (channels_.empty())
       for (int i = 0; i < system.node_count(); ++i)
-        channels_.push_back(system.node_names()[at(i)] + (system.node_kind(i) == NodeKind::rotational
-                                                              ? ".angle_rad"
-                                                              : ".position_m"));
+        channels_.push_back(
+            system.node_names()[at(i)] +
+            (system.node_kind(i) == NodeKind::rotational ? ".angle_rad" : ".position_m"));
     result_.t_end = options.samples * options.sample_interval;
     result_.unit = find_channels(system, channels_).front().unit();
   }
@@ -103,7 +103,8 @@ class Measurement {
       if (2.0 * best.seconds > kReferenceTime * options_.most_seconds) break;
     }
     if (!found && !result_.interrupted)
-      throw SolverError(system_.name() + ": no reference: " + name + " did not come to an end at any step");
+      throw SolverError(system_.name() + ": no reference: " + name +
+                        " did not come to an end at any step");
     return best;
   }
 

@@ -20,8 +20,8 @@ namespace drev {
 
 struct WorkPrecisionOptions {
   std::vector<std::string> channels = {};  ///< of one unit; empty: all unknowns
-  double sample_interval = 0.0;       ///< s
-  int samples = 64;                   ///< the runs last samples * sample_interval
+  double sample_interval = 0.0;            ///< s
+  int samples = 64;                        ///< the runs last samples * sample_interval
   std::vector<std::string> methods = {};   ///< names
   /// Runs that would take longer than this [s] are left out, and with them all finer ones of the method.
   double most_seconds = 2.0;
@@ -30,7 +30,7 @@ struct WorkPrecisionOptions {
 
 struct WorkPoint {
   Method method = {};
-  bool ok = false;       ///< false: the run failed, for the reason given
+  bool ok = false;  ///< false: the run failed, for the reason given
   std::string reason = {};
   double error = 0.0;    ///< relative
   double seconds = 0.0;  ///< processor time
@@ -43,9 +43,9 @@ struct WorkCurve {
 };
 
 struct WorkPrecision {
-  double t_end = 0.0;  ///< s
-  double peak = 0.0;   ///< that errors are relative to
-  std::string unit;    ///< of the peak
+  double t_end = 0.0;            ///< s
+  double peak = 0.0;             ///< that errors are relative to
+  std::string unit;              ///< of the peak
   std::string reference, check;  ///< methods, with their knobs
   double agreement = 0.0;        ///< of the two
   std::vector<WorkCurve> curves;
@@ -65,6 +65,5 @@ struct WorkPrecision {
 
 /// Throws ModelError for bad options, SolverError where no reference can be had.
 WorkPrecision work_precision(const System& system, const WorkPrecisionOptions& options);
-
 
 }  // namespace drev

@@ -31,16 +31,19 @@ TEST_CASE("An accuracy asked for: published times of contact within the stated e
   CHECK(json.at("accuracy").at("reached") == true);
   CHECK(json.at("accuracy").at("horizon_s").is_null());
   const Json first = figure(json, "first contact change");
-  CHECK(std::abs(first.at("value").get<double>() - 0.26207413942088966) <= first.at("error").get<double>());
+  CHECK(std::abs(first.at("value").get<double>() - 0.26207413942088966) <=
+        first.at("error").get<double>());
   CHECK(figure(json, "contact changes, comparable").at("value") == 72);  // published
   for (const Json& f : json["accuracy"]["figures"]) CHECK(f.at("keeps_accuracy") == true);
   const std::string text = drev_command(words).out;
-  for (const char* part : {"Accuracy asked          1e-06: reached", "peak deflection: 0.1855", "+-"})
+  for (const char* part :
+       {"Accuracy asked          1e-06: reached", "peak deflection: 0.1855", "+-"})
     CHECK(contains(text, part));
   CHECK(contains(read_file(folder / "out/report.html"), "peak deflection: 0.1855"));
 }
 
-TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given") {
+TEST_CASE(
+    "An accuracy that rattling does not allow is refused point by point, and statistics given") {
   const auto run = drev_command(
       {"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
   INFO(run.err);
@@ -67,8 +70,8 @@ TEST_CASE("An accuracy where exact propagation is refused comes from halved step
   CHECK(json.at("method") == "average_acceleration");
   CHECK(json.at("accuracy").at("reached") == true);
   const Json peak = figure(json, "peak torque");
-  const auto fine = drev_command(
-      {"run", "two_inertia", "--set", "duration_s=0.05", "--step", "1e-7", "--json"});
+  const auto fine =
+      drev_command({"run", "two_inertia", "--set", "duration_s=0.05", "--step", "1e-7", "--json"});
   CHECK(std::abs(peak.at("value").get<double>() -
                  Json::parse(fine.out).at("results").at("max_torque_Nm").get<double>()) <=
         peak.at("error").get<double>());

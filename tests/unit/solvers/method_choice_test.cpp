@@ -60,7 +60,8 @@ TEST_CASE("A method by name runs as its own function would") {
   State exact = State::initial(system), stepped = exact, own = exact;
   CHECK(run_method(system, {.name = "exact", .tolerance = 1e-12}, {.t_end = 0.3}, exact).ok());
   CHECK(exact.z[0] == Approx(std::cos(kTwoPi * 0.3)).epsilon(1e-11));
-  const RunSummary run = run_method(system, {.name = "hht:0.1", .step = 1e-3}, {.t_end = 0.3}, stepped);
+  const RunSummary run =
+      run_method(system, {.name = "hht:0.1", .step = 1e-3}, {.t_end = 0.3}, stepped);
   CHECK(run.steps == 300);
   simulate(system, {.scheme = hht(0.1), .step = 1e-3, .t_end = 0.3}, own);
   CHECK(stepped.z[0] == own.z[0]);

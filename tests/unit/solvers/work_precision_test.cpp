@@ -19,7 +19,9 @@ System oscillator() {
 
 }  // namespace
 
-TEST_CASE("Work and precision: the error of average acceleration on an oscillator is that of its period") {
+TEST_CASE(
+    "Work and precision: the error of average acceleration on an oscillator is that of its "
+    "period") {
   const System system = oscillator();
   // 2 s in samples of 1/32 s, period 1 s.
   const WorkPrecision wp = work_precision(system, {.channels = {"m.position_m"},
@@ -54,7 +56,8 @@ TEST_CASE("Work and precision: the cheapest is the one that keeps the error from
     return WorkPoint{.ok = ok, .error = error, .seconds = seconds};
   };
   // By luck good at its coarsest, then bad, then good again.
-  wp.curves.push_back({"lucky", {point(1e-3, 1.0), point(1e-1, 2.0), point(1e-3, 4.0), point(1e-6, 8.0)}});
+  wp.curves.push_back(
+      {"lucky", {point(1e-3, 1.0), point(1e-1, 2.0), point(1e-3, 4.0), point(1e-6, 8.0)}});
   wp.curves.push_back({"steady", {point(1.0, 1.0, false), point(5e-3, 3.0), point(5e-5, 9.0)}});
   CHECK(wp.cheapest(1e-2)->curve->name == "steady");
   CHECK(wp.cheapest(1e-2)->point->seconds == 3.0);
@@ -69,8 +72,11 @@ TEST_CASE("Work and precision: the cheapest is the one that keeps the error from
 TEST_CASE("Work and precision: every fault of the options at once") {
   const System system = oscillator();
   try {
-    work_precision(system, {.channels = {"n.position_m"}, .sample_interval = 0.0, .samples = 1,
-                            .methods = {"euler"}, .most_seconds = -1.0});
+    work_precision(system, {.channels = {"n.position_m"},
+                            .sample_interval = 0.0,
+                            .samples = 1,
+                            .methods = {"euler"},
+                            .most_seconds = -1.0});
     FAIL("nothing was refused");
   } catch (const ModelError& error) {
     CHECK(error.findings().size() == 5);
