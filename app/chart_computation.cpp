@@ -18,9 +18,11 @@ constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
 constexpr double kGrowthTolerance = 1e-13;
 
-/// Duration, cut to a number of periods of the lowest mode.
+/// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
 double periods_of(const ModelRequest& model, std::string& reason) {
   const double duration = model.scene.duration;
+  for (const ScalarTerm& term : model.system.scalars())
+    if (term.force->gap()) return duration;
   try {
     const ModeSet modes = solve_modes(model.system, {});
     if (modes.frequency_Hz.empty()) return duration;

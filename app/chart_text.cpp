@@ -55,6 +55,15 @@ std::string conclusion(const WorkPrecision& data, double accuracy) {
          digits(next->seconds / std::max(best->point->seconds, 1e-9), 2) + " times as much.";
 }
 
+/// The settings that are not the default: "drive held, ...".
+std::string changed_settings(const Settings& settings) {
+  std::vector<std::string> items;
+  for (std::size_t i = 0; i < settings.known().size(); ++i)
+    if (settings.values()[i] != settings.known()[i].default_text)
+      items.push_back(settings.known()[i].name + " " + settings.values()[i]);
+  return items.empty() ? "" : ", " + join(items);
+}
+
 }  // namespace
 
 std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
@@ -169,8 +178,8 @@ std::string chart_as_svg(const ChartRequest& request, const ChartResult& r, Char
                       .x = {shortest, longest},
                       .y = {r.data.agreement, r.data.agreement}});
   const std::string name = request.model.entry->name;
-  return svg_chart({.title = name + ": error of " + r.quantity + " from 0 to " +
-                             short_digits(r.data.t_end, 3) + " s",
+  return svg_chart({.title = name + changed_settings(request.model.settings) + ": error of " +
+                             r.quantity + " from 0 to " + short_digits(r.data.t_end, 3) + " s",
                     .x_label = axis == ChartAxis::time ? "processor time [s]" : "steps",
                     .y_label = "largest error over peak",
                     .log_x = true,

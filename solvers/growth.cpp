@@ -21,13 +21,10 @@ double student(int n) {
 }
 
 /// Largest |z| and |v| of a run.
-class Scale {
+class Scale final : public Observer {
  public:
-  void note(const State& s) {
-    if (s.z.size() == 0) return;
-    z_ = std::max(z_, s.z.cwiseAbs().maxCoeff());
-    v_ = std::max(v_, s.v.cwiseAbs().maxCoeff());
-  }
+  void start(const Assembler&, const StepPoint& point) override { note(point.state); }
+  void step(const Assembler&, const StepPoint&, const StepPoint& to) override { note(to.state); }
   double z() const { return z_ > 0.0 ? z_ : 1.0; }
   double v() const { return v_ > 0.0 ? v_ : 1.0; }
   double of(const Vector& dz, const Vector& dv) const {
@@ -35,6 +32,10 @@ class Scale {
   }
 
  private:
+  void note(const State& s) {
+    z_ = std::max(z_, s.z.cwiseAbs().maxCoeff());
+    v_ = std::max(v_, s.v.cwiseAbs().maxCoeff());
+  }
   double z_ = 0.0, v_ = 0.0;
 };
 
@@ -77,17 +78,22 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
   const int n = system.size();
   State base = State::initial(system);
   if (n == 0) return result;
-  Scale scale;  // cancels within a piece, so that the growth is that of the separation itself
-  const auto run_piece = [&](State& state, int k) {
-    const MethodRunOptions piece{.t_start = o.t_end * k / o.pieces,
-                                 .t_end = o.t_end * (k + 1) / o.pieces,
-                                 .energy_tolerance = 1e300};
-    const RunSummary run = run_method(system, o.method, piece, state);
+  const auto run_piece = [&](State& state, double begin, double end,
+                             const std::vector<Observer*>& observers) {
+    const MethodRunOptions piece{.t_start = begin, .t_end = end, .energy_tolerance = 1e300};
+    const RunSummary run = run_method(system, o.method, piece, state, observers);
     if (!run.ok()) result.status = run.status, result.reason = run.reason;
     return run.ok();
   };
+  Scale scale;
+  State whole = base;
+  if (!run_piece(whole, 0.0, o.t_end, {&scale})) return result;
+  result.z_scale = scale.z(), result.v_scale = scale.v();
   Vector dz(n), dv(n);
-  for (int k = 0; k < n; ++k) dz[k] = std::sin(1.0 + 2.0 * k), dv[k] = std::cos(2.0 + 3.0 * k);
+  for (int k = 0; k < n; ++k) {
+    dz[k] = scale.z() * std::sin(1.0 + 2.0 * k);
+    dv[k] = scale.v() * std::cos(2.0 + 3.0 * k);
+  }
   double logarithm = 0.0, largest = 0.0;
   std::vector<double> rates;
   for (int k = 0; k < o.pieces; ++k) {
@@ -96,16 +102,13 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
       result.reason = "interrupted";
       break;
     }
+    const double begin = o.t_end * k / o.pieces, end = o.t_end * (k + 1) / o.pieces;
     State other = base;
-    const State before = base;
-    if (!run_piece(base, k)) break;
-    scale.note(before);
-    scale.note(base);
-    if (k == 0) dz *= scale.z(), dv *= scale.v();
+    if (!run_piece(base, begin, end, {})) break;
     const double size = scale.of(dz, dv);
     dz *= kSeparation / size, dv *= kSeparation / size;
     other.z += dz, other.v += dv;
-    if (!run_piece(other, k)) break;
+    if (!run_piece(other, begin, end, {})) break;
     dz = other.z - base.z, dv = other.v - base.v;
     const double separation = scale.of(dz, dv);
     if (!(separation > 0.0)) break;  // everything was forgotten: nothing grows
@@ -113,11 +116,10 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
     logarithm += step;
     largest = std::max(largest, logarithm);
     rates.push_back(step * o.pieces / o.t_end);
-    result.t.push_back(o.t_end * (k + 1) / o.pieces);
+    result.t.push_back(end);
     result.growth.push_back(std::exp(largest));
   }
   const MeanInterval rate = batch_mean(rates);
-  result.z_scale = scale.z(), result.v_scale = scale.v();
   result.rate = rate.mean, result.rate_error = rate.half_width;
   return result;
 }

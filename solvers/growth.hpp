@@ -2,7 +2,7 @@
 /// How a small difference of the state grows along a run: what makes rattling trajectories comparable up to a
 /// horizon only.
 ///
-///   d_0 = 1e-9 of the largest |z| and |v| so far, in a fixed arbitrary direction;  run both for T / N;
+///   d_0 = 1e-9 of the largest |z| and |v| of the run, in an arbitrary direction;  run both for T / N;
 ///   d_k: the separation then, scaled back to d_0 without change of direction;  k = 1 ... N
 ///
 /// The product of the d_k / d_0 is the growth, the mean of ln(d_k / d_0) N / T the rate, for long runs the
@@ -26,7 +26,7 @@ struct Growth {
   std::vector<double> growth;           ///< the largest separation up to t, over the first
   double rate = 0.0;                    ///< 1/s
   double rate_error = 0.0;              ///< 1/s, half of the 95 % interval, by batch means
-  double z_scale = 1.0, v_scale = 1.0;  ///< largest |z| and |v| at the ends of the pieces
+  double z_scale = 1.0, v_scale = 1.0;  ///< largest |z| and |v| of the run
   RunStatus status = RunStatus::success;
   std::string reason;  ///< why it ended early
   /// Factor up to t; 1 at least.

@@ -77,7 +77,7 @@ class Measurement {
     const double start = processor_time();
     try {
       s.summary = run_method(system_, method, run_options(), {&recorder});
-    } catch (const SolverError& error) {
+    } catch (const std::runtime_error& error) {  // no solution, or a step that the method refuses
       s.summary.status = RunStatus::no_convergence;
       s.summary.reason = error.what();
     }
