@@ -150,6 +150,7 @@ inline Chain make_chain(const System& s, bool smooth) {
       double phase = firing_phase(cylinder) + (smooth ? pulse.phase : 0.0);
       phase -= kTwoPi * std::floor(phase / kTwoPi);
       if (kTwoPi - phase < 1e-9) phase = 0.0;
+      if (smooth && phase >= 0.5 * kTwoPi) phase -= kTwoPi;  // one wrap is enough for each
       c.phase[i] = phase;
       c.load[i] = (smooth ? pulse.amplitude : 1.0) / inertia[row(i)];
       c.inverse_width[i] = 1.0 / pulse.width;
@@ -159,27 +160,30 @@ inline Chain make_chain(const System& s, bool smooth) {
   return c;
 }
 
-/// Relative difference of the chain's accelerations and drev's, at a state in contact.
+/// Largest relative difference of the chain's accelerations and drev's, in contact, over a turn.
 inline double difference(const System& s, const Chain& c) {
   Assembler assembler(s);
-  const double t = 1.2345;
-  assembler.set_time(t);
-  Vector z(s.size()), v(s.size()), p, kz, cv;
-  for (int i = 0; i < s.size(); ++i)
-    z[i] = 0.01 * std::sin(1.0 + 3.7 * i), v[i] = std::cos(2.3 * i);
-  assembler.external(z, v, p);
-  assembler.multiply_stiffness(z, kz);
-  assembler.multiply_damping(v, cv);
-  Vector f = Vector::Zero(s.size());
-  assembler.add_scalar_forces(z, v, f);
-  f = p - kz - cv - f;
-  Vector a(s.size());
-  peers::accelerations<double>(c, t, z.data(), v.data(), nullptr, a.data());
-  double scale = 0.0, worst = 0.0;
+  Vector z(s.size()), v(s.size()), p, kz, cv, f(s.size()), a(s.size());
   for (int i = 0; i < s.size(); ++i) {
-    const double exact = f[i] / s.mass_values()[s.diagonal_slots()[static_cast<std::size_t>(i)]];
-    scale = std::max(scale, std::abs(exact));
-    worst = std::max(worst, std::abs(exact - a[i]));
+    z[i] = 0.01 * std::sin(1.0 + 3.7 * i);
+    v[i] = std::cos(2.3 * i);
+  }
+  double scale = 0.0, worst = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const double t = 1.2345 + k * 0.01 * kTwoPi / c.omega;
+    assembler.set_time(t);
+    assembler.external(z, v, p);
+    assembler.multiply_stiffness(z, kz);
+    assembler.multiply_damping(v, cv);
+    f.setZero();
+    assembler.add_scalar_forces(z, v, f);
+    f = p - kz - cv - f;
+    peers::accelerations<double>(c, t, z.data(), v.data(), nullptr, a.data());
+    for (int i = 0; i < s.size(); ++i) {
+      const double exact = f[i] / s.mass_values()[s.diagonal_slots()[static_cast<std::size_t>(i)]];
+      scale = std::max(scale, std::abs(exact));
+      worst = std::max(worst, std::abs(exact - a[i]));
+    }
   }
   return worst / scale;
 }
@@ -191,7 +195,7 @@ inline Problem make_problem(const std::string& drive, bool smooth) {
   System system = (smooth ? with_pulses(scene.model) : scene.model).build();
   Chain chain = make_chain(system, smooth);
   const double off = difference(system, chain);
-  REQUIRE(off < 1e-11);
+  REQUIRE(off < 1e-12);
   return {.name = "camshaft, " + drive + (smooth ? ", smooth pulses" : ", tables"),
           .system = std::move(system),
           .chain = std::move(chain),

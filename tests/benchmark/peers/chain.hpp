@@ -42,12 +42,12 @@ struct Chain {
 /// Odd pulse over -1 < w < 1, largest about 1, five times differentiable: 5.8 w (1 - w^2)^6.
 template <class T>
 inline T pulse(T w) {
-  const T q = std::fmax(T(1) - w * w, T(0)), q2 = q * q;
+  const T inside = T(1) - w * w, q = inside > T(0) ? inside : T(0), q2 = q * q;
   return T(5.8) * w * (q2 * q2 * q2);
 }
 template <class T>
 inline T pulse_slope(T w) {
-  const T q = std::fmax(T(1) - w * w, T(0)), q2 = q * q;
+  const T inside = T(1) - w * w, q = inside > T(0) ? inside : T(0), q2 = q * q;
   return T(5.8) * (q2 * q2 * q) * (q - T(12) * w * w);
 }
 
