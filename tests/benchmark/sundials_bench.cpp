@@ -2,7 +2,7 @@
 // 3 runs by turns. Right-hand side and Jacobian are hand-written for the model (peers/chain.hpp).
 //   build/release/bin/bench_sundials                    the explicit ones, which are the best (minutes)
 //   build/release/bin/bench_sundials "SUNDIALS held"    one table
-//   build/release/bin/bench_sundials "[all]"            all of them, one run each (an hour)
+//   build/release/bin/bench_sundials "[all]"            all of them, one run each (half an hour)
 //   build/release/bin/bench_sundials "[smooth]"         smooth pulses in place of tables
 #include "tests/benchmark/peer_harness.hpp"
 #include "tests/benchmark/peers/sundials.hpp"
