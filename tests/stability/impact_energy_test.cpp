@@ -54,22 +54,22 @@ Result run(const std::string& method, double omega_h, int steps, double speed = 
   return result;
 }
 
-/// Over 20 starts of nearly the same speed, 20000 steps each: the largest energy of the start's.
+/// Over starts of nearly the same speed, 20000 steps each: the largest energy of the start's.
 struct Growth {
   double median, largest;
   bool never_passed;  ///< every run says that its energy is off
 };
-Growth growth(const std::string& method, double omega_h) {
+Growth growth(const std::string& method, double omega_h, int starts = 20) {
   std::vector<double> most;
   bool never_passed = true;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < starts; ++i) {
     const Result r = run(method, omega_h, 20000, 10.0 * (1.0 + 5e-5 * i));
     never_passed &= r.run.status == RunStatus::energy_error || r.run.status == RunStatus::unstable;
     never_passed &= !r.run.reason.empty();
     most.push_back(r.energy.most);
   }
   std::sort(most.begin(), most.end());
-  return {most[10], most.back(), never_passed};
+  return {most[most.size() / 2], most.back(), never_passed};
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ TEST_CASE("Numerical damping is no cure for coarse impacts; what it gains or los
     CHECK(annihilating.largest <= 1.0 + 1e-12);
     CHECK(annihilating.never_passed);
     for (const char* method : {"hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0.5"})
-      CHECK(growth(method, omega_h).never_passed);
+      CHECK(growth(method, omega_h, 5).never_passed);
   }
   CHECK(growth("generalized_alpha:0.8", 3.0).median > 100.0);
   CHECK(growth("hht:0.3", 10.0).median > 5.0);
