@@ -24,6 +24,7 @@ const char* to_text(NewtonStatus status);
 struct NewtonResult {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0;
+  bool inside_jump = false;  ///< a force was taken inside its jump (StepEquation::Problem::accept_jump)
 };
 
 class ContactNewton {

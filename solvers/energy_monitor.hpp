@@ -9,7 +9,7 @@
 /// error is what the method itself gained (positive) or lost: impacts, numerical damping, too large a step.
 /// Newton's convergence says nothing about it. See Krenk 2006, doi:10.1016/j.cma.2005.12.001, for energy
 /// balances of Newmark methods.
-#include "solvers/step_solver.hpp"
+#include "solvers/step_point.hpp"
 
 namespace drev {
 
@@ -38,6 +38,8 @@ class EnergyMonitor {
   /// energy gained by the jump counts as input.
   void restart(const StepPoint& before, const StepPoint& after);
   const EnergyBalance& balance() const { return balance_; }
+  /// Back to a balance kept before a step that is rejected.
+  void restore(const EnergyBalance& balance) { balance_ = balance; }
 
  private:
   double kinetic(const State& state);

@@ -3,7 +3,7 @@
 /// no more than it needs, so that memory does not grow with the run.
 #include <limits>
 
-#include "solvers/step_solver.hpp"
+#include "solvers/step_point.hpp"
 
 namespace drev {
 
@@ -12,9 +12,10 @@ class Observer {
   virtual ~Observer() = default;
   /// Once, at the first point.
   virtual void start(const Assembler& assembler, const StepPoint& point) = 0;
-  /// After every accepted step; the assembler stands at to's time.
+  /// After every accepted step, or part of one; the assembler stands at to's time.
   virtual void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) = 0;
-  /// The next time after t that a step must end at exactly [s].
+  /// The next time after t that must be seen exactly [s]: constant steps end there, controlled ones are
+  /// interpolated to the method's order.
   virtual double next_stop(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }

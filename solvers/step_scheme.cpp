@@ -57,10 +57,32 @@ StepScheme generalized_alpha(double rho_inf) {
           0.5 - alpha_m + alpha_f};
 }
 
+StepScheme runge_kutta(ButcherTableau tableau) {
+  const double g = tableau.diagonal();
+  const std::string name = tableau.name;
+  return {name, 0.0, 0.0, g * g, g, std::make_shared<const ButcherTableau>(std::move(tableau))};
+}
+
+StepScheme bathe(double rho_inf) {
+  std::vector<Finding> findings;
+  ParameterCheck("bathe", findings).within("rho_inf", rho_inf, 0.0, 1.0, "");
+  throw_if_any(findings);
+  return runge_kutta(bathe_tableau("bathe:" + to_text(rho_inf), rho_inf));
+}
+
+int StepScheme::order() const {
+  if (tableau) return tableau->order;
+  return std::abs(gamma - (0.5 - alpha_m + alpha_f)) < 1e-12 ? 2 : 1;
+}
+
+const std::vector<std::string>& step_scheme_names() {
+  static const std::vector<std::string> names{
+      "average_acceleration", "linear_acceleration", "central_difference", "newmark",
+      "hht",  "generalized_alpha", "bathe", "tr_bdf2", "sdirk4", "rk4", "dormand_prince"};
+  return names;
+}
+
 StepScheme step_scheme(const std::string& text) {
-  static const std::vector<std::string> names{"average_acceleration", "linear_acceleration",
-                                              "central_difference",   "newmark",
-                                              "hht",                  "generalized_alpha"};
   const std::size_t colon = text.find(':');
   const std::string name = text.substr(0, colon);
   const std::vector<double> p =
@@ -86,10 +108,17 @@ StepScheme step_scheme(const std::string& text) {
   if (name == "hht") return expect(0, 1), p.empty() ? hht() : hht(p[0]);
   if (name == "generalized_alpha")
     return expect(0, 1), p.empty() ? generalized_alpha() : generalized_alpha(p[0]);
-  throw ModelError({{"method", "name", name, "", "is no method" + did_you_mean(name, names) +
+  if (name == "bathe") return expect(0, 1), p.empty() ? bathe() : bathe(p[0]);
+  if (name == "tr_bdf2") return expect(0, 0), runge_kutta(bathe_tableau(name, 0.0));
+  if (name == "sdirk4") return expect(0, 0), runge_kutta(sdirk4_tableau());
+  if (name == "rk4") return expect(0, 0), runge_kutta(rk4_tableau());
+  if (name == "dormand_prince") return expect(0, 0), runge_kutta(dormand_prince_tableau());
+  throw ModelError({{"method", "name", name, "",
+                     "is no method" + did_you_mean(name, step_scheme_names()) +
                          "; there are average_acceleration, linear_acceleration, "
-                         "central_difference, newmark:BETA,GAMMA, hht:ALPHA and "
-                         "generalized_alpha:RHO_INF"}});
+                         "central_difference, newmark:BETA,GAMMA, hht:ALPHA, "
+                         "generalized_alpha:RHO_INF, bathe:RHO_INF, tr_bdf2, sdirk4, rk4 and "
+                         "dormand_prince"}});
 }
 
 }  // namespace drev

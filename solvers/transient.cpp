@@ -5,31 +5,45 @@
 #include <limits>
 #include <sstream>
 
+#include "solvers/located_step.hpp"
+#include "solvers/stability_limit.hpp"
+#include "solvers/step_control.hpp"
+#include "solvers/step_energy.hpp"
+
 namespace drev {
 
 namespace {
 
 constexpr long kProgressSteps = 100;
 constexpr double kSameTime = 1e-9;  // relative to the step
+constexpr double kChosenStep = 0.1;      // first step times the fastest eigenvalue
+constexpr double kLargestStep = 0.05;    // of the run
+constexpr double kLeastStep = 1e-14;     // of the run
+constexpr double kStanding = 1e-3;       // of a step: changes within it are counted together
+constexpr double kCoarseSteps = 200;    // of the run that finds the scales
+constexpr double kLeastShare = 1e-3;     // of the energy error for one step
+constexpr int kEnergyTries = 3;
 
 void check_options(const System& system, const TransientOptions& o, const State& state) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/transient", findings);
-  check.positive("step", o.step, "s");
+  const bool controlled = o.tolerance != 0.0;
+  if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
+  if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
   check.finite("t_start", o.t_start, "s");
   if (!(o.t_end > o.t_start) || !std::isfinite(o.t_end))
     check.fail("t_end", to_text(o.t_end), "s", "must be greater than t_start = " + to_text(o.t_start));
   if (o.max_halvings < 0 || o.max_halvings > 40)
     check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
   check.positive("energy_tolerance", o.energy_tolerance, "");
-  if (state.z.size() != system.size() || state.v.size() != system.size())
-    check.fail("state", std::to_string(state.z.size()), "unknowns",
-               "must have " + std::to_string(system.size()));
-  else if (!state.z.allFinite() || !state.v.allFinite() || !state.history.allFinite())
-    check.fail("state", "not finite", "", "must be finite");
-  if (state.history.size() != system.history_size())
-    check.fail("state's history", std::to_string(state.history.size()), "numbers",
-               "must have " + std::to_string(system.history_size()));
+  check_state(system, state, check);
+  if (findings.empty() && !controlled) {
+    const double limit = stability_limit(system, o.scheme);
+    if (o.step > limit * (1.0 + 1e-9))
+      check.fail("step", to_text(o.step), "s",
+                 "is above the stability limit of " + o.scheme.name + " for this system, " +
+                     to_text(limit) + " s");
+  }
   if (!findings.empty()) throw ModelError(findings);
 }
 
@@ -41,28 +55,36 @@ class Run {
       : system_(system),
         options_(options),
         observers_(observers),
-        solver_(system, options.scheme, options.newton) {
+        stepper_(make_stepper(system, options.scheme, step_options(options))),
+        equation_(stepper_->equation()),
+        located_(system, *stepper_) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
     summary_.scheme = options.scheme.name;
     summary_.step = options.step;
+    summary_.tolerance = options.tolerance;
+    locates_ = options.locate_contacts.value_or(options.tolerance > 0.0);
+    same_ = kSameTime * (options.step > 0.0 ? options.step : kLargestStep * duration());
+    if (options.tolerance > 0.0) set_control();
   }
 
   RunSummary run() {
-    solver_.start(now_);
-    EnergyMonitor energy(solver_.assembler(), now_);
+    stepper_->start(now_);
+    EnergyMonitor energy(equation_.assembler(), now_);
     energy_ = &energy;
-    for (Observer* o : observers_) o->start(solver_.assembler(), now_);
+    for (Observer* o : observers_) o->start(equation_.assembler(), now_);
+    if (control_) control_->look_at(now_.state);
     if (!now_.state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
-    while (summary_.status == RunStatus::success && now_.state.t < options_.t_end) run_to_next_stop();
+    while (running() && now_.state.t < options_.t_end) run_to_next_stop();
     summary_.t_end = now_.state.t;
-    summary_.load_passes = solver_.load_passes();
-    summary_.factorizations = solver_.factorizations();
-    summary_.newton_on_contacts = solver_.dense_contacts();
+    summary_.load_passes = equation_.load_passes();
+    summary_.factorizations += equation_.factorizations();
+    summary_.newton_on_contacts = equation_.dense_contacts();
+    summary_.solves = coarse_solves_ + equation_.solves();
     summary_.energy = energy.balance();
-    if (solver_.clock().on()) {
-      solver_.clock().enter(Phase::observers);
-      const PhaseClock& clock = solver_.clock();
+    if (equation_.clock().on()) {
+      equation_.clock().enter(Phase::observers);
+      const PhaseClock& clock = equation_.clock();
       summary_.phases = {{"loads", clock.seconds(Phase::loads)},
                          {"linear", clock.seconds(Phase::linear)},
                          {"contacts", clock.seconds(Phase::contacts)},
@@ -75,72 +97,257 @@ class Run {
 
   State take_state() { return std::move(now_.state); }
 
+  static StepOptions step_options(const TransientOptions& o) {
+    StepOptions options = o.newton;
+    options.varying_steps = o.tolerance > 0.0;
+    return options;
+  }
+
  private:
+  bool running() const { return summary_.status == RunStatus::success; }
+  double duration() const { return options_.t_end - options_.t_start; }
+
+  void set_control() {
+    const StepScheme& scheme = options_.scheme;
+    double fastest = 0.0;
+    for (const std::complex<double>& lambda : fast_eigenvalues(system_))
+      fastest = std::max(fastest, std::abs(lambda));
+    StepControl::Options o{.tolerance = options_.tolerance,
+                           .duration = duration(),
+                           .largest = kLargestStep * duration(),
+                           .order = scheme.order(),
+                           .on_grid = !scheme.is_explicit()};
+    if (options_.step > 0.0) o.largest = options_.step;
+    o.largest = std::min(o.largest, stability_limit(system_, scheme));
+    o.first = o.largest;
+    if (options_.step == 0.0 && fastest > 0.0) o.first = std::min(o.first, kChosenStep / fastest);
+    // The embedded formulas of the methods of high order are one order lower.
+    if (scheme.tableau && scheme.tableau->e.size() > 0 && o.order > 2) --o.order;
+    control_.emplace(system_, o);
+    // Scales before there is any motion to measure them by.
+    class Coarse final : public Observer {
+     public:
+      explicit Coarse(StepControl& control) : control_(control) {}
+      void start(const Assembler&, const StepPoint& point) override { control_.expect(point.state); }
+      void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
+        control_.expect(to.state);
+      }
+
+     private:
+      StepControl& control_;
+    } coarse(*control_);
+    State state = now_.state;
+    const RunSummary run = simulate(system_,
+                                    {.scheme = bathe(),
+                                     .step = duration() / kCoarseSteps,
+                                     .t_start = options_.t_start,
+                                     .t_end = options_.t_end,
+                                     .newton = options_.newton},
+                                    state, {&coarse});
+    coarse_solves_ = run.solves;
+    energy_floor_ = StepControl::kExpected * run.energy.scale;
+    summary_.factorizations = run.factorizations;
+  }
+
   void run_to_next_stop() {
     const double t = now_.state.t;
     const auto& breaks = system_.breakpoints();
     const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
-    const double same = kSameTime * options_.step;
     double stop = options_.t_end;
     if (next_break != breaks.end()) stop = std::min(stop, *next_break);
-    for (const Observer* o : observers_) {
-      const double wanted = o->next_stop(t);
-      if (wanted > t + same) stop = std::min(stop, wanted);
-    }
+    if (!control_)
+      for (const Observer* o : observers_) {
+        const double wanted = o->next_stop(t);
+        if (wanted > t + same_) stop = std::min(stop, wanted);
+      }
     // Stops that differ by rounding are one.
-    if (options_.t_end - stop <= same) stop = options_.t_end;
-    const bool at_break = next_break != breaks.end() && *next_break - stop <= same;
+    if (options_.t_end - stop <= same_) stop = options_.t_end;
+    const bool at_break = next_break != breaks.end() && *next_break - stop <= same_;
     if (at_break) stop = *next_break;
-    const double count = std::max(1.0, std::ceil((stop - t) / options_.step - 1e-6));
-    const double h = (stop - t) / count;
-    for (double i = 1.0; i <= count && summary_.status == RunStatus::success; i += 1.0) {
-      const bool last = i == count;
-      const double t_new = last ? stop : t + i * h;
-      // Just before a breakpoint the loads have their old values.
-      const double t_evaluate =
-          last && at_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity()) : t_new;
-      advance(h, t_new, t_evaluate, 0);
-    }
-    if (at_break && summary_.status == RunStatus::success && now_.state.t < options_.t_end) {
+    if (control_ || locates_)
+      while (running() && now_.state.t < stop) free_step(stop, at_break);
+    else
+      constant_steps(stop, at_break);
+    if (at_break && running() && now_.state.t < options_.t_end) {
       next_ = now_;
-      solver_.start(now_);
+      stepper_->start(now_);
       energy_->restart(next_, now_);
     }
   }
 
-  void advance(double h, double t_new, double t_evaluate, int depth) {
-    const NewtonResult result = solver_.step(now_, h, t_new, t_evaluate, next_);
-    summary_.iterations += result.iterations;
-    if (result.status == NewtonStatus::converged) {
-      accept(h);
-      return;
+  /// Just before a breakpoint the loads have their old values.
+  static double evaluation_time(double t, bool at_break) {
+    return at_break ? std::nextafter(t, -std::numeric_limits<double>::infinity()) : t;
+  }
+
+  void constant_steps(double stop, bool at_break) {
+    const double t = now_.state.t;
+    const double count = std::max(1.0, std::ceil((stop - t) / options_.step - 1e-6));
+    const double h = (stop - t) / count;
+    for (double i = 1.0; i <= count && running(); i += 1.0) {
+      const bool last = i == count;
+      const double t_new = last ? stop : t + i * h;
+      advance(h, t_new, evaluation_time(t_new, last && at_break), 0);
     }
-    if (result.status == NewtonStatus::not_finite && depth == options_.max_halvings)
-      return fail(RunStatus::not_finite, to_text(result.status));
-    if (depth == options_.max_halvings)
-      return fail(RunStatus::no_convergence,
-                  std::string(to_text(result.status)) + " even with h = " + to_text(h) + " s");
+  }
+
+  void advance(double h, double t_new, double t_evaluate, int depth) {
+    const NewtonResult result = stepper_->step(now_, h, t_new, t_evaluate, next_);
+    summary_.iterations += result.iterations;
+    if (result.status == NewtonStatus::converged) return accept(h, t_evaluate);
+    if (depth == options_.max_halvings) return last_resort(result.status, h, t_new, t_evaluate);
     ++summary_.halved;
     const double middle = now_.state.t + 0.5 * h;
     advance(0.5 * h, middle, middle, depth + 1);
-    if (summary_.status == RunStatus::success) advance(0.5 * h, t_new, t_evaluate, depth + 1);
+    if (running()) advance(0.5 * h, t_new, t_evaluate, depth + 1);
   }
 
-  void accept(double h) {
+  /// A step that no shortening makes solvable: a force that jumps is taken inside its jump; else the end.
+  void last_resort(NewtonStatus status, double h, double t_new, double t_evaluate) {
+    if (status == NewtonStatus::no_root) {
+      const NewtonResult result = stepper_->step(now_, h, t_new, t_evaluate, next_, true);
+      summary_.iterations += result.iterations;
+      if (result.status == NewtonStatus::converged) {
+        summary_.fallbacks += result.inside_jump;
+        return accept(h, t_evaluate);
+      }
+      status = result.status;
+    }
+    if (status == NewtonStatus::not_finite) return fail(RunStatus::not_finite, to_text(status));
+    fail(RunStatus::no_convergence,
+         std::string(to_text(status)) + " even with h = " + to_text(h) + " s");
+  }
+
+  /// A controlled step, or one that ends at a contact change, or both.
+  void free_step(double stop, bool at_break) {
+    const double remaining = stop - now_.state.t;
+    double h = control_ ? control_->next(remaining)
+                        : remaining / std::max(1.0, std::ceil(remaining / options_.step - 1e-6));
+    for (int i = 0; !control_ && i < failures_; ++i) h *= 0.5;
+    const bool whole = h == remaining;
+    const double t_new = whole ? stop : now_.state.t + h;
+    const double t_evaluate = evaluation_time(t_new, whole && at_break);
+    LocatedStep::Result made;
+    const bool standing = changes_here_ > 20 + 20 * static_cast<int>(system_.scalars().size());
+    if (locates_ && !standing) {
+      made = located_.step(now_, h, t_new, t_evaluate, next_);
+    } else {
+      made.newton = stepper_->step(now_, h, t_new, t_evaluate, next_);
+      made.h = h;
+    }
+    summary_.iterations += made.newton.iterations;
+    if (made.newton.status != NewtonStatus::converged) {
+      equation_.start_from(now_);
+      if (failures_ == options_.max_halvings) {
+        failures_ = 0;
+        return last_resort(made.newton.status, h, t_new, t_evaluate);
+      }
+      ++failures_;
+      ++summary_.halved;
+      if (control_) control_->failed(h);
+      return;
+    }
+    if (made.h > 0.0) {
+      const bool cut = made.h != h;
+      const double t_end = cut ? next_.state.t : t_evaluate;
+      if (control_ && !passes(made.h, !cut && !whole)) return;
+      failures_ = 0;
+      if (made.h > kStanding * h) changes_here_ = 0;
+      accept(made.h, t_end);
+    }
+    if (made.reached && running()) pass(*made.reached, made.tau, stop);
+  }
+
+  /// Error and energy of a controlled step; rejects it if it does not pass.
+  bool passes(double h, bool as_planned) {
+    stepper_->estimate(now_, next_, h, e_z_, e_v_);
+    const double error = control_->error(next_.state, e_z_, e_v_, h);
+    bool good = error <= 1.0;
+    if (!good) {
+      control_->rejected(h, error);
+    } else {
+      const EnergyBalance before = energy_->balance();
+      account(h);
+      const EnergyBalance& after = energy_->balance();
+      const double share = options_.energy_tolerance * std::max(after.scale, energy_floor_) *
+                           std::max(h / duration(), kLeastShare);
+      good = !(std::abs(after.imbalance - before.imbalance) > share) || energy_tries_ == kEnergyTries;
+      energy_->restore(before);
+      if (!good) ++energy_tries_, control_->shorten(h);
+    }
+    if (good) {
+      energy_tries_ = 0;
+      control_->look_at(next_.state);
+      control_->accepted(h, error, as_planned);
+      return true;
+    }
+    ++summary_.rejected;
+    equation_.start_from(now_);
+    if (h < kLeastStep * duration())
+      fail(RunStatus::no_convergence, "no step is short enough for the tolerance");
+    return false;
+  }
+
+  /// Over a contact change.
+  void pass(const ContactLocator::Crossing& crossing, double tau, double stop) {
+    ++changes_here_;
+    if (!(now_.state.t + 2.0 * tau < stop)) return pass_at_stop();
+    const double h = located_.hop(crossing, tau, now_, next_);
+    ++summary_.located;
+    energy_->step(now_, next_, h);
+    observe(h, next_.state.t);
+    std::swap(now_, next_);
+  }
+
+  /// A change within rounding of the stop: the step there is not located.
+  void pass_at_stop() { changes_here_ = std::numeric_limits<int>::max() / 2; }
+
+  /// Enters the step into the energy balance.
+  void account(double h) {
+    equation_.clock().enter(Phase::balance);
+    if (options_.scheme.tableau) {
+      const auto [input, dissipated] = step_energy_.over(equation_, now_, next_, h);
+      energy_->step(next_, input, dissipated);
+    } else {
+      energy_->step(now_, next_, h);
+    }
+  }
+
+  /// Shows the step to the observers, controlled ones with the times wanted inside it.
+  void observe(double h, double t_evaluate) {
+    equation_.clock().enter(Phase::observers);
+    Assembler& assembler = equation_.assembler();
+    const StepPoint* last = &now_;
+    while (control_) {
+      double wanted = std::numeric_limits<double>::infinity();
+      for (const Observer* o : observers_)
+        if (const double t = o->next_stop(last->state.t); t > last->state.t) wanted = std::min(wanted, t);
+      if (!(wanted < next_.state.t)) break;
+      StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
+      StepPolynomial(now_.state, next_.state, h, options_.scheme.order())
+          .at((wanted - now_.state.t) / h, point.state);
+      point.state.t = wanted;
+      assembler.set_time(wanted);
+      equation_.evaluate(now_.state.history, point);
+      for (Observer* o : observers_) o->step(assembler, *last, point);
+      last = &point;
+    }
+    assembler.set_time(t_evaluate);
+    for (Observer* o : observers_) o->step(assembler, *last, next_);
+  }
+
+  void accept(double h, double t_evaluate) {
     ++summary_.steps;
     if (!next_.state.z.allFinite() || !next_.state.v.allFinite()) {
       for (int k = 0; k < system_.size(); ++k)
         if (!std::isfinite(next_.state.z[k]) || !std::isfinite(next_.state.v[k]))
           return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
     }
-    solver_.clock().enter(Phase::balance);
-    energy_->step(now_, next_, h);
-    solver_.clock().enter(Phase::observers);
-    for (Observer* o : observers_) o->step(solver_.assembler(), now_, next_);
+    account(h);
+    observe(h, t_evaluate);
     std::swap(now_, next_);
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-        !options_.progress((now_.state.t - options_.t_start) /
-                           (options_.t_end - options_.t_start)))
+        !options_.progress((now_.state.t - options_.t_start) / duration()))
       return fail(RunStatus::interrupted, "interrupted");
     const EnergyBalance& b = energy_->balance();
     if (!std::isfinite(b.imbalance)) return fail(RunStatus::not_finite, "the energy");
@@ -152,7 +359,7 @@ class Run {
 
   void judge_energy() {
     const EnergyBalance& b = summary_.energy;
-    if (summary_.status != RunStatus::success) return;
+    if (!running()) return;
     const double error = b.relative_error();
     if (std::abs(error) <= options_.energy_tolerance) return;
     std::ostringstream text;
@@ -165,7 +372,7 @@ class Run {
   }
 
   void fail(RunStatus status, const std::string& what) {
-    if (summary_.status != RunStatus::success) return;
+    if (!running()) return;
     summary_.status = status;
     std::ostringstream text;
     text.precision(12);
@@ -176,13 +383,34 @@ class Run {
   const System& system_;
   const TransientOptions& options_;
   const std::vector<Observer*>& observers_;
-  StepSolver solver_;
-  StepPoint now_, next_;
+  std::unique_ptr<Stepper> stepper_;
+  StepEquation& equation_;
+  LocatedStep located_;
+  std::optional<StepControl> control_;
+  StepEnergy step_energy_;
+  StepPoint now_, next_, inside_[2];
+  Vector e_z_, e_v_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
+  bool locates_ = false;
+  double same_ = 0.0;
+  long coarse_solves_ = 0;
+  double energy_floor_ = 0.0;  // J
+  int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;
 };
 
 }  // namespace
+
+void check_state(const System& system, const State& state, ParameterCheck& check) {
+  if (state.z.size() != system.size() || state.v.size() != system.size())
+    check.fail("state", std::to_string(state.z.size()), "unknowns",
+               "must have " + std::to_string(system.size()));
+  else if (!state.z.allFinite() || !state.v.allFinite() || !state.history.allFinite())
+    check.fail("state", "not finite", "", "must be finite");
+  if (state.history.size() != system.history_size())
+    check.fail("state's history", std::to_string(state.history.size()), "numbers",
+               "must have " + std::to_string(system.history_size()));
+}
 
 const char* to_text(RunStatus status) {
   switch (status) {
@@ -199,9 +427,15 @@ const char* to_text(RunStatus status) {
 std::string RunSummary::brief_report() const {
   std::ostringstream text;
   text << scheme;
-  if (step > 0.0) text << ", h = " << step << " s";
+  if (tolerance > 0.0)
+    text << ", tolerance " << tolerance;
+  else if (step > 0.0)
+    text << ", h = " << step << " s";
   text << ": " << to_text(status) << " at t = " << t_end << " s, " << steps << " steps";
-  if (step > 0.0)
+  if (tolerance > 0.0) text << " (" << rejected << " rejected)";
+  if (located > 0) text << ", " << located << " contact changes located";
+  if (fallbacks > 0) text << ", " << fallbacks << " steps with a force inside its jump";
+  if (step > 0.0 || tolerance > 0.0)
     text << " (" << halved << " halved), " << iterations << " iterations, ";
   else
     text << ", " << contact_changes << " contact changes, ";

@@ -1,24 +1,38 @@
 #pragma once
-/// Integrates a System in time by an implicit scheme with constant steps, hitting breakpoints and output
-/// times exactly, and keeps the energy balance.
+/// Integrates a System in time, with constant steps or with steps controlled by their estimated error, and
+/// keeps the energy balance. Breakpoints of loads and known motions are hit exactly.
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "solvers/energy_monitor.hpp"
 #include "solvers/observer.hpp"
+#include "solvers/step_equation.hpp"
 
 namespace drev {
 
 struct TransientOptions {
   StepScheme scheme = average_acceleration();
-  double step = 0.0;       ///< s, > 0; cut evenly where a breakpoint or output time asks for it
+  /// s, > 0; cut evenly where a breakpoint or output time asks for it. A method that is stable for small
+  /// steps only refuses one above its limit. With a tolerance: the first and largest step, 0: chosen.
+  double step = 0.0;
+  /// 0: constant steps. Else the sum of the local errors that the method may make over the run, relative to
+  /// the largest deviation and rate so far [-]: steps follow from it (step_control.hpp). The motion itself may
+  /// amplify what was made.
+  double tolerance = 0.0;
+  /// End steps where a law passes a kink (located_step.hpp). Default: with a tolerance only. Without it, a
+  /// method of higher order than 2 loses that order at every contact change, and a force that jumps
+  /// (MeshDamping::contact_only) reduces every method to order 1.
+  std::optional<bool> locate_contacts = {};
   double t_start = 0.0;    ///< s
   double t_end = 0.0;      ///< s, > t_start
   StepOptions newton = {};
-  /// A step that does not converge is halved up to this many times; then the run ends with an error.
+  /// A step that does not converge is shortened up to this many times; then the run ends with an error. A
+  /// force that jumps and still leaves no solution is taken inside its jump, and counted (fallbacks).
   int max_halvings = 12;
-  /// Largest energy error that passes without warning, relative to the run's energy scale [-].
+  /// Largest energy error that passes without warning, relative to the run's energy scale [-]. A controlled
+  /// step that takes more than its share of it is made anew with half the length, up to three times.
   double energy_tolerance = 1e-2;
   /// A run whose energy grows by this factor over everything that was put in is stopped as unstable [-].
   double energy_growth_limit = 1e6;
@@ -41,9 +55,14 @@ struct RunSummary {
   std::string reason;        ///< a sentence: what went wrong, when and where; empty on success
   std::string scheme;
   double step = 0.0;         ///< s, as asked for; 0: the method's own
+  double tolerance = 0.0;    ///< as asked for; 0: constant steps
   double t_end = 0.0;        ///< s, reached
   long steps = 0;            ///< accepted
-  long halved = 0;           ///< steps that did not converge and were halved
+  long halved = 0;           ///< steps that did not converge and were shortened
+  long rejected = 0;         ///< controlled steps whose error or energy was too large
+  long solves = 0;           ///< linear solves with a step or mass matrix: the work
+  long located = 0;          ///< passed kinks of laws that a step ended at
+  long fallbacks = 0;        ///< steps with a force inside its jump
   long iterations = 0;       ///< Newton
   long load_passes = 0;
   long factorizations = 0;
@@ -56,6 +75,9 @@ struct RunSummary {
   bool ok() const { return status == RunStatus::success; }
   std::string brief_report() const;
 };
+
+/// Findings for a state that does not fit the system: sizes, numbers that are not finite.
+void check_state(const System& system, const State& state, ParameterCheck& check);
 
 /// Runs from the state given (its acceleration is made consistent first) and leaves the last accepted
 /// state in it. Observers see every accepted step. Throws ModelError for bad options; a run that ends

@@ -1,0 +1,269 @@
+#include "solvers/step_equation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+constexpr double kSameStep = 1e-10;  // relative: one factor serves steps that differ by rounding
+constexpr std::size_t kMaxFactors = 16;
+constexpr int kPhasePasses = 4;  // each brings the mesh phase two orders of h nearer
+}  // namespace
+
+StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions options)
+    : system_(system),
+      assembler_(system),
+      scheme_(std::move(scheme)),
+      options_(options),
+      dense_(system.generals().empty() &&
+             static_cast<int>(system.scalars().size()) <= options.max_dense_contacts),
+      lambda_(Vector::Zero(static_cast<Eigen::Index>(system.scalars().size()))),
+      free_(system.scalars().size()),
+      clock_(options.time_phases) {
+  if (!dense_) sparse_ = std::make_unique<SparseNewton>(system);
+}
+
+StepEquation::Factor& StepEquation::factor(double h) {
+  for (auto f = factors_.rbegin(); f != factors_.rend(); ++f)
+    if (std::abs((*f)->h - h) <= kSameStep * h) {
+      std::rotate(f.base() - 1, f.base(), factors_.end());
+      return *factors_.back();
+    }
+  if (factors_.size() == kMaxFactors) factors_.erase(factors_.begin());
+  auto f = std::make_unique<Factor>(
+      Factor{h, SparseCholesky(), ContactNewton(), Eigen::MatrixXd()});
+  const Weights weights = scheme_.weights(h);
+  assembler_.linear_values(weights, values_);
+  ++factorizations_;
+  if (f->cholesky.factorize(system_.pattern(), values_) != FactorStatus::success)
+    throw SolverError(system_.name() + ": the step matrix of " + scheme_.name + " at h = " +
+                      to_text(h) + " s is not positive definite; is a stiffness negative?");
+  const auto m = static_cast<Eigen::Index>(system_.scalars().size());
+  f->w.resize(system_.size(), m);
+  Eigen::MatrixXd compliance(m, m);
+  Vector column(system_.size()), solved(system_.size());
+  for (Eigen::Index j = 0; j < m; ++j) {
+    column.setZero();
+    for (const Entry& e : system_.scalars()[at(static_cast<int>(j))].z)
+      column[e.index] += e.coeff;
+    f->cholesky.solve(column, solved);
+    f->w.col(j) = solved;
+  }
+  for (Eigen::Index i = 0; i < m; ++i)
+    for (Eigen::Index j = 0; j < m; ++j) {
+      compliance(i, j) = 0.0;
+      for (const Entry& e : system_.scalars()[at(static_cast<int>(i))].z)
+        compliance(i, j) += e.coeff * f->w(e.index, j);
+    }
+  // x = z-part: beta h^2 b^T a; with a = a_linear - (1 - alpha_f) W lambda.
+  f->contact = ContactNewton(system_, std::move(compliance), weights.k, weights.c);
+  factors_.push_back(std::move(f));
+  return *factors_.back();
+}
+
+void StepEquation::evaluate(const Vector& history, StepPoint& point, Vector* history_new) {
+  point.inputs.resize(system_.scalars().size());
+  point.responses.resize(system_.scalars().size());
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
+    point.inputs[j] = assembler_.input(system_.scalars()[j], point.state.z, point.state.v);
+    point.responses[j] = system_.scalars()[j].force->evaluate(point.inputs[j]);
+  }
+  assembler_.external(point.state.z, point.state.v, point.p);
+  evaluate_totals(history, point, history_new);
+}
+
+void StepEquation::evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new) {
+  const State& s = point.state;
+  assembler_.multiply_stiffness(s.z, point.kz);
+  assembler_.multiply_damping(s.v, point.cv);
+  point.total = point.kz + point.cv - point.p;
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j)
+    for (const Entry& e : system_.scalars()[j].z)
+      point.total[e.index] += e.coeff * point.responses[j].y;
+  if (!system_.generals().empty()) {
+    history_.resize(system_.history_size());
+    assembler_.add_general_forces(s.z, s.v, history, point.total, history_);
+    std::tie(point.general_energy, point.general_power) = assembler_.general_energy(s, history);
+    if (history_new) *history_new = history_;
+  }
+}
+
+void StepEquation::acceleration(const Vector& total, Vector& a) {
+  if (!mass_.ok()) {
+    ++factorizations_;
+    if (mass_.factorize(system_.pattern(), system_.mass_values()) != FactorStatus::success)
+      throw SolverError(system_.name() + ": the mass matrix is not positive definite");
+  }
+  ++solves_;
+  rhs_ = -total;
+  mass_.solve(rhs_, a);
+}
+
+void StepEquation::filter(double h, Vector& e_z, Vector& e_v) {
+  if (!dense_) return;
+  ++solves_;
+  Factor& f = factor(h);
+  const double phi = 1.0 - scheme_.alpha_f;
+  assembler_.multiply_mass(e_v, rhs_);
+  rhs_ *= 1.0 - scheme_.alpha_m;
+  assembler_.multiply_stiffness(e_z, scratch_);
+  rhs_ -= (phi * scheme_.gamma * h) * scratch_;
+  f.cholesky.solve(rhs_, e_v);
+  e_z += (scheme_.beta / scheme_.gamma * h) * e_v;
+}
+
+void StepEquation::start_from(const StepPoint& point) {
+  for (std::size_t j = 0; j < point.responses.size(); ++j)
+    lambda_[static_cast<Eigen::Index>(j)] = point.responses[j].y;
+}
+
+void StepEquation::update_scale(const StepPoint& point) {
+  force_scale_ = std::max(force_scale_, point.p.lpNorm<Eigen::Infinity>());
+  force_scale_ = std::max(force_scale_, point.kz.lpNorm<Eigen::Infinity>());
+  for (std::size_t j = 0; j < point.responses.size(); ++j)
+    force_scale_ = std::max(force_scale_, std::abs(point.responses[j].y));
+}
+
+NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {
+  to.state.history = *problem.history;
+  return dense_ ? solve_dense(problem, to) : solve_sparse(problem, to);
+}
+
+void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
+  if (!dense_) return evaluate_totals(from.state.history, to, nullptr);
+  const StepScheme& c = scheme_;
+  assembler_.multiply_mass(to.state.a, to.total);
+  to.total *= -(1.0 - c.alpha_m) / (1.0 - c.alpha_f);
+  if (c.alpha_m != 0.0) {
+    assembler_.multiply_mass(a_0, scratch_);
+    to.total -= (c.alpha_m / (1.0 - c.alpha_f)) * scratch_;
+  }
+  if (c.alpha_f != 0.0) to.total -= (c.alpha_f / (1.0 - c.alpha_f)) * from.total;
+  assembler_.multiply_damping(to.state.v, to.cv);
+  to.kz = to.total + to.p - to.cv;
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j)
+    for (const Entry& e : system_.scalars()[j].z) to.kz[e.index] -= e.coeff * to.responses[j].y;
+}
+
+void StepEquation::correct(const Problem& problem, StepPoint& to) const {
+  const double h = problem.h;
+  to.state.z = problem.z_0 + (scheme_.beta * h * h) * to.state.a;
+  to.state.v = problem.v_0 + (scheme_.gamma * h) * to.state.a;
+}
+
+NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
+  Factor& f = factor(problem.h);
+  const double phi = 1.0 - scheme_.alpha_f;
+  const std::size_t m = system_.scalars().size();
+  assembler_.multiply_stiffness(problem.z_0, scratch_);
+  problem.known -= phi * scratch_;
+  assembler_.multiply_damping(problem.v_0, scratch_);
+  problem.known -= phi * scratch_;
+
+  // Loads start at the state that the old acceleration predicts. The mesh phase is taken there too: it is
+  // off by O(h^3), and a stepped stiffness cannot flip to and fro inside the iteration. Methods of higher
+  // order take it anew in the first passes.
+  to.state.a = *problem.a_start;
+  correct(problem, to);
+  clock_.enter(Phase::loads);
+  assembler_.external(to.state.z, to.state.v, to.p);
+  to.inputs.resize(m);
+  to.responses.resize(m);
+  std::vector<ScalarInput>& phase = to.inputs;
+  const auto take_phase = [&] {
+    for (std::size_t j = 0; j < m; ++j)
+      phase[j].angle = assembler_.input(system_.scalars()[j], to.state.z, to.state.v).angle;
+  };
+  take_phase();
+  int phase_passes = 1;
+  if (scheme_.order() > 2)
+    for (const ScalarTerm& term : system_.scalars())
+      if (term.phase_node >= 0) phase_passes = kPhasePasses;
+  lambda_start_ = lambda_;
+
+  NewtonResult result;
+  for (int pass = 1;; ++pass) {
+    ++load_passes_;
+    ++solves_;
+    clock_.enter(Phase::linear);
+    rhs_ = problem.known + phi * to.p;
+    f.cholesky.solve(rhs_, to.state.a);
+    if (m > 0) {
+      correct(problem, to);
+      clock_.enter(Phase::contacts);
+      for (std::size_t j = 0; j < m; ++j) {
+        free_[j] = assembler_.input(system_.scalars()[j], to.state.z, to.state.v);
+        free_[j].angle = phase[j].angle;
+      }
+      const double scale = std::max(force_scale_, to.p.lpNorm<Eigen::Infinity>());
+      const NewtonResult contact = f.contact.solve(free_, scale, options_.contact, lambda_);
+      result.iterations += contact.iterations;
+      const bool jump = contact.status == NewtonStatus::no_root && problem.accept_jump;
+      if (contact.status != NewtonStatus::converged && !jump) {
+        result.status = contact.status;
+        lambda_ = lambda_start_;
+        return result;
+      }
+      result.inside_jump = result.inside_jump || jump;
+      to.state.a.noalias() -= phi * (f.w * lambda_);
+    } else {
+      ++result.iterations;
+    }
+    correct(problem, to);
+    if (!to.state.a.allFinite()) {
+      result.status = NewtonStatus::not_finite;
+      return result;
+    }
+    if (!system_.loads_depend_on_motion() && pass >= phase_passes) break;
+    clock_.enter(Phase::loads);
+    p_last_ = to.p;
+    assembler_.external(to.state.z, to.state.v, to.p);
+    if (pass < phase_passes) {
+      take_phase();
+      continue;
+    }
+    const double scale = std::max(force_scale_, to.p.lpNorm<Eigen::Infinity>());
+    if ((to.p - p_last_).lpNorm<Eigen::Infinity>() <= options_.load_tolerance * scale) break;
+    if (pass == options_.max_load_passes) {
+      result.status = NewtonStatus::too_many_steps;
+      return result;
+    }
+  }
+  if (m > 0) {
+    to.inputs = f.contact.inputs();
+    to.responses = f.contact.responses();
+    if (problem.accept_jump)
+      for (std::size_t j = 0; j < m; ++j)
+        to.responses[j].y = lambda_[static_cast<Eigen::Index>(j)];
+  }
+  return result;
+}
+
+NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
+  const double phi = 1.0 - scheme_.alpha_f, h = problem.h;
+  scratch_ = -problem.known;
+  const SparseNewtonProblem sparse{.mu = 1.0 - scheme_.alpha_m,
+                                   .phi = phi,
+                                   .kappa_z = scheme_.beta * h * h,
+                                   .kappa_v = scheme_.gamma * h,
+                                   .z_0 = &problem.z_0,
+                                   .v_0 = &problem.v_0,
+                                   .r_0 = &scratch_,
+                                   .history = problem.history};
+  to.state.a = *problem.a_start;
+  const NewtonResult result = sparse_->solve(assembler_, sparse, {}, to.state.a, to.state.history);
+  solves_ += result.iterations;
+  if (result.status != NewtonStatus::converged) return result;
+  correct(problem, to);
+  to.inputs.resize(system_.scalars().size());
+  to.responses.resize(system_.scalars().size());
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
+    to.inputs[j] = assembler_.input(system_.scalars()[j], to.state.z, to.state.v);
+    to.responses[j] = system_.scalars()[j].force->evaluate(to.inputs[j]);
+  }
+  assembler_.external(to.state.z, to.state.v, to.p);
+  return result;
+}
+
+}  // namespace drev

@@ -1,0 +1,106 @@
+#pragma once
+/// The equation that every implicit step or stage ends in, solved for the acceleration a:
+///
+///   mu M a + phi F(t, z_0 + beta h^2 a, v_0 + gamma h a) = known,   F = C v + K z + B y + general - p
+///
+/// S = mu M + phi (gamma h C + beta h^2 K) is factored once per h: all stages of a method share it. Where
+/// the laws are few, Newton runs on their forces alone (contact_newton.hpp) and angle-dependent loads are a
+/// small correction iterated on the same factor; with many laws, or general elements, the sparse tangent
+/// is factored in each iteration (sparse_newton.hpp).
+#include <memory>
+#include <vector>
+
+#include "solvers/contact_newton.hpp"
+#include "solvers/phase_clock.hpp"
+#include "solvers/sparse_cholesky.hpp"
+#include "solvers/sparse_newton.hpp"
+#include "solvers/step_point.hpp"
+#include "solvers/step_scheme.hpp"
+
+namespace drev {
+
+struct StepOptions {
+  ContactNewton::Options contact;
+  /// Change of the loads between two passes, relative to the largest force so far [-].
+  double load_tolerance = 1e-10;
+  int max_load_passes = 30;
+  /// More laws than this are solved with the sparse tangent; measured in docs/performance.md.
+  int max_dense_contacts = 32;
+  /// Steps vary in length: generalized-alpha's accelerations are carried over to the next step's length.
+  bool varying_steps = false;
+  bool time_phases = false;  ///< keep where the time goes (slows the run a little)
+};
+
+class StepEquation {
+ public:
+  /// Coefficients mu = 1 - alpha_m, phi = 1 - alpha_f, beta, gamma are the scheme's.
+  StepEquation(const System& system, StepScheme scheme, StepOptions options);
+
+  struct Problem {
+    double h = 0.0;                      ///< s
+    Vector z_0, v_0;                     ///< motion with a = 0
+    Vector known;                        ///< right side; used up
+    const Vector* a_start = nullptr;     ///< where loads, phase and Newton start
+    const Vector* history = nullptr;     ///< of the general elements before the step
+    /// A force that jumps and leaves no root: take the value inside the jump at which the law stands on
+    /// its edge. Only with few laws.
+    bool accept_jump = false;
+  };
+
+  const StepScheme& scheme() const { return scheme_; }
+  const StepOptions& options() const { return options_; }
+  Assembler& assembler() { return assembler_; }
+
+  /// Solves at the assembler's time. Fills to's z, v, a, p, inputs, responses, history.
+  NewtonResult solve(Problem& problem, StepPoint& to);
+  /// kz, cv and total after solve(); the step's own equation gives the total force, so that no product
+  /// with K is needed. from: where the step began, a_0: with which acceleration.
+  void totals(const StepPoint& from, const Vector& a_0, StepPoint& to);
+
+  /// Everything at the point's state and the assembler's time. history: of the general elements before the
+  /// step that led to it; what they leave goes to history_new (may be null).
+  void evaluate(const Vector& history, StepPoint& point, Vector* history_new = nullptr);
+  /// a = -M^-1 total. Throws SolverError if M cannot be factored.
+  void acceleration(const Vector& total, Vector& a);
+  /// Takes the errors' share in modes too fast for the step away: (e_z, e_v) become
+  /// (I - gamma h J)^-1 (e_z, e_v), J the motion's Jacobian without the laws. Only with few laws.
+  void filter(double h, Vector& e_z, Vector& e_v);
+  /// Newton starts from the forces at this point.
+  void start_from(const StepPoint& point);
+  void update_scale(const StepPoint& point);
+
+  long load_passes() const { return load_passes_; }
+  long factorizations() const { return factorizations_; }
+  long solves() const { return solves_; }
+  bool dense_contacts() const { return dense_; }
+  PhaseClock& clock() { return clock_; }
+
+ private:
+  struct Factor {
+    double h = 0.0;
+    SparseCholesky cholesky;
+    ContactNewton contact;
+    Eigen::MatrixXd w;  // S^-1 B
+  };
+  Factor& factor(double h);
+  void evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new);
+  NewtonResult solve_dense(Problem& problem, StepPoint& to);
+  NewtonResult solve_sparse(const Problem& problem, StepPoint& to);
+  void correct(const Problem& problem, StepPoint& to) const;
+
+  const System& system_;
+  Assembler assembler_;
+  StepScheme scheme_;
+  StepOptions options_;
+  bool dense_ = true;
+  std::vector<std::unique_ptr<Factor>> factors_;  // used last, last
+  SparseCholesky mass_;
+  std::unique_ptr<SparseNewton> sparse_;
+  Vector rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
+  std::vector<ScalarInput> free_;
+  double force_scale_ = 0.0;
+  PhaseClock clock_;
+  long load_passes_ = 0, factorizations_ = 0, solves_ = 0;
+};
+
+}  // namespace drev
