@@ -7,12 +7,16 @@ inline constexpr const char* kMethodsHelp =
     "simulated, else average_acceleration; the run says which, and why):\n"
     "  exact                         Taylor series between located contact changes, to --tolerance;\n"
     "                                says what of a model keeps it from that\n"
-    "implicit, with a --step, of second order but for newmark with GAMMA > 1/2:\n"
+    "with a --step; implicit, of second order but for newmark with GAMMA > 1/2:\n"
     "  average_acceleration          keeps energy; the default where exact cannot be used\n"
     "  hht[:ALPHA]                   0 to 1/3, default 0.05; damps the fastest modes\n"
     "  generalized_alpha[:RHO_INF]   1 (none) to 0, default 0.8; damps the fastest modes\n"
     "  newmark:BETA,GAMMA            BETA >= 0, GAMMA >= 1/2\n"
-    "  linear_acceleration, central_difference   stable for small steps only\n";
+    "  bathe[:RHO_INF]               two stages; 1 (no damping) to 0, default 0; tr_bdf2 is bathe:0\n"
+    "  sdirk4                        five stages, fourth order; damps the fastest modes\n"
+    "stable for small steps only; a larger step is refused:\n"
+    "  linear_acceleration, central_difference   of second order\n"
+    "  rk4, dormand_prince           explicit, of fourth and fifth order\n";
 
 inline constexpr const char* kMainExamples =
     "Examples:\n"

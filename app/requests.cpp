@@ -60,8 +60,8 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
 void check_method(const char* option, const std::string& text, std::vector<Finding>& findings) {
   const std::string form =
       "must be exact (without numbers: see --tolerance), average_acceleration, hht[:ALPHA], "
-      "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration "
-      "or central_difference";
+      "generalized_alpha[:RHO_INF], newmark:BETA,GAMMA, linear_acceleration, central_difference, "
+      "bathe[:RHO_INF], tr_bdf2, sdirk4, rk4 or dormand_prince";
   try {
     if (!text.ends_with(':') && !text.ends_with(',')) {
       step_scheme(text);
@@ -72,12 +72,12 @@ void check_method(const char* option, const std::string& text, std::vector<Findi
     for (Finding finding : error.findings()) {
       finding.place = kPlace;
       finding.parameter = option + (" " + finding.parameter);
-      if (finding.range.starts_with("is no method"))
-        finding.range = "is no method" +
-                        did_you_mean(text.substr(0, text.find(':')),
-                                     {"exact", "average_acceleration", "linear_acceleration",
-                                      "central_difference", "newmark", "hht", "generalized_alpha"}) +
-                        "; " + form;
+      if (finding.range.starts_with("is no method")) {
+        std::vector<std::string> names = step_scheme_names();
+        names.insert(names.begin(), "exact");
+        finding.range =
+            "is no method" + did_you_mean(text.substr(0, text.find(':')), names) + "; " + form;
+      }
       findings.push_back(std::move(finding));
     }
   }

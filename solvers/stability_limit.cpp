@@ -16,6 +16,7 @@ using Complex = std::complex<double>;
 constexpr Eigen::Index kKrylov = 120;
 constexpr int kPhases = 720;          // at which a law's slope is asked for
 constexpr double kGrowth = 1e-10;     // |R| - 1 that passes
+constexpr double kRigid = 1e-6;       // relative to the fastest: no vibration
 constexpr double kLargestAngle = 20;  // |lambda| h beyond which no explicit method is stable
 
 /// M, and C and K with every law at its largest slopes.
@@ -163,7 +164,7 @@ double stability_limit(const System& system, const StepScheme& scheme) {
     double largest = 0.0;
     for (const Complex& value : values) largest = std::max(largest, std::abs(value));
     for (const Complex& value : values)
-      if (const double size = std::abs(value); size > 1e-6 * largest)
+      if (const double size = std::abs(value); size > kRigid * largest)
         limit = std::min(limit, stable_radius(*scheme.tableau, value / size) / size);
     return limit;
   }
@@ -171,8 +172,20 @@ double stability_limit(const System& system, const StepScheme& scheme) {
   if (scheme.tableau || scheme.alpha_f != 0.0 || scheme.alpha_m != 0.0 || !(gap > 1e-12))
     return limit;
   Linearised motion(system);
-  const double stiffest = largest_stiffness(motion, system.size());
-  return stiffest > 0.0 ? 1.0 / std::sqrt(gap * stiffest) : limit;
+  const double omega = std::sqrt(largest_stiffness(motion, system.size()));
+  if (!(omega > 0.0)) return limit;
+  limit = 1.0 / (std::sqrt(gap) * omega);
+  const double excess = scheme.gamma - 0.5;
+  if (excess == 0.0) return limit;
+  // Damping raises it, mode by mode; where one does not oscillate, nothing is counted on.
+  double damped = std::numeric_limits<double>::infinity();
+  for (const Complex& value : fast_eigenvalues(system)) {
+    const double size = std::abs(value), x = -value.real() / size * excess;
+    if (size <= kRigid * omega) continue;
+    if (value.imag() == 0.0) return limit;
+    damped = std::min(damped, (x + std::sqrt(gap + x * x)) / (gap * size));
+  }
+  return damped;
 }
 
 }  // namespace drev

@@ -1,7 +1,8 @@
 #pragma once
 /// The largest step with which a method does not amplify any of a system's modes, contacts closed.
 ///
-///   Newmark, beta < gamma/2    omega h < 1 / sqrt(gamma/2 - beta)    (damping only helps)
+///   Newmark, b = beta < g/2, g = gamma, for every mode (its damping ratio xi; Hughes 2000, 9.1)
+///                              omega h <= [xi (g - 1/2) + sqrt(g/2 - b + xi^2 (g - 1/2)^2)] / (g/2 - b)
 ///   explicit Runge-Kutta       |R(lambda h)| <= 1 for every lambda,  R(x) = 1 + x b' (1 - x A)^-1 1
 ///
 /// The eigenvalues are those of Arnoldi's method, exact for up to 120 of them and within the residual of the
