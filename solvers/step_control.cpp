@@ -10,11 +10,13 @@ namespace {
 constexpr double kSafety = 0.9;
 constexpr double kLeastFactor = 0.2, kLargestFactor = 4.0;
 constexpr double kFailureFactor = 0.25;
+constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+constexpr double kTooShort = 0.05;  // E with which the step grows
 constexpr double kLeastError = 1e-6;  // as far as the controller looks
 }  // namespace
 
 StepControl::StepControl(const System& system, const Options& options)
-    : options_(options), kind_(static_cast<std::size_t>(system.size()), 0) {
+    : system_(system), options_(options), kind_(static_cast<std::size_t>(system.size()), 0) {
   Vector direction = Vector::Zero(system.size());
   for (int node = 0; node < system.node_count(); ++node) {
     const NodeMap& map = system.node_map(node);
@@ -52,20 +54,30 @@ double StepControl::next(double remaining) const {
 
 double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v, double h) const {
   const Scales s = with(end, 1.0);
-  double largest_z[2] = {}, largest_v[2] = {};
+  const int* outer = system_.pattern().outerIndexPtr();
+  const int* inner = system_.pattern().innerIndexPtr();
+  const double share = h * options_.tolerance / options_.duration;
+  double worst = 0.0, beyond_rounding = 0.0;
+  const auto take = [&](double e, double rounding, double scale) {
+    if (!(scale > 0.0)) return;
+    worst = std::max(worst, e / scale);
+    beyond_rounding = std::max(beyond_rounding, (e - rounding) / scale);
+  };
   for (Eigen::Index i = 0; i < e_z.size(); ++i) {
-    const std::size_t kind = static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)]);
-    largest_z[kind] = std::max(largest_z[kind], std::abs(e_z[i]));
-    largest_v[kind] = std::max(largest_v[kind], std::abs(e_v[i]));
     if (!std::isfinite(e_z[i]) || !std::isfinite(e_v[i]))
       return std::numeric_limits<double>::infinity();
+    double force = 0.0;  // of z, and of (z_1 - z_0)/h as a rate
+    for (int k = outer[i]; k < outer[i + 1]; ++k)
+      force += (std::abs(system_.stiffness_values()[k]) +
+                2.0 / h * std::abs(system_.damping_values()[k])) *
+               std::abs(end.z[inner[k]]);
+    const auto unknown = static_cast<std::size_t>(i);
+    const double inertia = system_.mass_values()[system_.diagonal_slots()[unknown]];
+    const auto kind = static_cast<std::size_t>(kind_[unknown]);
+    take(std::abs(e_z[i]), kRounding * std::abs(end.z[i]), s.z[kind]);
+    take(std::abs(e_v[i]), kRounding * h * force / inertia, s.v[kind]);
   }
-  double worst = 0.0;
-  for (int kind = 0; kind < 2; ++kind) {
-    if (s.z[kind] > 0.0) worst = std::max(worst, largest_z[kind] / s.z[kind]);
-    if (s.v[kind] > 0.0) worst = std::max(worst, largest_v[kind] / s.v[kind]);
-  }
-  return worst * options_.duration / (h * options_.tolerance);
+  return worst > share && beyond_rounding <= share ? kTooShort : worst / share;
 }
 
 void StepControl::accepted(double h, double error, bool as_planned) {

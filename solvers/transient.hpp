@@ -63,6 +63,9 @@ struct RunSummary {
   long solves = 0;           ///< linear solves with a step or mass matrix: the work
   long located = 0;          ///< passed kinks of laws that a step ended at
   long fallbacks = 0;        ///< steps with a force inside its jump
+  /// Controlled steps of 1e-9 of the run, accepted although their error is above its share: a jump inside that
+  /// is no contact change nor breakpoint (a stepped mesh stiffness).
+  long forced = 0;
   long iterations = 0;       ///< Newton
   long load_passes = 0;
   long factorizations = 0;
