@@ -20,7 +20,8 @@ class ContactLocator {
     int side = 1;    ///< it comes from: +1 x above the kink, -1 below
   };
 
-  /// First crossing in the step, at 0 if the motion leaves a kink to the side it was not evaluated on; moves the assembler's time.
+  /// First crossing in the step, at 0 if the motion leaves a kink to the side it was not evaluated on. Moves
+  /// the assembler's time.
   std::optional<Crossing> first(const StepPolynomial& motion, const StepPoint& from,
                                 const StepPoint& to, Assembler& assembler) const;
   /// First crossing if the accelerations at a point stayed: z + v t + a t^2/2, up to h.

@@ -4,10 +4,10 @@
 ///   E = max over deviations and rates of |e| T / (h tolerance scale) <= 1
 ///   h <- 0.9 h E^(-0.7/q) E_last^(0.4/q)      q: order of e/h
 ///
-/// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind (turning,
-/// moving along); of a system that floats, without the motion as a rigid body. Implicit methods step on a
-/// grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson, ACM TOMS 17,
-/// 1991, doi:10.1145/210232.210242.
+/// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind
+/// (turning, moving along); of a system that floats, without the motion as a rigid body. Implicit methods
+/// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
+/// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include "core/state.hpp"
 
 namespace drev {
@@ -24,8 +24,8 @@ class StepControl {
   StepControl(const System& system, const Options& options);
   static constexpr double kExpected = 0.01;
 
-  /// Takes a state of a coarse run into the scales, at 1/100 of it: from rest, errors relative to the motion so
-  /// far would never be small.
+  /// Takes a state of a coarse run into the scales, at 1/100 of it: from rest, errors relative to the
+  /// motion so far would never be small.
   void expect(const State& state) { scales_ = with(state, kExpected); }
   /// Takes an accepted state into the scales.
   void look_at(const State& state) { scales_ = with(state, 1.0); }

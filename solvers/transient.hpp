@@ -18,8 +18,8 @@ struct TransientOptions {
   /// steps only refuses one above its limit. With a tolerance: the first and largest step, 0: chosen.
   double step = 0.0;
   /// 0: constant steps. Else the sum of the local errors that the method may make over the run, relative to
-  /// the largest deviation and rate so far [-]: steps follow from it (step_control.hpp). The motion itself may
-  /// amplify what was made.
+  /// the largest deviation and rate so far [-]: steps follow from it (step_control.hpp). The motion itself
+  /// may amplify what was made.
   double tolerance = 0.0;
   /// End steps where a law passes a kink (located_step.hpp). Default: with a tolerance only. Without it, a
   /// method of higher order than 2 loses that order at every contact change, and a force that jumps
@@ -63,8 +63,8 @@ struct RunSummary {
   long solves = 0;           ///< linear solves with a step or mass matrix: the work
   long located = 0;          ///< passed kinks of laws that a step ended at
   long fallbacks = 0;        ///< steps with a force inside its jump
-  /// Controlled steps of 1e-9 of the run, accepted although their error is above its share: a jump inside that
-  /// is no contact change nor breakpoint (a stepped mesh stiffness).
+  /// Controlled steps of 1e-9 of the run, accepted although their error is above its share: a jump inside
+  /// that is no contact change nor breakpoint (a stepped mesh stiffness).
   long forced = 0;
   long iterations = 0;       ///< Newton
   long load_passes = 0;

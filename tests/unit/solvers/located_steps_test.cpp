@@ -116,7 +116,8 @@ TEST_CASE("A step that a jump leaves without a solution is taken inside the jump
   Model m = between_stops(1e4, 0.01, 20.0, MeshDamping::contact_only);
   m.set_initial("m", 0.01 - 10 * h + 1e-11, 1.0);
   const System system = m.build();
-  const TransientOptions options{.scheme = step_scheme("tr_bdf2"), .step = h, .t_end = 0.04, .max_halvings = 4};
+  const TransientOptions options{
+      .scheme = step_scheme("tr_bdf2"), .step = h, .t_end = 0.04, .max_halvings = 4};
   const RunSummary run = simulate(system, options);
   CHECK(run.ok());
   CHECK(run.fallbacks == 1);
@@ -132,8 +133,8 @@ TEST_CASE("Two changes inside one step are both located") {
   m.add<GroundSpring>("spring", {"m"}, {.stiffness = 1e4});
   m.set_initial("m", 0.0, 1.0001);
   const System system = m.build();
-  // x = 0.010001 sin 100 t without the stop; past its edge for 2.8e-4 s of a step of 1.25e-3 s, and at neither
-  // end of one.
+  // x = 0.010001 sin 100 t without the stop; past its edge for 2.8e-4 s of a step of 1.25e-3 s, and at
+  // neither end of one.
   for (const char* method : {"sdirk4", "average_acceleration"}) {
     ContactStatistics contacts(system);
     const RunSummary run = simulate(system,

@@ -137,6 +137,18 @@ TEST_CASE("Every method has its order on a smooth nonlinear problem, and so has 
   }
 }
 
+TEST_CASE("Few laws or the sparse tangent: the same Runge-Kutta run") {
+  const System system = manufactured();
+  for (const char* method : {"bathe:0.8", "sdirk4", "rk4"}) {
+    State dense = State::initial(system), sparse = dense;
+    TransientOptions options{.scheme = step_scheme(method), .step = 0.05, .t_end = 3.0};
+    CHECK(simulate(system, options, dense).newton_on_contacts);
+    options.newton.max_dense_contacts = -1;
+    CHECK_FALSE(simulate(system, options, sparse).newton_on_contacts);
+    CHECK(sparse.z[0] == Approx(dense.z[0]).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("Steps above the stability limit are refused, and the limit is named") {
   // Chain of 10 discs, fixed at one end: omega_max = 2 sqrt(k/J) cos(pi/21).
   Model m("chain");
