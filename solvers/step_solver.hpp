@@ -5,7 +5,8 @@
 /// to the next one's length, z''_n + (a_n - z''_n) h_new/h_old; the first step after a start is made twice,
 /// the second time from z''_0 + (alpha_m - alpha_f) (z''_1 - z''_0). Without it each change of the step would
 /// cost an error of order h^2 in the rates. Source: M. Arnold, O. Bruels, Convergence of the
-/// generalized-alpha scheme for constrained mechanical systems, Multibody Syst. Dyn. 18, 2007, doi:10.1007/s11044-007-9084-0.
+/// generalized-alpha scheme for constrained mechanical systems, Multibody Syst. Dyn. 18, 2007,
+/// doi:10.1007/s11044-007-9084-0.
 #include "solvers/stepper.hpp"
 
 namespace drev {
