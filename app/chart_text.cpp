@@ -77,11 +77,13 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   if (!r.horizon_reason.empty()) text += row("Horizon", r.horizon_reason);
   text += row("Reference", data.reference + "; " + data.check + " agrees with it to " +
                                digits(data.agreement, 2) + ", and no error below that is known");
-  text += "\n" + pad_right("Processor time for", kLabel);
+  std::size_t label = kLabel;
+  for (const WorkCurve& curve : data.curves) label = std::max(label, curve.name.size() + 4);
+  text += "\n" + pad_right("Processor time for", label);
   for (const double accuracy : kAccuracies) text += pad_right(short_digits(accuracy, 2), kColumn);
   text += "error at 1 ms\n";
   for (const WorkCurve& curve : data.curves) {
-    text += pad_right("  " + curve.name, kLabel);
+    text += pad_right("  " + curve.name, label);
     for (const double accuracy : kAccuracies) {
       const WorkPoint* p = data.cheapest(curve, accuracy);
       text += pad_right(
@@ -180,7 +182,7 @@ std::string chart_as_svg(const ChartRequest& request, const ChartResult& r, Char
   const std::string name = request.model.entry->name;
   return svg_chart({.title = name + changed_settings(request.model.settings) + ": error of " +
                              r.quantity + " from 0 to " + short_digits(r.data.t_end, 3) + " s",
-                    .x_label = axis == ChartAxis::time ? "processor time [s]" : "steps",
+                    .x_label = axis == ChartAxis::time ? "processor time [s]" : "linear solves",
                     .y_label = "largest error over peak",
                     .log_x = true,
                     .log_y = true,

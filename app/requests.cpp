@@ -160,7 +160,9 @@ void check_exact(const std::optional<ModelRequest>& model, const char* option,
 
 /// What `drev chart` draws unless told otherwise.
 std::vector<std::string> chart_methods(const System& system) {
-  std::vector<std::string> methods{"average_acceleration", "hht:0.05", "generalized_alpha:0.8",
+  std::vector<std::string> methods{"average_acceleration", "generalized_alpha:0.8", "bathe",
+                                   "sdirk4", "rk4", "generalized_alpha:0.8@tolerance",
+                                   "sdirk4@tolerance", "dormand_prince@tolerance",
                                    "central_difference"};
   if (!why_not_exact(system)) methods.insert(methods.begin(), "exact");
   return methods;
@@ -277,10 +279,11 @@ ChartRequest request_chart(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
   for (const std::string& name : line.methods.value_or(std::vector<std::string>{})) {
+    const std::size_t at = name.find("@tolerance");
     if (name == "exact")
       check_exact(model, "--methods", findings);
     else
-      check_method("--methods", name, findings);
+      check_method("--methods", at == name.npos ? name : name.substr(0, at), findings);
   }
   double limit = 1.0;
   if (line.limit) limit = read_time("--limit", *line.limit, 1e-3, 1e4, "", findings);

@@ -79,6 +79,7 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
   }
   TransientOptions options{.scheme = step_scheme(method.name),
                            .step = method.step,
+                           .tolerance = method.tolerance,
                            .t_start = o.t_start,
                            .t_end = o.t_end,
                            .progress = o.progress};

@@ -19,8 +19,8 @@ namespace drev {
 
 struct Method {
   std::string name = "average_acceleration";  ///< "exact", or what step_scheme() knows
-  double step = 0.0;                          ///< s; 0 for exact
-  double tolerance = 0.0;                     ///< relative; 0: constant steps
+  double step = 0.0;       ///< s; 0 for exact; with a tolerance the largest step, 0: no limit
+  double tolerance = 0.0;  ///< relative; 0: constant steps
   bool exact() const { return name == "exact"; }
 };
 

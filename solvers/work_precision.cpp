@@ -10,8 +10,10 @@ namespace drev {
 
 namespace {
 
+constexpr std::string_view kControlled = "@tolerance";
 constexpr double kReferenceTolerance = 1e-13;
 constexpr double kReferenceTime = 4.0;  // of the most that a drawn run may take
+constexpr int kMostDigits = 12;             // of the tolerance of controlled steps
 constexpr int kMostHalvings = 24;       // of the sample interval
 constexpr double kShortRun = 0.05;      // s: shorter ones are timed several times
 constexpr int kRepetitions = 5;
@@ -38,6 +40,12 @@ double difference(const Samples& a, const Samples& b) {
     for (std::size_t i = 0; i < std::min(a.rows[c].size(), b.rows[c].size()); ++i)
       value = std::max(value, std::abs(a.rows[c][i] - b.rows[c][i]));
   return value;
+}
+
+/// NAME of NAME@tolerance; empty: not that.
+std::string controlled(const std::string& name) {
+  return name.ends_with(kControlled) ? name.substr(0, name.size() - kControlled.size())
+                                     : std::string();
 }
 
 class Measurement {
@@ -88,23 +96,23 @@ class Measurement {
 
   double halved(int times) const { return std::ldexp(options_.sample_interval, -times); }
 
-  /// The finest steps that there is time for; name and step go to text.
-  Samples finest(const std::string& name, std::string& text) {
+  /// The tightest controlled steps that there is time for; name and tolerance go to text.
+  Samples tightest(const std::string& name, std::string& text) {
     Samples best;
     bool found = false;
-    for (int k = 0; k <= kMostHalvings && !result_.interrupted; ++k) {
-      const Method method{.name = name, .step = halved(k)};
+    for (int digits = 4; digits <= kMostDigits && !result_.interrupted; ++digits) {
+      const Method method{.name = name, .tolerance = std::pow(10.0, -digits)};
       Samples s = sample(method);
-      if (s.summary.ok()) {
-        text = to_text(method);
-        best = std::move(s);
-        found = true;
-      }
-      if (2.0 * best.seconds > kReferenceTime * options_.most_seconds) break;
+      if (!s.summary.ok()) continue;
+      const bool last = 2.0 * s.seconds > kReferenceTime * options_.most_seconds;
+      text = to_text(method);
+      best = std::move(s);
+      found = true;
+      if (last) break;
     }
     if (!found && !result_.interrupted)
       throw SolverError(system_.name() + ": no reference: " + name +
-                        " did not come to an end at any step");
+                        " did not come to an end at any tolerance");
     return best;
   }
 
@@ -116,10 +124,10 @@ class Measurement {
       result_.reference = to_text(exact);
       if (!reference_.summary.ok() && !result_.interrupted)
         throw SolverError(system_.name() + ": no reference: " + reference_.summary.reason);
-      check = finest("average_acceleration", result_.check);
+      check = tightest("dormand_prince", result_.check);
     } else {
-      reference_ = finest("average_acceleration", result_.reference);
-      check = finest("generalized_alpha:0.8", result_.check);
+      reference_ = tightest("dormand_prince", result_.reference);
+      check = tightest("sdirk4", result_.check);
     }
     result_.peak = largest(reference_.rows);
     if (!(result_.peak > 0.0) && !result_.interrupted)
@@ -133,6 +141,9 @@ class Measurement {
     if (name == "exact")
       for (int digits = 3; digits <= 12; ++digits)
         all.push_back({.name = name, .tolerance = std::pow(10.0, -digits)});
+    else if (const std::string scheme = controlled(name); !scheme.empty())
+      for (int digits = 1; digits <= kMostDigits; ++digits)
+        all.push_back({.name = scheme, .tolerance = std::pow(10.0, -digits)});
     else
       for (int k = 0; k <= kMostHalvings; ++k) all.push_back({.name = name, .step = halved(k)});
     return all;
@@ -145,7 +156,7 @@ class Measurement {
       WorkPoint p = point(method);
       if (result_.interrupted) break;
       below = p.ok && p.error < result_.agreement ? below + 1 : 0;
-      const double next = (method.step > 0.0 ? 2.0 : 1.3) * p.seconds;
+      const double next = (method.step > 0.0 ? 2.0 : 1.5) * p.seconds;
       curve.points.push_back(std::move(p));
       if (next > options_.most_seconds || below == 2) break;
     }
@@ -163,7 +174,7 @@ class Measurement {
       p.reason = "the error is " + to_text(p.error) + " times the peak";
       return p;
     }
-    p.work = static_cast<double>(s.summary.steps);
+    p.work = static_cast<double>(s.summary.solves);
     double together = 0.0;
     for (int i = 0; i < kRepetitions && (i == 0 || together < kShortRun); ++i) {
       const double start = processor_time();
@@ -196,7 +207,7 @@ void check(const System& system, const WorkPrecisionOptions& o) {
       continue;
     }
     try {
-      step_scheme(name);
+      step_scheme(controlled(name).empty() ? name : controlled(name));
     } catch (const ModelError& error) {
       findings.insert(findings.end(), error.findings().begin(), error.findings().end());
     }

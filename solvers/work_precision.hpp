@@ -9,7 +9,7 @@
 /// Steps are the sample interval divided by powers of two, so that sampling shortens none of them; methods
 /// that choose their own steps end one at each sample while the error is found, and run without samples
 /// while the time is measured. Time: processor time without observers, the least of several runs where a run
-/// is short. Work: steps.
+/// is short. Work: linear solves (RunSummary.solves).
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +22,8 @@ struct WorkPrecisionOptions {
   std::vector<std::string> channels = {};  ///< of one unit; empty: all unknowns
   double sample_interval = 0.0;            ///< s
   int samples = 64;                        ///< the runs last samples * sample_interval
-  std::vector<std::string> methods = {};   ///< names
+  /// Names; NAME@tolerance for controlled steps instead of constant ones.
+  std::vector<std::string> methods = {};
   /// Runs that would take longer than this [s] are left out, and with them all finer ones of the method.
   double most_seconds = 2.0;
   std::function<bool(double)> progress = {};  ///< part done, 0..1; return false to stop
