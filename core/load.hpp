@@ -2,7 +2,6 @@
 /// A load on one node: p(t, theta, theta_dot) on the RIGHT side of the equation of motion; positive
 /// accelerates the node in the positive sense.
 #include <limits>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -34,15 +33,6 @@ struct LoadStretch {
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// Taylor series of a load along a motion: with theta(s) = sum theta_k s^k, torque(s) = sum T_k s^k.
-/// Holds the series of one step; one per load and run.
-class LoadSeries {
- public:
-  virtual ~LoadSeries() = default;
-  /// T_k [N m or N] from theta_0 ... theta_k. Called for k = 0, 1, 2, ...; k = 0 starts a new step.
-  virtual double coefficient(int k, const std::vector<double>& angle) = 0;
-};
-
 class Load {
  public:
   virtual ~Load() = default;
@@ -51,14 +41,13 @@ class Load {
   virtual bool depends_on_motion() const { return true; }
   /// Times at which the load jumps or kinks [s]: integration stops there and starts anew.
   virtual std::vector<double> breakpoints() const { return {}; }
-  /// The stretch about (t, theta), for exact propagation. On a knot, or within rounding of it, the
-  /// stretch ahead of it: on the side of growing theta where direction > 0, else on the other.
+  /// The stretch about (t, theta), for exact propagation; nullopt for a load that is smooth between its
+  /// breakpoints. On a knot, or within rounding of it, the stretch ahead of it: on the side of growing theta
+  /// where direction > 0, else on the other.
   virtual std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/,
                                              double /*direction*/) const {
     return std::nullopt;
   }
-  /// For a load that has no stretches but a series in theta; null: neither.
-  virtual std::unique_ptr<LoadSeries> series() const { return nullptr; }
 };
 
 }  // namespace drev

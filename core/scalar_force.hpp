@@ -71,10 +71,14 @@ class ScalarForce {
   virtual bool varies() const { return false; }
   /// Static transmission error at the NOMINAL angle of the phase node.
   virtual Offset offset(double /*nominal_angle*/) const { return {}; }
-  /// The law as pieces, for exact propagation; empty: not piecewise linear in x and x_dot alone.
+  /// The next angle beyond `angle` at which the law jumps or kinks with its phase node's angle, on the side
+  /// of growing angles where direction > 0; within rounding of one, the next but that.
+  virtual std::optional<double> next_knot(double /*angle*/, double /*direction*/) const {
+    return std::nullopt;
+  }
+  /// The law as pieces, for exact propagation; empty: not piecewise linear in x and x_dot alone, but smooth
+  /// between its kinks() and knots.
   virtual std::span<const LawPiece> pieces() const { return {}; }
-  /// Why pieces() is empty and what to use instead, to follow "its law ...".
-  virtual std::string_view why_no_pieces() const { return "states no linear pieces"; }
 };
 
 /// A law in a few lines: any copyable type that can be called with a ScalarInput.

@@ -7,7 +7,7 @@
 /// + deviation); twist_feedback = false takes the nominal one. Orders are per revolution of the
 /// node; a four-stroke engine has half orders.
 #include "core/element.hpp"
-#include "elements/harmonic_series.hpp"
+#include "elements/harmonic.hpp"
 
 namespace drev {
 
@@ -35,9 +35,6 @@ class EngineOrderTorque final : public Element, public Load {
             .dtorque_dangle = params_.twist_feedback ? p.slope : 0.0};
   }
   bool depends_on_motion() const override { return params_.twist_feedback; }
-  std::unique_ptr<LoadSeries> series() const override {
-    return std::make_unique<HarmonicSeries>(params_.mean, params_.harmonics);
-  }
 
  private:
   Params params_;

@@ -36,13 +36,10 @@ GearMesh::GearMesh(Params params)
     pieces_ = law_.pieces(params_.stiffness.mean());
 }
 
-std::string_view GearMesh::why_no_pieces() const {
-  if (params_.stiffness.varies())
-    return "has a stiffness that follows the mesh phase; give its mean as a constant";
-  if (params_.transmission_error.varies())
-    return "has a transmission error that varies; leave it out";
-  return "has a damping that grows with penetration (proportional), which is not linear; use "
-         "damping_law limited, contact_only or always";
+std::optional<double> GearMesh::next_knot(double angle, double direction) const {
+  const std::optional<double> knot = params_.stiffness.next_knot(phase(angle), direction);
+  if (!knot) return std::nullopt;
+  return angle + (*knot - phase(angle)) / teeth_per_radian_;
 }
 
 void GearMesh::check(ParameterCheck& check) const {

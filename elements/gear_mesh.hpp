@@ -65,7 +65,7 @@ class GearMesh final : public Element, public ScalarForce {
   bool varies() const override { return params_.stiffness.varies(); }
   Offset offset(double nominal_angle) const override;
   std::span<const LawPiece> pieces() const override { return pieces_; }
-  std::string_view why_no_pieces() const override;
+  std::optional<double> next_knot(double angle, double direction) const override;
 
  private:
   void check_radii(ParameterCheck& check) const;

@@ -53,6 +53,23 @@ double MeshStiffness::mean() const {
   return std::get<PeriodicTable>(law_).mean();
 }
 
+std::optional<double> MeshStiffness::next_knot(double phase, double direction) const {
+  constexpr double kOnKnot = 1e-13;
+  if (const auto* step = std::get_if<Step>(&law_)) {
+    const double nudge = kOnKnot * std::max(1.0, std::abs(phase));
+    const double beyond = direction > 0.0 ? phase + nudge : phase - nudge;
+    const double base = std::floor(beyond), middle = base + step->contact_ratio - 1.0;
+    if (direction > 0.0) return beyond < middle ? middle : base + 1.0;
+    return beyond > middle ? middle : base;
+  }
+  if (const auto* table = std::get_if<PeriodicTable>(&law_)) {
+    const TableStretch s = table->stretch(phase, direction);
+    const double knot = direction > 0.0 ? s.high : s.low;
+    if (std::isfinite(knot)) return knot;
+  }
+  return std::nullopt;
+}
+
 void MeshStiffness::check(ParameterCheck& check, const std::string& parameter) const {
   if (const auto* k = std::get_if<double>(&law_)) {
     check.positive(parameter, *k, "N/m");

@@ -14,6 +14,7 @@
 /// phase_n = -pi n (eps - 1): built from the contact ratio. (The source's series, S. L. Sunde,
 /// NTNU, 2015, equation 4.15, gives no square wave of a stated contact ratio.) Truncated, it
 /// overshoots the step by 9 %.
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -39,6 +40,8 @@ class MeshStiffness {
   /// k [N/m] and its slope against the phase [N/m per mesh period]; the step's slope is 0.
   CurvePoint at(double phase) const;
   double mean() const;  ///< over one mesh period [N/m]
+  /// The next phase beyond at which k jumps or kinks, upwards where direction > 0; none for a smooth k.
+  std::optional<double> next_knot(double phase, double direction) const;
   bool varies() const { return !std::holds_alternative<double>(law_); }
   void check(ParameterCheck& check, const std::string& parameter) const;
 

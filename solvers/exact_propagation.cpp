@@ -12,9 +12,17 @@ namespace drev {
 namespace {
 
 constexpr double kFastestTimesStep = 3.0;  // omega h: bounds degree and growth of rounding
-constexpr double kKnotMargin = 1.05;       // step past the knot expected next
 constexpr double kWatchedAngle = 0.3;      // omega h between points that observers see
 constexpr double kGrowth = 1.5;            // of the step after one that had to be shortened
+constexpr double kShorten = 0.9;           // of the step at which the loads' rest is just small enough
+constexpr double kLoosest = 1e-3;          // tolerance of a pass that is not the last
+constexpr double kSettled = 1e-15;          // of the motion: rounding of what is projected
+constexpr double kProjected = 0.1;           // of a step's share, that the projection may add
+constexpr double kJump = 1e-4;  // of the tolerance: what a jump that no one told of may add
+constexpr double kShortest = 1e-6;           // of the largest step
+constexpr int kMaxPasses = 20;             // of projected loads
+constexpr int kMaxCuts = 20;
+constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
 constexpr double kRetreat = 1.0 / 16.0;    // of the step where the series overflowed
 constexpr double kSameTime = 1e-14;        // relative to the run's times
 constexpr double kNoProgress = 1e-12;      // relative to the largest step
@@ -31,7 +39,8 @@ class ExactRun {
         assembler_(system),
         series_(system),
         known_(system),
-        laws_(system) {
+        laws_(system),
+        smooth_(system) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
     summary_.scheme = "exact";
@@ -53,6 +62,7 @@ class ExactRun {
     if (!now_.state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
     while (running() && now_.state.t < options_.t_end) run_to_next_stop();
     summary_.t_end = now_.state.t;
+    summary_.solves = series_.products();
     summary_.energy = energy.balance();
     judge_energy();
     return summary_;
@@ -94,17 +104,20 @@ class ExactRun {
     energy_->restart(next_, now_);
   }
 
+  /// Where a step ends: s of the series, at a change or knot if there is one.
+  struct End {
+    double s = 1.0;
+    std::optional<LawPieces::Change> change = {};
+    bool at_knot = false;
+  };
+
   /// One step towards the stop; it ends earlier at a change, or where the series ends.
   void step(double stop, bool at_break) {
     const State& from = now_.state;
     const double remaining = stop - from.t;
-    double h = expand(remaining);
-    const double got = series_.step();
-    std::optional<LawPieces::Change> change = laws_.first_change(1.0);
-    const std::optional<double> knot = known_.first_knot(series_, change ? change->s : 1.0);
-    if (knot) change.reset();
-    const double s = knot ? *knot : change ? change->s : 1.0;
-    const bool reaches = s == 1.0 && got == h && h == remaining;
+    const End end = find_end(remaining);
+    const double s = end.s, got = series_.step();
+    const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop : std::min(from.t + s * got, stop);
 
     const StepPoint& before = watch(t_new, s);
@@ -116,14 +129,15 @@ class ExactRun {
     const bool ahead_of_break = at_break && t_new == stop;
     evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity())
                                    : t_new);
-    energy_->step(next_, known_.work(series_, s) + laws_.input(s),
-                  series_.dissipated(s) + laws_.dissipated(s));
+    const SmoothLaws::Work smooth = smooth_.work(series_, s);
+    energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
+                  series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated);
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
     laws_.forget_roots();
-    if (change) pass(*change, t_new);
+    if (end.change) pass(*end.change, t_new);
     if (!ahead_of_break) {
-      known_.advance(t_new, to.z, to.v);
-      if (knot) {
+      known_.advance(t_new, to.z, to.v, s == 1.0);
+      if (end.at_knot) {
         known_.pass_knot();
         count_change(known_.knot_element(), t_new);
       }
@@ -135,6 +149,40 @@ class ExactRun {
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
         !options_.progress((now_.state.t - options_.t_start) / (options_.t_end - options_.t_start)))
       fail(RunStatus::interrupted, "interrupted");
+  }
+
+  /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
+  /// step is cut at the change and expanded anew, until the change is at its end.
+  End find_end(double remaining) {
+    double h = std::min(remaining, growing_step_);
+    if (h < remaining) h = remaining / std::ceil(remaining / h);
+    std::optional<LawPieces::Change> cut;
+    for (int cuts = 0;; ++cuts) {
+      h = expand(h);
+      laws_.expand(series_, known_, smooth_);
+      if (const auto change = laws_.change_at_once()) {
+        pass(*change, now_.state.t);
+        cut.reset();
+        continue;
+      }
+      End end;
+      end.change = laws_.first_change(1.0);
+      if (end.change) end.s = end.change->s;
+      if (const auto knot = known_.first_knot(series_, end.s)) end = {*knot, {}, true};
+      if (const auto knot = smooth_.first_knot(series_, end.s)) end = {*knot, {}, false};
+      // So close to the start the motion has had no time to differ.
+      if (!known_.projected() || cuts > kMaxCuts || end.s < kAtStart) return end;
+      double beyond = end.s - 1.0;
+      if (end.s == 1.0) {
+        if (!cut) return end;
+        beyond = laws_.beyond_end(*cut);
+        if (!(std::abs(beyond) < kNearEnd)) return end;  // it is not crossed after all
+        end.change = cut;
+      }
+      if (std::abs(beyond) <= kAtEnd || !(h * (1.0 + beyond) > 0.0)) return {1.0, end.change, end.at_knot};
+      h = std::min(remaining, h * (1.0 + beyond));
+      cut = end.change;
+    }
   }
 
   /// Shows the observers points inside a step to t_new (s of the series), close enough for a cubic between
@@ -156,34 +204,53 @@ class ExactRun {
     return *last;
   }
 
-  /// Expands from now_ with pieces that hold; returns the step tried.
-  double expand(double remaining) {
-    const State& from = now_.state;
+  /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter.
+  double expand(double h) {
     for (;;) {
-      double h = std::min(remaining, growing_step_);
-      const double knot = kKnotMargin * known_.time_to_knot();
-      if (knot > kNoProgress * largest_step_ && knot < h)
-        h = knot;
-      else if (h < remaining)
-        h = remaining / std::ceil(remaining / h);
-      series_.reset();
-      for (Vector& p : series_.right_side()) p.setZero();
-      known_.add_to(series_, h);
-      laws_.add_to(series_, known_, h);
-      const double share = options_.tolerance * h / (options_.t_end - options_.t_start);
-      const double got = series_.expand(from.z, from.v, h, std::max(share, kLeastTolerance),
-                                        known_.composed() ? &known_ : nullptr);
-      if (got == 0.0) {
-        growing_step_ = kRetreat * h;
-        if (growing_step_ > kNoProgress * largest_step_) continue;
-        throw SolverError(where(from.t) + "the series does not converge; is a load not finite?");
+      const double share = std::max(
+          options_.tolerance * h / (options_.t_end - options_.t_start), kLeastTolerance);
+      const double got = try_step(h, share);
+      if (got > 0.0) growing_step_ = std::min(largest_step_, kGrowth * std::max(got, growing_step_));
+      if (got == h) return h;
+      growing_step_ = got > 0.0 ? got : kRetreat * h;
+      if (growing_step_ <= kNoProgress * largest_step_)
+        throw SolverError(where(now_.state.t) +
+                          "the series does not converge; is a load not finite?");
+      if (got > 0.0 && !known_.projects() && smooth_.empty()) {
+        known_.shorten(got / h);
+        return got;
       }
-      if (got < h) known_.shorten(got / h);
-      growing_step_ = std::min(largest_step_, kGrowth * (got < h ? got : growing_step_));
-      laws_.expand(series_, known_);
-      const auto change = laws_.change_at_once();
-      if (!change) return h;
-      pass(*change, from.t);
+      h = growing_step_;
+    }
+  }
+
+  /// The step that the series holds for, <= h; 0 if its terms overflow.
+  double try_step(double h, double share) {
+    const State& from = now_.state;
+    series_.reset();
+    known_.add_to(series_, h);
+    laws_.add_to(series_, known_, h);
+    smooth_.add_to(series_, now_, h);
+    bool settled = false;
+    const bool projects = known_.projects() || !smooth_.empty();
+    // Each pass needs to be no better than the next one takes up of it.
+    double tolerance = projects ? std::clamp(share / gain_, share, kLoosest) : share;
+    for (int pass = 0;; ++pass) {
+      const bool last = !projects || settled;
+      const double got = series_.expand(from.z, from.v, h, last ? share : tolerance);
+      if (got < h || last) return got;
+      if (pass == kMaxPasses) return 0.5 * h;
+      const double kinks = kProjected * share / std::max(projected_, share);
+      const KnownForces::Change change =
+          known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
+      // In the shortest steps what is left is a jump that no one told of, or rounding.
+      if (change.rest > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_)
+        return h * std::max(0.2, kShorten * std::pow(share / change.rest, 1.0 / kProjectionTerms));
+      if (pass == 0) projected_ = change.size;
+      gain_ = std::max(change.gain, 1e-300);
+      // What this pass was off by comes back in the next one times the gain.
+      settled = std::max(change.size, tolerance) * change.gain <= std::max(share, kSettled);
+      tolerance = std::clamp(0.5 * share / gain_, share, kLoosest);
     }
   }
 
@@ -258,11 +325,13 @@ class ExactRun {
   TaylorSeries series_;
   KnownForces known_;
   LawPieces laws_;
+  SmoothLaws smooth_;
   StepPoint now_, next_, inside_[2];
   Vector rhs_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
+  double gain_ = 1.0, projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
   int changes_here_ = 0, change_limit_ = 0;
 };
 

@@ -1,14 +1,18 @@
 #pragma once
-/// Exact propagation of piecewise-linear systems with located changes.
+/// Exact propagation: between located contact changes, to rounding where the model is linear in pieces, to
+/// the tolerance where it is smooth.
 ///
-/// Between changes M z'' + C z' + K z + sum b_j y_j = p is linear, and each step is its Taylor
-/// series, carried to the degree at which it is exact to the tolerance (taylor_series.hpp). Contact
-/// changes and knots of load tables are roots of polynomials, isolated with a certificate
-/// (polynomial.hpp): none is missed, and the step ends there. Step and degree follow from the
-/// series' own decay; there is no step to choose.
+/// Between changes M z'' + C z' + K z + sum b_j y_j = p, and each step is its Taylor series, carried to
+/// the degree at which it is exact to the tolerance (taylor_series.hpp). Contact changes are roots of
+/// polynomials, isolated with a certificate (polynomial.hpp): none is missed, and the step ends there.
+/// Step and degree follow from the series' own decay; there is no step to choose. Knots of cam tables
+/// that an angle passes within a step, torques that are functions, engine orders, and laws
+/// that are smooth between their kinks (mesh stiffness by phase, transmission error, damping that grows
+/// with penetration) enter by their projection on polynomials along the path (projection.hpp).
 ///
-/// What it needs: laws that state pieces(), loads that state a stretch() or series(), motions that
-/// are piecewise quadratic, no general elements. why_not_exact() says what of a model is not so.
+/// What it needs: motions that are piecewise quadratic, no general elements. why_not_exact() says what of
+/// a model is not so. A law's jump or kink that it tells of neither by pieces(), kinks() nor next_knot()
+/// is passed by short steps.
 ///
 /// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
 /// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling

@@ -10,7 +10,10 @@ namespace drev {
 
 namespace {
 
-constexpr double kOnKnot = 1e-13;  // relative to the angle, at least to 1 rad
+constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
+constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
+// Kernel of the step's end above the projection's degree, for omega h <= 3: 19 j_9(3/2), with a margin.
+constexpr double kKernelRest = 1e-4;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -19,19 +22,25 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 }  // namespace
 
 KnownForces::KnownForces(const System& system)
-    : system_(system), assembler_(system), u_(at(system.prescribed_count())) {
+    : system_(system),
+      assembler_(system),
+      stride_(whole_lanes(system.size())),
+      p_(at(kProjectionTerms * stride_)),
+      base_(at(3 * stride_)),
+      projection_(stride_),
+      last_(stride_),
+      of_loads_(stride_),
+      u_(at(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
     if (map.unknown < 0) continue;  // its work is the prescribed node's
-    const double ratio = system.ratio(term.node);
-    const bool feedback = term.load->depends_on_motion();
-    if (auto series = term.load->series())
-      composed_.push_back(
-          {&term, map.unknown, map.coeff, ratio, feedback, std::move(series), {}, {}});
+    const Place place{&term, map.unknown, map.coeff, system.ratio(term.node),
+                      term.load->depends_on_motion()};
+    if (term.load->stretch(0.0, 0.0, 1.0))
+      loads_.push_back({place});
     else
-      loads_.push_back({&term, map.unknown, map.coeff, ratio, feedback, {}, 0, 0, 0, 0, 0, 0});
+      smooth_.push_back({place});
   }
-  for (Vector& p : p_) p = Vector::Zero(system.size());
 }
 
 void KnownForces::move(double t, const Vector& z, const Vector& v) {
@@ -42,6 +51,11 @@ void KnownForces::move(double t, const Vector& z, const Vector& v) {
     l.deviation = l.feedback ? l.coeff * z[l.row] : 0.0;
     l.angle = l.ratio * nominal.value + l.deviation;
     l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * v[l.row] : 0.0);
+  }
+  for (Smooth& l : smooth_) {
+    l.tangent = assembler_.load(*l.term, z, v);
+    l.deviation = z[l.row];
+    l.speed = v[l.row];
   }
 }
 
@@ -56,93 +70,204 @@ void KnownForces::locate(double t, const Vector& z, const Vector& v) {
   for (Linear& l : loads_) look_up(l, l.speed);
 }
 
-bool KnownForces::advance(double t, const Vector& z, const Vector& v) {
+void KnownForces::advance(double t, const Vector& z, const Vector& v, bool whole) {
   move(t, z, v);
-  bool any = false;
   for (Linear& l : loads_) {
+    if (whole && !l.watched) {
+      l.stretch = l.ahead;
+      l.angle_0 = l.ahead_angle_0;
+    }
     const double near = kOnKnot * std::max(1.0, std::abs(l.angle));
     if (l.speed > 0.0 ? l.stretch.high - l.angle > near : l.angle - l.stretch.low > near) continue;
     look_up(l, l.speed);
-    any = true;
   }
-  return any;
 }
 
 void KnownForces::pass_knot() { look_up(loads_[at(leaving_)], leaving_direction_); }
 
-double KnownForces::time_to_knot() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Linear& l : loads_) {
-    if (l.speed > 0.0) least = std::min(least, (l.stretch.high - l.angle) / l.speed);
-    if (l.speed < 0.0) least = std::min(least, (l.stretch.low - l.angle) / l.speed);
-  }
-  return least;
-}
-
 void KnownForces::add_to(TaylorSeries& series, double h) {
   const int n = system_.size();
-  for (Vector& p : p_) p.setZero();
+  h_ = h;
+  degree_ = 2;
+  projected_ = false;
+  std::fill_n(p_.begin(), 3 * stride_, 0.0);
+  const auto p = [&](int k, int row) -> double& { return p_[at(k * stride_ + row)]; };
+  const auto add = [&](int k, double factor, const Vector& values) {
+    for (int i = 0; i < n; ++i) p(k, i) += factor * values[i];
+  };
   const MotionPoint& nominal = assembler_.nominal();
   phi_ = over_step(nominal, h);
-  if (nominal.acceleration != 0.0)
-    p_[0] -= nominal.acceleration * system_.nominal_inertia().head(n);
-  if (nominal.rate != 0.0) p_[0] -= nominal.rate * system_.nominal_drag().head(n);
-  if (nominal.acceleration != 0.0)
-    p_[1] -= (nominal.acceleration * h) * system_.nominal_drag().head(n);
+  if (nominal.acceleration != 0.0) add(0, -nominal.acceleration, system_.nominal_inertia());
+  if (nominal.rate != 0.0) add(0, -nominal.rate, system_.nominal_drag());
+  if (nominal.acceleration != 0.0) add(1, -nominal.acceleration * h, system_.nominal_drag());
   if (system_.any_prescribed_moves()) {
     const MatrixSet& zu = system_.coupling_zu();
     for (int k = 0; k < system_.prescribed_count(); ++k) {
       const MotionPoint& u = assembler_.prescribed(k);
       u_[at(k)] = over_step(u, h);
       for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it)
-        p_[0][it.row()] -= it.value() * u.acceleration;
+        p(0, static_cast<int>(it.row())) -= it.value() * u.acceleration;
       for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) {
-        p_[0][it.row()] -= it.value() * u.rate;
-        p_[1][it.row()] -= it.value() * u.acceleration * h;
+        p(0, static_cast<int>(it.row())) -= it.value() * u.rate;
+        p(1, static_cast<int>(it.row())) -= it.value() * u.acceleration * h;
       }
       for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
-        for (std::size_t i = 0; i < 3; ++i) p_[i][it.row()] -= it.value() * u_[at(k)][i];
+        for (int i = 0; i < 3; ++i)
+          p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
     }
   }
   for (Linear& l : loads_) {
     const LoadStretch& s = l.stretch;
     l.torque = s.torque + s.time_slope * (t_ - l.t_0) + s.angle_slope * (l.angle - l.angle_0);
-    p_[0][l.row] += l.coeff * l.torque;
-    p_[1][l.row] += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
-    p_[2][l.row] += l.coeff * s.angle_slope * l.ratio * phi_[2];
+    p(0, l.row) += l.coeff * l.torque;
+    p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
+    p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
   }
-  for (std::size_t i = 0; i < 3; ++i) series.right_side()[i] += p_[i];
-  for (const Linear& l : loads_) {
-    if (!l.feedback || l.stretch.angle_slope == 0.0) continue;
-    const double slope = l.coeff * l.coeff * l.stretch.angle_slope;
-    series.add_stiffness(l.term->slot, -slope);
-    // The slope acts on the change of the deviation over the step.
-    series.right_side()[0][l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
-  }
+  for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.tangent.torque;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < n; ++i) series.right_side(k)[i] += p(k, i);
+  // The slopes act on the change of the deviation over the step.
+  const auto add_tangent = [&](const Place& l, double slope, double deviation) {
+    series.add_stiffness(l.term->slot, -l.coeff * l.coeff * slope);
+    series.right_side(0)[l.row] -= l.coeff * slope * deviation;
+  };
+  for (const Linear& l : loads_)
+    if (l.feedback && l.stretch.angle_slope != 0.0)
+      add_tangent(l, l.stretch.angle_slope, l.deviation);
 }
 
-void KnownForces::add(int k, const double* z, double* rhs) {
-  const std::ptrdiff_t n = system_.size();
-  for (Composed& c : composed_) {
-    if (k == 0) c.angle.clear(), c.torque.clear();
-    double angle = k < 3 ? c.ratio * phi_[at(k)] : 0.0;
-    if (c.feedback) angle += c.coeff * z[k * n + c.row];
-    c.angle.push_back(angle);
-    c.torque.push_back(c.series->coefficient(k, c.angle));
-    rhs[c.row] += c.coeff * c.torque.back();
+double KnownForces::angle_term(const Place& l, const TaylorSeries& series, int k) const {
+  const double nominal = k < 3 ? l.ratio * phi_[at(k)] : 0.0;
+  return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
+}
+
+double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
+  if (loads_.empty()) return 0.0;
+  kinks_.clear();
+  double gain = 0.0;
+  ranges_.resize(at(3 * stride_));
+  double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
+  series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
+  for (Linear& l : loads_) {
+    l.watched = false;
+    l.ahead = l.stretch;
+    l.ahead_angle_0 = l.angle_0;
+    const auto row = at(l.row);
+    const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
+    const double first = angle_term(l, series, 1);
+    // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
+    const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
+    if (l.angle + reach < l.stretch.high && l.angle - reach > l.stretch.low) continue;
+    if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
+      l.watched = true;
+      continue;
+    }
+    const bool rises = first > 0.0;
+    const double end = l.angle + l.ratio * (phi_[1] + phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+    double jumps = 0.0;
+    bool have_theta = false;
+    for (;;) {
+      const double bound = rises ? l.ahead.high : l.ahead.low;
+      if (rises ? end <= bound : end >= bound) break;
+      const LoadStretch next =
+          l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+      const bool moves = rises ? next.high > bound : next.low < bound;
+      if (!moves || next.time_slope != l.ahead.time_slope) {
+        l.watched = true;
+        break;
+      }
+      if (!have_theta) {
+        theta_.resize(at(series.degree() + 1));
+        theta_[0] = l.angle;
+        for (int k = 1; k <= series.degree(); ++k) theta_[at(k)] = angle_term(l, series, k);
+        have_theta = true;
+      }
+      const double jump = next.angle_slope - l.ahead.angle_slope;
+      kinks_.add(l.row, bound, l.coeff * jump, theta_);
+      jumps += std::abs(jump);
+      l.ahead = next;
+      l.ahead_angle_0 = bound;
+    }
+    if (l.feedback)
+      gain = std::max(gain, 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row));
   }
+  kinks_.add_to(projection_, tolerance);
+  return gain;
+}
+
+double KnownForces::project_smooth(const TaylorSeries& series) {
+  if (smooth_.empty()) return 0.0;
+  const GaussRule& rule = gauss_rule();
+  double gain = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    series.evaluate(rule.s[q], z_, v_);
+    assembler_.set_time(t_ + h_ * rule.s[q]);
+    for (const Smooth& l : smooth_) {
+      const LoadResponse at_node = assembler_.load(*l.term, z_, v_);
+      const double difference = l.coeff * (at_node.torque - l.tangent.torque);
+      for (int j = 0; j < kProjectionTerms; ++j)
+        projection_.coefficient(j, l.row) +=
+            (2 * j + 1) * rule.weight[q] * rule.legendre[at(j)][q] * difference;
+      const double move = l.coeff * l.coeff * series.mobility(l.row);
+      gain = std::max(gain, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
+                                    h_ * std::abs(at_node.dtorque_dspeed)));
+    }
+  }
+  assembler_.set_time(t_);
+  return gain;
+}
+
+KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws, bool first,
+                                         double tolerance) {
+  if (first) {
+    for (int k = 0; k < 3; ++k)
+      std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
+    last_.clear();
+  } else {
+    std::swap(last_, projection_);
+  }
+  projection_.clear();
+  Change change;
+  change.gain = std::max(find_kinks(series, tolerance), project_smooth(series));
+  if (!laws.empty()) {
+    of_loads_ = projection_;
+    change.gain = std::max(change.gain, laws.project(series, projection_));
+  }
+  const auto note = [&](int row) {
+    double size = 0.0;
+    for (int j = 0; j < kProjectionTerms; ++j)
+      size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
+    const double move = series.mobility(row) * h_;
+    const auto kind = at(series.kind(row));
+    const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
+    if (size > 0.0) change.size = std::max(change.size, move * size / scale);
+    return scale > 0.0 ? move / scale : 0.0;
+  };
+  const auto note_rest = [&](int row) {
+    const double tail = std::abs(projection_.coefficient(kProjectionDegree, row)) +
+                        std::abs(projection_.coefficient(kProjectionDegree - 1, row));
+    change.rest = std::max(change.rest, kKernelRest * tail * note(row));
+  };
+  for (const Linear& l : loads_) note(l.row);
+  for (const Smooth& l : smooth_) note_rest(l.row);
+  for (const int row : laws.rows()) note_rest(row);
+  if (change.size == 0.0) return change;
+  projected_ = true;
+  with_laws_ = !laws.empty();
+  degree_ = kProjectionDegree;
+  for (int k = 0; k < 3; ++k)
+    std::copy_n(base_.data() + k * stride_, stride_, series.right_side(k));
+  projection_.add_powers(3, series.right_side(0));
+  series.set_right_degree(kProjectionDegree);
+  return change;
 }
 
 void KnownForces::shorten(double r) {
   double power = 1.0;
-  for (std::size_t i = 0; i < 3; ++i, power *= r) {
-    p_[i] *= power;
-    phi_[i] *= power;
-    for (auto& u : u_) u[i] *= power;
-  }
-  for (Composed& c : composed_) {
-    power = 1.0;
-    for (double& t : c.torque) t *= power, power *= r;
+  for (int k = 0; k < 3; ++k, power *= r) {
+    for (int i = 0; i < stride_; ++i) p_[at(k * stride_ + i)] *= power;
+    phi_[at(k)] *= power;
+    for (auto& u : u_) u[at(k)] *= power;
   }
 }
 
@@ -150,28 +275,16 @@ std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double
   leaving_ = -1;
   std::optional<double> first;
   const auto degree = static_cast<std::size_t>(series.degree());
-  theta_.resize(degree + 1);
   for (std::size_t i = 0; i < loads_.size(); ++i) {
     const Linear& l = loads_[i];
-    if (std::isinf(l.stretch.low) && std::isinf(l.stretch.high)) continue;
-    double rest = 0.0;
-    for (std::size_t k = 1; k <= degree; ++k) {
-      theta_[k] = k < 3 ? l.ratio * phi_[k] : 0.0;
-      if (l.feedback)
-        theta_[k] += l.coeff * series.coefficients()[k * static_cast<std::size_t>(series.size()) +
-                                                     static_cast<std::size_t>(l.row)];
-      if (k > 1) rest += static_cast<double>(k) * std::abs(theta_[k]);
-    }
+    if (!l.watched) continue;
     for (const double side : {1.0, -1.0}) {
       const double bound = side > 0.0 ? l.stretch.high : l.stretch.low;
-      if (side * theta_[1] < 0.0 && std::abs(theta_[1]) > rest) continue;  // it moves away
-      const double distance = std::max(0.0, side * (bound - l.angle));
-      const double far = (std::abs(theta_[1]) + rest) * end;
-      if (distance > far) continue;
-      theta_[0] = distance;
+      if (std::isinf(bound)) continue;
       std::vector<double>& g = power_;
-      g.assign(1, distance);
-      for (std::size_t k = 1; k <= degree; ++k) g.push_back(-side * theta_[k]);
+      g.assign(1, std::max(0.0, side * (bound - l.angle)));
+      for (std::size_t k = 1; k <= degree; ++k)
+        g.push_back(-side * angle_term(l, series, static_cast<int>(k)));
       std::size_t lead = 0;
       while (lead <= degree && g[lead] == 0.0) ++lead;
       if (lead > degree) continue;
@@ -186,34 +299,18 @@ std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double
   return first;
 }
 
-double KnownForces::work(const TaylorSeries& series, double s) {
-  // int p z' ds with p of degree 2: moments of z'; the slopes' part is a difference of squares.
-  const int n = series.size();
-  i0_.setZero(n);
-  i1_.setZero(n);
-  i2_.setZero(n);
-  double power = s;
-  for (int k = 1; k <= series.degree(); ++k, power *= s) {
-    const Eigen::Map<const Vector> z(series.coefficients() + static_cast<std::ptrdiff_t>(k) * n, n);
-    i0_ += power * z;
-    i1_ += (power * s * k / (k + 1)) * z;
-    i2_ += (power * s * s * k / (k + 2)) * z;
+double KnownForces::work(const TaylorSeries& series, double s, const Vector& end) {
+  if (projected_) {
+    // p_ by powers: what was projected beside what add_to() put there.
+    (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());
+    projected_ = false;
   }
-  double sum = p_[0].dot(i0_) + p_[1].dot(i1_) + p_[2].dot(i2_);
+  double sum = series_work(stride_, series.energy_degree(), series.coefficients(0), degree_, p_.data(), s);
   for (const Linear& l : loads_)
-    if (l.feedback) {
-      const double turn = l.coeff * i0_[l.row];
+    if (l.feedback && l.stretch.angle_slope != 0.0) {
+      const double turn = l.coeff * (end[l.row] - series.coefficient(0, l.row));
       sum += 0.5 * l.stretch.angle_slope * turn * turn;
     }
-  for (const Composed& c : composed_) {
-    double s_j = 1.0;
-    for (std::size_t j = 0; j < c.torque.size(); ++j, s_j *= s) {
-      double s_k = s_j * s;
-      for (int k = 1; k <= series.degree(); ++k, s_k *= s)
-        sum += c.coeff * c.torque[j] * k / (static_cast<double>(j) + k) * s_k *
-               series.coefficients()[static_cast<std::ptrdiff_t>(k) * n + c.row];
-    }
-  }
   return sum;
 }
 

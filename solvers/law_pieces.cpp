@@ -40,9 +40,20 @@ bool opposite(const LawBound& a, const LawBound& b) {
 
 }  // namespace
 
+LawPieces::LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    const std::span<const LawPiece> own = term.force->pieces();
+    if (own.empty() || term.phase_node >= 0)
+      laws_[j].pieces = SmoothLaws::stretches(*term.force);
+    else
+      laws_[j].pieces.assign(own.begin(), own.end());
+  }
+}
+
 void LawPieces::locate(const std::vector<ScalarInput>& inputs) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
-    const std::span<const LawPiece> pieces = system_.scalars()[j].force->pieces();
+    const std::vector<LawPiece>& pieces = laws_[j].pieces;
     double best = -std::numeric_limits<double>::infinity();
     laws_[j].root = -1;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -84,14 +95,16 @@ void LawPieces::add_to(TaylorSeries& series, const KnownForces& known, double h)
     }
     for (const Entry& e : term.z)
       for (std::size_t i = 0; i < 3; ++i)
-        if (y[i] != 0.0) series.right_side()[i][e.index] -= e.coeff * y[i];
+        if (y[i] != 0.0) series.right_side(static_cast<int>(i))[e.index] -= e.coeff * y[i];
   }
 }
 
 void LawPieces::add_stiffest(TaylorSeries& series) const {
-  for (const ScalarTerm& term : system_.scalars()) {
-    double k = 0.0, c = 0.0;
-    for (const LawPiece& p : term.force->pieces()) {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system_.scalars()[j];
+    // A smooth law's stretches carry no force of their own.
+    double k = std::abs(term.force->closed_stiffness()), c = std::abs(term.force->closed_damping());
+    for (const LawPiece& p : laws_[j].pieces) {
       k = std::max(k, std::abs(p.k));
       c = std::max(c, std::abs(p.c));
     }
@@ -99,8 +112,8 @@ void LawPieces::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-void LawPieces::expand(const TaylorSeries& series, const KnownForces& known) {
-  const auto n = static_cast<std::size_t>(series.size());
+void LawPieces::expand(const TaylorSeries& series, const KnownForces& known,
+                       const SmoothLaws& smooth) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
@@ -111,7 +124,7 @@ void LawPieces::expand(const TaylorSeries& series, const KnownForces& known) {
     law.known.assign(3, 0.0);
     for (const Entry& e : term.z)
       for (std::size_t k = 0; k < terms; ++k) {
-        const double part = e.coeff * series.coefficients()[k * n + at(e.index)];
+        const double part = e.coeff * series.coefficient(static_cast<int>(k), e.index);
         law.x[k] += part;
         law.x_size[k] += std::abs(part);
       }
@@ -122,6 +135,11 @@ void LawPieces::expand(const TaylorSeries& series, const KnownForces& known) {
         law.x[k] += part;
         law.x_size[k] += std::abs(part);
       }
+    const std::vector<double>& offset = smooth.offset(static_cast<int>(j));
+    for (std::size_t k = 0; k < std::min(terms, offset.size()); ++k) {
+      law.x[k] += offset[k];
+      law.x_size[k] += std::abs(offset[k]);
+    }
   }
 }
 
@@ -176,6 +194,11 @@ std::optional<LawPieces::Change> LawPieces::first_change(double end) {
         end = *s;
       }
   return first;
+}
+
+double LawPieces::beyond_end(const Change& change) const {
+  const std::vector<double>& g = laws_[at(change.law)].bounds[at(change.bound)];
+  return -polynomial_value(g, 1.0) / polynomial_slope(g, 1.0);
 }
 
 void LawPieces::pass(const Change& change) {

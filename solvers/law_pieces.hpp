@@ -5,11 +5,13 @@
 /// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
 /// fall below zero is the change (polynomial.hpp). Behind a change the crossed bound of the new
 /// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
-/// not zero says whether the piece holds or changes back at once.
+/// not zero says whether the piece holds or changes back at once. Laws without linear pieces
+/// (smooth_laws.hpp) take part with the stretches between their kinks.
 #include <functional>
 #include <optional>
 
 #include "solvers/known_forces.hpp"
+#include "solvers/smooth_laws.hpp"
 
 namespace drev {
 
@@ -21,7 +23,7 @@ class LawPieces {
     int bound = 0;   ///< of its piece
   };
 
-  explicit LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {}
+  explicit LawPieces(const System& system);
 
   /// Every law on the piece that its input is on.
   void locate(const std::vector<ScalarInput>& inputs);
@@ -33,11 +35,13 @@ class LawPieces {
   void add_stiffest(TaylorSeries& series) const;
 
   /// The deflections' series along the step.
-  void expand(const TaylorSeries& series, const KnownForces& known);
+  void expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
   /// The first change in (0, end].
   std::optional<Change> first_change(double end);
+  /// How far behind s = 1 the bound is crossed, by Newton's rule.
+  double beyond_end(const Change& change) const;
   /// The law goes over to the piece behind the bound.
   void pass(const Change& change);
   /// The step was accepted and no bound is known to be at zero any more.
@@ -50,6 +54,7 @@ class LawPieces {
 
  private:
   struct Law {
+    std::vector<LawPiece> pieces;             // the law's own, or the stretches between its kinks
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part
@@ -57,7 +62,7 @@ class LawPieces {
     std::vector<std::vector<double>> bounds;  // series of the piece's bounds
   };
   const LawPiece& current(std::size_t j) const {
-    return system_.scalars()[j].force->pieces()[at(laws_[j].piece)];
+    return laws_[j].pieces[at(laws_[j].piece)];
   }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   bool falls_at_once(Law& law, const LawBound& bound, int index);

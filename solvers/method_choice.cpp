@@ -33,10 +33,13 @@ double largest_of(const Assembler& assembler, SparseCholesky& mass, const Vector
   return size;
 }
 
-bool is_linear(const System& system) {
-  return !system.loads_depend_on_motion() &&
-         std::all_of(system.scalars().begin(), system.scalars().end(),
-                     [](const ScalarTerm& s) { return s.force->pieces().size() == 1; });
+const char* kind_of(const System& system) {
+  bool linear = !system.loads_depend_on_motion(), pieces = true;
+  for (const ScalarTerm& s : system.scalars()) {
+    linear &= s.force->pieces().size() == 1;
+    pieces &= !s.force->pieces().empty();
+  }
+  return linear ? "linear" : pieces ? "piecewise linear" : "smooth between contact changes";
 }
 
 std::string counted(long n, const std::string& thing) {
@@ -96,10 +99,10 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
 MethodChoice choose_method(const System& system, double duration, double step) {
   const Method stepping{.step = step};
   if (const auto why = why_not_exact(system))
-    return {stepping, "the model is not piecewise linear: " + *why};
+    return {stepping, "exact propagation cannot be used: " + *why};
   const long contacts =
       std::count_if(system.scalars().begin(), system.scalars().end(),
-                    [](const ScalarTerm& s) { return s.force->pieces().size() > 1; });
+                    [](const ScalarTerm& s) { return s.force->gap() || s.force->pieces().size() > 1; });
   double rate = 0.0;
   try {
     rate = fastest_rate(system);
@@ -111,7 +114,7 @@ MethodChoice choose_method(const System& system, double duration, double step) {
                                   kUnknownsOfContact * static_cast<double>(contacts));
   std::ostringstream text;
   text.precision(2);
-  text << "the model is " << (is_linear(system) ? "linear" : "piecewise linear") << ", with "
+  text << "the model is " << kind_of(system) << ", with "
        << counted(system.size(), "unknown") << " and " << counted(contacts, "contact");
   if (work > kMostWork && products > duration / step) {
     text << ", but its fastest mode, " << to_hz(rate) << " Hz, would cost exact propagation "

@@ -4,17 +4,21 @@
 #include <cmath>
 #include <map>
 
+#include "solvers/lanes.hpp"
+#include "solvers/series_kernels.hpp"
+
 namespace drev {
 
 namespace {
-constexpr int kMinDegree = 5;          // the known right side reaches degree 4
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
-constexpr double kNegligible = 1e-16;  // part of a sum that is rounding
+constexpr int kPowerIterations = 60;
+constexpr double kEigenvalueMargin = 1.1;
+constexpr double kEnergyPart = 1e-13;  // of the largest rate: terms that energies do without
 constexpr double kShorten = 0.9;       // of the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
-    : system_(system), n_(system.size()), z_(at((kMaxDegree + 1) * n_)), rhs_(n_), solved_(n_) {
+    : system_(system), n_(system.size()), solve_in_(n_), solve_out_(n_) {
   find_storage();
   const auto fill = [&](const Vector& values, std::vector<double>& out) {
     for (Eigen::Index s = 0; s < values.size(); ++s)
@@ -25,68 +29,73 @@ TaylorSeries::TaylorSeries(const System& system)
   undamped_ = system.damping_values().isZero(0.0);
   base_main_damping_ = system.damping_is_diagonal() && main_ >= 0;
   diagonal_mass_ = system.mass_is_diagonal();
+  inverse_mass_.assign(at(stride_), 0.0);
   if (diagonal_mass_) {
-    for (const int slot : system.diagonal_slots())
-      inverse_mass_.push_back(1.0 / system.mass_values()[slot]);
+    for (int i = 0; i < n_; ++i)
+      inverse_mass_[at(i)] = 1.0 / system.mass_values()[system.diagonal_slots()[at(i)]];
   } else {
     if (mass_.factorize(system.pattern(), system.mass_values()) != FactorStatus::success)
       throw SolverError(system.name() + ": the mass matrix is not positive definite");
     Vector row_sum = Vector::Zero(n_);
     for (int i = 0; i < n_; ++i) {
-      mass_.solve(Vector::Unit(n_, i), solved_);
-      row_sum += solved_.cwiseAbs();
+      mass_.solve(Vector::Unit(n_, i), solve_out_);
+      row_sum += solve_out_.cwiseAbs();
     }
     mass_norm_ = row_sum.maxCoeff();
   }
-  for (Vector& p : p_) p = Vector::Zero(n_);
-  std::vector<int> translational;
-  for (int i = 0; i < n_; ++i)
-    if (system.node_kind(system.node(system.unknown_name(i))) == NodeKind::translational)
-      translational.push_back(i);
-  if (static_cast<int>(translational.size()) < n_) translational_ = std::move(translational);
+  std::vector<int> kinds(at(n_), 0);
+  for (int node = 0; node < system.node_count(); ++node)
+    if (system.node_map(node).unknown >= 0 && system.node_kind(node) == NodeKind::translational)
+      kinds[at(system.node_map(node).unknown)] = 1;
+  const auto translational = std::count(kinds.begin(), kinds.end(), 1);
+  if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
   reset();
 }
 
 void TaylorSeries::find_storage() {
   const SparseMatrix& p = system_.pattern();
-  std::map<int, std::pair<int, int>> range;  // offset -> first and last row
+  std::map<int, std::size_t> offsets;  // and which diagonal it is
   for (int row = 0; row < n_; ++row)
-    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s) {
-      const int offset = p.innerIndexPtr()[s] - row;
-      auto [it, added] = range.try_emplace(offset, row, row);
-      it->second.second = row;
-    }
-  // The three in the middle at full length (they may hold zeros), so that they can share a loop.
-  three_in_one_ = n_ > 2 && range.contains(-1) && range.contains(0) && range.contains(1);
-  if (three_in_one_) range[-1] = {1, n_ - 1}, range[0] = {0, n_ - 1}, range[1] = {0, n_ - 2};
-  std::size_t length = 0;
-  for (const auto& [offset, rows] : range) {
-    diagonals_.push_back({offset, rows.first, rows.second + 1, length});
-    length += at(rows.second + 1 - rows.first);
-  }
+    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
+      offsets.try_emplace(p.innerIndexPtr()[s] - row, 0);
   const auto entries = static_cast<std::size_t>(p.nonZeros());
-  if (static_cast<double>(length) > kDiagonalFill * static_cast<double>(entries)) {
-    diagonals_.clear();
-    length = entries;
+  stride_ = whole_lanes(n_);
+  if (static_cast<double>(offsets.size()) * n_ > kDiagonalFill * static_cast<double>(entries))
+    offsets.clear();
+  for (auto& [offset, number] : offsets) {
+    number = diagonals_.size();
+    if (offset == 0) main_ = static_cast<int>(number);
+    diagonals_.push_back({offset, number * at(stride_)});
+    pad_ = std::max(pad_, whole_lanes(std::abs(offset)));
   }
-  for (std::size_t d = 0; d < diagonals_.size(); ++d)
-    if (diagonals_[d].offset == 0) main_ = static_cast<int>(d);
   position_.resize(entries);
   for (int row = 0; row < n_; ++row)
-    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s) {
-      position_[at(s)] = at(s);
-      for (const Diagonal& d : diagonals_)
-        if (d.offset == p.innerIndexPtr()[s] - row) position_[at(s)] = d.values + at(row - d.begin);
-    }
+    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
+      position_[at(s)] = diagonals_.empty()
+                             ? at(s)
+                             : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + at(row);
+  const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * at(stride_);
   k_base_.assign(length, 0.0);
   c_base_.assign(length, 0.0);
+  z_.assign(at(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
+  p_.assign(at((kMaxRightDegree + 1) * stride_), 0.0);
+  zeros_.assign(at(stride_), 0.0);
+  sums_.assign(at(2 * stride_), 0.0);
+  k_ = k_base_;
+  c_ = c_base_;
+  for (const Diagonal& d : diagonals_) {
+    k_views_.push_back({d.offset, k_.data() + d.values});
+    c_views_.push_back({d.offset, c_.data() + d.values});
+  }
 }
 
 void TaylorSeries::reset() {
-  k_ = k_base_;
-  c_ = c_base_;
+  std::copy(k_base_.begin(), k_base_.end(), k_.begin());  // the views stay
+  std::copy(c_base_.begin(), c_base_.end(), c_.begin());
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
+  std::fill_n(p_.begin(), 3 * stride_, 0.0);
+  right_degree_ = 2;
 }
 
 void TaylorSeries::add_damping(int slot, double value) {
@@ -95,8 +104,8 @@ void TaylorSeries::add_damping(int slot, double value) {
   main_damping_ = false;
 }
 
-void TaylorSeries::product(const std::vector<double>& values, bool main_only, const double* x,
-                           double factor, double* out) const {
+void TaylorSeries::subtract_product(const std::vector<double>& values, bool main_only, const double* x,
+                                    double factor, double* out) const {
   if (diagonals_.empty()) {
     const int* outer = system_.pattern().outerIndexPtr();
     const int* inner = system_.pattern().innerIndexPtr();
@@ -107,63 +116,51 @@ void TaylorSeries::product(const std::vector<double>& values, bool main_only, co
     }
     return;
   }
-  const std::span<const Diagonal> all(diagonals_);
-  if (three_in_one_ && !main_only) {
-    const double* below = values.data() + all[at(main_ - 1)].values;  // from row 1 on
-    const double* own = values.data() + all[at(main_)].values;
-    const double* above = values.data() + all[at(main_ + 1)].values;
-    const int last = n_ - 1;
-    out[0] -= factor * (own[0] * x[0] + above[0] * x[1]);
-    for (int i = 1; i < last; ++i)
-      out[i] -= factor * (below[i - 1] * x[i - 1] + own[i] * x[i] + above[i] * x[i + 1]);
-    out[last] -= factor * (below[last - 1] * x[last - 1] + own[last] * x[last]);
-  }
-  for (const Diagonal& d : main_only ? all.subspan(at(main_), 1) : all) {
-    if (three_in_one_ && !main_only && std::abs(d.offset) <= 1) continue;
-    const double* value = values.data() + d.values;
-    const double* from = x + d.begin + d.offset;
-    double* to = out + d.begin;
-    const int count = d.end - d.begin;
-    for (int i = 0; i < count; ++i) to[i] -= factor * value[i] * from[i];
+  for (const Diagonal& d : diagonals_) {
+    if (main_only && d.offset != 0) continue;
+    for (int i = 0; i < n_; ++i) out[i] -= factor * values[d.values + at(i)] * x[i + d.offset];
   }
 }
 
 double TaylorSeries::bound_rates() {
   const int* outer = system_.pattern().outerIndexPtr();
-  const int* inner = system_.pattern().innerIndexPtr();
-  double k_scaled = 0.0, c_scaled = 0.0;
   k_norm_ = c_norm_ = 0.0;
   for (int row = 0; row < n_; ++row) {
-    double sum[4] = {};  // of K and C, with the row's inertia and with the roots of both
+    double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      const double k = std::abs(k_[position_[at(s)]]), c = std::abs(c_[position_[at(s)]]);
-      const double own = diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
-      const double both =
-          diagonal_mass_ ? std::sqrt(own * inverse_mass_[at(inner[s])]) : mass_norm_;
-      sum[0] += k * own;
-      sum[1] += c * own;
-      sum[2] += k * both;
-      sum[3] += c * both;
+      k_sum += std::abs(k_[position_[at(s)]]);
+      c_sum += std::abs(c_[position_[at(s)]]);
     }
-    k_norm_ = std::max(k_norm_, sum[0]);
-    c_norm_ = std::max(c_norm_, sum[1]);
-    k_scaled = std::max(k_scaled, sum[2]);
-    c_scaled = std::max(c_scaled, sum[3]);
+    k_norm_ = std::max(k_norm_, k_sum * mobility(row));
+    c_norm_ = std::max(c_norm_, c_sum * mobility(row));
   }
   // |lambda|^2 <= |lambda| c + k.
-  const double k = std::min(k_norm_, k_scaled), c = std::min(c_norm_, c_scaled);
+  const double k = std::min(k_norm_, largest_eigenvalue(k_)), c = std::min(c_norm_, largest_eigenvalue(c_));
   return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
 }
 
+double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
+  // Power iteration; what it lacks after some iterations is in the margin.
+  Vector x(n_), product(n_);
+  for (int i = 0; i < n_; ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.0 * i);
+  double largest = 0.0;
+  for (int i = 0; i < kPowerIterations; ++i) {
+    std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
+    std::copy_n(x.data(), n_, z_.data() + pad_);
+    subtract_product(values, false, z_.data() + pad_, -1.0, solve_in_.data());
+    solve_mass(solve_in_, product);
+    largest = product.norm();
+    if (!(largest > 0.0)) return 0.0;
+    x = product / largest;
+  }
+  return kEigenvalueMargin * largest;
+}
+
 TaylorSeries::Norm TaylorSeries::norm(const double* x) const {
-  if (translational_.empty())
-    return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
-  Norm result{0.0, 0.0};
-  std::size_t next = 0;
+  if (kinds_.empty()) return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
+  Norm result{};
   for (int i = 0; i < n_; ++i) {
-    const bool moves = next < translational_.size() && translational_[next] == i;
-    if (moves) ++next;
-    double& largest = result[moves ? 1 : 0];
+    double& largest = result[at(kinds_[at(i)])];
     largest = std::max(largest, std::abs(x[i]));
   }
   return result;
@@ -183,47 +180,52 @@ void TaylorSeries::solve_mass(const Vector& rhs, Vector& out) {
   for (int i = 0; i < n_; ++i) out[i] = rhs[i] * inverse_mass_[at(i)];
 }
 
-double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance,
-                            SeriesSource* source) {
+TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
+  const double* p = k - 2 <= right_degree_ ? p_.data() + at((k - 2) * stride_) : zeros_.data();
+  const double* x_0 = coefficients(k - 2);
+  const double* x_1 = coefficients(k - 1);
+  double* next = z_.data() + at(pad_ + k * stride_);
+  const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
+  if (!diagonals_.empty() && diagonal_mass_) {
+    std::span<const DiagonalView> c(c_views_);
+    if (!damped_) c = {};
+    else if (main_damping_) c = c.subspan(at(main_), 1);
+    const double largest = series_term(stride_, k_views_, c, c_factor, p, x_0, x_1,
+                                       inverse_mass_.data(), factor, next);
+    return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
+  }
+  std::copy_n(p, n_, solve_in_.data());
+  subtract_product(k_, false, x_0, 1.0, solve_in_.data());
+  if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
+  solve_mass(solve_in_, solve_out_);
+  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
+  return norm(next);
+}
+
+double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
-  const auto column = [&](int k) { return z_.data() + static_cast<std::ptrdiff_t>(k) * n_; };
+  const auto column = [&](int k) { return z_.data() + at(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
   for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
   note_scale(z, v);
-  Norm z_scale = z_scale_, v_scale = v_scale_;
-  for (double& x : v_scale) x *= h;
+  Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
+  z_scale = z_scale_;
+  v_scale = v_scale_;
   double excess[kMaxDegree + 1] = {};  // of each term over what is allowed
   for (int k = 2; k <= kMaxDegree; ++k) {
-    if (k - 2 < 3)
-      rhs_ = p_[at(k - 2)];
-    else
-      rhs_.setZero();
-    if (source) source->add(k - 2, z_.data(), rhs_.data());
-    product(k_, false, column(k - 2), 1.0, rhs_.data());
-    if (damped_) product(c_, main_damping_, column(k - 1), (k - 1) / h, rhs_.data());
-    const double factor = h * h / (static_cast<double>(k) * (k - 1));
-    double* next = column(k);
-    if (diagonal_mass_) {
-      for (int i = 0; i < n_; ++i) next[i] = rhs_[i] * inverse_mass_[at(i)] * factor;
-    } else {
-      mass_.solve(rhs_, solved_);
-      for (int i = 0; i < n_; ++i) next[i] = solved_[i] * factor;
-    }
-    const Norm size = norm(next);
+    const Norm size = next_term(k, h);
+    sizes_[at(k)] = std::max(size[0], size[1]);
     for (std::size_t i = 0; i < 2; ++i) {
       if (size[i] == 0.0) continue;
       z_scale[i] = std::max(z_scale[i], size[i]);
-      v_scale[i] = std::max(v_scale[i], k * size[i]);
-      excess[k] = std::max(
-          {excess[k], size[i] / (tolerance * z_scale[i]), k * size[i] / (tolerance * v_scale[i])});
+      v_scale[i] = std::max(v_scale[i], k * size[i] / h);
+      excess[k] = std::max({excess[k], size[i] / (tolerance * z_scale[i]),
+                            k * size[i] / (h * tolerance * v_scale[i])});
     }
     degree_ = k;
+    ++products_;
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
-    if (k < kMinDegree) continue;
-    if (source) {
-      if (excess[k] <= 1.0 && excess[k - 1] <= 1.0) return h_;
-      continue;
-    }
+    if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
     const double first =
         k_norm_ * h * h / (k * (k + 1.0)) * excess[k - 1] + c_norm_ * h / (k + 1.0) * excess[k];
     const double second =
@@ -242,37 +244,40 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   return h_;
 }
 
+int TaylorSeries::energy_degree() const {
+  double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
+  for (int k = 2; k <= degree_; ++k) largest = std::max(largest, k * sizes_[at(k)]);
+  int degree = degree_;
+  while (degree > 1 && degree * sizes_[at(degree)] < kEnergyPart * largest) --degree;
+  return degree;
+}
+
 double TaylorSeries::dissipated(double s) {
   if (undamped_) return 0.0;
-  // Column j: j Z_j s^(j-1), and C times it; the integral of s^(j-1) s^(k-1) is 1/(j+k-1).
-  rates_.resize(n_, degree_);
-  forces_.setZero(n_, degree_);
-  double power = 1.0, sum = 0.0, largest = 0.0;
-  std::array<double, kMaxDegree + 1> size;
-  for (int j = 1; j <= degree_; ++j, power *= s) {
-    rates_.col(j - 1) = (j * power) * Eigen::Map<const Vector>(z_.data() + j * n_, n_);
-    product(c_base_, base_main_damping_, rates_.col(j - 1).data(), -1.0, forces_.col(j - 1).data());
-    size[at(j)] = rates_.col(j - 1).lpNorm<Eigen::Infinity>();
-    largest = std::max(largest, size[at(j)]);
+  const int degree = energy_degree();
+  rates_.resize(at(degree * stride_));
+  forces_.assign(at(degree * stride_), 0.0);
+  for (int j = 1; j <= degree; ++j) {
+    const double* z = coefficients(j);
+    double* rate = rates_.data() + at((j - 1) * stride_);
+    double* force = forces_.data() + at((j - 1) * stride_);
+    for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
+    for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
+    // The product reads beside the column: from the coefficients, which have room there.
+    subtract_product(c_base_, base_main_damping_, z, -j, force);
   }
-  const double negligible = kNegligible * largest * largest;
-  for (int j = 1; j <= degree_; ++j)
-    for (int k = 1; k <= j; ++k)
-      if (size[at(j)] * size[at(k)] > negligible)
-        sum += (j == k ? 1.0 : 2.0) / (j + k - 1) * rates_.col(j - 1).dot(forces_.col(k - 1));
-  return sum * s / h_;
+  return series_product(stride_, degree, rates_.data(), forces_.data(), s) / h_;
 }
 
 void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
-  z.setZero(n_);
-  v.setZero(n_);
-  for (int k = degree_; k >= 0; --k) {
-    const double* c = z_.data() + static_cast<std::ptrdiff_t>(k) * n_;
-    if (k > 0)
-      for (int i = 0; i < n_; ++i) v[i] = v[i] * s + k * c[i];
-    for (int i = 0; i < n_; ++i) z[i] = z[i] * s + c[i];
+  double* sums = sums_.data();
+  series_values(stride_, degree_, coefficients(0), s, sums, sums + stride_);
+  z.resize(n_);
+  v.resize(n_);
+  for (int i = 0; i < n_; ++i) {
+    z[i] = sums[i];
+    v[i] = sums[stride_ + i] / h_;
   }
-  v /= h_;
 }
 
 }  // namespace drev

@@ -66,8 +66,6 @@ const std::vector<Fault>& faults() {
       {{"chart", "camshaft", "--step", "1e-5"}, {"--step", "drev run has it"}},
       {{"chart", "camshaft", "--methods", "exact", "hht", "exact"}, {"exact", "twice"}},
       {{"chart", "camshaft", "--methods", "hht:2"}, {"--methods alpha = 2", "0 and 0.333"}},
-      {{"chart", "gear_drive", "--set", "mesh_stiffness=step", "--methods", "exact"},
-       {"--methods = exact", "mesh_1"}},
       {{"chart", "camshaft", "--limit", "0"}, {"--limit = 0 s", "0.001 s"}},
       {{"chart", "camshaft", "--limit", "soon"}, {"--limit = soon", "seconds"}},
       // settings

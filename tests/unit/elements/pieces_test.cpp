@@ -3,7 +3,7 @@
 #include <random>
 
 #include "elements/catalogue.hpp"
-#include "elements/harmonic_series.hpp"
+#include "elements/mesh_stiffness.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -94,18 +94,18 @@ TEST_CASE("Periodic table: the stretch about an argument is the table up to its 
   CHECK(std::isinf(PeriodicTable({0.0, 1.0}, {7.0, 7.0}).stretch(0.3, 1.0).high));
 }
 
-TEST_CASE("Harmonic series: composed with a polynomial it sums up to the torque") {
-  const std::vector<Harmonic> harmonics{{1.0, 3.0, 0.2}, {4.5, -2.0, 1.0}};
-  HarmonicSeries series(0.7, harmonics);
-  const std::vector<double> angle{12.3, 0.4, -0.05, 0.02};
-  for (const double s : {0.3, 1.0}) {
-    double sum = 0.0, power = 1.0, theta = 0.0;
-    std::vector<double> known;
-    for (int k = 0; k < 40; ++k, power *= s) {
-      known.push_back(k < 4 ? angle[static_cast<std::size_t>(k)] : 0.0);
-      theta += known.back() * power;
-      sum += series.coefficient(k, known) * power;
-    }
-    CHECK(sum == Approx(0.7 + sum_at(harmonics, theta).value).epsilon(1e-13));
-  }
+TEST_CASE("Mesh stiffness: the next knot of the phase") {
+  const MeshStiffness step = MeshStiffness::step(1e8, 2e8, 1.6);
+  CHECK(*step.next_knot(3.2, 1.0) == Approx(3.6));
+  CHECK(*step.next_knot(3.6, 1.0) == Approx(4.0));
+  CHECK(*step.next_knot(3.7, 1.0) == Approx(4.0));
+  CHECK(*step.next_knot(3.7, -1.0) == Approx(3.6));
+  CHECK(*step.next_knot(3.6, -1.0) == Approx(3.0));
+  CHECK(*step.next_knot(-0.2, 1.0) == Approx(0.0).margin(1e-15));
+  const MeshStiffness table = MeshStiffness::table({0.0, 0.25, 0.5}, {1e8, 2e8, 1e8});
+  CHECK(*table.next_knot(7.3, 1.0) == Approx(7.5));
+  CHECK(*table.next_knot(7.3, -1.0) == Approx(7.25));
+  CHECK(*table.next_knot(7.5, 1.0) == Approx(8.0));
+  CHECK_FALSE(MeshStiffness(1e8).next_knot(0.3, 1.0));
+  CHECK_FALSE(MeshStiffness::fourier(1e8, {{1.0, 1e7, 0.0}}).next_knot(0.3, 1.0));
 }

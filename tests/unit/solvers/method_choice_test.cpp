@@ -7,6 +7,7 @@
 #include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
+#include "tests/problems/general_elements.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 
 using namespace drev;
@@ -42,11 +43,13 @@ TEST_CASE("The method follows what the model is") {
   CHECK(contact.method.exact());
   CHECK(contact.reason.find("piecewise linear, with 1 unknown and 1 contact") != std::string::npos);
   Model general = unit_oscillator();
-  general.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return std::sin(t); }});
+  general.add_node("end", NodeKind::translational);
+  general.add<Inertia>("end mass", {"end"}, {.inertia = 1.0});
+  general.add<problems::Maxwell>("mount", {"m", "end"}, {.stiffness = 1.0, .damping = 1.0});
   const MethodChoice other = choose_method(general.build(), 10.0, 1e-3);
   CHECK_FALSE(other.method.exact());
   CHECK(other.method.step == 1e-3);
-  CHECK(other.reason.find("load") != std::string::npos);
+  CHECK(other.reason.find("mount") != std::string::npos);
   // Too stiff for the time: 1e9 periods, and a step that does not follow them.
   const MethodChoice stiff = choose_method(unit_oscillator().build(), 1e9, 1.0);
   CHECK_FALSE(stiff.method.exact());

@@ -1,0 +1,68 @@
+#pragma once
+/// Projection: forces that are no polynomials of time, as polynomials over a step.
+///
+/// A force f(s), s in [0, 1], is replaced by sum a_j L_j(s), a_j = (2j+1) int f L_j ds, with the shifted
+/// Legendre polynomials L_j. The rest is orthogonal to every polynomial of degree kProjectionDegree, and the
+/// end of a step is int G(1-s) f(s) ds with a smooth G: its error is the product of the rest with what G has
+/// above that degree, so that kinks inside a step cost next to nothing at its end (Galerkin orthogonality;
+/// e.g. K. Eriksson, D. Estep, P. Hansbo, C. Johnson, Computational Differential Equations, 1996, chapter
+/// 9). Inside the step the motion is off by about h^2 |rest|/(m D^3).
+#include <array>
+#include <vector>
+
+#include "solvers/lanes.hpp"
+
+namespace drev {
+
+inline constexpr int kProjectionDegree = 8;
+inline constexpr int kProjectionTerms = kProjectionDegree + 1;
+
+/// Gauss-Legendre nodes and weights on [0, 1], with L_j at the nodes.
+struct GaussRule {
+  static constexpr int kNodes = 12;
+  std::array<double, kNodes> s, weight;
+  std::array<std::array<double, kNodes>, kProjectionTerms> legendre;
+};
+const GaussRule& gauss_rule();
+
+/// Coefficients a_j of one force a row, and their conversion to powers of s.
+class Projection {
+ public:
+  /// stride: rows, in whole lanes.
+  explicit Projection(int stride) : stride_(stride), a_(kProjectionTerms * size()) {}
+
+  void clear() { a_.assign(a_.size(), 0.0); }
+  double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
+  double coefficient(int j, int row) const { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
+  /// out_k += coefficients of s^k for k < kept, out_k = them above, k = 0 ... kProjectionDegree; column k at
+  /// out + k stride.
+  void add_powers(int kept, double* out) const;
+
+ private:
+  std::size_t size() const { return static_cast<std::size_t>(stride_); }
+  int stride_;
+  std::vector<double> a_;
+};
+
+/// Kinks of forces that are linear in an angle theta(s) between knots: past the knot, jump (theta - knot) is
+/// added. Many knots at once, in lanes.
+class KinkMoments {
+ public:
+  void clear() { count_ = 0; }
+  int count() const { return count_; }
+  /// theta: `terms` coefficients; theta passes `knot` once in [0, 1], and monotonously.
+  void add(int row, double knot, double jump, const std::vector<double>& theta);
+  /// Adds the moments of all kinks. tolerance: relative, of each.
+  void add_to(Projection& projection, double tolerance);
+
+ private:
+  int count_ = 0;
+  std::size_t terms_ = 0;
+  std::vector<int> row_;
+  std::vector<double> knot_, jump_, end_;
+  std::vector<std::vector<double>> theta_;  // by degree, then knot
+  std::vector<const double*> columns_;
+  std::vector<double> moments_;
+};
+
+}  // namespace drev
