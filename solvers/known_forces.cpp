@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
-// Kernel of the step's end above the projection's degree, for omega h <= 3: 19 j_9(3/2), with a margin.
-constexpr double kKernelRest = 1e-4;
+// Kernel of the step's end above the projection's degree, for omega h <= 3: 15 j_7(3/2), with a margin.
+constexpr double kKernelRest = 1e-3;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};

@@ -135,8 +135,9 @@ double TaylorSeries::bound_rates() {
     c_norm_ = std::max(c_norm_, c_sum * mobility(row));
   }
   // |lambda|^2 <= |lambda| c + k.
-  const double k = std::min(k_norm_, largest_eigenvalue(k_)), c = std::min(c_norm_, largest_eigenvalue(c_));
-  return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
+  k_norm_ = std::min(k_norm_, largest_eigenvalue(k_));
+  c_norm_ = std::min(c_norm_, largest_eigenvalue(c_));
+  return 0.5 * (c_norm_ + std::sqrt(c_norm_ * c_norm_ + 4.0 * k_norm_));
 }
 
 double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
@@ -211,31 +212,37 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
   z_scale = z_scale_;
   v_scale = v_scale_;
-  double excess[kMaxDegree + 1] = {};  // of each term over what is allowed
+  // How far a term is above what is allowed.
+  const auto excess = [&](int k) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (sizes_[at(k)][i] > 0.0)
+        largest = std::max({largest, sizes_[at(k)][i] / (tolerance * z_scale[i]),
+                            k * sizes_[at(k)][i] / (h * tolerance * v_scale[i])});
+    return largest;
+  };
   for (int k = 2; k <= kMaxDegree; ++k) {
     const Norm size = next_term(k, h);
-    sizes_[at(k)] = std::max(size[0], size[1]);
+    sizes_[at(k)] = size;
     for (std::size_t i = 0; i < 2; ++i) {
-      if (size[i] == 0.0) continue;
       z_scale[i] = std::max(z_scale[i], size[i]);
       v_scale[i] = std::max(v_scale[i], k * size[i] / h);
-      excess[k] = std::max({excess[k], size[i] / (tolerance * z_scale[i]),
-                            k * size[i] / (h * tolerance * v_scale[i])});
     }
     degree_ = k;
     ++products_;
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
     if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
+    const double last = excess(k);
     const double first =
-        k_norm_ * h * h / (k * (k + 1.0)) * excess[k - 1] + c_norm_ * h / (k + 1.0) * excess[k];
+        k_norm_ * h * h / (k * (k + 1.0)) * excess(k - 1) + c_norm_ * h / (k + 1.0) * last;
     const double second =
-        k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * excess[k] + c_norm_ * h / (k + 2.0) * first;
+        k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * last + c_norm_ * h / (k + 2.0) * first;
     if (first <= 1.0 && second <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
   for (const int k : {kMaxDegree - 1, kMaxDegree})
-    if (excess[k] > 1.0) r = std::min(r, std::pow(excess[k], -1.0 / (k - 1)));
+    if (excess(k) > 1.0) r = std::min(r, std::pow(excess(k), -1.0 / (k - 1)));
   r *= kShorten;
   double power = 1.0;
   for (int k = 0; k <= degree_; ++k, power *= r)
@@ -245,10 +252,11 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
 }
 
 int TaylorSeries::energy_degree() const {
+  const auto rate = [&](int k) { return k * (sizes_[at(k)][0] + sizes_[at(k)][1]); };
   double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
-  for (int k = 2; k <= degree_; ++k) largest = std::max(largest, k * sizes_[at(k)]);
+  for (int k = 2; k <= degree_; ++k) largest = std::max(largest, rate(k));
   int degree = degree_;
-  while (degree > 1 && degree * sizes_[at(degree)] < kEnergyPart * largest) --degree;
+  while (degree > 1 && rate(degree) < kEnergyPart * largest) --degree;
   return degree;
 }
 

@@ -25,7 +25,7 @@ namespace drev {
 class TaylorSeries {
  public:
   static constexpr int kMaxDegree = 32;
-  static constexpr int kMaxRightDegree = 10;
+  static constexpr int kMaxRightDegree = 8;
 
   /// Throws SolverError if M cannot be factored.
   explicit TaylorSeries(const System& system);
@@ -102,7 +102,7 @@ class TaylorSeries {
   std::vector<double> p_, z_, rates_, forces_, zeros_;
   mutable std::vector<double> sums_;
   Vector solve_in_, solve_out_;
-  std::array<double, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
+  std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
   std::vector<int> kinds_;  // of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
