@@ -76,23 +76,11 @@ class ExactRun {
   void run_to_next_stop() {
     const double t = now_.state.t;
     known_.locate(t, now_.state.z, now_.state.v);
-    const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     const auto& breaks = system_.breakpoints();
     const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
-    double stop = options_.t_end;
-    if (next_break != breaks.end()) stop = std::min(stop, *next_break);
-    for (;;) {
-      double wanted_stop = stop;
-      for (const Observer* o : observers_) {
-        const double wanted = o->next_stop(now_.state.t);
-        if (wanted > now_.state.t + same) wanted_stop = std::min(wanted_stop, wanted);
-      }
-      if (stop - wanted_stop <= same) wanted_stop = stop;
-      const bool last = wanted_stop == stop;
-      const bool at_break = last && next_break != breaks.end() && stop == *next_break;
-      while (running() && now_.state.t < wanted_stop) step(wanted_stop, at_break);
-      if (last || !running()) break;
-    }
+    const bool at_break = next_break != breaks.end() && *next_break <= options_.t_end;
+    const double stop = at_break ? *next_break : options_.t_end;
+    while (running() && now_.state.t < stop) step(stop, at_break);
     if (running() && now_.state.t < options_.t_end) restart();
   }
 
@@ -185,23 +173,32 @@ class ExactRun {
     }
   }
 
-  /// Shows the observers points inside a step to t_new (s of the series), close enough for a cubic between
-  /// them to be off by at most 2e-5 of what moves with the fastest mode. Returns the last one.
+  /// Shows the observers points inside a step to t_new (s of the series): where they asked for one, and
+  /// close enough for a cubic between them to be off by at most 2e-5 of what moves with the fastest mode.
+  /// Returns the last one.
   const StepPoint& watch(double t_new, double s) {
     const StepPoint* last = &now_;
-    const double length = t_new - now_.state.t;
+    const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
+    const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     const double parts = std::ceil(fastest_ * length / kWatchedAngle);
-    for (double i = 1.0; i < parts; i += 1.0) {
+    for (double i = 1.0;;) {
+      double t = i < parts ? t_0 + length * (i / parts) : t_new;
+      const double part = t;
+      for (const Observer* o : observers_) {
+        const double wanted = o->next_stop(last->state.t);
+        if (wanted > last->state.t + same) t = std::min(t, wanted);
+      }
+      if (!(t < t_new - same)) return *last;
+      if (t == part) i += 1.0;
       StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      point.state.t = now_.state.t + length * (i / parts);
+      point.state.t = t;
       point.state.history = now_.state.history;
-      series_.evaluate(s * (i / parts), point.state.z, point.state.v);
-      evaluate(point, point.state.t);
+      series_.evaluate(s * ((t - t_0) / length), point.state.z, point.state.v);
+      evaluate(point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
-    return *last;
   }
 
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter.

@@ -50,8 +50,9 @@ struct ExactOptions {
 /// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing.
 std::optional<std::string> why_not_exact(const System& system);
 
-/// Runs from the state given and leaves the last state in it. Observers see the end of every step:
-/// contact changes, knots of loads, breakpoints and their own stops among them. Throws ModelError
+/// Runs from the state given and leaves the last state in it. Observers see the end of every step,
+/// contact changes and breakpoints among them, and points between, those they ask for among them: to watch
+/// a run does not change it. Throws ModelError
 /// for bad options and for a system that why_not_exact() refuses, SolverError (with time and
 /// element) if laws change without end at one time. RunSummary.scheme is "exact".
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,

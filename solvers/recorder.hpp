@@ -1,6 +1,6 @@
 #pragma once
-/// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Steps are cut so
-/// that they end there; nothing is interpolated or overshot.
+/// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Constant steps are
+/// cut so that they end there; controlled steps and exact propagation show their polynomial there.
 #include <functional>
 #include <string>
 #include <vector>

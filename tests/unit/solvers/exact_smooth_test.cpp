@@ -5,6 +5,7 @@
 
 #include "elements/catalogue.hpp"
 #include "solvers/exact_propagation.hpp"
+#include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 #include "tests/stability/runge_kutta.hpp"
@@ -121,4 +122,24 @@ TEST_CASE("Exact propagation: meshes that are smooth, stepped or damped by penet
   mesh.damping = 0.0;
   mesh.transmission_error = TransmissionError({{1.0, 5e-6, 0.0}});
   check("transmission error", mesh, 1e-8);
+}
+
+TEST_CASE("Exact propagation: what is recorded is on the curve, and recording changes nothing") {
+  // A free oscillation, x = cos w t: one step spans many samples.
+  Model m = unit_oscillator();
+  m.set_initial("m", 1.0, 0.0);
+  const System system = m.build();
+  Recorder recorder(system, {"m.position_m"}, 0.007);
+  State watched = State::initial(system), alone = watched;
+  const RunSummary a = propagate(system, {.tolerance = 1e-13, .t_end = 3.0}, watched, {&recorder});
+  const RunSummary b = propagate(system, {.tolerance = 1e-13, .t_end = 3.0}, alone);
+  CHECK(a.steps == b.steps);
+  CHECK(a.steps < 100);
+  CHECK(watched.z == alone.z);
+  CHECK(watched.v == alone.v);
+  REQUIRE(recorder.times().size() == 429);
+  for (std::size_t i = 0; i < recorder.times().size(); ++i) {
+    CHECK(recorder.times()[i] == Approx(0.007 * static_cast<double>(i)).epsilon(1e-14));
+    CHECK(recorder.samples(0)[i] == Approx(std::cos(kTwoPi * recorder.times()[i])).margin(1e-12));
+  }
 }
