@@ -7,7 +7,7 @@
 /// K and C are those of the system with the tangents of the pieces that hold (set by the caller).
 /// One sparse product a degree, by diagonals where the pattern has few of them; M diagonal is a
 /// scaling, else one solve with its factor. The series is carried until the next two terms are
-/// below the tolerance, as deflections and as rates, by the bound (norms: largest row sums)
+/// below the tolerance, as deflections and as rates, by (|.|: the largest eigenvalue, or row sum if less)
 ///   |Z_{k+2}| <= h^2 |M^-1 K| |Z_k|/((k+1)(k+2)) + h |M^-1 C| |Z_{k+1}|/(k+2)
 /// If that is not so by kMaxDegree, the step is shortened: Z_k r^k is the same solution over r h.
 ///
