@@ -100,7 +100,8 @@ TEST_CASE("Numerical damping is no cure for coarse impacts; what it gains or los
     const Growth annihilating = growth("generalized_alpha:0", omega_h);
     CHECK(annihilating.largest <= 1.0 + 1e-12);
     CHECK(annihilating.never_passed);
-    for (const char* method : {"hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0.5"})
+    for (const char* method : {"hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0.5",
+                               "bathe:0.8", "bathe:0", "sdirk4"})
       CHECK(growth(method, omega_h, 5).never_passed);
   }
   CHECK(growth("generalized_alpha:0.8", 3.0).median > 100.0);

@@ -74,7 +74,8 @@ TEST_CASE("Stability limits of Newmark's methods: the closed form, with and with
 
 TEST_CASE("Unconditional methods have no limit") {
   for (const char* method : {"average_acceleration", "newmark:0.3025,0.6", "hht:0.05", "hht:0.3",
-                             "generalized_alpha:1", "generalized_alpha:0.8", "generalized_alpha:0"})
+                             "generalized_alpha:1", "generalized_alpha:0.8", "generalized_alpha:0",
+                             "bathe:0", "bathe:0.8", "bathe:1", "tr_bdf2", "sdirk4"})
     for (const double xi : {0.0, 0.05, 0.9})
       for (double omega_h = 0.1; omega_h < 5e3; omega_h *= 3.0) {
         INFO(method << ", xi = " << xi << ", omega h = " << omega_h);

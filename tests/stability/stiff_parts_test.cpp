@@ -86,7 +86,9 @@ TEST_CASE(
   for (const Row& row : {Row{"average_acceleration", 1.21323, 698.547},
                          {"hht:0.05", .4798, 49.97},
                          {"generalized_alpha:0.8", .0732, 4.242},
-                         {"generalized_alpha:0", .0391, .445}}) {
+                         {"generalized_alpha:0", .0391, .445},
+                         {"bathe:0.8", .00856, 17.8},
+                         {"bathe:0", .00811, .146}}) {
     Recorder r(system, {"2.velocity_m_per_s", "2.acceleration_m_per_s2"}, h);
     simulate(
         system,
@@ -98,8 +100,8 @@ TEST_CASE(
       a = std::max(a, std::abs(r.samples(1)[i] - slow.a(r.times()[i])[0]));
     }
     INFO(row.method);
-    CHECK(v == Approx(row.v).epsilon(1e-3));
-    CHECK(a == Approx(row.a).epsilon(1e-3));
+    CHECK(v == Approx(row.v).epsilon(2e-3));
+    CHECK(a == Approx(row.a).epsilon(5e-3));
   }
 }
 
@@ -123,8 +125,8 @@ TEST_CASE("Given motion: accelerations and reactions do not drift, whatever the 
     return -std::sin(t) +
            9.0 * (std::sin(t) - 9.0 / 8.0 * std::sin(t) + 3.0 / 8.0 * std::sin(3 * t));
   };
-  for (const char* method :
-       {"average_acceleration", "hht:0.05", "generalized_alpha:0.8", "generalized_alpha:0"}) {
+  for (const char* method : {"average_acceleration", "hht:0.05", "generalized_alpha:0.8",
+                             "generalized_alpha:0", "bathe", "tr_bdf2"}) {
     double last = 0.0;
     for (const double h : {0.01, 0.005}) {
       Recorder r(system, {"base.acceleration_rad_per_s2", "base.reaction_Nm"}, 0.1);
