@@ -341,14 +341,7 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
     check.fail("t_end", to_text(o.t_end), "s",
                "must be greater than t_start = " + to_text(o.t_start));
   check.positive("energy_tolerance", o.energy_tolerance, "");
-  if (state.z.size() != system.size() || state.v.size() != system.size())
-    check.fail("state", std::to_string(state.z.size()), "unknowns",
-               "must have " + std::to_string(system.size()));
-  else if (!state.z.allFinite() || !state.v.allFinite())
-    check.fail("state", "not finite", "", "must be finite");
-  if (state.history.size() != system.history_size())
-    check.fail("state's history", std::to_string(state.history.size()), "numbers",
-               "must have " + std::to_string(system.history_size()));
+  check_state(system, state, check);
   if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);
   if (!findings.empty()) throw ModelError(findings);
 }
