@@ -8,6 +8,7 @@
 #include "solvers/contact_statistics.hpp"
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/driven_gear.hpp"
 #include "tests/problems/twist_backlash.hpp"
 #include "tests/published/read_csv.hpp"
 
@@ -166,5 +167,34 @@ TEST_CASE("Grazing and resting on an edge end the run in time") {
         CHECK(run.steps < 20000);
       }
     }
+  }
+}
+
+TEST_CASE("A mesh stiffness that steps with the angle: controlled steps end at its jumps") {
+  // x'' + k(t) x = 1 at w = 1: k = 1.2 for the first 0.6 of each turn, then 0.8. Over the parts x is
+  // 1/k + A cos + B sin, matched at the jumps.
+  problems::DrivenGear gear;
+  gear.stiffness = MeshStiffness::step(0.8, 1.2, 1.6);
+  gear.mean = 1.0;
+  const System system = gear.build();
+  const int turns = 20;
+  double x = 0.0, v = 0.0;
+  for (int i = 0; i < turns; ++i)
+    for (const auto& [k, part] : {std::pair(1.2, 0.6), std::pair(0.8, 0.4)}) {
+      const double w = std::sqrt(k), t = part * kTwoPi, a = x - 1.0 / k, b = v / w;
+      x = 1.0 / k + a * std::cos(w * t) + b * std::sin(w * t);
+      v = w * (b * std::cos(w * t) - a * std::sin(w * t));
+    }
+  for (const char* method : {"dormand_prince", "sdirk4"}) {
+    INFO(method);
+    State s = State::initial(system);
+    const RunSummary run = simulate(
+        system, {.scheme = step_scheme(method), .tolerance = 1e-7, .t_end = turns * kTwoPi}, s);
+    INFO(run.brief_report());
+    CHECK(run.ok());
+    CHECK(run.located >= 2 * turns - 1);
+    CHECK(run.located <= 2 * turns);
+    CHECK(run.forced <= 1);  // the last jump is at the end itself
+    CHECK(std::abs(s.z[0] - x) < 1e-5 * std::max(1.0, std::abs(x)));
   }
 }
