@@ -23,6 +23,8 @@ constexpr double kRounding = 1e-14;       // relative, before growth
 constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
 constexpr double kTightening = 1e-3;      // of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
+constexpr double kTighteningSteps = 0.1;       // of the tolerance of controlled steps from run to run
+constexpr double kLeastOfSteps = 1e-12;        // of their tolerance
 constexpr double kChaos = 1e6;  // growth past which tightening moves the horizon only
 constexpr int kBatches = 20, kOrders = 5;
 constexpr double kSettled = 0.1;  // of the run: left out of time averages
@@ -74,6 +76,8 @@ class AccurateRun {
     if (method.exact())
       method.tolerance =
           std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
+    else if (method.controlled())
+      method.tolerance = std::clamp(o_.accuracy, 10 * kLeastOfSteps, 1e-2);
     else
       method.step = every_ / std::ceil(every_ / method.step);  // halves as it is asked to
     Method for_growth = method;
@@ -115,7 +119,7 @@ class AccurateRun {
     const double wanted =
         std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
     double count = std::min(wanted, static_cast<double>(kMostSamples));
-    if (!o_.method.exact())
+    if (!o_.method.exact() && !o_.method.controlled())
       count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
     every_ = o_.t_end / std::ceil(count);
     if (o_.cycle > 0.0 && o_.cycle <= o_.t_end) every_ = o_.cycle / std::ceil(o_.cycle / every_);
@@ -140,6 +144,8 @@ class AccurateRun {
   Method tighter(Method m) const {
     if (m.exact())
       m.tolerance = std::max(kLeastTolerance, kTightening * m.tolerance);
+    else if (m.controlled())
+      m.tolerance = std::max(kLeastOfSteps, kTighteningSteps * m.tolerance);
     else
       m.step *= 0.5;
     return m;
@@ -147,6 +153,7 @@ class AccurateRun {
 
   bool ends(int level, double seconds) const {
     if (result_.fine.exact()) return result_.fine.tolerance <= kLeastTolerance;
+    if (result_.fine.controlled() && result_.fine.tolerance <= kLeastOfSteps) return true;
     if (2.0 * seconds > o_.most_seconds) return true;
     return level >= 2 && result_.growth.factor(o_.t_end) > kChaos;
   }
@@ -377,7 +384,7 @@ class AccurateRun {
               "interval";
     } else {
       text << "not every figure keeps " << o_.accuracy << " yet, and a finer run would ";
-      if (result_.fine.exact())
+      if (result_.fine.exact() || result_.fine.tolerance == kLeastOfSteps)
         text << "only add rounding";
       else
         text << "take more than " << o_.most_seconds << " s";
@@ -415,7 +422,8 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   check.positive("most_seconds", o.most_seconds, "s");
   if (o.ensemble < 2)
     check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
-  if (!o.method.exact()) check.positive("method.step", o.method.step, "s");
+  if (!o.method.exact() && !o.method.controlled())
+    check.positive("method.step", o.method.step, "s");
   if (o.method.exact())
     if (const auto why = why_not_exact(system)) check.fail("method", "exact", "", *why);
   if (system.size() == 0) check.fail("unknowns", "0", "", "must be at least one");

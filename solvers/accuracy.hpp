@@ -2,10 +2,10 @@
 /// Figures of a run, each with its error, to an accuracy that is asked for.
 ///
 ///   1. How fast do small differences grow (growth.hpp)?
-///   2. The run at one tolerance (exact) or step, then at a tighter one. A figure of the tighter run has the
-///      error 2 |difference| + max(tolerance, 1e-14) growth |figure|; with constant steps not less than half
-///      of the difference before, which second order quarters. Tightened until every figure keeps the
-///      accuracy, or the method's end or the time allowed is reached.
+///   2. The run at one tolerance (exact, controlled steps) or step, then at a tighter one. A figure of the
+///      tighter run has the error 2 |difference| + max(tolerance, 1e-14) growth |figure|; with controlled and
+///      constant steps not less than half of the difference before, which second order quarters. Tightened
+///      until every figure keeps the accuracy, or the method's end or the time allowed is reached.
 ///   3. The horizon: the first time at which the two runs differ by more than the accuracy, or 1e-14 has
 ///      grown to it. Past it trajectories
 ///      cannot be compared point by point; what depends on them is given as a statistic with a 95 %
@@ -29,7 +29,7 @@ struct AccuracyOptions {
   std::string deflection = {};            ///< channel; its peak, orders and quantiles; empty: none
   std::vector<std::string> torques = {};  ///< channels; the largest peak of all
   double cycle = 0.0;  ///< s, of which orders are the multiples; 0: frequencies of the last half
-  Method method = {};  ///< where to begin: exact, or a step
+  Method method = {};  ///< exact, controlled (the tolerance is found), or the constant step to begin with
   double most_seconds = 30.0;  ///< processor time of the longest run
   int ensemble = 8;            ///< perturbed runs for peaks past the horizon
   std::function<bool(double)> progress = {};

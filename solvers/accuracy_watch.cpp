@@ -51,14 +51,15 @@ void PeakWatch::step(const Assembler& assembler, const StepPoint& from, const St
 }
 
 void PeakWatch::refine(const System& system, const Method& method) {
-  if (before_.z.size() == 0 || !method.exact()) return;
+  if (before_.z.size() == 0 || (!method.exact() && !method.controlled())) return;
   const double begin = before_.t, distance = (end_ - begin) / kParts;
   if (!(begin + distance > begin)) return;
   PeakWatch close({channel()});
   Stops stops(begin, distance);
   State state = before_;
+  const Method again = method.exact() ? method : Method{.name = method.name, .step = distance};
   const RunSummary run =
-      run_method(system, method, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300},
+      run_method(system, again, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300},
                  state, {&close, &stops});
   if (run.ok()) value_ = close.value(), time_ = close.time();
 }

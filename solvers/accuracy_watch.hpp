@@ -21,6 +21,7 @@ class PeakWatch final : public Observer {
   double time() const { return time_; }
   const Channel& channel() const { return peaks_.channels()[peaks_.largest()]; }
   /// Runs the step that held the peak once more, in 64 parts: the cubic between two points leaves nothing.
+  /// Not with constant steps.
   void refine(const System& system, const Method& method);
 
  private:

@@ -78,16 +78,25 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
   const int n = system.size();
   State base = State::initial(system);
   if (n == 0) return result;
+  Method method = o.method;
+  long steps = 0;
+  double part = 0.0;  // done
   const auto run_piece = [&](State& state, double begin, double end,
                              const std::vector<Observer*>& observers) {
-    const MethodRunOptions piece{.t_start = begin, .t_end = end, .energy_tolerance = 1e300};
-    const RunSummary run = run_method(system, o.method, piece, state, observers);
+    const MethodRunOptions piece{.t_start = begin,
+                                 .t_end = end,
+                                 .energy_tolerance = 1e300,
+                                 .progress = [&](double) { return !o.progress || o.progress(part); }};
+    const RunSummary run = run_method(system, method, piece, state, observers);
     if (!run.ok()) result.status = run.status, result.reason = run.reason;
+    steps = run.steps;
     return run.ok();
   };
   Scale scale;
   State whole = base;
   if (!run_piece(whole, 0.0, o.t_end, {&scale})) return result;
+  if (method.controlled())
+    method = {.name = "sdirk4", .step = o.t_end / (2.0 * static_cast<double>(std::max(steps, 1L)))};
   result.z_scale = scale.z(), result.v_scale = scale.v();
   Vector dz(n), dv(n);
   for (int k = 0; k < n; ++k) {
@@ -97,7 +106,8 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
   double logarithm = 0.0, largest = 0.0;
   std::vector<double> rates;
   for (int k = 0; k < o.pieces; ++k) {
-    if (o.progress && !o.progress(static_cast<double>(k) / o.pieces)) {
+    part = static_cast<double>(k) / o.pieces;
+    if (o.progress && !o.progress(part)) {
       result.status = RunStatus::interrupted;
       result.reason = "interrupted";
       break;

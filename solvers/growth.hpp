@@ -14,7 +14,9 @@
 namespace drev {
 
 struct GrowthOptions {
-  /// Constant steps or exact: one that does the same for states that are nearly the same.
+  /// Constant steps or exact: one that does the same for states that are nearly the same. Controlled steps do
+  /// not (their error is far above d_0): the whole run is made with them, the pieces with constant steps of
+  /// sdirk4, half as long as theirs in the mean.
   Method method;
   double t_end = 0.0;  ///< s
   int pieces = 400;    ///< N

@@ -2,13 +2,16 @@
 /// One method with its knob, running it, and which one suits a system.
 ///
 /// The choice follows what the system is, not taste:
-///   - linear or piecewise linear (why_not_exact() finds nothing), and not too stiff for the time that is
-///     simulated: exact propagation. Nothing is cheaper at any accuracy (docs/which_method.md).
-///   - piecewise linear but too stiff, too large or too long for that: average acceleration at the model's
-///     step. Exact propagation takes about p = 20 (omega_max T / 3) products; it is too dear where both
-///     p is more than the steps T / step of the other, and p (20 + unknowns + 10 contacts) > 2e10 (about
-///     half a minute).
-///   - anything else: average acceleration at the model's step; the reason names the element.
+///   1. exact propagation, where why_not_exact() finds nothing and it is affordable. Nothing is cheaper
+///      (docs/which_method.md).
+///   2. dormand_prince with steps controlled to 1e-4, where exact propagation cannot be used (general
+///      elements, motions that are unknown functions) and it is affordable.
+///   3. sdirk4, controlled likewise: implicit, for what is too stiff, too large or too long for 1 or 2.
+///   4. average acceleration at the model's step, where errors cannot be estimated: a general element has a
+///      history, whose error no estimate sees, or the mass matrix is singular.
+///
+/// Affordable: p (20 + unknowns + 10 contacts) <= 1.5e10 products, about half a minute; p: 25 for exact
+/// propagation, 70 for dormand_prince, in each step of 3/omega of the fastest mode.
 #include <functional>
 #include <string>
 #include <vector>
@@ -22,6 +25,7 @@ struct Method {
   double step = 0.0;       ///< s; 0 for exact; with a tolerance the largest step, 0: no limit
   double tolerance = 0.0;  ///< relative; 0: constant steps
   bool exact() const { return name == "exact"; }
+  bool controlled() const { return !exact() && tolerance > 0.0; }
 };
 
 /// "exact, tolerance 1e-8", "hht:0.1, step 0.001 s".
@@ -45,11 +49,13 @@ struct MethodChoice {
   std::string reason;  ///< one sentence without full stop
 };
 
-/// duration: to be simulated [s]; step: of a stepping method, if it comes to that [s].
+inline constexpr double kControlledTolerance = 1e-4;  ///< of stepping methods, unless another is asked for
+
+/// duration: to be simulated [s]; step: where it comes to constant steps [s].
 MethodChoice choose_method(const System& system, double duration, double step);
 
-/// max(sqrt |M^-1 K|, |M^-1 C|) [1/s], contacts closed, within some percent from below (20 steps of the power
-/// method). Throws SolverError where M is singular.
+/// max(sqrt |M^-1 K|, |M^-1 C|) [1/s], contacts closed, general elements as at the start, within some percent
+/// from below (20 steps of the power method). Throws SolverError where M is singular.
 double fastest_rate(const System& system);
 
 }  // namespace drev

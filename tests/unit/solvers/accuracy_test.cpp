@@ -23,7 +23,7 @@ void covers(const AccuracyResult& r, const std::string& name, double truth) {
 
 }  // namespace
 
-TEST_CASE("Accuracy: a damped oscillator let go at 1, by exact and by constant steps") {
+TEST_CASE("Accuracy: a damped oscillator let go at 1, by exact, constant and controlled steps") {
   // x = e^(-d t) (cos w t + d/w sin w t), d = 0.3, w^2 + d^2 = 4 pi^2; the dashpot's force is 0.6 x'.
   Model m = unit_oscillator();
   m.add<Dashpot>("c", {"m"}, {.damping = 0.6});
@@ -33,7 +33,9 @@ TEST_CASE("Accuracy: a damped oscillator let go at 1, by exact and by constant s
   // x' = -(w^2 + d^2)/w e^(-d t) sin w t, largest at tan w t = w / d.
   const double t = std::atan2(w, d) / w;
   const double force = 0.6 * (w * w + d * d) / w * std::exp(-d * t) * std::sin(w * t);
-  for (const Method& method : {Method{.name = "exact"}, Method{.step = 1e-3}})
+  for (const Method& method : {Method{.name = "exact"}, Method{.step = 1e-3},
+                               Method{.name = "dormand_prince", .tolerance = kControlledTolerance},
+                               Method{.name = "sdirk4", .tolerance = kControlledTolerance}})
     for (const double accuracy : {1e-3, 1e-6}) {
       INFO(method.name << " to " << accuracy);
       const AccuracyResult r = run_to_accuracy(system, {.accuracy = accuracy,

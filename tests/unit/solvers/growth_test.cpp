@@ -41,6 +41,16 @@ TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
   CHECK(periods < 50.0);
 }
 
+TEST_CASE("Growth: controlled steps, which differ for states that hardly do, give the exponent too") {
+  const Growth g = measure_growth(chaotic_oscillator(),
+                                  {.method = {.name = "dormand_prince", .tolerance = 1e-4},
+                                   .t_end = 500 * kTwoPi,
+                                   .pieces = 1000});
+  CHECK(g.status == RunStatus::success);
+  CHECK(g.rate == Approx(0.10947).margin(std::max(0.003, 1.5 * g.rate_error)));
+  CHECK(g.rate_error < 0.02);
+}
+
 TEST_CASE("Batch means: interval of independent samples") {
   // 0, 1, 0, 1, ...: every batch of an even number has mean 1/2.
   std::vector<double> even(400);
