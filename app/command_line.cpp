@@ -44,7 +44,8 @@ void add_run_options(CLI::App& sub, Raw& raw) {
   add_text(sub, "--method", raw.method, "METHOD",
            "Time integration; default: what suits the model; see below");
   add_text(sub, "--step", raw.step, "SECONDS", "Time step; default: the model's");
-  add_text(sub, "--tolerance", raw.tolerance, "T", "Of method exact, relative; default: 1e-10");
+  add_text(sub, "--tolerance", raw.tolerance, "T",
+           "Relative: of exact, default 1e-10; of any other method, whose steps it controls");
   add_text(sub, "--accuracy", raw.accuracy, "A",
            "Finds the figures to the relative error A and states the error of each");
   add_text(sub, "--out", raw.out, "DIR", "Creates DIR with history.csv and summary.json");

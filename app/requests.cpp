@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kPlace = "command line";
 constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
-constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;
+constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;  // of exact propagation
+constexpr double kLeastOfSteps = 1e-13, kLargestOfSteps = 0.1;       // of controlled steps
 constexpr double kLeastAccuracy = 1e-12, kLargestAccuracy = 0.5;
 
 void take_findings(const ModelError& error, std::vector<Finding>& findings) {
@@ -56,7 +57,7 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
   return nullptr;
 }
 
-/// A finding if there is no such method with constant steps.
+/// A finding if there is no such stepping method.
 void check_method(const char* option, const std::string& text, std::vector<Finding>& findings) {
   const std::string form =
       "must be exact (without numbers: see --tolerance), average_acceleration, hht[:ALPHA], "
@@ -134,19 +135,16 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
   }
 }
 
-/// The tolerance of method exact.
-double read_tolerance(const CommandLine& line, const std::optional<std::string>& why_not,
-                      std::vector<Finding>& findings) {
-  if (!line.tolerance) return ExactOptions{}.tolerance;
+/// The tolerance of exact propagation, or of controlled steps.
+double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>& findings) {
+  if (!line.tolerance) return exact ? ExactOptions{}.tolerance : 0.0;
+  const double low = exact ? kLeastTolerance : kLeastOfSteps;
+  const double high = exact ? kLargestTolerance : kLargestOfSteps;
   double value = 0.0;
-  if (why_not)
+  if (!read_number(*line.tolerance, value) || !(value >= low && value <= high))
     findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
-                        "belongs to --method exact; " + *why_not});
-  else if (!read_number(*line.tolerance, value) ||
-           !(value >= kLeastTolerance && value <= kLargestTolerance))
-    findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
-                        "must be a number from " + short_digits(kLeastTolerance, 3) + " to " +
-                            short_digits(kLargestTolerance, 3)});
+                        "must be a number from " + short_digits(low, 3) + " to " +
+                            short_digits(high, 3)});
   return value;
 }
 
@@ -181,30 +179,46 @@ std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding
   return value;
 }
 
-/// The method asked for, or the one that suits the model. --step alone asks for a stepping method,
-/// --tolerance alone for exact propagation.
+/// A stepping method: with a tolerance, steps controlled by it; else constant ones. With --accuracy, methods
+/// of an order above 2, which constant steps over contact changes would take from them, are controlled.
+Method stepping(const std::string& name, const CommandLine& line, double step,
+                std::vector<Finding>& findings) {
+  const std::size_t before = findings.size();
+  check_method("--method", name, findings);
+  Method method{.name = name, .tolerance = read_tolerance(line, false, findings)};
+  if (line.accuracy && findings.size() == before && step_scheme(name).order() > 2)
+    method.tolerance = kControlledTolerance;
+  if (!method.controlled()) method.step = step;
+  return method;
+}
+
+/// The method asked for, or the one that suits the model. --step alone asks for constant steps, --tolerance
+/// alone for exact propagation, or controlled steps where that cannot be.
 MethodChoice find_method(const std::optional<ModelRequest>& model, const CommandLine& line,
                          std::vector<Finding>& findings) {
   const double duration = model ? model->scene.duration : 1.0;
   const double step = model ? std::min(model->scene.default_step, duration) : 0.0;
-  const std::string name = line.method.value_or(line.step        ? "average_acceleration"
-                                                : line.tolerance ? "exact"
-                                                                 : "");
-  if (name.empty())
-    return model ? choose_method(model->system, duration, step) : MethodChoice{};
-  const std::string reason = line.method ? "asked for"
-                             : line.step ? "the default where a step is asked for"
-                                         : "the default where a tolerance is asked for";
-  if (name != "exact") {
-    check_method("--method", name, findings);
-    read_tolerance(line, "the other methods take --step", findings);
-    return {{.name = name, .step = step}, reason};
+  if (line.method && *line.method != "exact")
+    return {stepping(*line.method, line, step, findings), "asked for"};
+  if (line.step && line.tolerance && !line.method) {
+    findings.push_back({kPlace, "--step", *line.step, "s",
+                        "needs a --method with --tolerance, whose largest step it is"});
+    return {};
   }
+  if (line.step && !line.method)
+    return {stepping("average_acceleration", line, step, findings),
+            "the default where a step is asked for"};
+  if (!line.method && !line.tolerance)
+    return model ? choose_method(model->system, duration, step) : MethodChoice{};
+  const std::string reason =
+      line.method ? "asked for" : "the default where a tolerance is asked for";
+  if (!line.method && model && why_not_exact(model->system))
+    return {stepping("dormand_prince", line, step, findings), reason};
   if (line.step)
     findings.push_back({kPlace, "--step", *line.step, "s",
                         "has no meaning for --method exact, which finds its own; see --tolerance"});
-  check_exact(model, line.method ? "--method" : "--tolerance", findings);
-  return {{.name = name, .tolerance = read_tolerance(line, {}, findings)}, reason};
+  check_exact(model, "--method", findings);
+  return {{.name = "exact", .tolerance = read_tolerance(line, true, findings)}, reason};
 }
 
 [[noreturn]] void refuse(std::vector<Finding> findings) { throw ModelError(std::move(findings)); }

@@ -145,12 +145,12 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
 
   std::vector<Channel> deflections;
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
-  // Exact propagation takes long steps: its peaks may lie inside them.
-  const bool exact = request.method.exact();
+  // Exact propagation and controlled steps take long ones: their peaks may lie inside.
+  const bool inside = request.method.tolerance > 0.0;
   result.method = request.method;
-  Peaks torque_peaks(torques, exact), deflection_peaks(deflections, exact);
-  Peaks mesh_peaks(mesh_channels(system), exact);
-  ContactStatistics contacts(system, exact);
+  Peaks torque_peaks(torques, inside), deflection_peaks(deflections, inside);
+  Peaks mesh_peaks(mesh_channels(system), inside);
+  ContactStatistics contacts(system, inside);
   std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts};
   std::optional<Recorder> recorder;
   if (history != nullptr) {

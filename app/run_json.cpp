@@ -118,8 +118,9 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["method"] = s.scheme;
   const bool exact = r.method.exact();
   object["method_reason"] = request.method_reason;
-  object["step_s"] = exact ? Json() : number(s.step);
-  object["tolerance"] = exact ? number(r.method.tolerance) : Json();
+  const bool controlled = r.method.controlled();
+  object["step_s"] = r.method.step > 0.0 ? number(r.method.step) : Json();
+  object["tolerance"] = r.method.tolerance > 0.0 ? number(r.method.tolerance) : Json();
   object["status"] = r.status;
   object["reason"] = text_or_null(r.reason);
   object["results"] = results_object(r);
@@ -129,8 +130,13 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
   object["t_end_s"] = number(s.t_end);
   object["steps"] = s.steps;
   object["halved_steps"] = s.halved;
+  object["rejected_steps"] = controlled ? Json(s.rejected) : Json();
+  object["forced_steps"] = controlled ? Json(s.forced) : Json();
+  object["fallback_steps"] = exact ? Json() : Json(s.fallbacks);
   object["contact_changes"] = exact ? Json(s.contact_changes) : Json();
+  object["located"] = controlled ? Json(s.located) : Json();
   object["iterations"] = s.iterations;
+  object["solves"] = s.solves;
   object["run_time_s"] = number(r.run_time);
   object["phases"] = {{"modes_s", number(r.modes_time)},
                       {"static_s", number(r.static_time)},

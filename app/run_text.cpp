@@ -125,6 +125,35 @@ std::string energy_row(const EnergyBalance& e) {
                                    ", worst at " + short_digits(e.worst_time, 4) + " s");
 }
 
+std::string method_text(const RunResult& r) {
+  std::string text = r.summary.scheme;
+  if (r.method.tolerance > 0.0) text += ", tolerance " + short_digits(r.method.tolerance, 3);
+  if (r.method.step > 0.0)
+    text += (r.method.controlled() ? ", steps of at most " : ", step ") +
+            short_digits(r.method.step, 4) + " s";
+  return text;
+}
+
+/// What was done for it; beside the method's usual work only what there was.
+std::string effort_text(const RunResult& r) {
+  const RunSummary& s = r.summary;
+  const bool exact = r.method.exact(), controlled = r.method.controlled();
+  std::vector<std::string> items;
+  const auto add = [&](bool shown, long count, const char* what) {
+    if (shown || count > 0) items.push_back(std::to_string(count) + " " + what);
+  };
+  add(true, s.steps, "steps");
+  add(controlled, s.rejected, "rejected");
+  add(!exact && !controlled, s.halved, "halved");
+  add(exact, s.contact_changes, "contact changes located");
+  add(false, s.located, "kinks or knots located");
+  add(false, s.fallbacks, "with a force inside its jump");
+  add(false, s.forced, "of the least length, with an error above their share");
+  add(!exact && !controlled, s.iterations, "iterations");
+  add(false, s.solves, exact ? "products" : "linear solves");
+  return join(items) + ", " + digits(r.run_time, 3) + " s";
+}
+
 /// A value with the digits that its error leaves, and the error.
 std::string figure_text(const Figure& f) {
   int places = 12;
@@ -174,7 +203,6 @@ std::string warning_of(const RunResult& r) {
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.scene.model;
-  const bool exact = r.method.exact();
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
@@ -187,17 +215,9 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
   if (!r.force && !r.ok())
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
-  text += row("Method", s.scheme +
-                            (exact ? ", tolerance " + short_digits(r.method.tolerance, 3)
-                                   : ", step " + short_digits(s.step, 4) + " s") +
-                            ", to t = " + short_digits(s.t_end, 6) + " s");
+  text += row("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
   text += row("Why this method", request.method_reason);
-  text += row("Effort", std::to_string(s.steps) + " steps, " +
-                            (exact
-                                 ? std::to_string(s.contact_changes) + " contact changes located, "
-                                 : std::to_string(s.halved) + " halved, " +
-                                       std::to_string(s.iterations) + " iterations, ") +
-                            digits(r.run_time, 3) + " s");
+  text += row("Effort", effort_text(r));
   if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
   if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
   return text;

@@ -76,3 +76,23 @@ TEST_CASE("The error stated of a torque that is a function of time covers what s
                  Json::parse(fine.out).at("results").at("max_torque_Nm").get<double>()) <=
         peak.at("error").get<double>());
 }
+
+TEST_CASE("Methods of high order come to an accuracy by their tolerance, others by their step") {
+  const Json exact = figure(
+      Json::parse(drev_command({"run", "two_mass_backlash", "--accuracy", "1e-10", "--json"}).out),
+      "peak deflection");
+  for (const char* method : {"dormand_prince", "average_acceleration"}) {
+    INFO(method);
+    const bool controlled = std::string(method) == "dormand_prince";
+    const auto run = drev_command({"run", "two_mass_backlash", "--method", method, "--accuracy",
+                                   controlled ? "1e-7" : "1e-3", "--json"});
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    const Json json = Json::parse(run.out);
+    CHECK(json.at("accuracy").at("reached") == true);
+    CHECK(json.at("tolerance").is_null() != controlled);
+    const Json peak = figure(json, "peak deflection");
+    CHECK(std::abs(peak.at("value").get<double>() -
+                   exact.at("value").get<double>()) <= peak.at("error").get<double>());
+  }
+}

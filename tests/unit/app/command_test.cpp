@@ -263,7 +263,44 @@ TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a mode
     CHECK(contains(refused.err, part));
   const auto both = drev_command({"run", "camshaft", "--step", "1e-5", "--tolerance", "1e-8"});
   CHECK(both.exit_code == 2);
-  CHECK(contains(both.err, "belongs to --method exact; the other methods take --step"));
+  CHECK(contains(both.err, "--step = 1e-5 s, needs a --method with --tolerance"));
+}
+
+TEST_CASE("A tolerance controls the steps of a stepping method; what it took is said") {
+  const std::vector<std::string> words{"run", "two_mass_backlash", "--method", "dormand_prince",
+                                       "--tolerance", "1e-8"};
+  const Json truth = Json::parse(drev_command({"run", "two_mass_backlash", "--json"}).out);
+  std::vector<std::string> with_json = words;
+  with_json.push_back("--json");
+  const auto run = drev_command(with_json);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json.at("method") == "dormand_prince");
+  CHECK(json.at("tolerance") == 1e-8);
+  CHECK(json.at("step_s").is_null());
+  CHECK(json.at("located") == 72);  // of the exact solution over 10 s
+  CHECK(json.at("forced_steps") == 0);
+  for (const char* figure : {"deflection_m", "max_force_N", "max_mesh_force_N"})
+    CHECK(json["results"][figure].get<double>() ==
+          Approx(truth["results"][figure].get<double>()).epsilon(1e-5));
+  const std::string text = drev_command(words).out;
+  for (const char* part : {"dormand_prince, tolerance 1e-08, to t", " rejected", "72 kinks or knots located"})
+    CHECK(contains(text, part));
+  CHECK_FALSE(contains(text, "halved"));
+  // --step is the largest.
+  std::vector<std::string> short_steps = with_json;
+  short_steps.insert(short_steps.end(), {"--step", "1e-3"});
+  const Json more = Json::parse(drev_command(short_steps).out);
+  CHECK(more.at("step_s") == 1e-3);
+  CHECK(more.at("steps").get<long>() >= 10000);
+  // Everything wrong with it at once.
+  const auto wrong = drev_command({"run", "two_mass_backlash", "--method", "hht:2", "--tolerance", "2",
+                                   "--step", "11"});
+  CHECK(wrong.exit_code == 2);
+  for (const char* part : {"3 faults", "alpha = 2", "--tolerance = 2, must be a number from 1e-13 to 0.1",
+                           "--step = 11 s"})
+    CHECK(contains(wrong.err, part));
 }
 
 TEST_CASE("The method follows the model unless it is asked for, and the run says which and why") {
