@@ -13,7 +13,7 @@ namespace {
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
 constexpr int kPowerIterations = 60;
 constexpr double kEigenvalueMargin = 1.1;
-constexpr double kEnergyPart = 1e-13;  // of the largest rate: terms that energies do without
+constexpr double kEnergyPart = 0.01;  // of the tolerance: terms that energies do without, 1e-13 to 1e-9
 constexpr double kShorten = 0.9;       // of the step at which the last terms are just small enough
 }  // namespace
 
@@ -205,6 +205,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
 
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
+  energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + at(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
   for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
@@ -256,7 +257,7 @@ int TaylorSeries::energy_degree() const {
   double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
   for (int k = 2; k <= degree_; ++k) largest = std::max(largest, rate(k));
   int degree = degree_;
-  while (degree > 1 && rate(degree) < kEnergyPart * largest) --degree;
+  while (degree > 1 && rate(degree) < energy_part_ * largest) --degree;
   return degree;
 }
 

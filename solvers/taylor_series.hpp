@@ -106,7 +106,7 @@ class TaylorSeries {
   std::vector<int> kinds_;  // of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
-  double h_ = 0.0;
+  double h_ = 0.0, energy_part_ = 0.0;
   long products_ = 0;
 };
 
