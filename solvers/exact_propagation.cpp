@@ -228,6 +228,9 @@ class ExactRun {
     known_.add_to(series_, h);
     laws_.add_to(series_, known_, h);
     smooth_.add_to(series_, now_, h);
+    // Loads and smooth laws can be stiffer than what bounded the largest step.
+    const double steepest = 1.5 * kFastestTimesStep / series_.rate();
+    if (h > steepest) return steepest;
     bool settled = false;
     const bool projects = known_.projects() || !smooth_.empty();
     // Each pass needs to be no better than the next one takes up of it.

@@ -12,8 +12,11 @@ namespace {
 
 constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
-// Kernel of the step's end above the projection's degree, for omega h <= 3: 15 j_7(3/2), with a margin.
-constexpr double kKernelRest = 1e-3;
+// Kernel of the step's end above the projection's degree, for omega h <= 3: 19 j_9(3/2), with a margin.
+constexpr double kKernelRest = 1e-4;
+// What the path inside a step is off by, as moments behind a kink: 1/(4 D^2) of the rest, which
+// swings about zero there.
+constexpr double kPathRest = 1e-5;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -129,6 +132,7 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
   // The slopes act on the change of the deviation over the step.
   const auto add_tangent = [&](const Place& l, double slope, double deviation) {
     series.add_stiffness(l.term->slot, -l.coeff * l.coeff * slope);
+    series.widen(l.row, l.coeff * l.coeff * slope, 0.0);
     series.right_side(0)[l.row] -= l.coeff * slope * deviation;
   };
   for (const Linear& l : loads_)
@@ -150,6 +154,7 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
   series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
   for (Linear& l : loads_) {
     l.watched = false;
+    l.gain = 0.0;
     l.ahead = l.stretch;
     l.ahead_angle_0 = l.angle_0;
     const auto row = at(l.row);
@@ -188,8 +193,8 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
       l.ahead = next;
       l.ahead_angle_0 = bound;
     }
-    if (l.feedback)
-      gain = std::max(gain, 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row));
+    if (l.feedback) l.gain = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
+    gain = std::max(gain, l.gain);
   }
   kinks_.add_to(projection_, tolerance);
   return gain;
@@ -243,12 +248,16 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
     if (size > 0.0) change.size = std::max(change.size, move * size / scale);
     return scale > 0.0 ? move / scale : 0.0;
   };
-  const auto note_rest = [&](int row) {
-    const double tail = std::abs(projection_.coefficient(kProjectionDegree, row)) +
-                        std::abs(projection_.coefficient(kProjectionDegree - 1, row));
-    change.rest = std::max(change.rest, kKernelRest * tail * note(row));
+  const auto tail = [&](int row) {
+    return std::abs(projection_.coefficient(kProjectionDegree, row)) +
+           std::abs(projection_.coefficient(kProjectionDegree - 1, row));
   };
-  for (const Linear& l : loads_) note(l.row);
+  const auto note_rest = [&](int row) {
+    change.rest = std::max(change.rest, kKernelRest * tail(row) * note(row));
+  };
+  // A kink is projected along a path that lacks the rest itself.
+  for (const Linear& l : loads_)
+    change.rest = std::max(change.rest, kPathRest * l.gain * tail(l.row) * note(l.row));
   for (const Smooth& l : smooth_) note_rest(l.row);
   for (const int row : laws.rows()) note_rest(row);
   if (change.size == 0.0) return change;

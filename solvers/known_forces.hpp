@@ -71,6 +71,7 @@ class KnownForces {
     double ahead_angle_0 = 0.0;                // the same of `ahead`
     double angle = 0.0, deviation = 0.0, torque = 0.0;  // at the step's start
     double speed = 0.0;
+    double gain = 0.0;     // of its kinks in this step: Change::gain
     bool watched = false;  // its angle may turn back in this step
   };
   struct Smooth : Place {

@@ -48,7 +48,10 @@ void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) 
     law.angle = start.inputs[at(law.index)].angle;
     law.stored = r.stored_energy;
     std::size_t s = 0;
+    double b_1 = 0.0;
+    for (const Entry& e : term.z) b_1 += std::abs(e.coeff);
     for (const Entry& row : term.z) {
+      series.widen(row.index, law.k * b_1 * row.coeff, law.c * b_1 * row.coeff);
       for (const Entry& col : term.z) {
         const int slot = term.slots[s++];
         series.add_stiffness(slot, law.k * row.coeff * col.coeff);

@@ -94,6 +94,7 @@ void TaylorSeries::reset() {
   std::copy(c_base_.begin(), c_base_.end(), c_.begin());
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
+  k_more_ = c_more_ = 0.0;
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
   right_degree_ = 2;
 }
@@ -137,7 +138,18 @@ double TaylorSeries::bound_rates() {
   // |lambda|^2 <= |lambda| c + k.
   k_norm_ = std::min(k_norm_, largest_eigenvalue(k_));
   c_norm_ = std::min(c_norm_, largest_eigenvalue(c_));
-  return 0.5 * (c_norm_ + std::sqrt(c_norm_ * c_norm_ + 4.0 * k_norm_));
+  k_more_ = c_more_ = 0.0;
+  return rate();
+}
+
+double TaylorSeries::rate() const {
+  const double k = k_norm_ + k_more_, c = c_norm_ + c_more_;
+  return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
+}
+
+void TaylorSeries::widen(int row, double k, double c) {
+  k_more_ = std::max(k_more_, std::abs(k) * mobility(row));
+  c_more_ = std::max(c_more_, std::abs(c) * mobility(row));
 }
 
 double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
@@ -213,6 +225,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
   z_scale = z_scale_;
   v_scale = v_scale_;
+  const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
   // How far a term is above what is allowed.
   const auto excess = [&](int k) {
     double largest = 0.0;
@@ -235,9 +248,9 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
     const double last = excess(k);
     const double first =
-        k_norm_ * h * h / (k * (k + 1.0)) * excess(k - 1) + c_norm_ * h / (k + 1.0) * last;
+        k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
     const double second =
-        k_norm_ * h * h / ((k + 1.0) * (k + 2.0)) * last + c_norm_ * h / (k + 2.0) * first;
+        k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     if (first <= 1.0 && second <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.

@@ -34,6 +34,10 @@ class TaylorSeries {
   void reset();
   void add_stiffness(int slot, double value) { k_[position_[at(slot)]] += value; }
   void add_damping(int slot, double value);
+  /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
+  void widen(int row, double k, double c);
+  /// Estimate from above of the fastest rate |lambda| with those [1/s].
+  double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
   /// sets a higher one has written all of those above.
   double* right_side(int k) { return p_.data() + at(k * stride_); }
@@ -96,7 +100,7 @@ class TaylorSeries {
   std::vector<DiagonalView> k_views_, c_views_;
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
-  double k_norm_ = 0.0, c_norm_ = 0.0;
+  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
   std::vector<double> p_, z_, rates_, forces_, zeros_;
