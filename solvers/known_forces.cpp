@@ -12,11 +12,10 @@ namespace {
 
 constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
-// Kernel of the step's end above the projection's degree, for omega h <= 3: 19 j_9(3/2), with a margin.
-constexpr double kKernelRest = 1e-4;
-// What the path inside a step is off by, as moments behind a kink: 1/(4 D^2) of the rest, which
-// swings about zero there.
-constexpr double kPathRest = 1e-5;
+// What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
+constexpr double kPathRest = 4e-3;
+// The same behind a kink, times its gain: the rest swings about zero there.
+constexpr double kKinkRest = 1e-5;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -253,11 +252,11 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
            std::abs(projection_.coefficient(kProjectionDegree - 1, row));
   };
   const auto note_rest = [&](int row) {
-    change.rest = std::max(change.rest, kKernelRest * tail(row) * note(row));
+    change.rest = std::max(change.rest, kPathRest * tail(row) * note(row));
   };
   // A kink is projected along a path that lacks the rest itself.
   for (const Linear& l : loads_)
-    change.rest = std::max(change.rest, kPathRest * l.gain * tail(l.row) * note(l.row));
+    change.rest = std::max(change.rest, kKinkRest * l.gain * tail(l.row) * note(l.row));
   for (const Smooth& l : smooth_) note_rest(l.row);
   for (const int row : laws.rows()) note_rest(row);
   if (change.size == 0.0) return change;

@@ -143,3 +143,21 @@ TEST_CASE("Exact propagation: what is recorded is on the curve, and recording ch
     CHECK(recorder.samples(0)[i] == Approx(std::cos(kTwoPi * recorder.times()[i])).margin(1e-12));
   }
 }
+
+TEST_CASE("Exact propagation: a cam's slopes on a free mass, the only stiffness there is") {
+  // Against Runge-Kutta at a step that no knot disturbs by more than the tolerance.
+  Model m("free");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  m.add<CamTorque>("cam", {"a"},
+                   {.angle_table = PeriodicTable({0, 1.1, 2.5, 4, 5.2}, {50, -30, 80, 10, -60}, 6.3)});
+  m.set_initial("a", 0.5, -50.0);
+  const System system = m.build();
+  State exact = State::initial(system), fine = exact;
+  const RunSummary run = propagate(system, {.tolerance = 1e-11, .t_end = 3.0, .energy_tolerance = 1e-11}, exact);
+  INFO(run.brief_report());
+  CHECK(run.ok());
+  runge_kutta(system, 3.0, 1e-5, fine);
+  CHECK(std::abs(exact.z[0] - fine.z[0]) < 2e-8 * std::abs(fine.z[0]));
+  CHECK(std::abs(exact.v[0] - fine.v[0]) < 2e-8 * std::abs(fine.v[0]));
+}

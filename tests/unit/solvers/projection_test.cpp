@@ -70,7 +70,7 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
 }
 
 TEST_CASE("Projection: a polynomial of its degree is itself, by powers too") {
-  const std::vector<double> c{1.0, -2.0, 0.5, 3.0, -1.0, 0.25, 0.75, -0.5, 0.125};
+  const std::vector<double> c{1.0, -2.0, 0.5, 3.0, -1.0, 0.25, 0.75};
   Projection projection(kLanes);
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q)
     for (int j = 0; j < kProjectionTerms; ++j)
