@@ -184,7 +184,8 @@ TEST_CASE("An interrupted run leaves what it had") {
   CHECK(Json::parse(run.out).at("status") == "interrupted");
   CHECK_FALSE(std::filesystem::exists(folder / "r/history.csv"));
   const Table table = read_table(partial);
-  REQUIRE(table.rows.size() > 10);
+  // 1000 bytes are five rows at least.
+  REQUIRE(table.rows.size() >= 5);
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     REQUIRE(table.rows[k].size() == table.rows[0].size());
     REQUIRE(table.rows[k][0] == static_cast<double>(k) * 0.0001);
