@@ -16,10 +16,12 @@ constexpr double kWatchedAngle = 0.3;      // omega h between points that observ
 constexpr double kGrowth = 1.5;            // of the step after one that had to be shortened
 constexpr double kShorten = 0.9;           // of the step at which the loads' rest is just small enough
 constexpr double kLoosest = 1e-3;          // tolerance of a pass that is not the last
-constexpr double kSettled = 1e-15;          // of the motion: rounding of what is projected
-constexpr double kProjected = 0.1;           // of a step's share, that the projection may add
-constexpr double kJump = 1e-4;  // of the tolerance: what a jump that no one told of may add
-constexpr double kShortest = 1e-6;           // of the largest step
+constexpr double kSettled = 1e-15;         // of the motion: rounding of what is projected
+constexpr double kProjected = 0.1;         // of a step's share, that the projection may add
+constexpr double kJump = 1e-4;             // of the tolerance: what a jump that no one told of may add
+constexpr double kShortest = 1e-6;         // of the largest step
+constexpr double kBehindKnot = 1e-3;       // of the step to it: behind the last node of Gauss' rule
+constexpr double kBeforeEnd = 0.98;        // of the step: a knot that its nodes see
 constexpr int kMaxPasses = 20;             // of projected loads
 constexpr int kMaxCuts = 20;
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
@@ -47,9 +49,9 @@ class ExactRun {
     summary_.factorizations = system.mass_is_diagonal() ? 0 : 1;
     change_limit_ = 20 + 20 * static_cast<int>(system.scalars().size() + system.loads().size());
     laws_.add_stiffest(series_);
-    const double fastest = fastest_ = series_.bound_rates();
+    fastest_ = series_.bound_rates();
     const double duration = options.t_end - options.t_start;
-    largest_step_ = fastest > 0.0 ? std::min(duration, kFastestTimesStep / fastest) : duration;
+    largest_step_ = fastest_ > 0.0 ? std::min(duration, kFastestTimesStep / fastest_) : duration;
     growing_step_ = largest_step_;
   }
 
@@ -206,7 +208,12 @@ class ExactRun {
     for (;;) {
       const double share = std::max(
           options_.tolerance * h / (options_.t_end - options_.t_start), kLeastTolerance);
+      to_knot_ = false;
       const double got = try_step(h, share);
+      if (to_knot_) {
+        h = got;
+        continue;
+      }
       if (got > 0.0) growing_step_ = std::min(largest_step_, kGrowth * std::max(got, growing_step_));
       if (got == h) return h;
       growing_step_ = got > 0.0 ? got : kRetreat * h;
@@ -244,8 +251,12 @@ class ExactRun {
       const KnownForces::Change change =
           known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
       // In the shortest steps what is left is a jump that no one told of, or rounding.
-      if (change.rest > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_)
+      if (change.rest > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
+        // Nearly always a law's knot in the step: a step to just behind it, which find_end() then cuts.
+        const auto knot = smooth_.first_knot(series_, kBeforeEnd);
+        if ((to_knot_ = knot && *knot > kAtStart)) return h * *knot * (1.0 + kBehindKnot);
         return h * std::max(0.2, kShorten * std::pow(share / change.rest, 1.0 / kProjectionTerms));
+      }
       if (pass == 0) projected_ = change.size;
       gain_ = std::max(change.gain, 1e-300);
       // What this pass was off by comes back in the next one times the gain.
@@ -331,6 +342,7 @@ class ExactRun {
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
+  bool to_knot_ = false;  // try_step()'s answer leads to a law's knot
   double gain_ = 1.0, projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
   int changes_here_ = 0, change_limit_ = 0;
 };
@@ -339,10 +351,7 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/exact", findings);
   check.within("tolerance", o.tolerance, 1e-15, 1e-3, "");
-  check.finite("t_start", o.t_start, "s");
-  if (!(o.t_end > o.t_start) || !std::isfinite(o.t_end))
-    check.fail("t_end", to_text(o.t_end), "s",
-               "must be greater than t_start = " + to_text(o.t_start));
+  check_span(o.t_start, o.t_end, check);
   check.positive("energy_tolerance", o.energy_tolerance, "");
   check_state(system, state, check);
   if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);

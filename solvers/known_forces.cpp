@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solvers/polynomial.hpp"
 
@@ -55,9 +54,7 @@ void KnownForces::move(double t, const Vector& z, const Vector& v) {
     l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * v[l.row] : 0.0);
   }
   for (Smooth& l : smooth_) {
-    l.tangent = assembler_.load(*l.term, z, v);
-    l.deviation = z[l.row];
-    l.speed = v[l.row];
+    l.torque = assembler_.load(*l.term, z, v).torque;
   }
 }
 
@@ -118,25 +115,24 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
           p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
     }
   }
-  for (Linear& l : loads_) {
+  for (const Linear& l : loads_) {
     const LoadStretch& s = l.stretch;
-    l.torque = s.torque + s.time_slope * (t_ - l.t_0) + s.angle_slope * (l.angle - l.angle_0);
-    p(0, l.row) += l.coeff * l.torque;
+    p(0, l.row) += l.coeff * (s.torque + s.time_slope * (t_ - l.t_0) +
+                              s.angle_slope * (l.angle - l.angle_0));
     p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
     p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
   }
-  for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.tangent.torque;
+  for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.torque;
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < n; ++i) series.right_side(k)[i] += p(k, i);
-  // The slopes act on the change of the deviation over the step.
-  const auto add_tangent = [&](const Place& l, double slope, double deviation) {
-    series.add_stiffness(l.term->slot, -l.coeff * l.coeff * slope);
-    series.widen(l.row, l.coeff * l.coeff * slope, 0.0);
-    series.right_side(0)[l.row] -= l.coeff * slope * deviation;
-  };
-  for (const Linear& l : loads_)
-    if (l.feedback && l.stretch.angle_slope != 0.0)
-      add_tangent(l, l.stretch.angle_slope, l.deviation);
+  for (const Linear& l : loads_) {
+    if (!l.feedback || l.stretch.angle_slope == 0.0) continue;
+    const double slope = l.coeff * l.coeff * l.stretch.angle_slope;
+    series.add_stiffness(l.term->slot, -slope);
+    series.widen(l.row, slope, 0.0);
+    // The slope acts on the change of the deviation over the step.
+    series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
+  }
 }
 
 double KnownForces::angle_term(const Place& l, const TaylorSeries& series, int k) const {
@@ -208,10 +204,7 @@ double KnownForces::project_smooth(const TaylorSeries& series) {
     assembler_.set_time(t_ + h_ * rule.s[q]);
     for (const Smooth& l : smooth_) {
       const LoadResponse at_node = assembler_.load(*l.term, z_, v_);
-      const double difference = l.coeff * (at_node.torque - l.tangent.torque);
-      for (int j = 0; j < kProjectionTerms; ++j)
-        projection_.coefficient(j, l.row) +=
-            (2 * j + 1) * rule.weight[q] * rule.legendre[at(j)][q] * difference;
+      projection_.add_node(q, l.row, l.coeff * (at_node.torque - l.torque));
       const double move = l.coeff * l.coeff * series.mobility(l.row);
       gain = std::max(gain, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
                                     h_ * std::abs(at_node.dtorque_dspeed)));

@@ -69,14 +69,12 @@ class KnownForces {
     LoadStretch stretch = {}, ahead = {};
     double t_0 = 0.0, angle_0 = 0.0;           // where `stretch` gives its torque
     double ahead_angle_0 = 0.0;                // the same of `ahead`
-    double angle = 0.0, deviation = 0.0, torque = 0.0;  // at the step's start
-    double speed = 0.0;
+    double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
     double gain = 0.0;     // of its kinks in this step: Change::gain
     bool watched = false;  // its angle may turn back in this step
   };
   struct Smooth : Place {
-    LoadResponse tangent = {};
-    double deviation = 0.0, speed = 0.0;
+    double torque = 0.0;  // at the step's start
   };
   void move(double t, const Vector& z, const Vector& v);
   void look_up(Linear& load, double direction);

@@ -146,6 +146,13 @@ const GaussRule& gauss_rule() {
   return rule;
 }
 
+void Projection::add_node(std::size_t q, int row, double value) {
+  const GaussRule& rule = gauss_rule();
+  for (int j = 0; j < kProjectionTerms; ++j)
+    coefficient(j, row) +=
+        (2 * j + 1) * rule.weight[q] * rule.legendre[static_cast<std::size_t>(j)][q] * value;
+}
+
 void Projection::add_powers(int kept, double* out) const {
   static const Powers powers = legendre_powers();
   to_powers(stride_, powers, a_.data(), kept, out);

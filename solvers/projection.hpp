@@ -34,6 +34,8 @@ class Projection {
   void clear() { a_.assign(a_.size(), 0.0); }
   double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
   double coefficient(int j, int row) const { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
+  /// Adds what a force of `row` that is `value` at node q of the Gauss rule gives to its coefficients.
+  void add_node(std::size_t q, int row, double value);
   /// out_k += coefficients of s^k for k < kept, out_k = them above, k = 0 ... kProjectionDegree; column k at
   /// out + k stride.
   void add_powers(int kept, double* out) const;

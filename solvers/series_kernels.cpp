@@ -6,6 +6,10 @@
 
 namespace drev {
 
+namespace {
+constexpr int kMostTerms = 128;  // of a product of two series
+}
+
 DREV_WIDEST
 double series_term(int stride, std::span<const DiagonalView> k, std::span<const DiagonalView> c,
                    double c_factor, const double* p, const double* x_0, const double* x_1,
@@ -72,8 +76,7 @@ void series_ranges(int stride, int degree, const double* z_0, double* end, doubl
 
 DREV_WIDEST
 double series_work(int stride, int degree, const double* z_0, int p_degree, const double* p, double s) {
-  constexpr int kMost = 64;
-  double inverse[2 * kMost], power[2 * kMost];
+  double inverse[kMostTerms], power[kMostTerms];
   power[0] = 1.0;
   for (int k = 1; k <= degree + p_degree; ++k) {
     inverse[k] = 1.0 / k;
@@ -97,7 +100,7 @@ double series_work(int stride, int degree, const double* z_0, int p_degree, cons
 
 DREV_WIDEST
 double series_product(int stride, int degree, const double* rates, const double* forces, double s) {
-  double inverse[2 * 64], power[2 * 64];
+  double inverse[kMostTerms], power[kMostTerms];
   power[0] = s;
   for (int k = 0; k < 2 * degree; ++k) {
     inverse[k] = 1.0 / (k + 1);

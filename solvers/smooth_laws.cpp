@@ -71,8 +71,7 @@ void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) 
       const double phi = system_.reference()->at(t_ + h * rule.s[q]).value;
       const double e = term.force->offset(ratio * phi).e;
       any |= e != 0.0;
-      for (int j = 0; j < kProjectionTerms; ++j)
-        one.coefficient(j, 0) -= (2 * j + 1) * rule.weight[q] * rule.legendre[at(j)][q] * e;
+      one.add_node(q, 0, -e);
     }
     if (!any) continue;
     std::vector<double> powers(at(kProjectionTerms * kLanes));
@@ -96,9 +95,7 @@ double SmoothLaws::project(const TaylorSeries& series, Projection& projection) {
       double mobility = 0.0;
       for (const Entry& e : term.z) {
         mobility += e.coeff * e.coeff * series.mobility(e.index);
-        for (int j = 0; j < kProjectionTerms; ++j)
-          projection.coefficient(j, e.index) -=
-              e.coeff * (2 * j + 1) * rule.weight[q] * rule.legendre[at(j)][q] * difference;
+        projection.add_node(q, e.index, -e.coeff * difference);
       }
       gain = std::max(gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) +
                                         h_ * std::abs(r.dy_dx_dot - law.c)));
@@ -112,13 +109,16 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
   for (const Law& law : laws_) {
     if (law.term->phase_node < 0) continue;
     const NodeMap& map = system_.node_map(law.term->phase_node);
-    const double ratio = system_.ratio(law.term->phase_node);
     assembler_.set_time(t_);
-    const MotionPoint& phi = assembler_.nominal();
     g_.assign(at(series.degree() + 1), 0.0);
-    g_[1] = ratio * phi.rate * h_;
-    g_[2] = 0.5 * ratio * phi.acceleration * h_ * h_;
-    if (map.unknown >= 0)
+    const auto add_known = [&](double factor, const MotionPoint& m) {
+      g_[1] += factor * m.rate * h_;
+      g_[2] += 0.5 * factor * m.acceleration * h_ * h_;
+    };
+    add_known(system_.ratio(law.term->phase_node), assembler_.nominal());
+    if (map.unknown < 0)
+      add_known(map.coeff, assembler_.prescribed(map.prescribed));
+    else
       for (int k = 1; k <= series.degree(); ++k)
         g_[at(k)] += map.coeff * series.coefficient(k, map.unknown);
     for (const double side : {1.0, -1.0}) {
@@ -131,7 +131,6 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
       if (const auto s = first_crossing(g, end)) {
         first = s;
         end = *s;
-        knot_element_ = law.term->element;
       }
     }
   }

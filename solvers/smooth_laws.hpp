@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "solvers/projection.hpp"
-#include "solvers/step_solver.hpp"
+#include "solvers/step_point.hpp"
 #include "solvers/taylor_series.hpp"
 
 namespace drev {
@@ -35,7 +35,6 @@ class SmoothLaws {
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
-  ElementId knot_element() const { return knot_element_; }
 
   /// Energy put in by what varies in the laws and their ends, and dissipated in them, from 0 to s [J].
   struct Work {
@@ -61,7 +60,6 @@ class SmoothLaws {
   std::vector<double> g_;
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
-  ElementId knot_element_{};
 };
 
 }  // namespace drev

@@ -78,7 +78,7 @@ void TaylorSeries::find_storage() {
   k_base_.assign(length, 0.0);
   c_base_.assign(length, 0.0);
   z_.assign(at(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
-  p_.assign(at((kMaxRightDegree + 1) * stride_), 0.0);
+  p_.assign(at(kProjectionTerms * stride_), 0.0);
   zeros_.assign(at(stride_), 0.0);
   sums_.assign(at(2 * stride_), 0.0);
   k_ = k_base_;

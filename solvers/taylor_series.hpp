@@ -17,6 +17,7 @@
 #include <array>
 
 #include "core/assembler.hpp"
+#include "solvers/projection.hpp"
 #include "solvers/series_kernels.hpp"
 #include "solvers/sparse_cholesky.hpp"
 
@@ -25,7 +26,6 @@ namespace drev {
 class TaylorSeries {
  public:
   static constexpr int kMaxDegree = 32;
-  static constexpr int kMaxRightDegree = 8;
 
   /// Throws SolverError if M cannot be factored.
   explicit TaylorSeries(const System& system);
@@ -39,7 +39,7 @@ class TaylorSeries {
   /// Estimate from above of the fastest rate |lambda| with those [1/s].
   double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
-  /// sets a higher one has written all of those above.
+  /// sets a higher one, up to kProjectionDegree, has written all of those above.
   double* right_side(int k) { return p_.data() + at(k * stride_); }
   void set_right_degree(int degree) { right_degree_ = degree; }
 

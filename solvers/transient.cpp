@@ -30,9 +30,7 @@ void check_options(const System& system, const TransientOptions& o, const State&
   const bool controlled = o.tolerance != 0.0;
   if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
   if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
-  check.finite("t_start", o.t_start, "s");
-  if (!(o.t_end > o.t_start) || !std::isfinite(o.t_end))
-    check.fail("t_end", to_text(o.t_end), "s", "must be greater than t_start = " + to_text(o.t_start));
+  check_span(o.t_start, o.t_end, check);
   if (o.max_halvings < 0 || o.max_halvings > 40)
     check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
   check.positive("energy_tolerance", o.energy_tolerance, "");
@@ -403,6 +401,12 @@ class Run {
 };
 
 }  // namespace
+
+void check_span(double t_start, double t_end, ParameterCheck& check) {
+  check.finite("t_start", t_start, "s");
+  if (!(t_end > t_start) || !std::isfinite(t_end))
+    check.fail("t_end", to_text(t_end), "s", "must be greater than t_start = " + to_text(t_start));
+}
 
 void check_state(const System& system, const State& state, ParameterCheck& check) {
   if (state.z.size() != system.size() || state.v.size() != system.size())

@@ -81,6 +81,8 @@ struct RunSummary {
 
 /// Findings for a state that does not fit the system: sizes, numbers that are not finite.
 void check_state(const System& system, const State& state, ParameterCheck& check);
+/// Reports a run that has no beginning or no time: t_start finite, t_end finite and greater [s].
+void check_span(double t_start, double t_end, ParameterCheck& check);
 
 /// Runs from the state given (its acceleration is made consistent first) and leaves the last accepted
 /// state in it. Observers see every accepted step. Throws ModelError for bad options; a run that ends

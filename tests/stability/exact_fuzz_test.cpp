@@ -170,6 +170,24 @@ class PointCheck final : public Observer {
 
 constexpr int kMostCalls = 1000;  // of progress, every 100 steps: a run without end is stopped
 
+/// Runs the model under the check's eyes. What holds for every piecewise-linear model is asked for here.
+template <class Check>
+RunSummary run_checked(const RandomModel& model, Check& check) {
+  int calls = 0;
+  const RunSummary run = propagate(model.system,
+                                   {.tolerance = 1e-12,
+                                    .t_end = model.t_end,
+                                    .energy_tolerance = 1e-9,
+                                    .progress = [&](double) { return ++calls < kMostCalls; },
+                                    .on_change = [&](const ContactChange& c) { check.note(c); }},
+                                   {&check});
+  INFO(run.brief_report());
+  CHECK(run.ok());
+  CHECK(std::abs(run.energy.relative_error()) < 1e-10);
+  CHECK(check.worst_bound < 1e-11);
+  return run;
+}
+
 }  // namespace
 
 TEST_CASE("Exact propagation, 800 random models: no change missed, energy kept, ends exact") {
@@ -178,18 +196,7 @@ TEST_CASE("Exact propagation, 800 random models: no change missed, energy kept, 
     const RandomModel model = random_model(seed, {.duration = 150.0});
     INFO("seed " << seed);
     PieceCheck check(model.system);
-    int calls = 0;
-    const RunSummary run = propagate(model.system,
-                                     {.tolerance = 1e-12,
-                                      .t_end = model.t_end,
-                                      .energy_tolerance = 1e-9,
-                                      .progress = [&](double) { return ++calls < kMostCalls; },
-                                      .on_change = [&](const ContactChange& c) { check.note(c); }},
-                                     {&check});
-    INFO(run.brief_report());
-    CHECK(run.ok());
-    CHECK(std::abs(run.energy.relative_error()) < 1e-10);
-    CHECK(check.worst_bound < 1e-11);
+    const RunSummary run = run_checked(model, check);
     CHECK(check.worst_end < 1e-10);
     changes += run.contact_changes;
     steps += check.steps;
@@ -205,18 +212,7 @@ TEST_CASE("Exact propagation, 1200 random models: pieces hold where they are sai
     const RandomModel model = random_model(seed, {});
     INFO("seed " << seed);
     PointCheck check(model.system);
-    int calls = 0;
-    const RunSummary run = propagate(model.system,
-                                     {.tolerance = 1e-12,
-                                      .t_end = model.t_end,
-                                      .energy_tolerance = 1e-9,
-                                      .progress = [&](double) { return ++calls < kMostCalls; },
-                                      .on_change = [&](const ContactChange& c) { check.note(c); }},
-                                     {&check});
-    INFO(run.brief_report());
-    CHECK(run.ok());
-    CHECK(std::abs(run.energy.relative_error()) < 1e-10);
-    CHECK(check.worst_bound < 1e-11);
+    const RunSummary run = run_checked(model, check);
     changes += run.contact_changes;
     steps += run.steps;
   }

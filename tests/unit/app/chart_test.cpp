@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 TEST_CASE("A chart: reference checked, errors fall with the step, files written") {
   const drev::test::TemporaryFolder folder;
   const auto run = drev_command({"chart", "two_mass_backlash", "--set", "duration_s=0.5", "--limit",
-                                 "0.01", "--methods", "exact", "average_acceleration", "--json",
+                                 "0.1", "--methods", "exact", "average_acceleration", "--json",
                                  "--out", (folder / "out").string()});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
