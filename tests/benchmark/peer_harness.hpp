@@ -107,6 +107,7 @@ inline Chain make_chain(const System& s, bool smooth) {
   const auto row = [](int i) { return static_cast<std::size_t>(i); };
   std::vector<double> inertia(row(c.n));
   for (int i = 0; i < c.n; ++i) inertia[row(i)] = s.mass_values()[s.diagonal_slots()[row(i)]];
+  std::copy(inertia.begin(), inertia.end(), c.inertia);
   const SparseMatrix& pattern = s.pattern();
   for (int j = 0; j < c.n; ++j)
     for (int slot = pattern.outerIndexPtr()[j]; slot < pattern.outerIndexPtr()[j + 1]; ++slot) {
@@ -311,6 +312,14 @@ class Drev {
   const Problem& p_;
   std::map<double, std::vector<double>> errors_;
 };
+
+/// A line that scripts/peers.sh puts into its table.
+inline void report(const std::string& problem, const std::string& peer, double own_seconds,
+                   double peer_seconds, const std::string& remark = "") {
+  std::printf("ratio| %s | %s | %.3g | %.3g | %.2f | %s |\n", problem.c_str(), peer.c_str(),
+              own_seconds, peer_seconds, peer_seconds / own_seconds, remark.c_str());
+  std::fflush(stdout);
+}
 
 struct Row {
   std::string what;
