@@ -313,11 +313,11 @@ class Drev {
   std::map<double, std::vector<double>> errors_;
 };
 
-/// A line that scripts/peers.sh puts into its table.
-inline void report(const std::string& problem, const std::string& peer, double own_seconds,
-                   double peer_seconds, const std::string& remark = "") {
-  std::printf("ratio| %s | %s | %.3g | %.3g | %.2f | %s |\n", problem.c_str(), peer.c_str(),
-              own_seconds, peer_seconds, peer_seconds / own_seconds, remark.c_str());
+/// A line that scripts/peers.sh puts into its table: processor seconds of drev and of the peer.
+inline void report(const std::string& problem, const std::string& peer, double own, double other,
+                   const std::string& remark) {
+  std::printf("ratio| %s | %s | %.3g | %.3g | %.3g | %s |\n", problem.c_str(), peer.c_str(), own, other,
+              other / own, remark.c_str());
   std::fflush(stdout);
 }
 
@@ -366,6 +366,9 @@ Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, 
     std::printf(" %.2f |\n", row.ratio);
   else
     std::printf(" |\n");
+  if (row.ratio > 0.0)
+    report(to_text(p.duration) + " s, " + p.name, what + ", rtol " + to_text(rtol), median(own),
+           median(peer), "errors " + join(drev.error(tolerance)) + " beside " + join(peer_error));
   std::fflush(stdout);
   return row;
 }
