@@ -41,6 +41,7 @@ run_tests() {
   return $status
 }
 
+packages+=(valgrind)  # counts instructions
 install_packages
 build release
 run_tests release "" || failed=1

@@ -1,0 +1,58 @@
+// Three small runs whose instructions are counted (count.sh): what is inside measured() is.
+//   instructions_runs held|gears|modes
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "core/system.hpp"
+#include "elements/catalogue.hpp"
+#include "models/camshaft/build_camshaft.hpp"
+#include "solvers/exact_propagation.hpp"
+#include "solvers/modes.hpp"
+#include "solvers/transient.hpp"
+
+using namespace drev;
+
+extern "C" [[gnu::noinline]] void measured(const std::function<bool()>& run, bool& ok) { ok = run(); }
+
+namespace {
+
+constexpr double kDuration = 0.02;  // s
+
+System camshaft(const char* drive) {
+  Settings settings("camshaft", camshaft_entry().settings);
+  settings.set("drive", drive);
+  return camshaft_entry().build(settings).model.build();
+}
+
+System chain(int n) {
+  Model m("chain");
+  m.add_node("n0");
+  m.constant_speed("n0", 0.0);
+  for (int i = 1; i <= n; ++i) {
+    const std::string node = "n" + std::to_string(i), before = "n" + std::to_string(i - 1);
+    m.add_node(node);
+    m.add<Inertia>("J" + node, {node}, {.inertia = 1.0 + 0.5 * std::sin(2.3 * i)});
+    m.add<ShaftSpring>("k" + node, {before, node}, {.stiffness = 1e6 * (1.0 + 0.3 * std::sin(1.7 * i))});
+  }
+  return m.build();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string name = argc == 2 ? argv[1] : "";
+  bool ok = false;
+  if (name == "held") {
+    const System system = camshaft("held");
+    measured([&] { return simulate(system, {.step = 1e-5, .t_end = kDuration}).ok(); }, ok);
+  } else if (name == "gears") {
+    const System system = camshaft("gears");
+    measured([&] { return propagate(system, {.tolerance = 1e-6, .t_end = kDuration}).ok(); }, ok);
+  } else if (name == "modes") {
+    const System system = chain(2000);
+    measured([&] { return solve_modes(system, {.count = 10}).count() == 10; }, ok);
+  }
+  if (!ok) std::fprintf(stderr, "instructions_runs: %s failed\n", name.c_str());
+  return ok ? 0 : 1;
+}
