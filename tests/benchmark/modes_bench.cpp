@@ -31,22 +31,24 @@ Eigen::MatrixXd dense(const System& s, const Vector& values) {
   return m;
 }
 
-/// Largest relative difference of frequencies [rad/s].
-template <class Omegas>
-double off(const ModeSet& modes, const Omegas& omegas) {
+/// Largest relative difference of frequencies [rad/s], with the rigid modes ahead of them.
+double off(const ModeSet& modes, const std::vector<double>& omegas) {
   double worst = 0.0;
   for (int k = 0; k < kCount; ++k)
-    worst = std::max(worst, std::abs(omegas[static_cast<std::size_t>(k)] / modes.omega(k) - 1.0));
+    worst = std::max(
+        worst, std::abs(omegas[static_cast<std::size_t>(modes.rigid_modes + k)] / modes.omega(k) - 1.0));
   return worst;
 }
 
 }  // namespace
 
 TEST_CASE("Modes of the camshaft") {
-  const Problem p = make_problem("held", false);
-  const int n = p.system.size(), one = 1, work_size = 10 * n * n, iwork_size = 10 * n;
-  const Eigen::MatrixXd k = dense(p.system, p.system.stiffness_values());
-  const Eigen::MatrixXd m = dense(p.system, p.system.mass_values());
+  Settings settings("camshaft", camshaft_entry().settings);
+  settings.set("drive", "free");
+  const System system = camshaft_entry().build(settings).model.build();
+  const int n = system.size(), one = 1, work_size = 10 * n * n, iwork_size = 10 * n;
+  const Eigen::MatrixXd k = dense(system, system.stiffness_values());
+  const Eigen::MatrixXd m = dense(system, system.mass_values());
   std::vector<double> w(static_cast<std::size_t>(n)), work(static_cast<std::size_t>(work_size));
   std::vector<int> iwork(static_cast<std::size_t>(iwork_size));
   const auto lapack = [&](bool divide, const char* vectors) {
@@ -68,12 +70,12 @@ TEST_CASE("Modes of the camshaft") {
     times.push_back((processor_seconds() - start) / kRepeats);
   };
   for (int i = 0; i < 51; ++i) {
-    timed(own, [&] { modes = solve_modes(p.system, {.count = kCount}); });
+    timed(own, [&] { modes = solve_modes(system, {.count = kCount}); });
     timed(qr, [&] { lapack(false, "V"); });
     timed(divide, [&] { lapack(true, "V"); });
   }
-  for (double& x : w) x = std::sqrt(x);
-  const std::string problem = "10 modes, n = " + std::to_string(n);
+  for (double& x : w) x = std::sqrt(std::abs(x));
+  const std::string problem = "10 modes, free camshaft, n = " + std::to_string(n);
   CHECK(off(modes, w) < 1e-9);
   report(problem, "LAPACK dsygv", median(own), median(qr),
          "same to " + join({off(modes, w)}) + " (wanted: 1)");

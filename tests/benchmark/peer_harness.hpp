@@ -316,8 +316,9 @@ class Drev {
 /// A line that scripts/peers.sh puts into its table: processor seconds of drev and of the peer.
 inline void report(const std::string& problem, const std::string& peer, double own, double other,
                    const std::string& remark) {
-  std::printf("ratio| %s | %s | %.3g | %.3g | %.3g | %s |\n", problem.c_str(), peer.c_str(), own, other,
-              other / own, remark.c_str());
+  const double ratio = other / own;
+  std::printf("ratio| %s | %s | %.3g | %.3g | %.*f | %s |\n", problem.c_str(), peer.c_str(), own, other,
+              ratio < 10.0 ? 3 : ratio < 100.0 ? 1 : 0, ratio, remark.c_str());
   std::fflush(stdout);
 }
 
