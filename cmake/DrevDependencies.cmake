@@ -19,6 +19,7 @@ function(drev_find_library target header library)
 endfunction()
 
 set(DREV_MISSING "")
+find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(NOT TARGET Eigen3::Eigen)
   list(APPEND DREV_MISSING "Eigen 3.4 (Eigen3Config.cmake)")

@@ -44,7 +44,7 @@ LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector
                               n * nominal_.rate + map.coeff * q_dot});
 }
 
-void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
+void Assembler::external_of_motions(Vector& p) const {
   const int n = system_.size();
   p.setZero(n);
   if (nominal_.acceleration != 0.0)
@@ -62,6 +62,10 @@ void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
         p[it.row()] -= it.value() * u.value;
     }
   }
+}
+
+void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
+  external_of_motions(p);
   for (const LoadTerm& term : system_.loads()) {
     const NodeMap& map = system_.node_map(term.node);
     if (map.unknown >= 0) p[map.unknown] += map.coeff * load(term, z, v).torque;

@@ -32,6 +32,8 @@ class Assembler {
 
   /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t).
   void external(const Vector& z, const Vector& v, Vector& p) const;
+  /// The same without the loads: what known motions alone put on the right side.
+  void external_of_motions(Vector& p) const;
   LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
 
   /// What the law of a scalar term sees.

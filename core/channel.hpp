@@ -30,6 +30,14 @@ class Channel {
   /// x'', at constant phase and time); none for others.
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
+  /// For a value that is sum z_row z + sum v_row v and nothing else.
+  bool is_linear() const { return direct_; }
+  const std::vector<Entry>& z_row() const { return z_; }
+  const std::vector<Entry>& v_row() const { return v_; }
+  /// The scalar term whose force, or deflection, it is; else -1.
+  int force_of() const { return kind_ == Kind::force ? index_ : -1; }
+  int deflection_of() const { return kind_ == Kind::deflection ? index_ : -1; }
+
  private:
   friend class ChannelFinder;
   enum class Kind { value, rate, acceleration, difference, reaction, output, force, deflection, load,

@@ -52,6 +52,7 @@ struct LawPiece {
   double y_0 = 0.0, k = 0.0, c = 0.0;
   double elastic_0 = 0.0, elastic_k = 0.0;
   std::vector<LawBound> bounds = {};
+  double product = 0.0;  ///< of x x_dot, in product_pieces() only
 };
 
 /// The law as the engine calls it. Users write a LawOf functor instead (law_element.hpp).
@@ -79,6 +80,9 @@ class ScalarForce {
   /// The law as pieces, for exact propagation; empty: not piecewise linear in x and x_dot alone, but smooth
   /// between its kinks() and knots.
   virtual std::span<const LawPiece> pieces() const { return {}; }
+  /// The same where a piece may have a term x x_dot too: a damper that grows with deflection. For many
+  /// variants in lanes (simulate_many.hpp).
+  virtual std::span<const LawPiece> product_pieces() const { return pieces(); }
 };
 
 /// A law in a few lines: any copyable type that can be called with a ScalarInput.

@@ -71,8 +71,8 @@ ScalarResponse BacklashLaw::evaluate(double x, double x_dot, CurvePoint stiffnes
 std::vector<LawPiece> BacklashLaw::pieces(double k) const {
   const double c = params_.damping, b = half_gap_;
   if (!has_gap()) return {{.k = k, .c = c, .elastic_k = k}};
+  if (!is_linear_in_pieces()) return {};
   const MeshDamping law = c > 0.0 ? params_.damping_law : MeshDamping::always;
-  if (law == MeshDamping::proportional) return {};
   // 0: the gap; in front 1: spring and damper, 2: let go, 3: damper limited to the spring's force; behind
   // 4, 5, 6 alike. With `always` only 1 and 4 (as 2) are there.
   if (law == MeshDamping::always) {
@@ -98,6 +98,29 @@ std::vector<LawPiece> BacklashLaw::pieces(double k) const {
     } else {
       piece(full).bounds.push_back(apart);
     }
+  }
+  return all;
+}
+
+std::vector<LawPiece> BacklashLaw::product_pieces(double k) const {
+  std::vector<LawPiece> all = pieces(k);
+  if (!all.empty()) return all;
+  // 0: the gap; in front 1: damping rises, y = p (k + g x'), 2: the full damper, and where they let go 3, 4;
+  // behind 5 to 8 alike.
+  const double c = params_.damping, b = half_gap_, deep = b + p_ref_;
+  all.resize(9);
+  for (const int side : {1, -1}) {
+    const double s = side, edge = -s * k * b, g = s * c / p_ref_;
+    const int rising = side > 0 ? 1 : 5, full = rising + 1, free = rising + 2, deep_free = rising + 3;
+    const auto piece = [&](int i) -> LawPiece& { return all[static_cast<std::size_t>(i)]; };
+    piece(0).bounds.push_back({b, -s, 0.0, rising});
+    const LawBound apart{-b, s, 0.0, 0};
+    const auto shallower = [&](int next) { return LawBound{deep, -s, 0.0, next}; };
+    const auto deeper = [&](int next) { return LawBound{-deep, s, 0.0, next}; };
+    piece(rising) = {edge, k, -s * g * b, edge, k, {apart, shallower(full), {k, 0.0, g, free}}, g};
+    piece(full) = {edge, k, c, edge, k, {deeper(rising), {-k * b, s * k, s * c, deep_free}}};
+    piece(free) = {0.0, 0.0, 0.0, edge, k, {apart, shallower(deep_free), {-k, 0.0, -g, rising}}};
+    piece(deep_free) = {0.0, 0.0, 0.0, edge, k, {deeper(free), {k * b, -s * k, -s * c, full}}};
   }
   return all;
 }

@@ -64,12 +64,18 @@ class BacklashLaw {
   ScalarResponse evaluate(double x, double x_dot, CurvePoint stiffness) const;
   double damping() const { return params_.damping; }
   bool has_gap() const { return half_gap_ > 0.0; }
+  /// False for damping that grows with penetration: its force has a term x x_dot.
+  bool is_linear_in_pieces() const {
+    return !has_gap() || params_.damping == 0.0 || params_.damping_law != MeshDamping::proportional;
+  }
   std::optional<Gap> gap() const;
   /// Edges of the gap; with proportional damping also where it saturates.
   std::span<const double> kinks() const { return {kinks_, kink_count_}; }
   /// The law as linear pieces at a constant stiffness [N/m]; empty for damping that grows with
-  /// penetration (proportional, where there is a gap), whose product p x_dot is not linear.
+  /// penetration (is_linear_in_pieces()).
   std::vector<LawPiece> pieces(double stiffness) const;
+  /// The same for any damping: proportional damping has its product as LawPiece::product.
+  std::vector<LawPiece> product_pieces(double stiffness) const;
   void check(ParameterCheck& check) const;
 
  private:

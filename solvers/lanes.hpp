@@ -3,11 +3,14 @@
 ///
 /// A function marked DREV_WIDEST is compiled for several x86-64 levels; the program takes the best one
 /// that the machine has when it starts. Elsewhere, and under sanitizers, it is compiled once.
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 namespace drev {
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define DREV_WIDEST \
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
@@ -15,7 +18,17 @@ namespace drev {
 #endif
 
 inline constexpr int kLanes = 8;
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+// Aligned in any function alike: else each level would take its own vectors' alignment for granted.
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
+/// What a comparison of lanes gives: all bits of a lane set, or none.
+using LaneMask =
+    std::int64_t __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
+
+/// One number of each lane's.
+struct LaneRow {
+  Lanes v{};
+};
+using LaneArray = std::vector<LaneRow>;
 
 /// Smallest multiple of kLanes that is not less than n.
 constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
@@ -26,6 +39,12 @@ constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 }
 [[gnu::always_inline]] inline void store(const Lanes& from, double* to) {
   std::memcpy(to, &from, sizeof from);
+}
+[[gnu::always_inline]] inline bool any(const LaneMask& mask) {
+  static_assert(kLanes == 8);
+  LaneMask m = mask | __builtin_shuffle(mask, LaneMask{4, 5, 6, 7, 0, 1, 2, 3});
+  m |= __builtin_shuffle(m, LaneMask{2, 3, 0, 1, 2, 3, 0, 1});
+  return (m[0] | m[1]) != 0;
 }
 
 }  // namespace drev

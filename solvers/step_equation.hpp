@@ -7,6 +7,7 @@
 /// the laws are few, Newton runs on their forces alone (contact_newton.hpp) and angle-dependent loads are a
 /// small correction iterated on the same factor; with many laws, or general elements, the sparse tangent
 /// is factored in each iteration (sparse_newton.hpp).
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -68,6 +69,8 @@ class StepEquation {
   /// Newton starts from the forces at this point.
   void start_from(const StepPoint& point);
   void update_scale(const StepPoint& point);
+  /// The largest force so far is at least this: of a run that was stepped elsewhere [N or N m].
+  void expect_force(double force) { force_scale_ = std::max(force_scale_, force); }
 
   long load_passes() const { return load_passes_; }
   long factorizations() const { return factorizations_; }

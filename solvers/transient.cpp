@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "solvers/located_step.hpp"
+#include "solvers/run_verdict.hpp"
 #include "solvers/stability_limit.hpp"
 #include "solvers/step_control.hpp"
 #include "solvers/step_energy.hpp"
@@ -23,27 +24,6 @@ constexpr double kStanding = 1e-3;       // of a step: changes within it are cou
 constexpr double kCoarseSteps = 200;    // of the run that finds the scales
 constexpr double kLeastShare = 1e-3;     // of the energy error for one step
 constexpr int kEnergyTries = 3;
-
-void check_options(const System& system, const TransientOptions& o, const State& state) {
-  std::vector<Finding> findings;
-  ParameterCheck check(system.name() + "/transient", findings);
-  const bool controlled = o.tolerance != 0.0;
-  if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
-  if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
-  check_span(o.t_start, o.t_end, check);
-  if (o.max_halvings < 0 || o.max_halvings > 40)
-    check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
-  check.positive("energy_tolerance", o.energy_tolerance, "");
-  check_state(system, state, check);
-  if (findings.empty() && !controlled) {
-    const double limit = stability_limit(system, o.scheme);
-    if (o.step > limit * (1.0 + 1e-9))
-      check.fail("step", to_text(o.step), "s",
-                 "is above the stability limit of " + o.scheme.name + " for this system, " +
-                     to_text(limit) + " s");
-  }
-  if (!findings.empty()) throw ModelError(findings);
-}
 
 /// One run: the loop over stops, the steps between them, and what is kept about it.
 class Run {
@@ -89,7 +69,7 @@ class Run {
                          {"balance", clock.seconds(Phase::balance)},
                          {"observers", clock.seconds(Phase::observers)}};
     }
-    judge_energy();
+    judge_energy(summary_, options_.energy_tolerance);
     return summary_;
   }
 
@@ -350,35 +330,11 @@ class Run {
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
         !options_.progress((now_.state.t - options_.t_start) / duration()))
       return fail(RunStatus::interrupted, "interrupted");
-    const EnergyBalance& b = energy_->balance();
-    if (!std::isfinite(b.imbalance)) return fail(RunStatus::not_finite, "the energy");
-    if (b.imbalance > options_.energy_growth_limit * b.given && b.given > 0.0)
-      fail(RunStatus::unstable,
-           "energy grew from nothing to more than " + to_text(options_.energy_growth_limit) +
-               " times what was put in; take a smaller step or a method that damps");
-  }
-
-  void judge_energy() {
-    const EnergyBalance& b = summary_.energy;
-    if (!running()) return;
-    const double error = b.relative_error();
-    if (std::abs(error) <= options_.energy_tolerance) return;
-    std::ostringstream text;
-    text << "the energy balance is off by " << 100.0 * error << " % ("
-         << (error > 0 ? "gained from nothing" : "lost by the method") << ", worst at t = "
-         << b.worst_time << " s; at most " << 100.0 * options_.energy_tolerance
-         << " % passes): take a smaller step";
-    summary_.status = RunStatus::energy_error;
-    summary_.reason = text.str();
+    check_growth(summary_, system_.name(), now_.state.t, energy_->balance(), options_.energy_growth_limit);
   }
 
   void fail(RunStatus status, const std::string& what) {
-    if (!running()) return;
-    summary_.status = status;
-    std::ostringstream text;
-    text.precision(12);
-    text << system_.name() << ": at t = " << now_.state.t << " s: " << what;
-    summary_.reason = text.str();
+    end_run(summary_, system_.name(), now_.state.t, status, what);
   }
 
   const System& system_;
@@ -401,6 +357,27 @@ class Run {
 };
 
 }  // namespace
+
+void check_options(const System& system, const TransientOptions& o, const State& state) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/transient", findings);
+  const bool controlled = o.tolerance != 0.0;
+  if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
+  if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
+  check_span(o.t_start, o.t_end, check);
+  if (o.max_halvings < 0 || o.max_halvings > 40)
+    check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
+  check.positive("energy_tolerance", o.energy_tolerance, "");
+  check_state(system, state, check);
+  if (findings.empty() && !controlled) {
+    const double limit = stability_limit(system, o.scheme);
+    if (o.step > limit * (1.0 + 1e-9))
+      check.fail("step", to_text(o.step), "s",
+                 "is above the stability limit of " + o.scheme.name + " for this system, " +
+                     to_text(limit) + " s");
+  }
+  if (!findings.empty()) throw ModelError(findings);
+}
 
 void check_span(double t_start, double t_end, ParameterCheck& check) {
   check.finite("t_start", t_start, "s");

@@ -84,6 +84,9 @@ void check_state(const System& system, const State& state, ParameterCheck& check
 /// Reports a run that has no beginning or no time: t_start finite, t_end finite and greater [s].
 void check_span(double t_start, double t_end, ParameterCheck& check);
 
+/// Throws ModelError for options and a state that do not fit the system.
+void check_options(const System& system, const TransientOptions& options, const State& state);
+
 /// Runs from the state given (its acceleration is made consistent first) and leaves the last accepted
 /// state in it. Observers see every accepted step. Throws ModelError for bad options; a run that ends
 /// early says so in the summary and leaves what it had.

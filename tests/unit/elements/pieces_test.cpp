@@ -26,7 +26,7 @@ void check_pieces(std::span<const LawPiece> pieces, double x_range, double v_ran
       for (const LawBound& b : p.bounds) holds = holds && b.a + b.b_x * x + b.b_v * v >= 0.0;
       if (!holds) continue;
       ++inside;
-      const double y = p.y_0 + p.k * x + p.c * v, elastic = p.elastic_0 + p.elastic_k * x;
+      const double y = p.y_0 + p.k * x + p.c * v + p.product * x * v, elastic = p.elastic_0 + p.elastic_k * x;
       CHECK(y == Approx(r.y).margin(1e-9));
       CHECK((y - elastic) * v == Approx(r.dissipated_power).margin(1e-9));
       const double dx = 1e-6;
@@ -60,6 +60,16 @@ TEST_CASE("Backlash law: proportional damping has pieces only without a gap or a
   CHECK(pieces(0.1, 5.0).empty());
   CHECK(pieces(0.1, 0.0).size() == 3);
   CHECK(pieces(0.0, 5.0).size() == 1);
+}
+
+TEST_CASE("Backlash law: with products of deflection and rate, its pieces are the law for any damping") {
+  const double k = 2000.0;
+  const BacklashLaw law({.normal_backlash = 0.1, .damping = 300.0, .reference_penetration = 0.04});
+  check_pieces(law.product_pieces(k), 0.2, 10.0,
+               [&](double x, double v) { return law.evaluate(x, v, {k, 0.0}); });
+  const BacklashLaw limited(
+      {.normal_backlash = 0.1, .damping = 300.0, .damping_law = MeshDamping::limited});
+  CHECK(limited.product_pieces(k).size() == limited.pieces(k).size());
 }
 
 TEST_CASE("Polyline spring: its pieces are the spring") {

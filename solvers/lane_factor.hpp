@@ -1,0 +1,40 @@
+#pragma once
+/// A = L D L' for kLanes symmetric positive definite matrices of one pattern at once, each in its lane. Not
+/// LL': without square roots a step has no division, and a pivot that is not positive is seen all the same.
+/// Ordered as sparse_cholesky.hpp does: in the unknowns' own order where that fills no more than AMD's.
+#include <vector>
+
+#include "core/system.hpp"
+#include "solvers/lanes.hpp"
+
+namespace drev {
+
+class LaneFactor {
+ public:
+  LaneFactor() = default;
+  /// pattern: compressed, structurally symmetric, with its diagonal.
+  explicit LaneFactor(const SparseMatrix& pattern);
+
+  /// values: on the pattern's slots. Lanes whose matrix is not positive definite, or singular but for
+  /// rounding, are not ok().
+  void factorize(const LaneArray& values);
+  bool ok(int lane) const { return ok_[lane]; }
+
+  /// x = A^-1 (b + factor c); x may be b or c.
+  void solve(const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) const;
+
+ private:
+  std::vector<std::vector<int>> columns(const SparseMatrix& pattern, const std::vector<int>& order) const;
+
+  int n_ = 0;
+  std::vector<int> order_;                               // unknown at place k
+  std::vector<int> column_begin_, row_of_, unknown_of_;  // L by columns: places below the diagonal
+  std::vector<int> row_begin_, row_slot_, left_unknown_;  // by rows: slots, unknowns to the left
+  std::vector<char> follows_;                            // L(k, k - 1) is there, last in its row
+  std::vector<int> pattern_slot_, pattern_target_;  // where A's lower triangle enters L; < 0: -1 - row of D
+  std::vector<int> update_target_;                  // of every pair of rows of every column
+  LaneArray lower_, by_rows_, pivot_, inverse_;
+  bool ok_[kLanes] = {};
+};
+
+}  // namespace drev
