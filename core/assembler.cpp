@@ -3,12 +3,13 @@
 namespace drev {
 
 Assembler::Assembler(const System& system)
-    : system_(system), u_(system.prescribed().size()) {
+    : system_(system), u_(system.prescribed().size()), tables_(system.table_loads()) {
   set_time(0.0);
 }
 
 void Assembler::set_time(double t) {
   t_ = t;
+  known_found_ = false;
   if (system_.reference()) nominal_ = system_.reference()->at(t);
   if (system_.any_prescribed_moves())
     for (std::size_t k = 0; k < u_.size(); ++k)
@@ -17,6 +18,7 @@ void Assembler::set_time(double t) {
 
 void Assembler::stand_at_angle(double phi) {
   nominal_ = {phi, 0.0, 0.0};
+  known_found_ = false;
   for (MotionPoint& u : u_) u.rate = u.acceleration = 0.0;
 }
 
@@ -64,11 +66,29 @@ void Assembler::external_of_motions(Vector& p) const {
   }
 }
 
-void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
-  external_of_motions(p);
-  for (const LoadTerm& term : system_.loads()) {
+void Assembler::find_known() const {
+  external_of_motions(known_);
+  for (const int l : system_.known_loads()) {
+    const LoadTerm& term = system_.loads()[at(l)];
     const NodeMap& map = system_.node_map(term.node);
-    if (map.unknown >= 0) p[map.unknown] += map.coeff * load(term, z, v).torque;
+    known_[map.unknown] +=
+        map.coeff * load(term, system_.initial_deviation(), system_.initial_rate()).torque;
+  }
+  system_.table_loads().set_nominal(nominal_.value, tables_);
+  known_found_ = true;
+}
+
+void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
+  if (!known_found_) find_known();
+  p = known_;
+  if (system_.table_loads().size() > 0) {
+    system_.table_loads().look_up(z.data(), tables_);
+    system_.table_loads().add_to(tables_, p.data());
+  }
+  for (const int l : system_.moving_loads()) {
+    const LoadTerm& term = system_.loads()[at(l)];
+    const NodeMap& map = system_.node_map(term.node);
+    p[map.unknown] += map.coeff * load(term, z, v).torque;
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 /// Assembler: evaluates the terms of a System that are not constant, at one time. Holds what is known
 /// about that time (nominal motion, prescribed motions) and nothing else; one per thread.
+#include <limits>
+
 #include "core/state.hpp"
 
 namespace drev {
@@ -30,10 +32,16 @@ class Assembler {
   /// Actual angle theta = n phi + q.
   double node_angle(int node, const Vector& z) const;
 
-  /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t).
+  /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t). What does not
+  /// depend on the motion is evaluated once a time.
   void external(const Vector& z, const Vector& v, Vector& p) const;
   /// The same without the loads: what known motions alone put on the right side.
   void external_of_motions(Vector& p) const;
+  /// Bound of how any load's torque follows its unknown about where external() was last [N m/rad or N/m];
+  /// infinite where there are loads whose steepness is not known.
+  double load_steepness() const {
+    return system_.moving_loads().empty() ? tables_.steepest : std::numeric_limits<double>::infinity();
+  }
   LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
 
   /// What the law of a scalar term sees.
@@ -71,6 +79,7 @@ class Assembler {
   }
 
  private:
+  void find_known() const;
   void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
   LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
                         const Vector& history, Vector& history_new) const;
@@ -82,6 +91,10 @@ class Assembler {
   double t_ = 0.0;
   MotionPoint nominal_;
   std::vector<MotionPoint> u_;
+  // Kept for one time: the part of p that is the same for all motions, and the tables.
+  mutable bool known_found_ = false;
+  mutable Vector known_;
+  mutable TableLoads::Values tables_;
 };
 
 }  // namespace drev

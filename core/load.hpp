@@ -3,6 +3,7 @@
 /// accelerates the node in the positive sense.
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace drev {
@@ -33,6 +34,13 @@ struct LoadStretch {
   double high = std::numeric_limits<double>::infinity();
 };
 
+/// A load that is a periodic curve of its angle, straight between evenly spaced knots: what table_batch.hpp
+/// looks up without a call. Knot k stands at first + k spacing, to within a quarter of it.
+struct LoadTable {
+  std::span<const double> arguments, values, slopes;  ///< rad, N m, N m/rad to the right of each knot
+  double period = 0.0, phase = 0.0;                   ///< rad; entered at theta + phase
+};
+
 class Load {
  public:
   virtual ~Load() = default;
@@ -41,6 +49,9 @@ class Load {
   virtual bool depends_on_motion() const { return true; }
   /// Times at which the load jumps or kinks [s]: integration stops there and starts anew.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// The load as a table over the actual angle, or the nominal one of a load that does not depend on motion;
+  /// its arrays live as long as the load. nullopt for any other.
+  virtual std::optional<LoadTable> table() const { return std::nullopt; }
   /// The stretch about (t, theta), for exact propagation; nullopt for a load that is smooth between its
   /// breakpoints. On a knot, or within rounding of it, the stretch ahead of it: on the side of growing theta
   /// where direction > 0, else on the other.

@@ -15,6 +15,7 @@
 
 #include "core/kinematics.hpp"
 #include "core/model.hpp"
+#include "core/table_loads.hpp"
 
 namespace drev {
 
@@ -131,6 +132,11 @@ class System {
 
   const std::vector<ScalarTerm>& scalars() const { return scalars_; }
   const std::vector<LoadTerm>& loads() const { return loads_; }
+  /// Those of the loads on unknowns that are tables of even spacing.
+  const TableLoads& table_loads() const { return table_loads_; }
+  /// Places in loads() of those on unknowns that are no such tables: which follow the motion, which do not.
+  const std::vector<int>& moving_loads() const { return moving_loads_; }
+  const std::vector<int>& known_loads() const { return known_loads_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
   const std::vector<OutputTerm>& outputs() const { return outputs_; }
   const std::vector<IdealRatio>& ideal_ratios() const { return ideal_ratios_; }
@@ -170,6 +176,8 @@ class System {
   std::optional<MatrixSet> node_matrices_;
   std::vector<ScalarTerm> scalars_;
   std::vector<LoadTerm> loads_;
+  TableLoads table_loads_;
+  std::vector<int> moving_loads_, known_loads_;
   std::vector<GeneralTerm> generals_;
   std::vector<OutputTerm> outputs_;
   std::vector<IdealRatio> ideal_ratios_;

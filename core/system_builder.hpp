@@ -31,6 +31,7 @@ class SystemBuilder {
   void set_initial();
   // Matrices and terms over unknowns, of a model without findings.
   void map_terms();
+  void add_load(const LoadTerm& term);
   void assemble_matrices();
   void check_values();
   void finish();

@@ -110,6 +110,22 @@ void SystemBuilder::eliminate() {
                            "undetermined; make one of them elastic"});
 }
 
+void SystemBuilder::add_load(const LoadTerm& term) {
+  const NodeMap& map = system_.node_map_[at(term.node)];
+  const bool follows = term.load->depends_on_motion();
+  system_.loads_depend_on_motion_ |= follows;
+  if (map.unknown >= 0) {
+    if (const auto table = term.load->table()) {
+      system_.table_loads_.add(*table, map.unknown, map.coeff, system_.ratio(term.node),
+                               follows ? map.coeff : 0.0);
+    } else {
+      (follows ? system_.moving_loads_ : system_.known_loads_)
+          .push_back(static_cast<int>(system_.loads_.size()));
+    }
+  }
+  system_.loads_.push_back(term);
+}
+
 void SystemBuilder::map_terms() {
   for (std::size_t e = 0; e < described_.size(); ++e) {
     const Described& d = *described_[e];
@@ -128,10 +144,7 @@ void SystemBuilder::map_terms() {
       }
       system_.scalars_.push_back(std::move(term));
     }
-    for (const LoadSpec& l : d.terms.loads) {
-      system_.loads_.push_back({id, d.nodes[at(l.node)], l.load, -1});
-      system_.loads_depend_on_motion_ |= l.load->depends_on_motion();
-    }
+    for (const LoadSpec& l : d.terms.loads) add_load({id, d.nodes[at(l.node)], l.load, -1});
     for (const GeneralForce* g : d.terms.generals) {
       system_.generals_.push_back({id, g, d.nodes, system_.history_size_, {}});
       system_.history_size_ += g->history_size();

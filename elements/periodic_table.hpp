@@ -36,6 +36,9 @@ class PeriodicTable {
   double period() const { return period_; }
   const std::vector<double>& arguments() const { return points_->arguments; }
   const std::vector<double>& values() const { return points_->values; }
+  const std::vector<double>& slopes() const { return points_->slopes; }  ///< to the right of each point
+  /// Point k lies within a quarter of period/n of where it would lie in a table of even spacing.
+  bool evenly_spaced() const { return inverse_spacing_ > 0.0; }
   void check(ParameterCheck& check, const std::string& parameter, const std::string& argument_unit,
              const std::string& value_unit) const;
 

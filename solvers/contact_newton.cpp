@@ -1,5 +1,6 @@
 #include "solvers/contact_newton.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,52 +25,81 @@ const char* to_text(NewtonStatus status) {
 
 ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, double kappa_x,
                              double kappa_v)
-    : system_(&system),
-      compliance_(std::move(compliance)),
+    : compliance_(std::move(compliance)),
       kappa_x_(kappa_x),
       kappa_v_(kappa_v),
       inputs_(system.scalars().size()),
       responses_(system.scalars().size()),
-      tangent_(compliance_.rows(), compliance_.rows()),
-      lu_(compliance_.rows()),
-      shift_(compliance_.rows()),
+      tangent_(system.scalars().size() * system.scalars().size()),
+      x_start_(system.scalars().size()),
       residual_(compliance_.rows()),
       direction_(compliance_.rows()),
       g_direction_(compliance_.rows()),
-      trial_(compliance_.rows()) {}
+      trial_(compliance_.rows()) {
+  for (const ScalarTerm& term : system.scalars()) laws_.push_back(term.force);
+}
 
-void ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vector& lambda) {
-  shift_.noalias() = compliance_ * lambda;
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    inputs_[j] = free[j];
-    inputs_[j].x -= kappa_x_ * shift_[static_cast<Eigen::Index>(j)];
-    inputs_[j].x_dot -= kappa_v_ * shift_[static_cast<Eigen::Index>(j)];
-    responses_[j] = system_->scalars()[j].force->evaluate(inputs_[j]);
+double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vector& lambda) {
+  const std::size_t m = laws_.size();
+  const double* force = lambda.data();
+  double size = 0.0;
+  for (std::size_t j = 0; j < m; ++j) {
+    const double* row = compliance_.data() + j * m;
+    double shift = 0.0;
+    for (std::size_t i = 0; i < m; ++i) shift += row[i] * force[i];
+    const ScalarInput& in_0 = free[j];
+    ScalarInput& in = inputs_[j];
+    in = in_0;
+    in.x -= kappa_x_ * shift;
+    in.x_dot -= kappa_v_ * shift;
+    const ScalarResponse& r = responses_[j] = laws_[j]->evaluate(in);
+    const double residual = residual_.data()[j] = r.y - force[j];
+    // What rounding of x and x' alone does to the force of a stiff contact is no error of Newton's.
+    const double rounding =
+        kRounding * (std::abs(r.dy_dx) * (std::abs(in.x) + std::abs(in_0.x)) +
+                     std::abs(r.dy_dx_dot) * (std::abs(in.x_dot) + std::abs(in_0.x_dot)));
+    const double excess = std::abs(residual) - rounding;
+    if (!(excess <= size)) size = excess;  // NaN included
+  }
+  return size;
+}
+
+void ContactNewton::find_direction() {
+  // Gauss' elimination with partial pivoting: for a handful of rows a library's call costs several times
+  // its arithmetic.
+  const std::size_t m = laws_.size();
+  double *a = tangent_.data(), *x = direction_.data();
+  for (std::size_t j = 0; j < m; ++j) {
+    const double slope = kappa_x_ * responses_[j].dy_dx + kappa_v_ * responses_[j].dy_dx_dot;
+    for (std::size_t i = 0; i < m; ++i) a[j * m + i] = slope * compliance_.data()[j * m + i];
+    a[j * m + j] += 1.0;
+    x[j] = residual_.data()[j];
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t j = k + 1; j < m; ++j)
+      if (std::abs(a[j * m + k]) > std::abs(a[pivot * m + k])) pivot = j;
+    if (pivot != k) {
+      std::swap_ranges(a + k * m + k, a + k * m + m, a + pivot * m + k);
+      std::swap(x[k], x[pivot]);
+    }
+    for (std::size_t j = k + 1; j < m; ++j) {
+      const double factor = a[j * m + k] / a[k * m + k];
+      if (factor == 0.0) continue;
+      for (std::size_t i = k + 1; i < m; ++i) a[j * m + i] -= factor * a[k * m + i];
+      x[j] -= factor * x[k];
+    }
+  }
+  for (std::size_t k = m; k-- > 0;) {
+    for (std::size_t i = k + 1; i < m; ++i) x[k] -= a[k * m + i] * x[i];
+    x[k] /= a[k * m + k];
   }
 }
 
 NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double force_scale,
                                   const Options& options, Vector& lambda) {
-  const Eigen::Index m = lambda.size();
   const double limit = options.tolerance * force_scale;
-  const auto residual_at = [&](const Vector& at_lambda) {
-    evaluate(free, at_lambda);
-    double size = 0.0;
-    for (Eigen::Index j = 0; j < m; ++j) {
-      const ScalarResponse& r = responses_[at(static_cast<int>(j))];
-      const ScalarInput& in = inputs_[at(static_cast<int>(j))];
-      const ScalarInput& in_0 = free[at(static_cast<int>(j))];
-      residual_[j] = r.y - at_lambda[j];
-      // What rounding of x and x' alone does to the force of a stiff contact is no error of Newton's.
-      const double rounding =
-          kRounding * (std::abs(r.dy_dx) * (std::abs(in.x) + std::abs(in_0.x)) +
-                       std::abs(r.dy_dx_dot) * (std::abs(in.x_dot) + std::abs(in_0.x_dot)));
-      const double excess = std::abs(residual_[j]) - rounding;
-      if (!(excess <= size)) size = excess;  // NaN included
-    }
-    return size;
-  };
-  double size = residual_at(lambda);
+  double size = evaluate(free, lambda);
   NewtonResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     if (!std::isfinite(size)) {
@@ -77,58 +107,60 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
       return result;
     }
     if (size <= limit) {
-      for (Eigen::Index j = 0; j < m; ++j) lambda[j] = responses_[at(static_cast<int>(j))].y;
+      for (std::size_t j = 0; j < laws_.size(); ++j) lambda.data()[j] = responses_[j].y;
       return result;
     }
-    // (I + D G) d = y - lambda with D = kappa_x dy/dx + kappa_v dy/dx'.
-    for (Eigen::Index j = 0; j < m; ++j) {
-      const ScalarResponse& r = responses_[at(static_cast<int>(j))];
-      tangent_.row(j) = (kappa_x_ * r.dy_dx + kappa_v_ * r.dy_dx_dot) * compliance_.row(j);
-      tangent_(j, j) += 1.0;
-    }
-    lu_.compute(tangent_);
-    direction_ = lu_.solve(residual_);
-    trial_ = lambda + direction_;
-    if (!options.line_search) {
-      lambda = trial_;
-      size = residual_at(lambda);
+    find_direction();
+    for (std::size_t j = 0; j < laws_.size(); ++j) x_start_[j] = inputs_[j].x;
+    const double g_0 = options.line_search ? descent() : 0.0;
+    for (std::size_t j = 0; j < laws_.size(); ++j)
+      trial_.data()[j] = lambda.data()[j] + direction_.data()[j];
+    size = evaluate(free, trial_);
+    if (size <= limit || !(g_0 < 0.0)) {
+      lambda.swap(trial_);
       continue;
     }
-    g_direction_.noalias() = compliance_ * direction_;
-    const double g_0 = -g_direction_.dot(residual_);
-    // The kinks that x_j(alpha) = x_j - alpha kappa_x (G d)_j runs over.
-    kinks_.clear();
-    for (Eigen::Index j = 0; j < m; ++j) {
-      const double rate = -kappa_x_ * g_direction_[j];
-      const double x = inputs_[at(static_cast<int>(j))].x;
-      if (rate != 0.0)
-        for (const double kink : system_->scalars()[at(static_cast<int>(j))].force->kinks())
-          if ((kink - x) / rate > 0.0) kinks_.push_back((kink - x) / rate);
-    }
-    const double full = residual_at(trial_);
-    if (full <= limit || !(g_0 < 0.0)) {
-      lambda = trial_;
-      size = full;
-      continue;
-    }
-    const Vector& start = lambda;
-    const auto slope = [&](double alpha) {
-      trial_ = start + alpha * direction_;
-      residual_at(trial_);
-      return -g_direction_.dot(residual_);
-    };
-    const double alpha = exact_line_search(slope, g_0, kinks_);
-    direction_ *= alpha;
-    if (direction_.lpNorm<Eigen::Infinity>() <=
-        1e-15 * std::max(force_scale, lambda.lpNorm<Eigen::Infinity>())) {
-      result.status = NewtonStatus::no_root;
-      return result;
-    }
-    lambda += direction_;
-    size = residual_at(lambda);
+    result.status = search_line(free, force_scale, g_0, lambda);
+    if (result.status != NewtonStatus::converged) return result;
+    size = evaluate(free, lambda);
   }
   result.status = NewtonStatus::too_many_steps;
   return result;
+}
+
+double ContactNewton::descent() {
+  const std::size_t m = laws_.size();
+  double g_0 = 0.0;
+  for (std::size_t j = 0; j < m; ++j) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < m; ++i) sum += compliance_.data()[j * m + i] * direction_.data()[i];
+    g_direction_.data()[j] = sum;
+    g_0 -= sum * residual_.data()[j];
+  }
+  return g_0;
+}
+
+NewtonStatus ContactNewton::search_line(const std::vector<ScalarInput>& free, double force_scale,
+                                        double g_0, Vector& lambda) {
+  // The kinks that x_j(alpha) = x_j - alpha kappa_x (G d)_j runs over.
+  kinks_.clear();
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const double rate = -kappa_x_ * g_direction_.data()[j];
+    if (rate != 0.0)
+      for (const double kink : laws_[j]->kinks())
+        if ((kink - x_start_[j]) / rate > 0.0) kinks_.push_back((kink - x_start_[j]) / rate);
+  }
+  const auto slope = [&](double alpha) {
+    trial_ = lambda + alpha * direction_;
+    evaluate(free, trial_);
+    return -g_direction_.dot(residual_);
+  };
+  direction_ *= exact_line_search(slope, g_0, kinks_);
+  if (direction_.lpNorm<Eigen::Infinity>() <=
+      1e-15 * std::max(force_scale, lambda.lpNorm<Eigen::Infinity>()))
+    return NewtonStatus::no_root;
+  lambda += direction_;
+  return NewtonStatus::converged;
 }
 
 }  // namespace drev

@@ -49,17 +49,23 @@ class ContactNewton {
   const std::vector<ScalarResponse>& responses() const { return responses_; }
 
  private:
-  void evaluate(const std::vector<ScalarInput>& free, const Vector& lambda);
+  /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding.
+  double evaluate(const std::vector<ScalarInput>& free, const Vector& lambda);
+  /// direction_ = (I + D G)^-1 residual_, D = kappa_x dy/dx + kappa_v dy/dx'.
+  void find_direction();
+  /// g_direction_ = G direction_; the potential's slope along the direction.
+  double descent();
+  /// Goes from lambda along the direction to where the slope, g_0 < 0 at the start, is zero.
+  NewtonStatus search_line(const std::vector<ScalarInput>& free, double force_scale, double g_0,
+                           Vector& lambda);
 
-  const System* system_ = nullptr;
-  Eigen::MatrixXd compliance_;  // G
+  std::vector<const ScalarForce*> laws_;
+  Eigen::MatrixXd compliance_;  // G, symmetric
   double kappa_x_ = 0.0, kappa_v_ = 0.0;
   std::vector<ScalarInput> inputs_;
   std::vector<ScalarResponse> responses_;
-  Eigen::MatrixXd tangent_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  Vector shift_, residual_, direction_, g_direction_, trial_;
-  std::vector<double> kinks_;
+  std::vector<double> tangent_, x_start_, kinks_;
+  Vector residual_, direction_, g_direction_, trial_;
 };
 
 }  // namespace drev

@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "solvers/step_kernels.hpp"
+
 namespace drev {
 
 EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
-    : assembler_(assembler) {
+    : assembler_(assembler), mass_(assembler.system().pattern(), assembler.system().mass_values()) {
   balance_.kinetic = kinetic(start.state);
   balance_.stored = stored(start);
   start_energy_ = balance_.kinetic + balance_.stored;
@@ -13,24 +15,23 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
 }
 
 double EnergyMonitor::kinetic(const State& state) {
-  assembler_.multiply_mass(state.v, mv_);
-  return 0.5 * state.v.dot(mv_);
+  mv_.setZero(state.v.size());
+  mass_.add(1.0, state.v, mv_);
+  return 0.5 * dot(static_cast<int>(mv_.size()), state.v.data(), mv_.data());
 }
 
 double EnergyMonitor::stored(const StepPoint& point) const {
-  double sum = 0.5 * point.state.z.dot(point.kz) + point.general_energy;
+  double sum = 0.5 * dot(static_cast<int>(point.kz.size()), point.state.z.data(), point.kz.data()) +
+               point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }
 
 void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
   const System& system = assembler_.system();
-  double input = 0.0, dissipated = 0.0;
-  for (Eigen::Index i = 0; i < to.state.z.size(); ++i) {
-    const double dz = to.state.z[i] - from.state.z[i];
-    input += 0.5 * dz * (from.p[i] + to.p[i]);
-    dissipated += 0.5 * dz * (from.cv[i] + to.cv[i]);
-  }
+  auto [input, dissipated] =
+      step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
+                from.cv.data(), to.cv.data());
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];

@@ -9,6 +9,7 @@
 /// error is what the method itself gained (positive) or lost: impacts, numerical damping, too large a step.
 /// Newton's convergence says nothing about it. See Krenk 2006, doi:10.1016/j.cma.2005.12.001, for energy
 /// balances of Newmark methods.
+#include "solvers/matrix_product.hpp"
 #include "solvers/step_point.hpp"
 
 namespace drev {
@@ -47,6 +48,7 @@ class EnergyMonitor {
   void note(double t);
 
   const Assembler& assembler_;
+  MatrixProduct mass_;
   double start_energy_ = 0.0;
   Vector mv_;
   EnergyBalance balance_;

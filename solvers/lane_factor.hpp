@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/system.hpp"
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/assembler.hpp"
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

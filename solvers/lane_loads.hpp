@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/assembler.hpp"
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

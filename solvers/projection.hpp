@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

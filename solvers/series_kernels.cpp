@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lanes.hpp"
+#include "solvers/step_kernels.hpp"
+
 namespace drev {
 
 namespace {
 constexpr double kSameStep = 1e-10;  // relative: one factor serves steps that differ by rounding
 constexpr std::size_t kMaxFactors = 16;
 constexpr int kPhasePasses = 4;  // each brings the mesh phase two orders of h nearer
+constexpr int kUsedOften = 4;    // solves for each unknown: what the inverse costs is earned back
+constexpr double kInvertible = 1e-8;  // reciprocal condition: what the inverse loses stays small
 }  // namespace
 
 StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions options)
@@ -18,7 +23,11 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
       options_(options),
       dense_(system.generals().empty() &&
              static_cast<int>(system.scalars().size()) <= options.max_dense_contacts),
+      mass_product_(system.pattern(), system.mass_values()),
+      damping_(system.pattern(), system.damping_values()),
+      stiffness_(system.pattern(), system.stiffness_values()),
       lambda_(Vector::Zero(static_cast<Eigen::Index>(system.scalars().size()))),
+      still_(system.scalars().size()),
       free_(system.scalars().size()),
       clock_(options.time_phases) {
   if (!dense_) sparse_ = std::make_unique<SparseNewton>(system);
@@ -32,7 +41,7 @@ StepEquation::Factor& StepEquation::factor(double h) {
     }
   if (factors_.size() == kMaxFactors) factors_.erase(factors_.begin());
   auto f = std::make_unique<Factor>(
-      Factor{h, SparseCholesky(), ContactNewton(), Eigen::MatrixXd()});
+      Factor{h, SparseCholesky(), ContactNewton(), Eigen::MatrixXd(), 0, {}});
   const Weights weights = scheme_.weights(h);
   assembler_.linear_values(weights, values_);
   ++factorizations_;
@@ -60,6 +69,31 @@ StepEquation::Factor& StepEquation::factor(double h) {
   f->contact = ContactNewton(system_, std::move(compliance), weights.k, weights.c);
   factors_.push_back(std::move(f));
   return *factors_.back();
+}
+
+void StepEquation::invert(Factor& f) {
+  const int n = system_.size(), stride = whole_lanes(n);
+  f.inverse.assign(at(n * stride), 0.0);
+  Vector column(n), solved(n);
+  for (int j = 0; j < n; ++j) {
+    column = Vector::Unit(n, j);
+    f.cholesky.solve(column, solved);
+    std::copy_n(solved.data(), n, f.inverse.data() + j * stride);
+  }
+}
+
+void StepEquation::solve(Factor& f, const Vector& b, Vector& x) {
+  ++solves_;
+  const int n = system_.size();
+  if (f.inverse.empty()) {
+    f.cholesky.solve(b, x);
+    if (n <= kLargestDense && ++f.used == kUsedOften * n &&
+        f.cholesky.reciprocal_condition() > kInvertible)
+      invert(f);
+    return;
+  }
+  x.resize(n);
+  dense_product(n, whole_lanes(n), f.inverse.data(), b.data(), x.data());
 }
 
 void StepEquation::evaluate(const Vector& history, StepPoint& point, Vector* history_new) {
@@ -102,7 +136,6 @@ void StepEquation::acceleration(const Vector& total, Vector& a) {
 
 void StepEquation::filter(double h, Vector& e_z, Vector& e_v) {
   if (!dense_) return;
-  ++solves_;
   Factor& f = factor(h);
   const double phi = 1.0 - scheme_.alpha_f;
   assembler_.multiply_mass(e_v, rhs_);
@@ -119,8 +152,9 @@ void StepEquation::start_from(const StepPoint& point) {
 }
 
 void StepEquation::update_scale(const StepPoint& point) {
-  force_scale_ = std::max(force_scale_, point.p.lpNorm<Eigen::Infinity>());
-  force_scale_ = std::max(force_scale_, point.kz.lpNorm<Eigen::Infinity>());
+  const int n = system_.size();
+  force_scale_ = std::max(force_scale_, largest_size(n, point.p.data()));
+  force_scale_ = std::max(force_scale_, largest_size(n, point.kz.data()));
   for (std::size_t j = 0; j < point.responses.size(); ++j)
     force_scale_ = std::max(force_scale_, std::abs(point.responses[j].y));
 }
@@ -133,33 +167,37 @@ NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {
 void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
   if (!dense_) return evaluate_totals(from.state.history, to, nullptr);
   const StepScheme& c = scheme_;
-  assembler_.multiply_mass(to.state.a, to.total);
-  to.total *= -(1.0 - c.alpha_m) / (1.0 - c.alpha_f);
-  if (c.alpha_m != 0.0) {
-    assembler_.multiply_mass(a_0, scratch_);
-    to.total -= (c.alpha_m / (1.0 - c.alpha_f)) * scratch_;
-  }
+  to.total.setZero(to.p.size());
+  mass_product_.add(-(1.0 - c.alpha_m) / (1.0 - c.alpha_f), to.state.a, to.total);
+  if (c.alpha_m != 0.0) mass_product_.add(-c.alpha_m / (1.0 - c.alpha_f), a_0, to.total);
   if (c.alpha_f != 0.0) to.total -= (c.alpha_f / (1.0 - c.alpha_f)) * from.total;
-  assembler_.multiply_damping(to.state.v, to.cv);
+  to.cv.setZero(to.p.size());
+  damping_.add(1.0, to.state.v, to.cv);
   to.kz = to.total + to.p - to.cv;
   for (std::size_t j = 0; j < system_.scalars().size(); ++j)
     for (const Entry& e : system_.scalars()[j].z) to.kz[e.index] -= e.coeff * to.responses[j].y;
 }
 
 void StepEquation::correct(const Problem& problem, StepPoint& to) const {
-  const double h = problem.h;
-  to.state.z = problem.z_0 + (scheme_.beta * h * h) * to.state.a;
-  to.state.v = problem.v_0 + (scheme_.gamma * h) * to.state.a;
+  const int n = system_.size();
+  to.state.z.resize(n);
+  to.state.v.resize(n);
+  correct_motion(n, scheme_.beta * problem.h * problem.h, scheme_.gamma * problem.h, problem.z_0.data(),
+                 problem.v_0.data(), to.state.a.data(), to.state.z.data(), to.state.v.data());
+}
+
+void StepEquation::evaluate_loads(StepPoint& to) {
+  z_loaded_ = to.state.z;
+  assembler_.external(to.state.z, to.state.v, to.p);
 }
 
 NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   Factor& f = factor(problem.h);
   const double phi = 1.0 - scheme_.alpha_f;
+  const int n = system_.size();
   const std::size_t m = system_.scalars().size();
-  assembler_.multiply_stiffness(problem.z_0, scratch_);
-  problem.known -= phi * scratch_;
-  assembler_.multiply_damping(problem.v_0, scratch_);
-  problem.known -= phi * scratch_;
+  stiffness_.add(-phi, problem.z_0, problem.known);
+  damping_.add(-phi, problem.v_0, problem.known);
 
   // Loads start at the state that the old acceleration predicts. The mesh phase is taken there too: it is
   // off by O(h^3), and a stepped stiffness cannot flip to and fro inside the iteration. Methods of higher
@@ -167,13 +205,14 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   to.state.a = *problem.a_start;
   correct(problem, to);
   clock_.enter(Phase::loads);
-  assembler_.external(to.state.z, to.state.v, to.p);
+  evaluate_loads(to);
   to.inputs.resize(m);
   to.responses.resize(m);
   std::vector<ScalarInput>& phase = to.inputs;
   const auto take_phase = [&] {
     for (std::size_t j = 0; j < m; ++j)
-      phase[j].angle = assembler_.input(system_.scalars()[j], to.state.z, to.state.v).angle;
+      if (system_.scalars()[j].phase_node >= 0)
+        phase[j].angle = assembler_.node_angle(system_.scalars()[j].phase_node, to.state.z);
   };
   take_phase();
   int phase_passes = 1;
@@ -181,22 +220,28 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     for (const ScalarTerm& term : system_.scalars())
       if (term.phase_node >= 0) phase_passes = kPhasePasses;
   lambda_start_ = lambda_;
+  const double kappa_z = scheme_.beta * problem.h * problem.h, kappa_v = scheme_.gamma * problem.h;
+  for (std::size_t j = 0; j < m; ++j)
+    still_[j] = assembler_.input(system_.scalars()[j], problem.z_0, problem.v_0);
 
   NewtonResult result;
   for (int pass = 1;; ++pass) {
     ++load_passes_;
-    ++solves_;
     clock_.enter(Phase::linear);
-    rhs_ = problem.known + phi * to.p;
-    f.cholesky.solve(rhs_, to.state.a);
+    rhs_ = problem.known;
+    add_multiple(n, phi, to.p.data(), rhs_.data());
+    solve(f, rhs_, to.state.a);
+    const double scale = force_scale_ > 0.0 ? force_scale_ : largest_size(n, to.p.data());
     if (m > 0) {
-      correct(problem, to);
       clock_.enter(Phase::contacts);
       for (std::size_t j = 0; j < m; ++j) {
-        free_[j] = assembler_.input(system_.scalars()[j], to.state.z, to.state.v);
+        double x = 0.0;
+        for (const Entry& e : system_.scalars()[j].z) x += e.coeff * to.state.a.data()[e.index];
+        free_[j] = still_[j];
+        free_[j].x += kappa_z * x;
+        free_[j].x_dot += kappa_v * x;
         free_[j].angle = phase[j].angle;
       }
-      const double scale = std::max(force_scale_, to.p.lpNorm<Eigen::Infinity>());
       const NewtonResult contact = f.contact.solve(free_, scale, options_.contact, lambda_);
       result.iterations += contact.iterations;
       const bool jump = contact.status == NewtonStatus::no_root && problem.accept_jump;
@@ -206,29 +251,38 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
         return result;
       }
       result.inside_jump = result.inside_jump || jump;
-      to.state.a.noalias() -= phi * (f.w * lambda_);
+      for (Eigen::Index j = 0; j < lambda_.size(); ++j)
+        add_multiple(n, -phi * lambda_[j], f.w.data() + j * n, to.state.a.data());
     } else {
       ++result.iterations;
     }
     correct(problem, to);
-    if (!to.state.a.allFinite()) {
-      result.status = NewtonStatus::not_finite;
-      return result;
-    }
-    if (!system_.loads_depend_on_motion() && pass >= phase_passes) break;
+    const bool phases_left = pass < phase_passes;
+    // A motion that is not finite ends the passes too.
+    if (!phases_left &&
+        (!system_.loads_depend_on_motion() ||
+         !(assembler_.load_steepness() * largest_difference(n, to.state.z.data(), z_loaded_.data()) >
+           options_.load_tolerance * scale)))
+      break;
     clock_.enter(Phase::loads);
-    p_last_ = to.p;
-    assembler_.external(to.state.z, to.state.v, to.p);
-    if (pass < phase_passes) {
+    const bool known_steepness = std::isfinite(assembler_.load_steepness());
+    if (!known_steepness) p_last_ = to.p;
+    evaluate_loads(to);
+    if (phases_left) {
       take_phase();
       continue;
     }
-    const double scale = std::max(force_scale_, to.p.lpNorm<Eigen::Infinity>());
-    if ((to.p - p_last_).lpNorm<Eigen::Infinity>() <= options_.load_tolerance * scale) break;
+    if (!known_steepness &&
+        !(largest_difference(n, to.p.data(), p_last_.data()) > options_.load_tolerance * scale))
+      break;
     if (pass == options_.max_load_passes) {
       result.status = NewtonStatus::too_many_steps;
       return result;
     }
+  }
+  if (!std::isfinite(largest_size(n, to.state.a.data()))) {
+    result.status = NewtonStatus::not_finite;
+    return result;
   }
   if (m > 0) {
     to.inputs = f.contact.inputs();

@@ -6,12 +6,14 @@
 /// S = mu M + phi (gamma h C + beta h^2 K) is factored once per h: all stages of a method share it. Where
 /// the laws are few, Newton runs on their forces alone (contact_newton.hpp) and angle-dependent loads are a
 /// small correction iterated on the same factor; with many laws, or general elements, the sparse tangent
-/// is factored in each iteration (sparse_newton.hpp).
+/// is factored in each iteration (sparse_newton.hpp). A small S that is used often is inverted: a product
+/// with S^-1 waits for nothing, where a solve with the factor waits for row after row.
 #include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "solvers/contact_newton.hpp"
+#include "solvers/matrix_product.hpp"
 #include "solvers/phase_clock.hpp"
 #include "solvers/sparse_cholesky.hpp"
 #include "solvers/sparse_newton.hpp"
@@ -84,7 +86,12 @@ class StepEquation {
     SparseCholesky cholesky;
     ContactNewton contact;
     Eigen::MatrixXd w;  // S^-1 B
+    long used = 0;
+    std::vector<double> inverse;  // columns of S^-1, padded to whole lanes
   };
+  void evaluate_loads(StepPoint& to);
+  void invert(Factor& f);
+  void solve(Factor& f, const Vector& b, Vector& x);
   Factor& factor(double h);
   void evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new);
   NewtonResult solve_dense(Problem& problem, StepPoint& to);
@@ -98,9 +105,10 @@ class StepEquation {
   bool dense_ = true;
   std::vector<std::unique_ptr<Factor>> factors_;  // used last, last
   SparseCholesky mass_;
+  MatrixProduct mass_product_, damping_, stiffness_;
   std::unique_ptr<SparseNewton> sparse_;
-  Vector rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
-  std::vector<ScalarInput> free_;
+  Vector rhs_, scratch_, history_, p_last_, z_loaded_, lambda_, lambda_start_, values_;
+  std::vector<ScalarInput> still_, free_;  // what the laws would see without acceleration, without forces
   double force_scale_ = 0.0;
   PhaseClock clock_;
   long load_passes_ = 0, factorizations_ = 0, solves_ = 0;

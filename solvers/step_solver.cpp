@@ -1,5 +1,7 @@
 #include "solvers/step_solver.hpp"
 
+#include "solvers/step_kernels.hpp"
+
 namespace drev {
 
 NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, double t_evaluate,
@@ -37,8 +39,10 @@ NewtonResult StepSolver::step_from(const Vector& a, const StepPoint& from, doubl
                                    bool accept_jump) {
   const StepScheme& c = equation_.scheme();
   const State& s = from.state;
-  problem_.z_0 = s.z + h * s.v + (h * h * (0.5 - c.beta)) * a;
-  problem_.v_0 = s.v + (h * (1.0 - c.gamma)) * a;
+  problem_.z_0.resize(s.z.size());
+  problem_.v_0.resize(s.z.size());
+  predict_motion(static_cast<int>(s.z.size()), h, h * h * (0.5 - c.beta), h * (1.0 - c.gamma), s.z.data(),
+                 s.v.data(), a.data(), problem_.z_0.data(), problem_.v_0.data());
   // What of the residual is known: alpha_m M a0 + alpha_f F0.
   problem_.known.setZero(s.z.size());
   if (c.alpha_m != 0.0) {

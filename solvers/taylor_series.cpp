@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 #include "solvers/series_kernels.hpp"
 
 namespace drev {

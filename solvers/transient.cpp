@@ -319,18 +319,22 @@ class Run {
 
   void accept(double h, double t_evaluate) {
     ++summary_.steps;
-    if (!next_.state.z.allFinite() || !next_.state.v.allFinite()) {
-      for (int k = 0; k < system_.size(); ++k)
-        if (!std::isfinite(next_.state.z[k]) || !std::isfinite(next_.state.v[k]))
-          return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
-    }
     account(h);
+    if (!std::isfinite(energy_->balance().imbalance)) return not_finite();
     observe(h, t_evaluate);
     std::swap(now_, next_);
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
         !options_.progress((now_.state.t - options_.t_start) / duration()))
       return fail(RunStatus::interrupted, "interrupted");
     check_growth(summary_, system_.name(), now_.state.t, energy_->balance(), options_.energy_growth_limit);
+  }
+
+  /// A motion that is not finite has no energy.
+  void not_finite() {
+    for (int k = 0; k < system_.size(); ++k)
+      if (!std::isfinite(next_.state.z[k]) || !std::isfinite(next_.state.v[k]))
+        return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
+    fail(RunStatus::not_finite, "the energy");
   }
 
   void fail(RunStatus status, const std::string& what) {

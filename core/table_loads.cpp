@@ -1,0 +1,114 @@
+#include "core/table_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/lanes.hpp"
+
+namespace drev {
+
+TableLoads::Values::Values(const TableLoads& loads) {
+  const auto n = static_cast<std::size_t>(loads.size());
+  for (std::vector<double>* v : {&torque, &nominal, &from_knot, &value, &left, &right}) v->resize(n);
+  origin.assign(n, std::numeric_limits<double>::infinity());  // no knot yet
+}
+
+void TableLoads::add(const LoadTable& table, int unknown, double coeff, double ratio, double gain) {
+  const std::size_t n = table.values.size();
+  const auto [place, is_new] =
+      begin_of_.try_emplace(table.values.data(), static_cast<int>(knots_.size()));
+  if (is_new)
+    for (std::size_t k = 0; k <= n; ++k) {
+      const std::size_t i = k % n, before = (i + n - 1) % n;
+      const double turn = k == n ? table.period : 0.0;
+      knots_.push_back({table.arguments[i] - table.arguments[0] + turn, table.values[i],
+                        table.slopes[before], table.slopes[i]});
+    }
+  unknown_.push_back(unknown);
+  coeff_.push_back(coeff);
+  ratio_.push_back(ratio);
+  gain_.push_back(gain);
+  offset_.push_back(table.phase - table.arguments[0]);
+  period_.push_back(table.period);
+  inverse_period_.push_back(1.0 / table.period);
+  inverse_spacing_.push_back(static_cast<double>(n) / table.period);
+  begin_.push_back(place->second);
+  count_.push_back(static_cast<int>(n));
+}
+
+void TableLoads::set_nominal(double phi, Values& values) const {
+  for (std::size_t e = 0; e < ratio_.size(); ++e) values.nominal[e] = ratio_[e] * phi + offset_[e];
+}
+
+[[gnu::always_inline]] inline void TableLoads::find_knot(std::size_t e, double argument,
+                                                         Values& values) const {
+  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to whole numbers
+  double turns = argument * inverse_period_[e] + kRound;
+  turns -= kRound;
+  if (turns * period_[e] > argument) turns -= 1.0;
+  double place = (argument - period_[e] * turns) * inverse_spacing_[e] + 0.5;
+  place = place > 0.0 ? place : 0.0;  // NaN too
+  const Knot& k = knots_[static_cast<std::size_t>(begin_[e]) +
+                         static_cast<std::size_t>(std::min(place, static_cast<double>(count_[e])))];
+  values.origin[e] = k.argument + period_[e] * turns;
+  values.from_knot[e] = argument - values.origin[e];
+  values.value[e] = coeff_[e] * k.value;
+  values.left[e] = coeff_[e] * k.left;
+  values.right[e] = coeff_[e] * k.right;
+}
+
+DREV_WIDEST
+void TableLoads::look_up(const double* z, Values& values) const {
+  const int n = size();
+  const double *gain = gain_.data(), *density = inverse_spacing_.data();
+  const int* unknown = unknown_.data();
+  const double *nominal = values.nominal.data(), *origin = values.origin.data(),
+               *value = values.value.data(), *left = values.left.data(), *right = values.right.data();
+  double* __restrict from_knot = values.from_knot.data();
+  double* __restrict torque = values.torque.data();
+  int left_behind = 0;
+  for (int e = 0; e < n; ++e) {
+    const double d = nominal[e] + gain[e] * z[unknown[e]] - origin[e];
+    from_knot[e] = d;
+    const double places = d * density[e];
+    left_behind |= !(places <= 0.5 && places >= -0.5);
+  }
+  if (left_behind)
+    for (int e = 0; e < n; ++e) {
+      const double places = from_knot[e] * density[e];
+      if (!(places <= 0.5 && places >= -0.5))
+        find_knot(static_cast<std::size_t>(e), nominal[e] + gain[e] * z[unknown[e]], values);
+    }
+  Lanes most{};
+  int e = 0;
+  for (; e + kLanes <= n; e += kLanes) {
+    Lanes d, a, b, g;
+    load(from_knot + e, d);
+    load(left + e, a);
+    load(right + e, b);
+    load(value + e, g);
+    const Lanes behind = d < 0.0 ? d : 0.0 * d;
+    g += a * behind + b * (d - behind);
+    store(g, torque + e);
+    load(gain + e, g);
+    a = a * g < 0.0 ? -a * g : a * g;
+    b = b * g < 0.0 ? -b * g : b * g;
+    a = a < b ? b : a;
+    most = most < a ? a : most;
+  }
+  double steepest = 0.0;
+  for (int l = 0; l < kLanes; ++l) steepest = std::max(steepest, most[l]);
+  for (; e < n; ++e) {
+    const double d = from_knot[e], behind = d < 0.0 ? d : 0.0;
+    torque[e] = value[e] + left[e] * behind + right[e] * (d - behind);
+    steepest = std::max({steepest, std::abs(left[e] * gain[e]), std::abs(right[e] * gain[e])});
+  }
+  values.steepest = steepest;
+}
+
+void TableLoads::add_to(const Values& values, double* p) const {
+  for (std::size_t e = 0; e < unknown_.size(); ++e) p[unknown_[e]] += values.torque[e];
+}
+
+}  // namespace drev

@@ -1,0 +1,55 @@
+#pragma once
+/// TableLoads: loads that are periodic tables of even spacing, all at once, in constant time and without
+/// calls. Entry e puts the torque coeff table(w + gain z[unknown]) on its unknown, w = ratio phi + phase.
+///
+///   table(u) = v_i + (u < u_i ? s_{i-1} : s_i) (u - u_i),   i = the knot nearest to u
+///
+/// u is the argument modulo the period. A knot may lie off its even place by a quarter of the spacing
+/// (angles written down with a few digits): the nearest place still belongs to it, and to it alone.
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/load.hpp"
+
+namespace drev {
+
+class TableLoads {
+ public:
+  /// gain: coeff where the load follows the motion, else 0. Tables that share their values' array are kept
+  /// once.
+  void add(const LoadTable& table, int unknown, double coeff, double ratio, double gain);
+  int size() const { return static_cast<int>(unknown_.size()); }
+  int unknown(int e) const { return unknown_[static_cast<std::size_t>(e)]; }
+
+  /// What was looked up, and about which knots: an entry keeps its knot until the argument leaves it. Two
+  /// looks at the same arguments differ by rounding at most.
+  struct Values {
+    explicit Values(const TableLoads& loads);
+    std::vector<double> torque;  ///< N m or N
+    double steepest = 0.0;  ///< largest coeff gain |slope| [N m/rad], of both segments at each nearest knot
+
+   private:
+    friend class TableLoads;
+    std::vector<double> nominal, from_knot, origin, value, left, right;
+  };
+  /// Sets the nominal angle phi [rad] of the reference shaft.
+  void set_nominal(double phi, Values& values) const;
+  /// Torques and steepness at z; NaN where that is not finite.
+  void look_up(const double* z, Values& values) const;
+  /// p[unknown] += torque.
+  void add_to(const Values& values, double* p) const;
+
+ private:
+  struct Knot {
+    double argument;  // less that of knot 0
+    double value, left, right;  // slopes on both sides
+  };
+  void find_knot(std::size_t e, double argument, Values& values) const;
+  std::vector<Knot> knots_;
+  std::map<const double*, int> begin_of_;  // of a table in knots_, by its values' array
+  std::vector<double> coeff_, ratio_, gain_, offset_, period_, inverse_period_, inverse_spacing_;
+  std::vector<int> unknown_, begin_, count_;
+};
+
+}  // namespace drev

@@ -1,0 +1,164 @@
+#include "solvers/step_kernels.hpp"
+
+#include "core/lanes.hpp"
+
+namespace drev {
+
+namespace {
+
+[[gnu::always_inline]] inline double sum_of(const Lanes& x) {
+  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+}
+
+/// Largest of size_i = |value(i)| in lanes; infinities and NaN are carried by 0 value.
+template <class Value>
+[[gnu::always_inline]] inline double largest_of(int n, const Value& value) {
+  Lanes most{}, bad{}, x;
+  int i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    value(i, x);
+    const Lanes size = x < 0.0 ? -x : x;
+    most = size > most ? size : most;
+    bad += 0.0 * x;  // comparisons drop a NaN
+  }
+  for (; i < n; ++i) {
+    Lanes one{};
+    value.at_one(i, one);
+    const double size = one[0] < 0.0 ? -one[0] : one[0];
+    most[0] = size > most[0] ? size : most[0];
+    bad[0] += 0.0 * one[0];
+  }
+  double result = most[0];
+  for (int l = 1; l < kLanes; ++l) result = most[l] > result ? most[l] : result;
+  return result + sum_of(bad);
+}
+
+struct Itself {
+  const double* x;
+  [[gnu::always_inline]] void operator()(int i, Lanes& out) const { load(x + i, out); }
+  [[gnu::always_inline]] void at_one(int i, Lanes& out) const { out[0] = x[i]; }
+};
+struct Difference {
+  const double *x, *y;
+  [[gnu::always_inline]] void operator()(int i, Lanes& out) const {
+    Lanes b;
+    load(x + i, out);
+    load(y + i, b);
+    out -= b;
+  }
+  [[gnu::always_inline]] void at_one(int i, Lanes& out) const { out[0] = x[i] - y[i]; }
+};
+
+/// The sums of a product stay in registers.
+template <int kBlocks>
+[[gnu::always_inline]] inline void product_blocks(int n, int stride, const double* columns,
+                                                  const double* x, double* out) {
+  Lanes sum[kBlocks] = {}, a;
+  for (int j = 0; j < n; ++j, columns += stride)
+    for (int b = 0; b < kBlocks; ++b) {
+      load(columns + b * kLanes, a);
+      sum[b] += a * x[j];
+    }
+  for (int b = 0; b + 1 < kBlocks; ++b) store(sum[b], out + b * kLanes);
+  const int rest = n - (kBlocks - 1) * kLanes;
+  for (int l = 0; l < rest; ++l) out[(kBlocks - 1) * kLanes + l] = sum[kBlocks - 1][l];
+}
+
+}  // namespace
+
+DREV_WIDEST
+void predict_motion(int n, double h, double c_z, double c_v, const double* __restrict z,
+                    const double* __restrict v, const double* __restrict a, double* __restrict z_0,
+                    double* __restrict v_0) {
+  for (int i = 0; i < n; ++i) {
+    z_0[i] = z[i] + h * v[i] + c_z * a[i];
+    v_0[i] = v[i] + c_v * a[i];
+  }
+}
+
+DREV_WIDEST
+void correct_motion(int n, double c_z, double c_v, const double* __restrict z_0,
+                    const double* __restrict v_0, const double* __restrict a, double* __restrict z,
+                    double* __restrict v) {
+  for (int i = 0; i < n; ++i) {
+    z[i] = z_0[i] + c_z * a[i];
+    v[i] = v_0[i] + c_v * a[i];
+  }
+}
+
+DREV_WIDEST
+void add_scaled(int n, double factor, const double* __restrict d, const double* __restrict x,
+                double* __restrict out) {
+  for (int i = 0; i < n; ++i) out[i] += factor * d[i] * x[i];
+}
+
+DREV_WIDEST
+void add_multiple(int n, double factor, const double* __restrict x, double* __restrict out) {
+  for (int i = 0; i < n; ++i) out[i] += factor * x[i];
+}
+
+DREV_WIDEST
+double largest_size(int n, const double* x) { return largest_of(n, Itself{x}); }
+
+DREV_WIDEST
+double largest_difference(int n, const double* x, const double* y) {
+  return largest_of(n, Difference{x, y});
+}
+
+DREV_WIDEST
+void dense_product(int n, int stride, const double* columns, const double* x, double* out) {
+  switch (stride / kLanes) {
+    case 1: return product_blocks<1>(n, stride, columns, x, out);
+    case 2: return product_blocks<2>(n, stride, columns, x, out);
+    case 3: return product_blocks<3>(n, stride, columns, x, out);
+    case 4: return product_blocks<4>(n, stride, columns, x, out);
+    case 5: return product_blocks<5>(n, stride, columns, x, out);
+    case 6: return product_blocks<6>(n, stride, columns, x, out);
+    case 7: return product_blocks<7>(n, stride, columns, x, out);
+    case 8: return product_blocks<8>(n, stride, columns, x, out);
+    default: return;
+  }
+}
+
+DREV_WIDEST
+StepWork step_work(int n, const double* z_0, const double* z_1, const double* p_0, const double* p_1,
+                   const double* cv_0, const double* cv_1) {
+  Lanes input{}, dissipated{}, a, b, dz;
+  int i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    load(z_1 + i, dz);
+    load(z_0 + i, a);
+    dz -= a;
+    load(p_0 + i, a);
+    load(p_1 + i, b);
+    input += dz * (a + b);
+    load(cv_0 + i, a);
+    load(cv_1 + i, b);
+    dissipated += dz * (a + b);
+  }
+  StepWork work{sum_of(input), sum_of(dissipated)};
+  for (; i < n; ++i) {
+    const double d = z_1[i] - z_0[i];
+    work.input += d * (p_0[i] + p_1[i]);
+    work.dissipated += d * (cv_0[i] + cv_1[i]);
+  }
+  work.input *= 0.5;
+  work.dissipated *= 0.5;
+  return work;
+}
+
+DREV_WIDEST
+double dot(int n, const double* x, const double* y) {
+  Lanes sum{}, a, b;
+  int i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    load(x + i, a);
+    load(y + i, b);
+    sum += a * b;
+  }
+  double result = sum_of(sum);
+  for (; i < n; ++i) result += x[i] * y[i];
+  return result;
+}
+
+}  // namespace drev
