@@ -121,6 +121,12 @@ int CholmodFactor::row(int j) const {
   return factor_->Perm ? static_cast<const int*>(factor_->Perm)[j] : j;
 }
 
+std::vector<int> CholmodFactor::order() const {
+  std::vector<int> rows(static_cast<std::size_t>(size_));
+  for (int j = 0; j < size_; ++j) rows[static_cast<std::size_t>(j)] = row(j);
+  return rows;
+}
+
 double CholmodFactor::diagonal(int j) const {
   return static_cast<const double*>(factor_->x)[static_cast<const int*>(factor_->p)[j]];
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Shared by sparse_cholesky.cpp and inertia_count.cpp only: the one place that includes cholmod.h.
+/// Shared by the factorisations of this folder only: the one place that includes cholmod.h.
 /// Holds CHOLMOD's settings, the analysed factor and the pattern it was analysed for. Silent.
 #include <cholmod.h>
 
@@ -28,6 +28,7 @@ class CholmodFactor {
   cholmod_common& common() { return common_; }
   /// Row of the matrix that stands at place j of the factor.
   int row(int j) const;
+  std::vector<int> order() const;
   /// The pivot: L_jj (LL') or D_jj (LDL').
   double diagonal(int j) const;
   /// Column of A that could not be eliminated; -1 where none failed.

@@ -1,10 +1,13 @@
 #include "solvers/sparse_cholesky.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "solvers/cholmod_factor.hpp"
+#include "solvers/low_fill_factor.hpp"
 
 namespace drev {
 
@@ -29,38 +32,84 @@ const char* to_text(FactorStatus status) {
 }
 
 struct SparseCholesky::Impl {
-  CholmodFactor cholmod{true};
+  std::optional<LowFillFactor> flat;
+  std::unique_ptr<CholmodFactor> cholmod;  // where L fills too much for flat arrays
   FactorStatus status = FactorStatus::not_computed;
   double pivot_ratio = 0.0;
   int failed_column = -1;
 
+  FactorStatus analyse(const SparseMatrix& pattern);
+  FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
+  int size() const { return flat ? flat->pattern().size : cholmod->size(); }
   void check_pivots(const SparseMatrix& pattern, const Vector& values);
+  void judge_pivots(int worst);
 };
 
 SparseCholesky::SparseCholesky() : impl_(std::make_unique<Impl>()) {}
 SparseCholesky::SparseCholesky(const SparseMatrix& pattern) : SparseCholesky() {
-  impl_->cholmod.analyse(pattern);
+  impl_->analyse(pattern);
 }
 SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
+FactorStatus SparseCholesky::Impl::analyse(const SparseMatrix& pattern) {
+  if (pattern.rows() != pattern.cols() || !pattern.isCompressed())
+    return FactorStatus::pattern_changed;
+  if (std::shared_ptr<const LowFillPattern> low_fill = analyse_low_fill(pattern)) {
+    flat.emplace(std::move(low_fill));
+    return FactorStatus::success;
+  }
+  cholmod = std::make_unique<CholmodFactor>(true);
+  const FactorStatus done = cholmod->analyse(pattern);
+  if (done != FactorStatus::success) cholmod.reset();
+  return done;
+}
+
+FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const Vector& values) {
+  failed_column = -1;
+  if (!flat && !cholmod) {
+    const FactorStatus analysed = analyse(pattern);
+    if (analysed != FactorStatus::success) return analysed;
+  }
+  if (cholmod) {
+    const FactorStatus done = cholmod->factorize(pattern, values);
+    failed_column = cholmod->failed_column();
+    return done;
+  }
+  if (!flat->pattern().same(pattern) || values.size() != pattern.nonZeros())
+    return FactorStatus::pattern_changed;
+  if (!values.allFinite()) return FactorStatus::not_finite;
+  if (flat->factorize(values, true)) return FactorStatus::success;
+  failed_column = flat->pattern().order[at(flat->failed_place())];
+  return std::isnan(flat->failed_pivot()) ? FactorStatus::not_finite
+                                          : FactorStatus::not_positive_definite;
+}
+
 void SparseCholesky::Impl::check_pivots(const SparseMatrix& pattern, const Vector& values) {
-  const int n = cholmod.size();
+  if (flat) {
+    pivot_ratio = flat->pivot_ratio();
+    return judge_pivots(flat->worst_place() < 0 ? -1 : flat->pattern().order[at(flat->worst_place())]);
+  }
+  const int n = cholmod->size();
   int worst = -1;
   pivot_ratio = 1.0;
   for (int j = 0; j < n; ++j) {
-    const int column = cholmod.row(j);
-    const double pivot = cholmod.diagonal(j);
+    const int column = cholmod->row(j);
+    const double pivot = cholmod->diagonal(j);
     double diagonal = 0.0;
     for (int s = pattern.outerIndexPtr()[column]; s < pattern.outerIndexPtr()[column + 1]; ++s)
       if (pattern.innerIndexPtr()[s] == column) diagonal = values[s];
     const double ratio = pivot * pivot / diagonal;
     if (!(ratio >= pivot_ratio)) pivot_ratio = ratio, worst = column;
   }
+  judge_pivots(worst);
+}
+
+void SparseCholesky::Impl::judge_pivots(int worst) {
   if (!std::isfinite(pivot_ratio)) {
     status = FactorStatus::not_finite;
-  } else if (pivot_ratio < (10 + n) * std::numeric_limits<double>::epsilon()) {
+  } else if (pivot_ratio < (10 + size()) * std::numeric_limits<double>::epsilon()) {
     status = FactorStatus::singular;
   }
   if (status != FactorStatus::success) failed_column = worst;
@@ -69,8 +118,7 @@ void SparseCholesky::Impl::check_pivots(const SparseMatrix& pattern, const Vecto
 FactorStatus SparseCholesky::factorize(const SparseMatrix& pattern, const Vector& values) {
   Impl& s = *impl_;
   s.pivot_ratio = 0.0;
-  s.status = s.cholmod.factorize(pattern, values);
-  s.failed_column = s.cholmod.failed_column();
+  s.status = s.factorize(pattern, values);
   if (s.status == FactorStatus::success) s.check_pivots(pattern, values);
   return s.status;
 }
@@ -83,23 +131,32 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
   Impl& s = *impl_;
   if (s.status != FactorStatus::success)
     throw SolverError(std::string("Cholesky: solve without a factor: ") + to_text(s.status));
-  if (b.size() != s.cholmod.size())
+  if (b.size() != s.size())
     throw SolverError("Cholesky: right-hand side has " + std::to_string(b.size()) +
-                      " entries, the matrix " + std::to_string(s.cholmod.size()) + " rows");
-  if (!s.cholmod.solve(b, x)) throw SolverError("Cholesky: CHOLMOD could not solve: no memory");
+                      " entries, the matrix " + std::to_string(s.size()) + " rows");
+  if (s.flat) return s.flat->solve(b, x);
+  if (!s.cholmod->solve(b, x)) throw SolverError("Cholesky: CHOLMOD could not solve: no memory");
 }
 
 double SparseCholesky::reciprocal_condition() const {
   if (!ok()) return 0.0;
-  return cholmod_rcond(&impl_->cholmod.factor(), &impl_->cholmod.common());
+  if (impl_->cholmod) return cholmod_rcond(&impl_->cholmod->factor(), &impl_->cholmod->common());
+  const std::vector<double>& pivots = impl_->flat->pivots();
+  const auto [least, largest] = std::minmax_element(pivots.begin(), pivots.end());
+  return *least / *largest;
 }
 
-bool SparseCholesky::natural_order() const {
-  return impl_->cholmod.size() >= 0 && impl_->cholmod.factor().ordering == CHOLMOD_NATURAL;
+Ordering SparseCholesky::ordering() const {
+  const Impl& s = *impl_;
+  if (s.flat) return s.flat->pattern().ordering;
+  return s.cholmod && s.cholmod->factor().ordering == CHOLMOD_AMD ? Ordering::amd
+                                                                  : Ordering::natural;
 }
 
 int SparseCholesky::factor_entries() const {
-  return ok() ? static_cast<int>(impl_->cholmod.factor().nzmax) : 0;
+  if (!ok()) return 0;
+  if (impl_->cholmod) return static_cast<int>(impl_->cholmod->factor().nzmax);
+  return impl_->flat->pattern().size + static_cast<int>(impl_->flat->entries().size());
 }
 
 }  // namespace drev

@@ -4,10 +4,12 @@
 ///
 ///   P A P' = L L',  A x = b
 ///
-/// P is the identity where that fills no more than AMD's ordering does (chains), else AMD's. The
-/// factor is simplicial: drivetrains fill too little for dense blocks to pay.
+/// P eliminates a tree from its leaves inwards, without fill, so that the arms of a chain are two
+/// recurrences that run side by side. With loops P is the identity where that fills no more than AMD's
+/// ordering does, else AMD's. What hardly fills, as drivetrains do, is factored and solved in flat
+/// arrays (low_fill_factor.hpp: as L D L', all D > 0 asked for), the rest by CHOLMOD's simplicial LL'.
 ///
-/// LL' and not LDL': LDL' accepts diag(1, -1) and singular matrices as success.
+/// Bare LDL' accepts diag(1, -1) and singular matrices as success; here every pivot is judged.
 ///
 /// Source: Y. Chen, T. A. Davis, W. W. Hager, S. Rajamanickam, Algorithm 887: CHOLMOD, ACM TOMS
 /// 35(3), 2008, doi:10.1145/1391989.1391995.
@@ -27,6 +29,9 @@ enum class FactorStatus {
   out_of_memory           ///< CHOLMOD or KLU could not allocate
 };
 const char* to_text(FactorStatus status);
+
+/// Order of elimination.
+enum class Ordering { natural, from_leaves, amd };
 
 class SparseCholesky {
  public:
@@ -57,8 +62,8 @@ class SparseCholesky {
   /// (min L_jj / max L_jj)^2, CHOLMOD's estimate of 1 / cond(A). Depends on the units of the
   /// unknowns: small for a badly scaled matrix that is solved well. 0 without a factor.
   double reciprocal_condition() const;
-  /// True if the unknowns are eliminated in their own order.
-  bool natural_order() const;
+  /// How the unknowns are ordered; natural before the analysis.
+  Ordering ordering() const;
   /// Number of entries of L; 0 before the first factorisation.
   int factor_entries() const;
 
