@@ -13,19 +13,33 @@ namespace {
 
 constexpr double kRatioTolerance = 1e-9;  // relative; teeth give exact ratios, radii 15 digits
 
-struct Edge {
-  int to;
-  double factor;  // n_to = factor * n_from
-  int closure;
+/// Closures between two nodes, by node.
+struct Edges {
+  std::vector<int> begin, closure;
 };
+
+Edges edges_of(int nodes, const std::vector<Closure>& closures) {
+  Edges e{std::vector<int>(at(nodes + 1), 0), {}};
+  for (const Closure& c : closures)
+    if (c.second >= 0) ++e.begin[at(c.first + 1)], ++e.begin[at(c.second + 1)];
+  std::partial_sum(e.begin.begin(), e.begin.end(), e.begin.begin());
+  e.closure.resize(at(e.begin.back()));
+  std::vector<int> next(e.begin.begin(), e.begin.end() - 1);
+  for (std::size_t c = 0; c < closures.size(); ++c) {
+    if (closures[c].second < 0) continue;
+    e.closure[at(next[at(closures[c].first)]++)] = static_cast<int>(c);
+    e.closure[at(next[at(closures[c].second)]++)] = static_cast<int>(c);
+  }
+  return e;
+}
 
 struct Walk {
   std::vector<double> relative;  // ratio to the root of the component
   std::vector<int> parent, parent_closure;
 };
 
-std::string loop_text(const Walk& walk, const std::vector<Closure>& closures, int a, int b,
-                      int closing) {
+std::string loop_text(const Walk& walk, const std::vector<Placement>& placements,
+                      const std::vector<Closure>& closures, int a, int b, int closing) {
   // Elements on the tree paths from a and b to their common ancestor, then the closing element.
   std::vector<int> up_a, up_b;
   for (int i = a; i >= 0; i = walk.parent[at(i)]) up_a.push_back(i);
@@ -34,10 +48,9 @@ std::string loop_text(const Walk& walk, const std::vector<Closure>& closures, in
     up_a.pop_back();
     up_b.pop_back();
   }
-  std::vector<std::string> names{closures[at(closing)].element};
-  const auto name_above = [&](int node) {
-    return closures[at(walk.parent_closure[at(node)])].element;
-  };
+  const auto name = [&](int closure) { return placements[at(closures[at(closure)].element)].name; };
+  std::vector<std::string> names{name(closing)};
+  const auto name_above = [&](int node) { return name(walk.parent_closure[at(node)]); };
   for (std::size_t i = 0; i + 1 < up_b.size(); ++i) names.push_back(name_above(up_b[i]));
   for (std::size_t i = up_a.size() - 1; i-- > 0;) names.push_back(name_above(up_a[i]));
   std::string text;
@@ -71,6 +84,7 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& clo
 }
 
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
+                       const std::vector<Placement>& placements,
                        const std::vector<Closure>& closures, int reference,
                        std::vector<Finding>& findings) {
   const int nodes = static_cast<int>(node_names.size());
@@ -81,17 +95,9 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
   k.tied_to_ground.assign(at(components), false);
   k.ratio.assign(at(nodes), 0.0);
 
-  std::vector<std::vector<Edge>> edges(at(nodes));
-  for (std::size_t c = 0; c < closures.size(); ++c) {
-    const Closure& row = closures[c];
-    if (row.second < 0) {
-      k.tied_to_ground[at(k.component[at(row.first)])] = true;
-      continue;
-    }
-    const double factor = -row.b_first / row.b_second;
-    edges[at(row.first)].push_back({row.second, factor, static_cast<int>(c)});
-    edges[at(row.second)].push_back({row.first, 1.0 / factor, static_cast<int>(c)});
-  }
+  for (const Closure& row : closures)
+    if (row.second < 0) k.tied_to_ground[at(k.component[at(row.first)])] = true;
+  const Edges edges = edges_of(nodes, closures);
 
   Walk walk{std::vector<double>(at(nodes), 0.0), std::vector<int>(at(nodes), -1),
             std::vector<int>(at(nodes), -1)};
@@ -104,23 +110,28 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
     while (!queue.empty()) {
       const int i = queue.front();
       queue.pop();
-      for (const Edge& e : edges[at(i)]) {
-        const double n = e.factor * walk.relative[at(i)];
-        if (!seen[at(e.to)]) {
-          seen[at(e.to)] = true;
-          walk.relative[at(e.to)] = n;
-          walk.parent[at(e.to)] = i;
-          walk.parent_closure[at(e.to)] = e.closure;
-          queue.push(e.to);
-        } else if (std::abs(n - walk.relative[at(e.to)]) >
-                       kRatioTolerance * std::max(std::abs(n), std::abs(walk.relative[at(e.to)])) &&
-                   !reported[at(e.closure)]) {
-          reported[at(e.closure)] = true;
-          findings.push_back(
-              {model + "/" + closures[at(e.closure)].element, "nominal ratio of " + node_names[at(e.to)],
-               to_text(n), "",
-               "but the rest of the loop gives " + to_text(walk.relative[at(e.to)]) +
-                   "; this loop cannot turn: " + loop_text(walk, closures, i, e.to, e.closure)});
+      for (int e = edges.begin[at(i)]; e < edges.begin[at(i + 1)]; ++e) {
+        const int c = edges.closure[at(e)];
+        const Closure& row = closures[at(c)];
+        const bool forward = row.first == i;
+        const int to = forward ? row.second : row.first;
+        const double factor = -row.b_first / row.b_second;
+        const double n = (forward ? factor : 1.0 / factor) * walk.relative[at(i)];
+        const double known = walk.relative[at(to)];
+        if (!seen[at(to)]) {
+          seen[at(to)] = true;
+          walk.relative[at(to)] = n;
+          walk.parent[at(to)] = i;
+          walk.parent_closure[at(to)] = c;
+          queue.push(to);
+        } else if (std::abs(n - known) > kRatioTolerance * std::max(std::abs(n), std::abs(known)) &&
+                   !reported[at(c)]) {
+          reported[at(c)] = true;
+          findings.push_back({model + "/" + placements[at(row.element)].name,
+                              "nominal ratio of " + node_names[at(to)], to_text(n), "",
+                              "but the rest of the loop gives " + to_text(known) +
+                                  "; this loop cannot turn: " +
+                                  loop_text(walk, placements, closures, i, to, c)});
         }
       }
     }
@@ -135,7 +146,7 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
     if (k.component[at(i)] == moving) k.ratio[at(i)] = walk.relative[at(i)];
   for (const Closure& row : closures)
     if (row.second < 0 && k.component[at(row.first)] == moving)
-      findings.push_back({model + "/" + row.element, "node", node_names[at(row.first)], "",
+      findings.push_back({model + "/" + placements[at(row.element)].name, "node", node_names[at(row.first)], "",
                           "turns with the reference shaft and cannot be tied to ground by a spring"});
   return k;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/model.hpp"
 
 namespace drev {
 
@@ -14,7 +14,7 @@ struct Closure {
   int first = 0, second = -1;
   double b_first = 1.0, b_second = 0.0;
   bool only_in_contact = false;
-  std::string element;  ///< its name, for messages
+  int element = -1;  ///< that asks for it
 };
 
 /// What ties the nodes together.
@@ -26,7 +26,9 @@ struct Kinematics {
 
 /// Finds the ratios; reports contradicting loops and reference motion of grounded parts.
 /// reference < 0: nothing moves nominally and all ratios are 0.
+/// model: its name; placements: for the names of the elements.
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
+                       const std::vector<Placement>& placements,
                        const std::vector<Closure>& closures, int reference,
                        std::vector<Finding>& findings);
 

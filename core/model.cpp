@@ -5,9 +5,9 @@
 namespace drev {
 
 NodeId Model::add_node(std::string name, NodeKind kind) {
-  node_names_.push_back(std::move(name));
+  own(node_names_).push_back(std::move(name));
   node_kinds_.push_back(kind);
-  return NodeId{static_cast<int>(node_names_.size()) - 1};
+  return NodeId{static_cast<int>(node_names_->size()) - 1};
 }
 
 ElementId Model::add(std::string name, std::vector<NodeRef> nodes,
@@ -16,8 +16,8 @@ ElementId Model::add(std::string name, std::vector<NodeRef> nodes,
   const int internal = placement.element ? placement.element->internal_nodes() : 0;
   for (int i = 1; i <= internal; ++i)
     placement.internal.push_back(add_node(placement.name + "_" + std::to_string(i)));
-  placements_.push_back(std::move(placement));
-  return ElementId{static_cast<int>(placements_.size()) - 1};
+  own(placements_).push_back(std::move(placement));
+  return ElementId{static_cast<int>(placements_->size()) - 1};
 }
 
 void Model::hold(NodeRef node) { prescriptions_.push_back({std::move(node), {}, {}}); }

@@ -16,7 +16,7 @@ namespace drev {
 class System;
 
 /// What a node's one degree of freedom is.
-enum class NodeKind {
+enum class NodeKind : unsigned char {
   rotational,    ///< angle [rad], torque [N m], inertia [kg m^2]
   translational  ///< position [m], force [N], mass [kg]
 };
@@ -82,18 +82,27 @@ class Model {
     double deviation, rate;
   };
   const std::string& name() const { return name_; }
-  const std::vector<std::string>& node_names() const { return node_names_; }
+  const std::vector<std::string>& node_names() const { return *node_names_; }
   const std::vector<NodeKind>& node_kinds() const { return node_kinds_; }
-  const std::vector<Placement>& placements() const { return placements_; }
+  const std::vector<Placement>& placements() const { return *placements_; }
   const std::vector<Prescription>& prescriptions() const { return prescriptions_; }
   const std::vector<Initial>& initials() const { return initials_; }
   const std::vector<std::pair<NodeRef, Motion>>& references() const { return references_; }
 
  private:
+  friend class SystemBuilder;
+  /// To write to; a copy first where a System or another Model has it too.
+  template <class T>
+  static T& own(std::shared_ptr<T>& shared) {
+    if (shared.use_count() > 1) shared = std::make_shared<T>(*shared);
+    return *shared;
+  }
+
   std::string name_;
-  std::vector<std::string> node_names_;
+  std::shared_ptr<std::vector<std::string>> node_names_ =
+      std::make_shared<std::vector<std::string>>();
   std::vector<NodeKind> node_kinds_;
-  std::vector<Placement> placements_;
+  std::shared_ptr<std::vector<Placement>> placements_ = std::make_shared<std::vector<Placement>>();
   std::vector<Prescription> prescriptions_;
   std::vector<Initial> initials_;
   std::vector<std::pair<NodeRef, Motion>> references_;

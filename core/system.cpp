@@ -7,10 +7,10 @@
 namespace drev {
 
 int System::node(const std::string& name) const {
-  const auto found = std::find(node_names_.begin(), node_names_.end(), name);
-  if (found != node_names_.end()) return static_cast<int>(found - node_names_.begin());
-  throw ModelError({{name_, "node", name, "",
-                     "is no node of this model" + did_you_mean(name, node_names_)}});
+  const std::vector<std::string>& names = node_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  throw ModelError({{name_, "node", name, "", "is no node of this model" + did_you_mean(name, names)}});
 }
 
 std::vector<std::string> System::floating_parts(Contact contact) const {
@@ -30,7 +30,7 @@ std::vector<std::string> System::floating_parts(Contact contact) const {
     const int c = component[at(i)];
     if (!tied[at(c)] && !named[at(c)]) {
       named[at(c)] = true;
-      floating.push_back(node_names_[at(i)]);
+      floating.push_back(node_names()[at(i)]);
     }
   }
   return floating;

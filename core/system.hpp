@@ -90,17 +90,17 @@ class System {
  public:
   const std::string& name() const { return name_; }
   int size() const { return static_cast<int>(pattern_.rows()); }  ///< number of unknowns
-  int node_count() const { return static_cast<int>(node_names_.size()); }
+  int node_count() const { return static_cast<int>(node_names_->size()); }
   int prescribed_count() const { return static_cast<int>(prescribed_.size()); }
   int history_size() const { return history_size_; }
-  const std::vector<std::string>& node_names() const { return node_names_; }
+  const std::vector<std::string>& node_names() const { return *node_names_; }
   NodeKind node_kind(int node) const { return node_kinds_[at(node)]; }
   const NodeMap& node_map(int node) const { return node_map_[at(node)]; }
   /// Position of a node by name; throws ModelError with the nearest name.
   int node(const std::string& name) const;
-  const std::vector<Placement>& placements() const { return placements_; }
+  const std::vector<Placement>& placements() const { return *placements_; }
   /// A node that stands for unknown z[k], for messages.
-  const std::string& unknown_name(int k) const { return node_names_[at(unknown_node_[at(k)])]; }
+  const std::string& unknown_name(int k) const { return (*node_names_)[at(unknown_node_[at(k)])]; }
 
   /// n_i: nominal ratio of the node to the reference shaft.
   double ratio(int node) const { return kinematics_.ratio[at(node)]; }
@@ -160,9 +160,9 @@ class System {
   System() = default;
 
   std::string name_;
-  std::vector<std::string> node_names_;
+  std::shared_ptr<const std::vector<std::string>> node_names_;  // the model's, as the placements
   std::vector<NodeKind> node_kinds_;
-  std::vector<Placement> placements_;
+  std::shared_ptr<const std::vector<Placement>> placements_;
   std::vector<NodeMap> node_map_;
   std::vector<int> unknown_node_, prescribed_node_;
   Kinematics kinematics_;

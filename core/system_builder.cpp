@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace drev {
 
@@ -17,11 +16,15 @@ bool usable_name(const std::string& name) {
 
 }  // namespace
 
+SystemBuilder::SystemBuilder(const Model& model)
+    : model_(model),
+      node_by_name_(model.node_names().size(),
+                    [&model](int i) -> const std::string& { return model.node_names()[at(i)]; }) {}
+
 System SystemBuilder::build() {
   check_names();
   resolve_motions();
   describe_elements();
-  collect_closures();
   find_nominal_motion();
   eliminate();
   check_inertias();
@@ -41,30 +44,32 @@ void SystemBuilder::throw_if_findings() const {
 
 void SystemBuilder::check_names() {
   system_.name_ = model_.name();
-  system_.node_names_ = model_.node_names();
+  system_.node_names_ = model_.node_names_;
   system_.node_kinds_ = model_.node_kinds();
-  system_.placements_ = model_.placements();
+  system_.placements_ = model_.placements_;
   const char* rule = "must be non-empty, without '.', ',', quotes and line ends";
   if (model_.node_names().empty())
     findings_.push_back({model_.name(), "nodes", "0", "", "the model is empty; add nodes"});
-  for (std::size_t i = 0; i < system_.node_names_.size(); ++i) {
-    const std::string& name = system_.node_names_[i];
-    if (!usable_name(name)) findings_.push_back({model_.name(), "node name", name, "", rule});
-    if (!node_by_name_.emplace(name, static_cast<int>(i)).second)
-      findings_.push_back({model_.name(), "node name", name, "", "is used twice"});
+  for (int i = 0; i < static_cast<int>(model_.node_names().size()); ++i) {
+    if (!usable_name(node_name(i)))
+      findings_.push_back({model_.name(), "node name", node_name(i), "", rule});
+    if (!node_by_name_.insert(i))
+      findings_.push_back({model_.name(), "node name", node_name(i), "", "is used twice"});
   }
-  std::set<std::string> names;
-  for (const Placement& p : model_.placements()) {
-    if (!usable_name(p.name))
-      findings_.push_back({model_.name(), "element name", p.name, "", rule});
-    if (!names.insert(p.name).second)
-      findings_.push_back({model_.name(), "element name", p.name, "", "is used twice"});
+  const std::vector<Placement>& placements = model_.placements();
+  NameIndex names(placements.size(),
+                  [&](int i) -> const std::string& { return placements[at(i)].name; });
+  for (int e = 0; e < static_cast<int>(placements.size()); ++e) {
+    const std::string& name = placements[at(e)].name;
+    if (!usable_name(name)) findings_.push_back({model_.name(), "element name", name, "", rule});
+    if (!names.insert(e))
+      findings_.push_back({model_.name(), "element name", name, "", "is used twice"});
   }
 }
 
 int SystemBuilder::resolve(const NodeRef& ref, const std::string& where,
                            const std::string& parameter) {
-  const int count = static_cast<int>(system_.node_names_.size());
+  const int count = system_.node_count();
   if (ref.id) {
     const int i = index(*ref.id);
     if (i >= 0 && i < count) return i;
@@ -72,10 +77,10 @@ int SystemBuilder::resolve(const NodeRef& ref, const std::string& where,
                          "is no node of this model (it has " + std::to_string(count) + ")"});
     return -1;
   }
-  const auto found = node_by_name_.find(ref.name);
-  if (found != node_by_name_.end()) return found->second;
+  const int found = node_by_name_.find(ref.name);
+  if (found >= 0) return found;
   findings_.push_back({where, parameter, ref.name, "",
-                       "is no node of this model" + did_you_mean(ref.name, system_.node_names_)});
+                       "is no node of this model" + did_you_mean(ref.name, model_.node_names())});
   return -1;
 }
 
@@ -97,7 +102,7 @@ void SystemBuilder::resolve_motions() {
   for (const Model::Prescription& p : model_.prescriptions()) {
     int node = resolve(p.node, model_.name(), "prescribed node");
     inertia_in_doubt_ |= node < 0;
-    const std::string where = node < 0 ? model_.name() : place(system_.node_names_[at(node)]);
+    const std::string where = node < 0 ? model_.name() : place(node_name(node));
     if (p.omega) ParameterCheck(where, findings_).finite("omega", *p.omega, "rad/s");
     if (p.deviation) check_motion(*p.deviation, where, "given motion");
     if (node >= 0 && p.omega && reference_node_ < 0 && model_.references().empty()) {
@@ -112,33 +117,9 @@ void SystemBuilder::resolve_motions() {
   }
 }
 
-void SystemBuilder::collect_closures() {
-  for (std::size_t e = 0; e < described_.size(); ++e) {
-    if (!described_[e]) continue;
-    const Described& d = *described_[e];
-    rayleigh_a_ += d.terms.rayleigh_a;
-    rayleigh_b_ += d.terms.rayleigh_b;
-    const auto add_row = [&](const LocalRow& b, bool only_in_contact) {
-      Closure row;
-      row.element = model_.placements()[e].name;
-      row.only_in_contact = only_in_contact;
-      int entries = 0;
-      for (int i = 0; i < b.size(); ++i) {
-        if (b[i] == 0.0) continue;
-        if (entries == 0) row.first = d.nodes[at(i)], row.b_first = b[i];
-        if (entries == 1) row.second = d.nodes[at(i)], row.b_second = b[i];
-        ++entries;
-      }
-      if (entries > 0) system_.closures_.push_back(row);
-    };
-    for (const ClosureSpec& c : d.terms.closures) add_row(c.b, c.only_in_contact);
-    for (const LocalRow& b : d.terms.constraints) add_row(b, false);
-  }
-}
-
 void SystemBuilder::find_nominal_motion() {
-  system_.kinematics_ = find_ratios(model_.name(), system_.node_names_, system_.closures_,
-                                    reference_node_, findings_);
+  system_.kinematics_ = find_ratios(model_.name(), model_.node_names(), model_.placements(),
+                                    system_.closures_, reference_node_, findings_);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
     const int node = resolved_prescriptions_[i];
@@ -150,7 +131,7 @@ void SystemBuilder::find_nominal_motion() {
     for (const double t : times) {
       const double nominal = system_.kinematics_.ratio[at(node)] * system_.reference_->at(t).rate;
       if (std::abs(nominal - *p.omega) <= kSpeedTolerance * std::abs(*p.omega)) continue;
-      findings_.push_back({place(system_.node_names_[at(node)]), "omega", to_text(*p.omega),
+      findings_.push_back({place(node_name(node)), "omega", to_text(*p.omega),
                            "rad/s",
                            "but the reference shaft turns this node at " + to_text(nominal) +
                                " rad/s at t = " + to_text(t) + " s"});
@@ -161,35 +142,26 @@ void SystemBuilder::find_nominal_motion() {
 
 void SystemBuilder::check_inertias() {
   const int unknowns = static_cast<int>(system_.unknown_node_.size());
-  if (unknowns == 0 && !system_.node_names_.empty())
+  if (unknowns == 0 && system_.node_count() > 0)
     findings_.push_back({model_.name(), "unknowns", "0", "",
                          "every node is prescribed; nothing is left to compute"});
   if (inertia_in_doubt_) return;
   std::vector<double> inertia(at(unknowns), 0.0);
   std::vector<bool> in_doubt(at(unknowns), false);
-  const auto unknown = [this](int node) { return system_.node_map_[at(node)].unknown; };
-  for (std::size_t e = 0; e < described_.size(); ++e) {
-    const std::vector<int>& nodes = element_nodes_[e];
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (nodes[i] < 0 || unknown(nodes[i]) < 0) continue;
-      const int k = unknown(nodes[i]);
-      if (!described_[e]) in_doubt[at(k)] = true;
-      if (!described_[e]) continue;
-      for (std::size_t j = 0; j < nodes.size(); ++j)
-        if (unknown(nodes[j]) == k)
-          inertia[at(k)] += described_[e]->terms.mass(static_cast<Eigen::Index>(i),
-                                                      static_cast<Eigen::Index>(j)) *
-                            system_.node_map_[at(nodes[i])].coeff *
-                            system_.node_map_[at(nodes[j])].coeff;
-    }
+  for (const int node : faulty_nodes_)
+    if (const int k = system_.node_map_[at(node)].unknown; k >= 0) in_doubt[at(k)] = true;
+  for (const NodeEntry& e : mass_) {
+    const NodeMap &a = system_.node_map_[at(e.i)], &b = system_.node_map_[at(e.j)];
+    if (a.unknown >= 0 && a.unknown == b.unknown)
+      inertia[at(a.unknown)] += (e.i == e.j ? 1.0 : 2.0) * e.value * a.coeff * b.coeff;
   }
   for (int k = 0; k < unknowns; ++k) {
     const int node = system_.unknown_node_[at(k)];
-    const auto same_name = node_by_name_.find(system_.node_names_[at(node)]);
-    if (inertia[at(k)] > 0.0 || in_doubt[at(k)] || same_name->second != node) continue;
+    const bool name_used_twice = node_by_name_.find(node_name(node)) != node;
+    if (inertia[at(k)] > 0.0 || in_doubt[at(k)] || name_used_twice) continue;
     const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
     findings_.push_back(
-        {place(system_.node_names_[at(node)]), turns ? "inertia" : "mass",
+        {place(node_name(node)), turns ? "inertia" : "mass",
          to_text(inertia[at(k)]), turns ? "kg m^2" : "kg",
          "every node that is not prescribed needs an inertia > 0: add one, or replace the "
          "springs on both sides by one"});
@@ -207,7 +179,7 @@ void SystemBuilder::set_initial() {
   for (const Model::Initial& initial : model_.initials()) {
     const int node = resolve(initial.node, model_.name(), "initial condition");
     if (node < 0) continue;
-    ParameterCheck check(place(system_.node_names_[at(node)]), findings_);
+    ParameterCheck check(place(node_name(node)), findings_);
     const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
     check.finite("initial deviation", initial.deviation, turns ? "rad" : "m");
     check.finite("initial rate", initial.rate, turns ? "rad/s" : "m/s");
@@ -222,10 +194,10 @@ void SystemBuilder::set_initial() {
     int& by = set_by[at(map.unknown)];
     if (by >= 0 && differ(map.coeff * z, initial.deviation))
       check.fail("initial deviation", to_text(initial.deviation), turns ? "rad" : "m",
-                 "but that of " + system_.node_names_[at(by)] + " gives " + to_text(map.coeff * z));
+                 "but that of " + node_name(by) + " gives " + to_text(map.coeff * z));
     if (by >= 0 && differ(map.coeff * v, initial.rate))
       check.fail("initial rate", to_text(initial.rate), turns ? "rad/s" : "m/s",
-                 "but that of " + system_.node_names_[at(by)] + " gives " + to_text(map.coeff * v));
+                 "but that of " + node_name(by) + " gives " + to_text(map.coeff * v));
     z = initial.deviation / map.coeff;
     v = initial.rate / map.coeff;
     by = node;

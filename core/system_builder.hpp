@@ -1,15 +1,16 @@
 #pragma once
 /// Turns a Model into a System, step by step; collects findings and throws them together.
 /// Internal to core: users call Model::build().
-#include <unordered_map>
+#include <deque>
 
+#include "core/name_index.hpp"
 #include "core/system.hpp"
 
 namespace drev {
 
 class SystemBuilder {
  public:
-  explicit SystemBuilder(const Model& model) : model_(model) {}
+  explicit SystemBuilder(const Model& model);
   System build();
 
  private:
@@ -24,14 +25,13 @@ class SystemBuilder {
   bool check_kinds(const Placement& p, const std::vector<int>& nodes);
   // Nominal motion, elimination, and what must hold of the whole. These pass over faulty elements, so
   // that all findings come at once.
-  void collect_closures();
   void find_nominal_motion();
   void eliminate();
   void check_inertias();
   void set_initial();
   // Matrices and terms over unknowns, of a model without findings.
   void map_terms();
-  void add_load(const LoadTerm& term);
+  void map_load(int number);
   void assemble_matrices();
   void check_values();
   void finish();
@@ -39,17 +39,30 @@ class SystemBuilder {
 
   std::string place(const std::string& part) const { return model_.name() + "/" + part; }
 
-  struct Described {
-    std::vector<int> nodes;
-    Terms terms;
+  /// An entry that an element adds to a matrix over nodes, and the same at (j, i).
+  struct NodeEntry {
+    int i, j;
+    double value;
+    bool rayleigh;  ///< takes part in C = a M + b K
   };
+  /// In pieces: a list that grows moves nothing and leaves no room unused.
+  using NodeEntries = std::deque<NodeEntry>;
+  void keep(int element, const std::vector<int>& nodes, const Terms& terms);
+  void keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix, bool rayleigh,
+                    NodeEntries& entries);
+  const std::string& node_name(int node) const { return model_.node_names()[at(node)]; }
+  SparseMatrix pattern() const;
+  /// Calls visit(i, j, value) for every entry of M, C, K (0, 1, 2), Rayleigh damping included.
+  template <class Visit>
+  void for_each_entry(int matrix, const Visit& visit) const;
+  Vector values_on_pattern(int matrix) const;
 
   const Model& model_;
   System system_;
   std::vector<Finding> findings_;
-  std::unordered_map<std::string, int> node_by_name_;
-  std::vector<std::optional<Described>> described_;
-  std::vector<std::vector<int>> element_nodes_;
+  NameIndex node_by_name_;
+  NodeEntries mass_, damping_, stiffness_;
+  std::vector<int> faulty_nodes_;  // of elements whose terms are not known
   std::vector<int> resolved_prescriptions_;  // -1: unknown or already prescribed
   bool inertia_in_doubt_ = false;  // a fault hides which node some inertia or tie belongs to
   int reference_node_ = -1;

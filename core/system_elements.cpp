@@ -1,5 +1,6 @@
 // The first part of SystemBuilder: the elements, each by itself.
 #include <algorithm>
+#include <iterator>
 
 #include "core/system_builder.hpp"
 
@@ -13,7 +14,7 @@ std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) 
     usable = usable && nodes.back() >= 0;
     if (nodes.back() >= 0 && std::count(nodes.begin(), nodes.end(), nodes.back()) > 1) {
       findings_.push_back({where, "node " + std::to_string(i + 1),
-                           system_.node_names_[at(nodes.back())], "",
+                           node_name(nodes.back()), "",
                            "is given twice; the ends must differ"});
       usable = false;
     }
@@ -23,16 +24,20 @@ std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) 
 }
 
 void SystemBuilder::describe_elements() {
-  for (const Placement& p : model_.placements()) {
+  for (int e = 0; e < static_cast<int>(model_.placements().size()); ++e) {
+    const Placement& p = model_.placements()[at(e)];
     const std::string where = place(p.name);
     bool usable = true;
     const std::vector<int> nodes = resolve_nodes(p, usable);
     const bool resolved = std::count(nodes.begin(), nodes.end(), -1) == 0;
-    element_nodes_.push_back(nodes);
-    described_.emplace_back();
+    const auto faulty = [&] {
+      std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(faulty_nodes_),
+                   [](int node) { return node >= 0; });
+    };
     if (!p.element) {
       findings_.push_back({where, "element", "", "", "is missing (a null pointer)"});
       inertia_in_doubt_ |= !resolved;
+      faulty();
       continue;
     }
     const int given = static_cast<int>(p.nodes.size());
@@ -49,17 +54,79 @@ void SystemBuilder::describe_elements() {
     const bool sound = count_fits && findings_.size() == before;
     if (!sound) {
       inertia_in_doubt_ |= !resolved;
+      faulty();
       continue;
     }
     Terms terms(static_cast<int>(nodes.size()));
     p.element->describe(static_cast<int>(nodes.size()), terms);
     if (!check_terms(terms, nodes, where)) {
       inertia_in_doubt_ |= !resolved;
+      faulty();
       continue;
     }
     if (!resolved) inertia_in_doubt_ |= !terms.mass.isZero(0.0) || !terms.constraints.empty();
-    if (usable && check_kinds(p, nodes)) described_.back() = Described{nodes, std::move(terms)};
+    if (usable && check_kinds(p, nodes))
+      keep(e, nodes, terms);
+    else
+      faulty();
   }
+}
+
+void SystemBuilder::keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix,
+                                 bool rayleigh, NodeEntries& entries) {
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+    for (Eigen::Index i = 0; i <= j; ++i)
+      if (matrix(i, j) != 0.0)
+        entries.push_back({nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)],
+                           matrix(i, j), rayleigh});
+}
+
+void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms& terms) {
+  const ElementId id{element};
+  keep_entries(nodes, terms.mass, terms.rayleigh, mass_);
+  keep_entries(nodes, terms.damping, false, damping_);
+  keep_entries(nodes, terms.stiffness, terms.rayleigh, stiffness_);
+  rayleigh_a_ += terms.rayleigh_a;
+  rayleigh_b_ += terms.rayleigh_b;
+  const auto over_nodes = [&](const LocalRow& row) {
+    std::vector<Entry> entries;
+    for (Eigen::Index i = 0; i < row.size(); ++i)
+      if (row[i] != 0.0) entries.push_back({nodes[static_cast<std::size_t>(i)], row[i]});
+    return entries;
+  };
+  const auto add_closure = [&](const std::vector<Entry>& b, bool only_in_contact) {
+    if (b.empty()) return;
+    Closure row;
+    row.element = element;
+    row.only_in_contact = only_in_contact;
+    row.first = b[0].index, row.b_first = b[0].coeff;
+    if (b.size() > 1) row.second = b[1].index, row.b_second = b[1].coeff;
+    system_.closures_.push_back(row);
+  };
+  for (const ClosureSpec& c : terms.closures) add_closure(over_nodes(c.b), c.only_in_contact);
+  for (const LocalRow& row : terms.constraints) {
+    const std::vector<Entry> b = over_nodes(row);
+    add_closure(b, false);
+    system_.ideal_ratios_.push_back({id, b[0].index, b[1].index, b[0].coeff, b[1].coeff});
+  }
+  for (const ScalarSpec& s : terms.scalars) {
+    ScalarTerm term;
+    term.element = id;
+    term.force = s.force;
+    term.nodes = over_nodes(s.b);
+    term.phase_node = s.phase_node < 0 ? -1 : nodes[at(s.phase_node)];
+    term.along_line_of_action = s.along_line_of_action;
+    system_.scalars_.push_back(std::move(term));
+  }
+  for (const LoadSpec& l : terms.loads)
+    system_.loads_.push_back({id, nodes[at(l.node)], l.load, -1});
+  for (const GeneralForce* g : terms.generals) {
+    system_.generals_.push_back({id, g, nodes, system_.history_size_, {}});
+    system_.history_size_ += g->history_size();
+    system_.symmetric_tangent_ &= g->symmetric_tangent();
+  }
+  for (const OutputSpec& o : terms.outputs)
+    system_.outputs_.push_back({id, o.suffix, over_nodes(o.stiffness), over_nodes(o.damping)});
 }
 
 bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes,
@@ -103,7 +170,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       for (Eigen::Index i = 0; i < n; ++i) {
         const int node = nodes[static_cast<std::size_t>(i)];
         if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[at(node)] != NodeKind::rotational)
-          findings_.push_back({where, "node " + std::to_string(i + 1), system_.node_names_[at(node)],
+          findings_.push_back({where, "node " + std::to_string(i + 1), node_name(node),
                                "", "is translational; a gear needs a rotational node"});
       }
   }
@@ -146,9 +213,9 @@ bool SystemBuilder::check_kinds(const Placement& p, const std::vector<int>& node
     const NodeKind first = system_.node_kinds_[at(nodes.front())];
     if (system_.node_kinds_[at(node)] == first) continue;
     const bool turns = first == NodeKind::rotational;
-    findings_.push_back({place(p.name), "node", system_.node_names_[at(node)], "",
+    findings_.push_back({place(p.name), "node", node_name(node), "",
                          std::string("is ") + (turns ? "translational" : "rotational") + " and " +
-                             system_.node_names_[at(nodes.front())] + " is " +
+                             node_name(nodes.front()) + " is " +
                              (turns ? "rotational" : "translational") + "; a " +
                              std::string(p.element->type()) + " joins nodes of one kind"});
     return false;

@@ -1,6 +1,7 @@
 // The last part of SystemBuilder: elimination, terms and matrices over the unknowns.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 #include "core/system_builder.hpp"
@@ -35,28 +36,17 @@ void add_entry(std::vector<Entry>& row, int dof, double coeff) {
 }  // namespace
 
 void SystemBuilder::eliminate() {
-  const int nodes = static_cast<int>(system_.node_names_.size());
+  const int nodes = system_.node_count();
   struct Tie {
     int to;
     double factor;
     std::size_t ratio;
   };
-  std::vector<std::vector<Tie>> ties(at(nodes));
-  for (std::size_t e = 0; e < described_.size(); ++e) {
-    if (!described_[e]) continue;
-    for (const LocalRow& b : described_[e]->terms.constraints) {
-      Eigen::Index first = 0, second = b.size() - 1;  // the two entries that are not zero
-      while (b[first] == 0.0) ++first;
-      while (b[second] == 0.0) --second;
-      const IdealRatio r{ElementId{static_cast<int>(e)},
-                         described_[e]->nodes[static_cast<std::size_t>(first)],
-                         described_[e]->nodes[static_cast<std::size_t>(second)], b[first],
-                         b[second]};
-      const std::size_t number = system_.ideal_ratios_.size();
-      ties[at(r.first)].push_back({r.second, -r.b_first / r.b_second, number});
-      ties[at(r.second)].push_back({r.first, -r.b_second / r.b_first, number});
-      system_.ideal_ratios_.push_back(r);
-    }
+  std::vector<std::vector<Tie>> ties(system_.ideal_ratios_.empty() ? 0 : at(nodes));
+  for (std::size_t number = 0; number < system_.ideal_ratios_.size(); ++number) {
+    const IdealRatio& r = system_.ideal_ratios_[number];
+    ties[at(r.first)].push_back({r.second, -r.b_first / r.b_second, number});
+    ties[at(r.second)].push_back({r.first, -r.b_second / r.b_first, number});
   }
 
   // Every set of nodes tied by ideal ratios has one unknown: that of its prescribed node, or its first.
@@ -71,6 +61,7 @@ void SystemBuilder::eliminate() {
     while (!queue.empty()) {
       const int i = queue.front();
       queue.pop();
+      if (ties.empty()) continue;
       for (const auto& [to, factor, ratio] : ties[at(i)]) {
         if (placed[at(to)]) continue;
         placed[at(to)] = true;
@@ -86,7 +77,7 @@ void SystemBuilder::eliminate() {
     const int node = resolved_prescriptions_[i];
     if (node < 0) continue;
     if (placed[at(node)]) {
-      findings_.push_back({place(system_.node_names_[at(node)]), "prescribed motion", "", "",
+      findings_.push_back({place(node_name(node)), "prescribed motion", "", "",
                            "a node tied to this one by ideal gears is prescribed already"});
       continue;
     }
@@ -110,128 +101,135 @@ void SystemBuilder::eliminate() {
                            "undetermined; make one of them elastic"});
 }
 
-void SystemBuilder::add_load(const LoadTerm& term) {
+void SystemBuilder::map_load(int number) {
+  const LoadTerm& term = system_.loads_[at(number)];
   const NodeMap& map = system_.node_map_[at(term.node)];
   const bool follows = term.load->depends_on_motion();
   system_.loads_depend_on_motion_ |= follows;
-  if (map.unknown >= 0) {
-    if (const auto table = term.load->table()) {
-      system_.table_loads_.add(*table, map.unknown, map.coeff, system_.ratio(term.node),
-                               follows ? map.coeff : 0.0);
-    } else {
-      (follows ? system_.moving_loads_ : system_.known_loads_)
-          .push_back(static_cast<int>(system_.loads_.size()));
-    }
-  }
-  system_.loads_.push_back(term);
+  if (map.unknown < 0) return;
+  if (const auto table = term.load->table())
+    system_.table_loads_.add(*table, map.unknown, map.coeff, system_.ratio(term.node),
+                             follows ? map.coeff : 0.0);
+  else
+    (follows ? system_.moving_loads_ : system_.known_loads_).push_back(number);
 }
 
 void SystemBuilder::map_terms() {
-  for (std::size_t e = 0; e < described_.size(); ++e) {
-    const Described& d = *described_[e];
-    const ElementId id{static_cast<int>(e)};
-    for (const ScalarSpec& s : d.terms.scalars) {
-      ScalarTerm term;
-      term.element = id;
-      term.force = s.force;
-      term.phase_node = s.phase_node < 0 ? -1 : d.nodes[at(s.phase_node)];
-      term.along_line_of_action = s.along_line_of_action;
-      for (int i = 0; i < s.b.size(); ++i) {
-        const NodeMap& map = system_.node_map_[at(d.nodes[at(i)])];
-        if (s.b[i] != 0.0) term.nodes.push_back({d.nodes[at(i)], s.b[i]});
-        if (map.unknown >= 0) add_entry(term.z, map.unknown, s.b[i] * map.coeff);
-        if (map.prescribed >= 0) add_entry(term.u, map.prescribed, s.b[i] * map.coeff);
-      }
-      system_.scalars_.push_back(std::move(term));
+  for (ScalarTerm& term : system_.scalars_)
+    for (const Entry& e : term.nodes) {
+      const NodeMap& map = system_.node_map_[at(e.index)];
+      if (map.unknown >= 0) add_entry(term.z, map.unknown, e.coeff * map.coeff);
+      if (map.prescribed >= 0) add_entry(term.u, map.prescribed, e.coeff * map.coeff);
     }
-    for (const LoadSpec& l : d.terms.loads) add_load({id, d.nodes[at(l.node)], l.load, -1});
-    for (const GeneralForce* g : d.terms.generals) {
-      system_.generals_.push_back({id, g, d.nodes, system_.history_size_, {}});
-      system_.history_size_ += g->history_size();
-      system_.symmetric_tangent_ &= g->symmetric_tangent();
+  for (int i = 0; i < static_cast<int>(system_.loads_.size()); ++i) map_load(i);
+}
+
+template <class Visit>
+void SystemBuilder::for_each_entry(int matrix, const Visit& visit) const {
+  const auto visit_all = [&](const NodeEntries& entries, double factor, bool only_rayleigh) {
+    if (factor == 0.0) return;
+    for (const NodeEntry& e : entries) {
+      if (only_rayleigh && !e.rayleigh) continue;
+      visit(e.i, e.j, factor * e.value);
+      if (e.i != e.j) visit(e.j, e.i, factor * e.value);
     }
-    for (const OutputSpec& o : d.terms.outputs) {
-      OutputTerm term{id, o.suffix, {}, {}};
-      for (int i = 0; i < o.stiffness.size(); ++i)
-        if (o.stiffness[i] != 0.0) term.stiffness.push_back({d.nodes[at(i)], o.stiffness[i]});
-      for (int i = 0; i < o.damping.size(); ++i)
-        if (o.damping[i] != 0.0) term.damping.push_back({d.nodes[at(i)], o.damping[i]});
-      system_.outputs_.push_back(std::move(term));
-    }
+  };
+  visit_all(matrix == 0 ? mass_ : matrix == 1 ? damping_ : stiffness_, 1.0, false);
+  if (matrix != 1) return;
+  visit_all(mass_, rayleigh_a_, true);
+  visit_all(stiffness_, rayleigh_b_, true);
+}
+
+SparseMatrix SystemBuilder::pattern() const {
+  const int n = static_cast<int>(system_.unknown_node_.size());
+  const auto unknown = [this](int node) { return system_.node_map_[at(node)].unknown; };
+  const auto for_each = [&](const auto& visit) {
+    for (int k = 0; k < n; ++k) visit(k, k);
+    for (int matrix = 0; matrix < 3; ++matrix)
+      for_each_entry(matrix, [&](int i, int j, double) {
+        if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j))
+          visit(unknown(i), unknown(j));
+      });
+    for (const ScalarTerm& s : system_.scalars_)
+      for (const Entry& r : s.z)
+        for (const Entry& c : s.z)
+          if (r.index != c.index) visit(r.index, c.index);
+    for (const GeneralTerm& g : system_.generals_)
+      for (const int i : g.nodes)
+        for (const int j : g.nodes)
+          if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j))
+            visit(unknown(i), unknown(j));
+  };
+  std::vector<int> begin(at(n + 1), 0);
+  for_each([&](int, int column) { ++begin[at(column + 1)]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> rows(at(begin.back()));
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for_each([&](int row, int column) { rows[at(next[at(column)]++)] = row; });
+  SparseMatrix p(n, n);
+  int entries = 0;
+  for (int j = 0; j < n; ++j) {
+    const auto first = rows.begin() + begin[at(j)];
+    std::sort(first, rows.begin() + begin[at(j + 1)]);
+    const auto last = std::unique(first, rows.begin() + begin[at(j + 1)]);
+    std::copy(first, last, rows.begin() + entries);
+    p.outerIndexPtr()[j] = entries;
+    entries += static_cast<int>(last - first);
   }
+  p.outerIndexPtr()[n] = entries;
+  p.resizeNonZeros(entries);
+  std::copy_n(rows.begin(), entries, p.innerIndexPtr());
+  std::fill_n(p.valuePtr(), entries, 0.0);
+  return p;
+}
+
+Vector SystemBuilder::values_on_pattern(int matrix) const {
+  Vector v = Vector::Zero(system_.pattern_.nonZeros());
+  for_each_entry(matrix, [&](int i, int j, double value) {
+    const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
+    if (a.unknown >= 0 && b.unknown >= 0)
+      v[slot_of(system_.pattern_, a.unknown, b.unknown)] += value * a.coeff * b.coeff;
+  });
+  return v;
 }
 
 void SystemBuilder::assemble_matrices() {
   const int nz = static_cast<int>(system_.unknown_node_.size());
   const int nu = static_cast<int>(system_.prescribed_.size());
-  Triplets zz[3], zu[3], uu[3], node[3], clique;
+  Triplets zu[3], uu[3], node[3];
+  const bool keep_nodes = !system_.ideal_ratios_.empty();
+  for (int which = 0; which < 3; ++which)
+    for_each_entry(which, [&](int i, int j, double value) {
+      const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
+      const double v = value * a.coeff * b.coeff;
+      if (a.unknown >= 0 && b.prescribed >= 0) zu[which].emplace_back(a.unknown, b.prescribed, v);
+      if (a.prescribed >= 0 && b.prescribed >= 0)
+        uu[which].emplace_back(a.prescribed, b.prescribed, v);
+      if (keep_nodes) node[which].emplace_back(i, j, value);
+    });
+  // Inertia and mean drag of the nominal motion; Rayleigh damping acts on deviations only.
   system_.nominal_inertia_ = Vector::Zero(nz + nu);
   system_.nominal_drag_ = Vector::Zero(nz + nu);
-  const bool keep_nodes = !system_.ideal_ratios_.empty();
-  if (keep_nodes)
-    system_.node_drag_ = Vector::Zero(static_cast<Eigen::Index>(system_.node_names_.size()));
+  if (keep_nodes) system_.node_drag_ = Vector::Zero(system_.node_count());
+  const auto add_nominal = [&](const NodeEntries& entries, Vector& rows, Vector* nodes) {
+    const auto add = [&](int i, int j, double value) {
+      const NodeMap& map = system_.node_map_[at(i)];
+      const double force = value * system_.kinematics_.ratio[at(j)];
+      rows[map.unknown >= 0 ? map.unknown : nz + map.prescribed] += map.coeff * force;
+      if (nodes) (*nodes)[i] += force;
+    };
+    for (const NodeEntry& e : entries) {
+      add(e.i, e.j, e.value);
+      if (e.i != e.j) add(e.j, e.i, e.value);
+    }
+  };
+  add_nominal(mass_, system_.nominal_inertia_, nullptr);
+  add_nominal(damping_, system_.nominal_drag_, keep_nodes ? &system_.node_drag_ : nullptr);
 
-  const auto add_clique = [&](const std::vector<int>& dofs) {
-    for (const int r : dofs)
-      for (const int c : dofs) clique.emplace_back(r, c, 0.0);
-  };
-  const auto scatter = [&](int which, int i, int j, double value) {
-    const NodeMap& a = system_.node_map_[at(i)];
-    const NodeMap& b = system_.node_map_[at(j)];
-    const double v = value * a.coeff * b.coeff;
-    if (a.unknown >= 0 && b.unknown >= 0) zz[which].emplace_back(a.unknown, b.unknown, v);
-    if (a.unknown >= 0 && b.prescribed >= 0) zu[which].emplace_back(a.unknown, b.prescribed, v);
-    if (a.prescribed >= 0 && b.prescribed >= 0)
-      uu[which].emplace_back(a.prescribed, b.prescribed, v);
-    if (keep_nodes) node[which].emplace_back(i, j, value);
-  };
-  for (const auto& described : described_) {
-    const Described& d = *described;
-    const int n = static_cast<int>(d.nodes.size());
-    const double a = d.terms.rayleigh ? rayleigh_a_ : 0.0;
-    const double b = d.terms.rayleigh ? rayleigh_b_ : 0.0;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        const double m = d.terms.mass(i, j), c = d.terms.damping(i, j),
-                     k = d.terms.stiffness(i, j);
-        if (m != 0.0) scatter(0, d.nodes[at(i)], d.nodes[at(j)], m);
-        if (c != 0.0) scatter(1, d.nodes[at(i)], d.nodes[at(j)], c);
-        if (a * m + b * k != 0.0) scatter(1, d.nodes[at(i)], d.nodes[at(j)], a * m + b * k);
-        if (k != 0.0) scatter(2, d.nodes[at(i)], d.nodes[at(j)], k);
-        // Inertia and mean drag of the nominal motion; Rayleigh damping acts on deviations only.
-        const NodeMap& map = system_.node_map_[at(d.nodes[at(i)])];
-        const int row = map.unknown >= 0 ? map.unknown : nz + map.prescribed;
-        const double ratio = system_.kinematics_.ratio[at(d.nodes[at(j)])];
-        system_.nominal_inertia_[row] += map.coeff * m * ratio;
-        system_.nominal_drag_[row] += map.coeff * c * ratio;
-        if (keep_nodes) system_.node_drag_[d.nodes[at(i)]] += c * ratio;
-      }
-  }
-
-  for (int k = 0; k < nz; ++k) clique.emplace_back(k, k, 0.0);
-  for (const Triplets& t : zz)
-    for (const auto& x : t) clique.emplace_back(x.row(), x.col(), 0.0);
-  for (const ScalarTerm& s : system_.scalars_) {
-    std::vector<int> dofs;
-    for (const Entry& entry : s.z) dofs.push_back(entry.index);
-    add_clique(dofs);
-  }
-  for (const GeneralTerm& g : system_.generals_) {
-    std::vector<int> dofs;
-    for (const int i : g.nodes)
-      if (system_.node_map_[at(i)].unknown >= 0) dofs.push_back(system_.node_map_[at(i)].unknown);
-    add_clique(dofs);
-  }
-  system_.pattern_ = from_triplets(nz, nz, clique);
-  system_.pattern_.makeCompressed();
-  const auto values = [&](const Triplets& triplets) {
-    Vector v = Vector::Zero(system_.pattern_.nonZeros());
-    for (const auto& x : triplets) v[slot_of(system_.pattern_, x.row(), x.col())] += x.value();
-    return v;
-  };
-  system_.mass_ = values(zz[0]);
-  system_.damping_ = values(zz[1]);
-  system_.stiffness_ = values(zz[2]);
+  system_.pattern_ = pattern();
+  system_.mass_ = values_on_pattern(0);
+  system_.damping_ = values_on_pattern(1);
+  system_.stiffness_ = values_on_pattern(2);
   for (int k = 0; k < nz; ++k) system_.diagonal_slots_.push_back(slot_of(system_.pattern_, k, k));
   const auto only_diagonal = [&](const Vector& matrix) {
     Vector rest = matrix;
@@ -245,7 +243,7 @@ void SystemBuilder::assemble_matrices() {
   system_.uu_ = {from_triplets(nu, nu, uu[0]), from_triplets(nu, nu, uu[1]),
                  from_triplets(nu, nu, uu[2])};
   if (keep_nodes) {
-    const int nodes = static_cast<int>(system_.node_names_.size());
+    const int nodes = system_.node_count();
     system_.node_matrices_ = MatrixSet{from_triplets(nodes, nodes, node[0]),
                                        from_triplets(nodes, nodes, node[1]),
                                        from_triplets(nodes, nodes, node[2])};
@@ -279,7 +277,7 @@ void SystemBuilder::check_values() {
   for (int i = 0; i < system_.node_count(); ++i) {
     const double coeff = system_.node_map_[at(i)].coeff;
     if (!std::isfinite(coeff) || coeff == 0.0 || !std::isfinite(system_.ratio(i)))
-      findings_.push_back({place(system_.node_names_[at(i)]), "ratio", to_text(coeff), "",
+      findings_.push_back({place(node_name(i)), "ratio", to_text(coeff), "",
                            "the ratios of gears up to this node multiply to what a number cannot "
                            "hold"});
   }
