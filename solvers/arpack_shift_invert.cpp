@@ -12,16 +12,6 @@ namespace drev {
 
 namespace {
 
-/// Between 0.5 and 1.5, no two alike: fractional parts of multiples of the golden ratio.
-Vector start_vector(int n, int start) {
-  Vector r(n);
-  for (int i = 0; i < n; ++i) {
-    const double place = 0.6180339887498949 * (i + 1) + 0.4142135623730950 * start;
-    r[i] = 0.5 + (place - std::floor(place));
-  }
-  return r;
-}
-
 std::string iteration_reason(a_int info, a_int converged, int count, int limit) {
   if (info == 1)
     return "only " + std::to_string(converged) + " of " + std::to_string(count) +
@@ -32,6 +22,16 @@ std::string iteration_reason(a_int info, a_int converged, int count, int limit) 
 }
 
 }  // namespace
+
+/// Fractional parts of multiples of the golden ratio.
+Vector shift_invert_start(int n, int start) {
+  Vector r(n);
+  for (int i = 0; i < n; ++i) {
+    const double place = 0.6180339887498949 * (i + 1) + 0.4142135623730950 * start;
+    r[i] = 0.5 + (place - std::floor(place));
+  }
+  return r;
+}
 
 ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
   static std::mutex one_at_a_time;
@@ -46,7 +46,7 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
   }
   const int ncv = std::min(n, std::max(problem.basis, std::max(2 * k + 1, 20)));
   const int lworkl = ncv * (ncv + 8);
-  Vector residual = start_vector(n, problem.start), in(n), out(n);
+  Vector residual = shift_invert_start(n, problem.start), in(n), out(n);
   Eigen::MatrixXd basis(n, ncv);
   std::vector<double> workd(at(3 * n)), workl(at(lworkl));
   a_int iparam[11] = {1, 0, problem.max_iterations, 1, 0, 0, 3, 0, 0, 0, 0};

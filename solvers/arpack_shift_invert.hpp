@@ -45,6 +45,9 @@ struct ShiftInvertResult {
   int solves = 0;           ///< with K - sigma M
 };
 
+/// Entries between 0.5 and 1.5, no two alike.
+Vector shift_invert_start(int size, int start);
+
 /// Throws nothing of its own; what solve and mass throw passes through.
 ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem);
 

@@ -11,7 +11,8 @@ namespace drev {
 
 struct InertiaCounter::Impl {
   const SparseMatrix& pattern;
-  Vector stiffness, mass, values, row_sum;
+  const Vector &stiffness, &mass;
+  Vector values, row_sum;
   std::optional<LowFillFactor> flat;
   std::unique_ptr<CholmodFactor> cholmod;  // where the factor fills too much for flat arrays
 
@@ -21,7 +22,8 @@ struct InertiaCounter::Impl {
 };
 
 InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness,
-                               const Vector& mass)
+                               const Vector& mass,
+                               std::shared_ptr<const LowFillPattern> analysed)
     : impl_(new Impl{.pattern = pattern,
                      .stiffness = stiffness,
                      .mass = mass,
@@ -29,8 +31,9 @@ InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffn
                      .row_sum = {},
                      .flat = {},
                      .cholmod = {}}) {
-  if (auto low_fill = analyse_low_fill(pattern))
-    impl_->flat.emplace(std::move(low_fill));
+  if (!analysed) analysed = analyse_low_fill(pattern);
+  if (analysed)
+    impl_->flat.emplace(std::move(analysed));
   else
     impl_->cholmod = std::make_unique<CholmodFactor>(false);
 }

@@ -16,6 +16,8 @@
 
 namespace drev {
 
+struct LowFillPattern;
+
 struct InertiaCount {
   bool trusted = false;  ///< false: do not use below; take another s
   int below = 0;         ///< eigenvalues < s
@@ -26,8 +28,10 @@ struct InertiaCount {
 
 class InertiaCounter {
  public:
-  /// stiffness, mass: symmetric, values on the pattern.
-  InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness, const Vector& mass);
+  /// stiffness, mass: symmetric, values on the pattern, kept by reference. analysed: what a factorisation of
+  /// the same pattern found (SparseCholesky::low_fill()), or null.
+  InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness, const Vector& mass,
+                 std::shared_ptr<const LowFillPattern> analysed = nullptr);
   ~InertiaCounter();
   InertiaCounter(const InertiaCounter&) = delete;
   InertiaCounter& operator=(const InertiaCounter&) = delete;

@@ -47,6 +47,7 @@ class LowFillFactor {
   explicit LowFillFactor(std::shared_ptr<const LowFillPattern> pattern);
 
   const LowFillPattern& pattern() const { return *pattern_; }
+  const std::shared_ptr<const LowFillPattern>& shared_pattern() const { return pattern_; }
   /// Factors; false at a pivot that is not > 0 (definite) or is 0 or not a number (otherwise), which is
   /// then at failed_place().
   bool factorize(const Vector& values, bool definite);

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/arpack_shift_invert.hpp"
+#include "solvers/lanczos.hpp"
 
 namespace drev {
 
 namespace {
+
+constexpr int kStrip = 2048;  // rows whose matrix entries stay in the cache for all vectors
 
 Vector stiffness_values(const Assembler& assembler, Contact contact) {
   if (!assembler.system().symmetric_tangent())
@@ -50,8 +52,12 @@ ModalProblem::ModalProblem(const System& system, Contact contact, ModesSummary& 
       mass_(system.mass_values()),
       lambda_max_(spectrum_scale(system.pattern(), stiffness_, mass_)),
       summary_(summary),
-      sturm_(system.pattern(), stiffness_, mass_),
-      shifted_(system.pattern()) {}
+      shifted_(system.pattern()),
+      sturm_(system.pattern(), stiffness_, mass_, shifted_.low_fill()) {
+  if (!system.mass_is_diagonal()) return;
+  mass_diagonal_.resize(system.size());
+  for (int k = 0; k < system.size(); ++k) mass_diagonal_[k] = mass_[system.diagonal_slots()[at(k)]];
+}
 
 void ModalProblem::factor(double sigma) {
   const double limit = std::max(100.0 * lambda_max_, 100.0);
@@ -76,8 +82,7 @@ void ModalProblem::find_shift(int rigid_modes, bool prefer_dense) {
   for (int round = 0; round < 6; ++round) {
     factor(sigma);
     if (rigid_modes >= system_.size()) return;
-    const ModalPairs pairs = lowest(rigid_modes + 1, 0, prefer_dense);
-    const double first = std::abs(pairs.lambda[rigid_modes]);
+    const double first = std::abs(first_elastic(rigid_modes, prefer_dense));
     const double ratio = -summary_.shift / first;
     if ((ratio <= 10.0 && ratio >= 0.01) || summary_.shift != sigma) return;
     // Rounding hides what is far below |sigma|: approach it in steps.
@@ -100,75 +105,153 @@ const ModalPairs& ModalProblem::dense() {
   return pairs;
 }
 
-ModalPairs ModalProblem::lanczos(int count, int start) {
+ShiftInvertProblem ModalProblem::shift_invert(int count, int start) {
   ShiftInvertProblem problem;
   problem.size = system_.size();
   problem.count = count;
   problem.sigma = summary_.shift;
   problem.start = start;
   problem.solve = [this](const Vector& b, Vector& x) { shifted_.solve(b, x); };
-  problem.mass = [this](const Vector& x, Vector& y) { assembler_.multiply(mass_, x, y); };
+  problem.mass = [this](const Vector& x, Vector& y) { multiply_mass(x, y); };
+  return problem;
+}
+
+void ModalProblem::multiply_mass(const Vector& x, Vector& y) const {
+  if (mass_diagonal_.size() > 0)
+    y = mass_diagonal_.cwiseProduct(x);
+  else
+    assembler_.multiply(mass_, x, y);
+}
+
+double ModalProblem::first_elastic(int rigid_modes, bool prefer_dense) {
+  constexpr double kRoughly = 1e-2;
+  const int count = rigid_modes + 1;
+  if (!all_at_once(count, prefer_dense)) {
+    const ShiftInvertResult rough = lanczos_shift_invert(shift_invert(count, 0), count, kRoughly);
+    summary_.solves += rough.solves;
+    if (rough.status == ArpackStatus::success) return rough.lambda[rigid_modes];
+  }
+  return lowest(count, 0, prefer_dense).lambda[rigid_modes];
+}
+
+ModalPairs ModalProblem::lanczos(int count, int round) {
+  constexpr double kTolerance = 1e-15;
+  ShiftInvertProblem problem = shift_invert(count, round);
   ShiftInvertResult result;
-  for (int attempt = 0; attempt < 3; ++attempt) {
+  if (round == 0) {  // the last pair is only asked where the next frequency lies
+    result = lanczos_shift_invert(problem, std::max(1, count - 1), kTolerance);
+    summary_.solves += result.solves;
+    if (result.status == ArpackStatus::success) polish(result);
+  }
+  for (int attempt = 0; attempt < 3 && result.status != ArpackStatus::success; ++attempt) {
     result = arpack_shift_invert(problem);
     summary_.solves += result.solves;
-    if (result.status == ArpackStatus::success) break;
     problem.basis = 2 * std::max(20, std::max(2 * count + 1, problem.basis));
     problem.start += 17;
   }
   if (result.status != ArpackStatus::success) {
-    if (system_.size() <= kDenseRescue) return lowest(count, start, true);
+    if (system_.size() <= kDenseRescue) return lowest(count, round, true);
     throw SolverError("modes of " + system_.name() + ": ARPACK: " + result.reason);
   }
-  ModalPairs pairs{std::move(result.lambda), std::move(result.vectors)};
+  ModalPairs pairs{std::move(result.lambda), std::move(result.vectors), {}};
   refine(pairs);
   return pairs;
 }
 
-ModalPairs ModalProblem::lowest(int count, int start, bool prefer_dense) {
+void ModalProblem::polish(ShiftInvertResult& pairs) {
+  Vector x, mx, shares;
+  for (Eigen::Index j = 0; j < pairs.vectors.cols(); ++j) {
+    const auto lower = pairs.vectors.leftCols(j);
+    x = pairs.vectors.col(j);
+    multiply_mass(x, mx);
+    shares.noalias() = lower.transpose() * mx;
+    x.noalias() -= lower * shares;
+    multiply_mass(x, mx);
+    shifted_.solve(mx, x);
+    pairs.vectors.col(j) = (pairs.lambda[j] - summary_.shift) * x;
+    ++summary_.solves;
+  }
+}
+
+bool ModalProblem::all_at_once(int count, bool prefer_dense) const {
   // Lanczos needs a basis of twice the number asked for: near n dense is cheaper and surer.
-  const bool all = prefer_dense || 2 * count + 1 > system_.size();
+  return prefer_dense || 2 * count + 1 > system_.size();
+}
+
+ModalPairs ModalProblem::lowest(int count, int round, bool prefer_dense) {
+  const bool all = all_at_once(count, prefer_dense);
   summary_.method = all ? ModesMethod::dense : ModesMethod::lanczos;
-  return all ? dense() : lanczos(count, start);
+  return all ? dense() : lanczos(count, round);
 }
 
 void ModalProblem::refine(ModalPairs& pairs) const {
+  constexpr double kRounding = 1e-13;
   const int n = pairs.count();
-  Vector x, product;
-  for (int j = 0; j < n; ++j) {
-    x = pairs.vectors.col(j);
-    assembler_.multiply(mass_, x, product);
-    x /= std::sqrt(x.dot(product));
-    pairs.vectors.col(j) = x;
-    const double distance = pairs.lambda[j] - summary_.shift;
-    if (distance * distance > -summary_.shift * lambda_max_) {
-      assembler_.multiply(stiffness_, x, product);
-      pairs.lambda[j] = x.dot(product);
+  const SparseMatrix& p = system_.pattern();
+  const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
+  struct Sums {
+    double xmx = 0.0, xkx = 0.0, size = 0.0;
+  };
+  std::vector<Sums> sums(at(n));
+  for (int start = 0; start < p.rows(); start += kStrip) {
+    const int end = std::min(start + kStrip, static_cast<int>(p.rows()));
+    for (int j = 0; j < n; ++j) {
+      const double* x = &pairs.vectors(0, j);
+      Sums& sum = sums[at(j)];
+      for (int row = start; row < end; ++row) {
+        double mx = 0.0, kx = 0.0, k_size = 0.0;
+        for (int s = outer[row]; s < outer[row + 1]; ++s) {
+          const double xi = x[inner[s]], k = stiffness_[s] * xi;
+          mx += mass_[s] * xi;
+          kx += k;
+          k_size += std::abs(k);
+        }
+        sum.xmx += x[row] * mx;
+        sum.xkx += x[row] * kx;
+        sum.size += std::abs(x[row]) * k_size;
+      }
     }
+  }
+  pairs.rigid.resize(at(n));
+  for (int j = 0; j < n; ++j) {
+    const auto& [xmx, xkx, size] = sums[at(j)];
+    pairs.vectors.col(j) /= std::sqrt(xmx);
+    pairs.rigid[at(j)] = std::abs(xkx) <= kRounding * size;
+    const double distance = pairs.lambda[j] - summary_.shift;
+    if (distance * distance > -summary_.shift * lambda_max_) pairs.lambda[j] = xkx / xmx;
   }
   // The two estimates may swap what rounding makes equal.
   for (int j = 1; j < n; ++j)
     for (int i = j; i > 0 && pairs.lambda[i] < pairs.lambda[i - 1]; --i) {
       std::swap(pairs.lambda[i], pairs.lambda[i - 1]);
       pairs.vectors.col(i).swap(pairs.vectors.col(i - 1));
+      pairs.rigid.swap(pairs.rigid[at(i)], pairs.rigid[at(i - 1)]);
     }
 }
 
-bool ModalProblem::stores_no_energy(const Vector& x) const {
-  constexpr double kRounding = 1e-13;
-  Vector product, magnitude;
-  assembler_.multiply(stiffness_, x, product);
-  assembler_.multiply(stiffness_.cwiseAbs(), x.cwiseAbs(), magnitude);
-  return std::abs(x.dot(product)) <= kRounding * x.cwiseAbs().dot(magnitude);
-}
-
-double ModalProblem::residual(double lambda, const Vector& x) const {
-  Vector kx, mx, k_size, m_size;
-  assembler_.multiply(stiffness_, x, kx);
-  assembler_.multiply(mass_, x, mx);
-  assembler_.multiply(stiffness_.cwiseAbs(), x.cwiseAbs(), k_size);
-  assembler_.multiply(mass_.cwiseAbs(), x.cwiseAbs(), m_size);
-  return (kx - lambda * mx).cwiseAbs().maxCoeff() / (k_size + lambda * m_size).maxCoeff();
+double ModalProblem::largest_residual(const ModalPairs& pairs, int first, int count) const {
+  const SparseMatrix& p = system_.pattern();
+  const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
+  std::vector<double> largest(at(count), 0.0), scale(at(count), 0.0);
+  for (int start = 0; start < p.rows(); start += kStrip) {
+    const int end = std::min(start + kStrip, static_cast<int>(p.rows()));
+    for (int j = 0; j < count; ++j) {
+      const double *x = &pairs.vectors(0, first + j), lambda = pairs.lambda[first + j];
+      for (int row = start; row < end; ++row) {
+        double sum = 0.0, size = 0.0;
+        for (int s = outer[row]; s < outer[row + 1]; ++s) {
+          const double kx = stiffness_[s] * x[inner[s]], mx = lambda * mass_[s] * x[inner[s]];
+          sum += kx - mx;
+          size += std::abs(kx) + std::abs(mx);
+        }
+        largest[at(j)] = std::max(largest[at(j)], std::abs(sum));
+        scale[at(j)] = std::max(scale[at(j)], size);
+      }
+    }
+  }
+  double worst = 0.0;
+  for (int j = 0; j < count; ++j) worst = std::max(worst, largest[at(j)] / scale[at(j)]);
+  return worst;
 }
 
 const std::string& ModalProblem::largest_entry(const Vector& x) const {

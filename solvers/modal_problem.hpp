@@ -7,6 +7,7 @@
 /// that of the Rayleigh quotient x' K x / x' M x about eps lambda_max; the smaller of the two is
 /// taken.
 #include "core/assembler.hpp"
+#include "solvers/arpack_shift_invert.hpp"
 #include "solvers/inertia_count.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/sparse_cholesky.hpp"
@@ -16,6 +17,8 @@ namespace drev {
 struct ModalPairs {
   Vector lambda;            ///< ascending [(rad/s)^2]
   Eigen::MatrixXd vectors;  ///< columns x, x' M x = 1
+  /// The mode stores no elastic energy within rounding: |x' K x| <= 1e-13 |x|' |K| |x|.
+  std::vector<bool> rigid;
   int count() const { return static_cast<int>(lambda.size()); }
 };
 
@@ -28,33 +31,41 @@ class ModalProblem {
   /// of a uniform chain, and starts again where that turns out to be more than 10 times or less
   /// than a hundredth. Throws SolverError where no shift makes K - sigma M positive definite.
   void find_shift(int rigid_modes, bool dense);
-  /// The lowest pairs, at least count, by the method preferred; summary says which it was. Where
-  /// Lanczos does not converge (very many copies of one frequency) the basis is enlarged, then
-  /// dense is taken up to kDenseRescue unknowns; beyond, throws SolverError with ARPACK's reason.
-  /// start: number of start vector.
-  ModalPairs lowest(int count, int start, bool prefer_dense);
+  /// The lowest pairs, at least count, by the method preferred; summary says which it was. Round 0 is
+  /// Lanczos without restarts, which is fast and may miss copies of a frequency; later rounds, and what
+  /// did not converge, are ARPACK's, each with another start vector. Where that does not converge either
+  /// (very many copies) the basis is enlarged, then dense is taken up to kDenseRescue unknowns; beyond,
+  /// throws SolverError with ARPACK's reason.
+  ModalPairs lowest(int count, int round, bool prefer_dense);
   static constexpr int kDenseRescue = 3000;
 
   InertiaCounter& sturm() { return sturm_; }
-  bool stores_no_energy(const Vector& x) const;
-  /// |K x - lambda M x| / (|K| |x| + lambda |M| |x|) in the maximum norm.
-  double residual(double lambda, const Vector& x) const;
+  /// Largest |K x - lambda M x| / (|K| |x| + lambda |M| |x|), each in the maximum norm, of `count` pairs.
+  double largest_residual(const ModalPairs& pairs, int first, int count) const;
   /// Name of the node that moves most.
   const std::string& largest_entry(const Vector& x) const;
 
  private:
-  ModalPairs lanczos(int count, int start);
+  bool all_at_once(int count, bool prefer_dense) const;
+  ModalPairs lanczos(int count, int round);
+  double first_elastic(int rigid_modes, bool prefer_dense);  // lambda, roughly
+  ShiftInvertProblem shift_invert(int count, int start);
   const ModalPairs& dense();  // all pairs, computed once for each shift
   void factor(double sigma);
+  void multiply_mass(const Vector& x, Vector& y) const;
+  /// One more inverse iteration takes out the rounding that Lanczos leaves in the fast modes; shares in
+  /// slower modes, which it would magnify, are taken out first.
+  void polish(ShiftInvertResult& pairs);
   void refine(ModalPairs& pairs) const;
 
   const System& system_;
   Assembler assembler_;
   Vector stiffness_, mass_;
+  Vector mass_diagonal_;  // empty where M is not diagonal
   double lambda_max_ = 0.0;  // scale, from row sums
   ModesSummary& summary_;
-  InertiaCounter sturm_;
   SparseCholesky shifted_;
+  InertiaCounter sturm_;
   ModalPairs dense_pairs_;
   double dense_shift_ = 0.0;  // that dense_pairs_ belong to
 };

@@ -34,7 +34,7 @@ void check_rigid(const System& system, Contact contact, const ModalProblem& prob
   const int expected = static_cast<int>(parts.size());
   int found = 0;
   for (int j = 0; j < pairs.count(); ++j) {
-    if (problem.stores_no_energy(pairs.vectors.col(j)))
+    if (pairs.rigid[at(j)])
       ++found;
     else if (pairs.lambda[j] < 0.0)
       throw SolverError("modes of " + system.name() + ": omega^2 = " + to_text(pairs.lambda[j]) +
@@ -81,24 +81,23 @@ int sturm_surplus(ModalProblem& problem, const Vector& lambda, int cut, ModesSum
 void fill(const System& system, const ModalProblem& problem, const ModalPairs& pairs, int first,
           int count, ModeSet& modes) {
   modes.vectors = pairs.vectors.middleCols(first, count);
-  modes.shapes.setZero(system.node_count(), count);
+  modes.shapes.resize(system.node_count(), count);
   for (int j = 0; j < count; ++j) {
+    auto vector = modes.vectors.col(j);
+    auto shape = modes.shapes.col(j);
+    double largest = 0.0;
     for (int i = 0; i < system.node_count(); ++i) {
       const NodeMap& map = system.node_map(i);
-      if (map.unknown >= 0) modes.shapes(i, j) = map.coeff * modes.vectors(map.unknown, j);
+      shape[i] = map.unknown >= 0 ? map.coeff * vector[map.unknown] : 0.0;
+      largest = std::max(largest, std::abs(shape[i]));
     }
     // The first of the largest entries (ties within rounding) decides the sign.
-    const double largest = modes.shapes.col(j).cwiseAbs().maxCoeff();
-    for (int i = 0; i < system.node_count(); ++i)
-      if (std::abs(modes.shapes(i, j)) > largest * (1.0 - 1e-6)) {
-        if (modes.shapes(i, j) < 0.0) modes.shapes.col(j) *= -1.0, modes.vectors.col(j) *= -1.0;
-        break;
-      }
-    const double lambda = pairs.lambda[first + j];
-    modes.frequency_Hz.push_back(to_hz(std::sqrt(lambda)));
-    modes.summary.largest_residual =
-        std::max(modes.summary.largest_residual, problem.residual(lambda, modes.vectors.col(j)));
+    Eigen::Index decides = 0;
+    while (!(std::abs(shape[decides]) > largest * (1.0 - 1e-6))) ++decides;
+    if (shape[decides] < 0.0) shape *= -1.0, vector *= -1.0;
+    modes.frequency_Hz.push_back(to_hz(std::sqrt(pairs.lambda[first + j])));
   }
+  modes.summary.largest_residual = problem.largest_residual(pairs, first, count);
 }
 
 }  // namespace

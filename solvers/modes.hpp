@@ -26,7 +26,7 @@ namespace drev {
 
 enum class ModesMethod {
   dense,   ///< all eigenpairs of the shifted problem (Eigen)
-  lanczos  ///< shift-invert Lanczos (ARPACK)
+  lanczos  ///< shift-invert Lanczos: without restarts, or ARPACK's
 };
 const char* to_text(ModesMethod method);
 
@@ -35,10 +35,10 @@ struct ModesOptions {
   /// fewer. Not given: 10, or all where there are fewer (none is no error).
   std::optional<int> count = {};
   Contact contact = Contact::closed;
-  /// Systems of up to as many unknowns are solved dense. Measured for 10 modes of a free chain,
-  /// time dense : Lanczos = 0.24 at 30 unknowns, 0.35 at 50, 0.8 at 80, 1.2 at 100, 3.8 at 200, 16
-  /// at 400 (67 ms : 4 ms).
-  int dense_limit = 90;
+  /// Systems of up to as many unknowns are solved dense, and where Lanczos would need a basis of nearly all.
+  /// Measured for 10 modes of a held chain, time dense : Lanczos = 1.06 at 24 unknowns, 1.4 at 38, 3.4 at 80,
+  /// 5.7 at 100, 28 at 200 (6.5 ms : 0.23 ms).
+  int dense_limit = 20;
 };
 
 /// How the modes were found.

@@ -153,6 +153,10 @@ Ordering SparseCholesky::ordering() const {
                                                                   : Ordering::natural;
 }
 
+std::shared_ptr<const LowFillPattern> SparseCholesky::low_fill() const {
+  return impl_->flat ? impl_->flat->shared_pattern() : nullptr;
+}
+
 int SparseCholesky::factor_entries() const {
   if (!ok()) return 0;
   if (impl_->cholmod) return static_cast<int>(impl_->cholmod->factor().nzmax);

@@ -30,6 +30,8 @@ enum class FactorStatus {
 };
 const char* to_text(FactorStatus status);
 
+struct LowFillPattern;
+
 /// Order of elimination.
 enum class Ordering { natural, from_leaves, amd };
 
@@ -64,6 +66,8 @@ class SparseCholesky {
   double reciprocal_condition() const;
   /// How the unknowns are ordered; natural before the analysis.
   Ordering ordering() const;
+  /// What was found of a pattern that hardly fills; null before, or where CHOLMOD factors it.
+  std::shared_ptr<const LowFillPattern> low_fill() const;
   /// Number of entries of L; 0 before the first factorisation.
   int factor_entries() const;
 
