@@ -1,7 +1,6 @@
 // Chains, branched trains and looped gear trains of 1e2 to 1e6 unknowns: processor time to build, factor,
 // solve, make a step of average acceleration, and find the ten lowest modes; memory of the whole process
-// an unknown; exponents in n, fitted over all sizes. Ten modes of a chain beside LAPACK's dsygvd at 38
-// unknowns, by turns. tests/benchmark/peers/scipy_modes.py has SciPy's times for the same chains.
+// an unknown; exponents in n, fitted over all sizes (modes: from 2e4). Other programs' modes: bench_modes.
 //   build/release/bin/bench_large            "[peaks]" for memory alone, "[modes]" for modes alone
 #include <algorithm>
 #include <ctime>
@@ -18,10 +17,6 @@
 
 using namespace drev;
 using namespace drev::benchmark;
-
-extern "C" void dsygvd_(const int* itype, const char* jobz, const char* uplo, const int* n, double* a,
-                        const int* lda, double* b, const int* ldb, double* w, double* work,
-                        const int* lwork, int* iwork, const int* liwork, int* info);
 
 namespace {
 
@@ -182,37 +177,4 @@ TEST_CASE("Large models: the ten lowest modes", "[modes]") {
       }
       if (shape == "chain") print("modes_error", shape, n, worst, "");
     }
-}
-
-TEST_CASE("Modes of 38 inertias beside LAPACK's dsygvd", "[modes][dense]") {
-  const int n = 38;
-  const System system = LargeModel("chain", n).build();
-  std::vector<double> own, lapack, ratio;
-  const Eigen::MatrixXd mass = kInertia * Eigen::MatrixXd::Identity(n, n);
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
-  for (int i = 0; i < n; ++i) {
-    stiffness(i, i) = (i + 1 < n ? 2.0 : 1.0) * kStiffness;
-    if (i > 0) stiffness(i, i - 1) = stiffness(i - 1, i) = -kStiffness;
-  }
-  const int lwork = 1 + 6 * n + 2 * n * n, liwork = 3 + 5 * n, itype = 1;
-  std::vector<double> work(at(lwork)), lambda(at(n));
-  std::vector<int> iwork(at(liwork));
-  Eigen::MatrixXd a, b;
-  const auto all_by_lapack = [&] {
-    a = stiffness;
-    b = mass;
-    int info = 0;
-    dsygvd_(&itype, "V", "U", &n, a.data(), &n, b.data(), &n, lambda.data(), work.data(), &lwork,
-            iwork.data(), &liwork, &info);
-    REQUIRE(info == 0);
-  };
-  for (int turn = 0; turn < 11; ++turn) {
-    own.push_back(seconds([&] { solve_modes(system, {.count = 10}); }));
-    lapack.push_back(seconds(all_by_lapack));
-    ratio.push_back(lapack.back() / own.back());
-  }
-  CHECK(std::sqrt(lambda[0]) == Approx(hz(chain_frequency(n, 1))));
-  print("modes drev", "chain", n, median(own), "s");
-  print("modes dsygvd", "chain", n, median(lapack), "s");
-  std::printf("ratio dsygvd/drev %.2f\n", median(ratio));
 }
