@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solvers/cholmod_factor.hpp"
-#include "solvers/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace drev {
 
