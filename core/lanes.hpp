@@ -30,6 +30,25 @@ struct LaneRow {
 };
 using LaneArray = std::vector<LaneRow>;
 
+/// Numbers that are often the same in all lanes: then kept singly too, for loops that read them again and again
+/// and want to stay in the nearest cache.
+struct LaneValues {
+  LaneArray rows;
+  std::vector<double> common;  ///< empty where lanes differ
+  /// Fills common from rows.
+  void find_common() {
+    common.clear();
+    for (const LaneRow& row : rows)
+      for (int lane = 1; lane < kLanes; ++lane)
+        if (!(row.v[lane] == row.v[0])) return;
+    for (const LaneRow& row : rows) common.push_back(row.v[0]);
+  }
+};
+
+/// Of either kind of LaneValues' entries, in loops written for both.
+[[gnu::always_inline]] inline const double& each(const double& x) { return x; }
+[[gnu::always_inline]] inline const Lanes& each(const LaneRow& x) { return x.v; }
+
 /// Smallest multiple of kLanes that is not less than n.
 constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 

@@ -41,8 +41,8 @@ void TableLoads::set_nominal(double phi, Values& values) const {
   for (std::size_t e = 0; e < ratio_.size(); ++e) values.nominal[e] = ratio_[e] * phi + offset_[e];
 }
 
-[[gnu::always_inline]] inline void TableLoads::find_knot(std::size_t e, double argument,
-                                                         Values& values) const {
+/// Angles here are arguments: less the offset.
+[[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(std::size_t e, double argument) const {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to whole numbers
   double turns = argument * inverse_period_[e] + kRound;
   turns -= kRound;
@@ -51,11 +51,14 @@ void TableLoads::set_nominal(double phi, Values& values) const {
   place = place > 0.0 ? place : 0.0;  // NaN too
   const Knot& k = knots_[static_cast<std::size_t>(begin_[e]) +
                          static_cast<std::size_t>(std::min(place, static_cast<double>(count_[e])))];
-  values.origin[e] = k.argument + period_[e] * turns;
-  values.from_knot[e] = argument - values.origin[e];
-  values.value[e] = coeff_[e] * k.value;
-  values.left[e] = coeff_[e] * k.left;
-  values.right[e] = coeff_[e] * k.right;
+  return {k.argument + period_[e] * turns, coeff_[e] * k.value, coeff_[e] * k.left, coeff_[e] * k.right};
+}
+
+TableLoads::Nearest TableLoads::nearest(int e, double angle) const {
+  const auto i = static_cast<std::size_t>(e);
+  Nearest found = find_knot(i, angle + offset_[i]);
+  found.angle -= offset_[i];
+  return found;
 }
 
 DREV_WIDEST
@@ -77,8 +80,13 @@ void TableLoads::look_up(const double* z, Values& values) const {
   if (left_behind)
     for (int e = 0; e < n; ++e) {
       const double places = from_knot[e] * density[e];
-      if (!(places <= 0.5 && places >= -0.5))
-        find_knot(static_cast<std::size_t>(e), nominal[e] + gain[e] * z[unknown[e]], values);
+      if (places <= 0.5 && places >= -0.5) continue;
+      const auto i = static_cast<std::size_t>(e);
+      const double argument = nominal[e] + gain[e] * z[unknown[e]];
+      const Nearest found = find_knot(i, argument);
+      values.origin[i] = found.angle;
+      values.from_knot[i] = argument - found.angle;
+      values.value[i] = found.value, values.left[i] = found.left, values.right[i] = found.right;
     }
   Lanes most{};
   int e = 0;

@@ -37,6 +37,12 @@ class TableLoads {
   void set_nominal(double phi, Values& values) const;
   /// Torques and steepness at z; NaN where that is not finite.
   void look_up(const double* z, Values& values) const;
+  /// The knot nearest to an angle = ratio phi + gain z: torque value + (d < 0 ? left : right) d at a distance d
+  /// from its angle, for every angle that it is nearest to, and as far as the next knot on either side.
+  struct Nearest {
+    double angle, value, left, right;  ///< rad, N m, N m/rad
+  };
+  Nearest nearest(int e, double angle) const;
   /// p[unknown] += torque.
   void add_to(const Values& values, double* p) const;
 
@@ -45,7 +51,7 @@ class TableLoads {
     double argument;  // less that of knot 0
     double value, left, right;  // slopes on both sides
   };
-  void find_knot(std::size_t e, double argument, Values& values) const;
+  Nearest find_knot(std::size_t e, double argument) const;
   std::vector<Knot> knots_;
   std::map<const double*, int> begin_of_;  // of a table in knots_, by its values' array
   std::vector<double> coeff_, ratio_, gain_, offset_, period_, inverse_period_, inverse_spacing_;

@@ -8,36 +8,47 @@ namespace drev {
 
 namespace {
 
+template <class T>  // double where all lanes have one value
 struct Triangle {
   int n;
   const int *order, *row_begin, *left_unknown, *column_begin, *unknown_of;
   const char* follows;
-  const LaneRow *by_rows, *lower, *inverse;
+  const T *by_rows, *lower, *inverse;
 };
 
 /// A chain's neighbour stays in a register: through memory each unknown would wait for the last one's store.
-DREV_WIDEST
-void solve_lanes(const Triangle& t, const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) {
+template <class T>
+[[gnu::always_inline]] inline void solve_with(const Triangle<T>& t, const LaneRow* b, double factor,
+                                              const LaneRow* c, LaneRow* x) {
   Lanes last{};
   for (int k = 0; k < t.n; ++k) {
     const int i = t.order[k];
     Lanes sum = b[i].v + factor * c[i].v;
     const int end = t.row_begin[k + 1];
     const int apart = t.follows[k] ? end - 1 : end;
-    for (int e = t.row_begin[k]; e < apart; ++e) sum -= t.by_rows[e].v * x[t.left_unknown[e]].v;
-    if (t.follows[k]) sum -= t.by_rows[apart].v * last;
+    for (int e = t.row_begin[k]; e < apart; ++e) sum -= each(t.by_rows[e]) * x[t.left_unknown[e]].v;
+    if (t.follows[k]) sum -= each(t.by_rows[apart]) * last;
     x[i].v = last = sum;
   }
   for (int k = t.n - 1; k >= 0; --k) {
     const int i = t.order[k];
-    Lanes sum = x[i].v * t.inverse[k].v;
+    Lanes sum = x[i].v * each(t.inverse[k]);
     int e = t.column_begin[k];
     const int first = e;
     if (k + 1 < t.n && t.follows[k + 1]) ++e;
-    for (; e < t.column_begin[k + 1]; ++e) sum -= t.lower[e].v * x[t.unknown_of[e]].v;
-    if (k + 1 < t.n && t.follows[k + 1]) sum -= t.lower[first].v * last;
+    for (; e < t.column_begin[k + 1]; ++e) sum -= each(t.lower[e]) * x[t.unknown_of[e]].v;
+    if (k + 1 < t.n && t.follows[k + 1]) sum -= each(t.lower[first]) * last;
     x[i].v = last = sum;
   }
+}
+
+DREV_WIDEST
+void solve_lanes(const Triangle<double>& t, const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) {
+  solve_with(t, b, factor, c, x);
+}
+DREV_WIDEST
+void solve_lanes(const Triangle<LaneRow>& t, const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) {
+  solve_with(t, b, factor, c, x);
 }
 
 }  // namespace
@@ -100,10 +111,10 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(patter
   for (const auto& rows : below)
     for (std::size_t a = 0; a < rows.size(); ++a)
       for (std::size_t b = a; b < rows.size(); ++b) update_target_.push_back(target(rows[b], rows[a]));
-  lower_.resize(row_of_.size());
-  by_rows_.resize(row_of_.size());
+  lower_.rows.resize(row_of_.size());
+  by_rows_.rows.resize(row_of_.size());
   pivot_.resize(n);
-  inverse_.resize(n);
+  inverse_.rows.resize(n);
 }
 
 std::vector<std::vector<int>> LaneFactor::columns(const SparseMatrix& pattern,
@@ -128,29 +139,32 @@ std::vector<std::vector<int>> LaneFactor::columns(const SparseMatrix& pattern,
 
 void LaneFactor::factorize(const LaneArray& values) {
   const LaneRow zero{};
-  std::fill(lower_.begin(), lower_.end(), zero);
+  LaneArray &lower = lower_.rows, &inverse = inverse_.rows;
+  std::fill(lower.begin(), lower.end(), zero);
   std::fill(pivot_.begin(), pivot_.end(), zero);
   for (std::size_t e = 0; e < pattern_slot_.size(); ++e) {
     const int target = pattern_target_[e];
-    LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower_[at(target)];
+    LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower[at(target)];
     to.v += values[at(pattern_slot_[e])].v;
   }
   const LaneArray diagonal = pivot_;
   std::size_t update = 0;
   for (int k = 0; k < n_; ++k) {
     const int begin = column_begin_[at(k)], end = column_begin_[at(k + 1)];
-    inverse_[at(k)].v = 1.0 / pivot_[at(k)].v;
+    inverse[at(k)].v = 1.0 / pivot_[at(k)].v;
     for (int a = begin; a < end; ++a) {
-      const Lanes scaled = lower_[at(a)].v * inverse_[at(k)].v;
+      const Lanes scaled = lower[at(a)].v * inverse[at(k)].v;
       for (int b = a; b < end; ++b) {
         const int target = update_target_[update++];
-        LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower_[at(target)];
-        to.v -= scaled * lower_[at(b)].v;
+        LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower[at(target)];
+        to.v -= scaled * lower[at(b)].v;
       }
     }
-    for (int a = begin; a < end; ++a) lower_[at(a)].v *= inverse_[at(k)].v;
+    for (int a = begin; a < end; ++a) lower[at(a)].v *= inverse[at(k)].v;
   }
-  for (std::size_t e = 0; e < row_slot_.size(); ++e) by_rows_[e] = lower_[at(row_slot_[e])];
+  for (std::size_t e = 0; e < row_slot_.size(); ++e) by_rows_.rows[e] = lower[at(row_slot_[e])];
+  for (LaneValues* v : {&lower_, &by_rows_, &inverse_}) v->find_common();
+  common_ = lower_.common.size() == lower.size() && inverse_.common.size() == inverse.size();
   for (int lane = 0; lane < kLanes; ++lane) {
     ok_[lane] = true;
     for (std::size_t k = 0; k < pivot_.size(); ++k) {
@@ -163,9 +177,15 @@ void LaneFactor::factorize(const LaneArray& values) {
 }
 
 void LaneFactor::solve(const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) const {
-  solve_lanes({n_, order_.data(), row_begin_.data(), left_unknown_.data(), column_begin_.data(),
-               unknown_of_.data(), follows_.data(), by_rows_.data(), lower_.data(), inverse_.data()},
-              b, factor, c, x);
+  const auto with = [&]<class T>(const T* by_rows, const T* lower, const T* inverse) {
+    solve_lanes(Triangle<T>{n_, order_.data(), row_begin_.data(), left_unknown_.data(), column_begin_.data(),
+                            unknown_of_.data(), follows_.data(), by_rows, lower, inverse},
+                b, factor, c, x);
+  };
+  if (common_)
+    with(by_rows_.common.data(), lower_.common.data(), inverse_.common.data());
+  else
+    with(by_rows_.rows.data(), lower_.rows.data(), inverse_.rows.data());
 }
 
 }  // namespace drev

@@ -33,7 +33,9 @@ class LaneFactor {
   std::vector<char> follows_;                            // L(k, k - 1) is there, last in its row
   std::vector<int> pattern_slot_, pattern_target_;  // where A's lower triangle enters L; < 0: -1 - row of D
   std::vector<int> update_target_;                  // of every pair of rows of every column
-  LaneArray lower_, by_rows_, pivot_, inverse_;
+  LaneValues lower_, by_rows_, inverse_;
+  LaneArray pivot_;
+  bool common_ = false;  // all lanes have one factor
   bool ok_[kLanes] = {};
 };
 

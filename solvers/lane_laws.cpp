@@ -94,7 +94,7 @@ void LaneLaws::take_known(const std::vector<Assembler>& assemblers) {
   }
 }
 
-void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneArray& z,
+void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneMotion& motion,
                            LanePointLaws& to) const {
   for (std::size_t j = 0; j < laws_.size(); ++j)
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -102,7 +102,7 @@ void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneA
       if (node < 0) continue;
       const Assembler& assembler = assemblers[at(lane)];
       const NodeMap& map = assembler.system().node_map(node);
-      const double q = map.unknown >= 0 ? z[at(map.unknown)].v[lane]
+      const double q = map.unknown >= 0 ? motion.z(map.unknown, lane)
                                         : assembler.prescribed(map.prescribed).value;
       to.angle[j].v[lane] = assembler.system().ratio(node) * assembler.nominal().value + map.coeff * q;
     }
@@ -177,7 +177,7 @@ struct LaneLawKernels {
     dy_dx_dot.v = p.c.v + p.product.v * x.v;
   }
 
-  DREV_WIDEST static void solve(LaneLaws& l, const LaneLaws::Free& free, double t, const LaneRow& scale,
+  DREV_WIDEST static void solve(LaneLaws& l, const LaneMotion& free, double t, const LaneRow& scale,
                                 double tolerance, LaneMask& open, LaneRow* lambda, LanePointLaws& to,
                                 LaneRow& iterations) {
     const std::size_t m = l.laws_.size();
@@ -253,7 +253,7 @@ struct LaneLawKernels {
   }
 };
 
-void LaneLaws::solve(const Free& free, double t, const LaneRow& scale, double tolerance, LaneMask& open,
+void LaneLaws::solve(const LaneMotion& free, double t, const LaneRow& scale, double tolerance, LaneMask& open,
                      LaneRow* lambda, LanePointLaws& to, LaneRow& iterations) {
   to.t = t;
   LaneLawKernels::solve(*this, free, t, scale, tolerance, open, lambda, to, iterations);
@@ -281,13 +281,15 @@ void LaneLaws::forces(const LaneArray& y, LaneForces& by) const {
 }
 
 void LaneLaws::add_extra_input(const LanePointLaws& from, const LaneRow* z_0, const LanePointLaws& to,
-                               const LaneRow* z_1, LaneRow& input) const {
+                               const LaneMotion& end, LaneRow& input) const {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const Law& law = laws_[j];
     if (law.has_known) {
       Lanes moved = to.x[j].v - from.x[j].v;
-      for (std::size_t e = 0; e < law.unknowns.size(); ++e)
-        moved -= law.coefficients[e].v * (z_1[law.unknowns[e]].v - z_0[law.unknowns[e]].v);
+      for (std::size_t e = 0; e < law.unknowns.size(); ++e) {
+        const int i = law.unknowns[e];
+        moved -= law.coefficients[e].v * (end.z_0[i].v + end.kappa_z * end.a[i].v - z_0[i].v);
+      }
       input.v += 0.5 * (from.y[j].v + to.y[j].v) * moved;
     }
     if (!law.varies) continue;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/assembler.hpp"
-#include "core/lanes.hpp"
+#include "solvers/lane_motion.hpp"
 
 namespace drev {
 
@@ -39,21 +39,17 @@ class LaneLaws {
   /// which stand at the step's time. Only needed where has_known().
   bool has_known() const { return has_known_; }
   void take_known(const std::vector<Assembler>& assemblers);
-  void take_angles(const std::vector<Assembler>& assemblers, const LaneArray& z, LanePointLaws& to) const;
+  void take_angles(const std::vector<Assembler>& assemblers, const LaneMotion& motion,
+                   LanePointLaws& to) const;
 
   /// compliance: B' S^-1 B from W = S^-1 B by rows.
   void set_compliance(const LaneArray& w, double kappa_x, double kappa_v);
   /// b_j as a vector over the unknowns.
   void row(int law, LaneArray& b) const;
 
-  /// From the motion z_0 + kappa_z a, v_0 + kappa_v a with all forces zero to the forces lambda, in the lanes
-  /// that are open; the others keep theirs. Converged: |lambda - y| <= tolerance * scale. What stays open did
-  /// not converge.
-  struct Free {
-    const LaneRow *z_0, *v_0, *a;
-    double kappa_z, kappa_v;
-  };
-  void solve(const Free& free, double t, const LaneRow& scale, double tolerance, LaneMask& open,
+  /// From the motion with all forces zero to the forces lambda, in the lanes that are open; the others keep
+  /// theirs. Converged: |lambda - y| <= tolerance * scale. What stays open did not converge.
+  void solve(const LaneMotion& free, double t, const LaneRow& scale, double tolerance, LaneMask& open,
              LaneRow* lambda, LanePointLaws& to, LaneRow& iterations);
   /// Energy and power at the point's x and x', in all lanes.
   void energies(LanePointLaws& point);
@@ -63,7 +59,7 @@ class LaneLaws {
   /// What EnergyMonitor adds to the input for laws with moved ends, with transmission error, or that vary.
   bool extra_input() const { return has_known_ || varies_; }
   void add_extra_input(const LanePointLaws& from, const LaneRow* z_0, const LanePointLaws& to,
-                       const LaneRow* z_1, LaneRow& input) const;
+                       const LaneMotion& end, LaneRow& input) const;
 
  private:
   struct Piece {

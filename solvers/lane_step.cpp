@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace drev {
 
@@ -12,20 +13,35 @@ namespace {
   most = most < size ? size : most;
 }
 
-/// out = row i of A x. Both ways round alike (0 + ... keeps the product from being fused into what follows):
-/// a variant's result does not depend on whether its neighbours' matrices are diagonal.
-[[gnu::always_inline]] inline void row_product(const LaneMatrices& m, const LaneArray& values,
-                                               const LaneArray& diagonal, const LaneRow* x, int i,
-                                               Lanes& out) {
-  if (!diagonal.empty()) {
-    out = Lanes{} + diagonal.data()[i].v * x[i].v;
-    return;
+/// A matrix by rows, or its diagonal where that is all there is. T: double where all lanes have one value.
+template <class T>
+struct Product {
+  const int *outer, *inner;
+  const T *values, *diagonal;
+
+  /// out = row i of A x. All ways round alike (0 + ... keeps the product from being fused into what follows):
+  /// a variant's result does not depend on its neighbours' matrices.
+  [[gnu::always_inline]] void row(int i, const LaneRow* x, Lanes& out) const {
+    if (diagonal) {
+      out = Lanes{} + each(diagonal[i]) * x[i].v;
+      return;
+    }
+    out = Lanes{};
+    for (int s = outer[i]; s < outer[i + 1]; ++s) out += each(values[s]) * x[inner[s]].v;
   }
-  const int* outer = m.pattern.outerIndexPtr();
-  const int* inner = m.pattern.innerIndexPtr();
-  const LaneRow* v = values.data();
-  out = Lanes{};
-  for (int s = outer[i]; s < outer[i + 1]; ++s) out += v[s].v * x[inner[s]].v;
+};
+
+template <class T>
+[[gnu::always_inline]] inline const T* entries(const LaneValues& v) {
+  if constexpr (std::is_same_v<T, double>)
+    return v.common.empty() ? nullptr : v.common.data();
+  else
+    return v.rows.empty() ? nullptr : v.rows.data();
+}
+template <class T>
+[[gnu::always_inline]] inline Product<T> product(const LaneMatrices& m, const LaneValues& values,
+                                                 const LaneValues& diagonal) {
+  return {m.pattern.outerIndexPtr(), m.pattern.innerIndexPtr(), entries<T>(values), entries<T>(diagonal)};
 }
 
 }  // namespace
@@ -49,28 +65,30 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
     }
   pattern.resize(n, n);
   pattern.setFromTriplets(kept.begin(), kept.end());
-  for (LaneArray* a : {&mass, &damping, &stiffness}) a->resize(slots.size());
+  for (LaneValues* a : {&mass, &damping, &stiffness}) a->rows.resize(slots.size());
   bool mass_is_diagonal = true, damping_is_diagonal = true;
   for (int lane = 0; lane < kLanes; ++lane) {
     const System& system = *systems[at(lane)];
     mass_is_diagonal = mass_is_diagonal && system.mass_is_diagonal();
     damping_is_diagonal = damping_is_diagonal && system.damping_is_diagonal();
     for (std::size_t s = 0; s < slots.size(); ++s) {
-      mass[s].v[lane] = system.mass_values()[slots[s]];
-      damping[s].v[lane] = system.damping_values()[slots[s]];
-      stiffness[s].v[lane] = system.stiffness_values()[slots[s]];
+      mass.rows[s].v[lane] = system.mass_values()[slots[s]];
+      damping.rows[s].v[lane] = system.damping_values()[slots[s]];
+      stiffness.rows[s].v[lane] = system.stiffness_values()[slots[s]];
     }
   }
   for (const std::size_t s : diagonal) {
-    if (mass_is_diagonal) mass_diagonal.push_back(mass[s]);
-    if (damping_is_diagonal) damping_diagonal.push_back(damping[s]);
+    if (mass_is_diagonal) mass_diagonal.rows.push_back(mass.rows[s]);
+    if (damping_is_diagonal) damping_diagonal.rows.push_back(damping.rows[s]);
   }
+  for (LaneValues* v : {&mass, &damping, &stiffness, &mass_diagonal, &damping_diagonal}) v->find_common();
+  common = !mass.common.empty() && !damping.common.empty() && !stiffness.common.empty();
 }
 
 void LaneMatrices::combine(const Weights& w, LaneArray& values) const {
-  values.resize(mass.size());
+  values.resize(mass.rows.size());
   for (std::size_t s = 0; s < values.size(); ++s)
-    values[s].v = w.m * mass[s].v + w.c * damping[s].v + w.k * stiffness[s].v;
+    values[s].v = w.m * mass.rows[s].v + w.c * damping.rows[s].v + w.k * stiffness.rows[s].v;
 }
 
 void LanePoint::get(int lane, StepPoint& point) const {
@@ -79,7 +97,7 @@ void LanePoint::get(int lane, StepPoint& point) const {
     for (std::size_t i = 0; i < from.size(); ++i) to[static_cast<Eigen::Index>(i)] = from[i].v[lane];
   };
   take(z, point.state.z), take(v, point.state.v), take(a, point.state.a);
-  take(p, point.p), take(cv, point.cv), take(total, point.total);
+  take(p, point.p), take(total, point.total);
   const std::size_t m = laws.x.size();
   point.inputs.resize(m);
   point.responses.resize(m);
@@ -96,7 +114,7 @@ void LanePoint::set(int lane, const StepPoint& point) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i].v[lane] = from[static_cast<Eigen::Index>(i)];
   };
   put(point.state.z, z), put(point.state.v, v), put(point.state.a, a);
-  put(point.p, p), put(point.cv, cv), put(point.total, total);
+  put(point.p, p), put(point.total, total);
   for (std::size_t j = 0; j < laws.x.size(); ++j) {
     const ScalarInput& in = point.inputs[j];
     const ScalarResponse& r = point.responses[j];
@@ -119,31 +137,30 @@ void LaneEnergy::set(int lane, const EnergyBalance& b) {
   given.v[lane] = b.given, scale.v[lane] = b.scale;
 }
 
-DREV_WIDEST
-void predict(const LaneMatrices& m, const StepScheme& c, double h, const LanePoint& from, bool rates,
-             LanePrediction& step, LanePoint& to) {
-  const double phi = 1.0 - c.alpha_f, to_z_0 = h * h * (0.5 - c.beta), to_v_0 = h * (1.0 - c.gamma),
-               to_z = c.beta * h * h, to_v = c.gamma * h;
+namespace {
+
+template <class T>
+[[gnu::always_inline]] inline void predict_with(const LaneMatrices& m, const StepScheme& c, double h,
+                                                const LanePoint& from, LaneArray& right, LanePoint& to) {
+  const double phi = 1.0 - c.alpha_f, to_z_0 = h * h * (0.5 - c.beta), to_v_0 = h * (1.0 - c.gamma);
   const LaneRow *z = from.z.data(), *v = from.v.data(), *a = from.a.data(), *total = from.total.data();
-  LaneRow *z_0 = step.z_0.data(), *v_0 = step.v_0.data(), *known = step.known.data();
-  LaneRow *z_1 = to.z.data(), *v_1 = to.v.data();
-  const LaneArray full;
+  LaneRow *z_0 = to.z.data(), *v_0 = to.v.data(), *known = right.data();
+  const Product<T> stiffness = product<T>(m, m.stiffness, {}),
+                   damping = product<T>(m, m.damping, m.damping_diagonal),
+                   mass = product<T>(m, m.mass, m.mass_diagonal);
   for (int i = 0; i < m.n; ++i) {
     const Lanes a_i = a[i].v, v_i = v[i].v;
-    const Lanes z_free = z[i].v + h * v_i + to_z_0 * a_i, v_free = v_i + to_v_0 * a_i;
-    z_0[i].v = z_free;
-    v_0[i].v = v_free;
-    z_1[i].v = z_free + to_z * a_i;
-    if (rates) v_1[i].v = v_free + to_v * a_i;
+    z_0[i].v = z[i].v + h * v_i + to_z_0 * a_i;
+    v_0[i].v = v_i + to_v_0 * a_i;
   }
   for (int i = 0; i < m.n; ++i) {
     Lanes elastic, loss;
-    row_product(m, m.stiffness, full, z_0, i, elastic);
-    row_product(m, m.damping, m.damping_diagonal, v_0, i, loss);
+    stiffness.row(i, z_0, elastic);
+    damping.row(i, v_0, loss);
     Lanes sum = -phi * (elastic + loss);
     if (c.alpha_m != 0.0) {
       Lanes inertia;
-      row_product(m, m.mass, m.mass_diagonal, a, i, inertia);
+      mass.row(i, a, inertia);
       sum -= c.alpha_m * inertia;
     }
     if (c.alpha_f != 0.0) sum -= c.alpha_f * total[i].v;
@@ -151,65 +168,124 @@ void predict(const LaneMatrices& m, const StepScheme& c, double h, const LanePoi
   }
 }
 
-DREV_WIDEST
-void correct(const StepScheme& c, double h, const LanePrediction& step, const LaneArray& w,
-             const LaneArray& lambda, bool rates, LanePoint& to) {
-  const double phi = 1.0 - c.alpha_f, to_z = c.beta * h * h, to_v = c.gamma * h;
-  const auto n = static_cast<int>(step.z_0.size());
-  const LaneRow *z_0 = step.z_0.data(), *v_0 = step.v_0.data();
-  LaneRow *a = to.a.data(), *z = to.z.data(), *v = to.v.data();
-  const std::size_t m = lambda.size();
-  const LaneRow *force = lambda.data(), *row = w.data();
-  for (int i = 0; i < n; ++i) {
+template <class T>
+[[gnu::always_inline]] inline void correct_with(double factor, const T* w, const LaneArray& lambda,
+                                                const LaneRow* before, LaneArray& a, LaneRow& change) {
+  const std::size_t m = lambda.size(), n = a.size();
+  const LaneRow* force = lambda.data();
+  LaneRow* to = a.data();
+  Lanes most{};
+  for (std::size_t i = 0; i < n; ++i) {
     Lanes sum{};
-    for (std::size_t j = 0; j < m; ++j) sum += row++->v * force[j].v;
-    a[i].v = sum = a[i].v - phi * sum;
-    z[i].v = z_0[i].v + to_z * sum;
-    if (rates) v[i].v = v_0[i].v + to_v * sum;
+    for (std::size_t j = 0; j < m; ++j) sum += each(*w++) * force[j].v;
+    sum = to[i].v - factor * sum;
+    to[i].v = sum;
+    larger(most, sum - before[i].v);
   }
+  change.v = most;
 }
 
-DREV_WIDEST
-void finish(const LaneMatrices& m, const StepScheme& c, double h, double t, const LanePoint& from,
-            const LanePrediction& step, const LaneForces& by, const LaneRow& extra_input, LanePoint& to,
-            LaneMask& good, LaneEnergy& energy, LaneRow& force_scale) {
+/// The sums over all unknowns of a step's end.
+struct Sums {
+  LaneRow work, loss, kinetic, stored, largest;
+};
+template <class T>
+[[gnu::always_inline]] inline void finish_with(const LaneMatrices& m, const StepScheme& c, double h,
+                                               const LanePoint& from, const LaneForces& by, LanePoint& to,
+                                               Sums& sums) {
   const double of_a = (1.0 - c.alpha_m) / (1.0 - c.alpha_f), of_a_0 = c.alpha_m / (1.0 - c.alpha_f),
-               of_total = c.alpha_f / (1.0 - c.alpha_f), to_v = c.gamma * h;
-  const LaneRow *z_0 = from.z.data(), *a_0 = from.a.data(), *p_0 = from.p.data(), *cv_0 = from.cv.data(),
-                *total_0 = from.total.data(), *v_0 = step.v_0.data(), *z = to.z.data(), *a = to.a.data(),
-                *p = to.p.data();
-  LaneRow *total = to.total.data(), *cv = to.cv.data(), *v = to.v.data();
-  Lanes work{}, loss{}, kinetic{}, stored{}, largest = force_scale.v;
-  const bool rows_apart = !m.mass_diagonal.empty() && !m.damping_diagonal.empty();
+               of_total = c.alpha_f / (1.0 - c.alpha_f), to_z = c.beta * h * h, to_v = c.gamma * h;
+  const LaneRow *z_0 = from.z.data(), *v_0 = from.v.data(), *a_0 = from.a.data(), *p_0 = from.p.data(),
+                *total_0 = from.total.data(), *a = to.a.data(), *p = to.p.data(), *force = by.values.data();
+  LaneRow *total = to.total.data(), *z = to.z.data(), *v = to.v.data();
+  const Product<T> damping = product<T>(m, m.damping, m.damping_diagonal),
+                   mass = product<T>(m, m.mass, m.mass_diagonal);
+  const int *next = by.rows.data(), *end = next + by.rows.size();
+  Lanes work{}, loss{}, kinetic{}, stored{}, largest = sums.largest.v;
+  const bool rows_apart = mass.diagonal && damping.diagonal;
   if (!rows_apart)
-    for (int i = 0; i < m.n; ++i) v[i].v = v_0[i].v + to_v * a[i].v;
-  std::size_t next = 0;  // of by
+    for (int i = 0; i < m.n; ++i) v[i].v = v[i].v + to_v * a[i].v;
   for (int i = 0; i < m.n; ++i) {
-    if (rows_apart) v[i].v = v_0[i].v + to_v * a[i].v;
-    Lanes inertia, mv, drag;
-    row_product(m, m.mass, m.mass_diagonal, a, i, inertia);
-    row_product(m, m.mass, m.mass_diagonal, v, i, mv);
-    row_product(m, m.damping, m.damping_diagonal, v, i, drag);
+    if (rows_apart) v[i].v = v[i].v + to_v * a[i].v;
+    const Lanes z_i = z[i].v + to_z * a[i].v, p_i = p[i].v;
+    z[i].v = z_i;
+    Lanes inertia, mv, drag, drag_0;
+    mass.row(i, a, inertia);
+    mass.row(i, v, mv);
+    damping.row(i, v, drag);
+    damping.row(i, v_0, drag_0);
     Lanes sum = -of_a * inertia;
     if (c.alpha_m != 0.0) {
-      row_product(m, m.mass, m.mass_diagonal, a_0, i, inertia);
+      mass.row(i, a_0, inertia);
       sum -= of_a_0 * inertia;
     }
     if (c.alpha_f != 0.0) {
       sum -= of_total * total_0[i].v;
       total[i].v = sum;
     }
-    Lanes elastic = sum + p[i].v - drag;
-    if (next < by.rows.size() && by.rows[next] == i) elastic -= by.values[next++].v;
-    cv[i].v = drag;
-    const Lanes moved = 0.5 * (z[i].v - z_0[i].v);
-    work += moved * (p_0[i].v + p[i].v);
-    loss += moved * (cv_0[i].v + drag);
+    Lanes elastic = sum + p_i - drag;
+    if (next != end && *next == i) {
+      elastic -= force++->v;
+      ++next;
+    }
+    const Lanes moved = 0.5 * (z_i - z_0[i].v);
+    work += moved * (p_0[i].v + p_i);
+    loss += moved * (drag_0 + drag);
     kinetic += v[i].v * mv;
-    stored += z[i].v * elastic;
-    larger(largest, p[i].v);
+    stored += z_i * elastic;
+    larger(largest, p_i);
     larger(largest, elastic);
   }
+  sums.work.v = work, sums.loss.v = loss, sums.kinetic.v = kinetic, sums.stored.v = stored;
+  sums.largest.v = largest;
+}
+
+}  // namespace
+
+DREV_WIDEST
+void predict(const LaneMatrices& m, const StepScheme& c, double h, const LanePoint& from, LaneArray& known,
+             LanePoint& to) {
+  if (m.common)
+    predict_with<double>(m, c, h, from, known, to);
+  else
+    predict_with<LaneRow>(m, c, h, from, known, to);
+}
+
+DREV_WIDEST
+void correct(double factor, const LaneValues& w, const LaneArray& lambda, const LaneRow* before, LaneArray& a,
+             LaneRow& change) {
+  if (!w.common.empty())
+    correct_with(factor, w.common.data(), lambda, before, a, change);
+  else
+    correct_with(factor, w.rows.data(), lambda, before, a, change);
+}
+
+DREV_WIDEST
+void largest(const LaneArray& x, LaneRow& out) {
+  Lanes most{};
+  for (const LaneRow& row : x) larger(most, row.v);
+  out.v = most;
+}
+
+DREV_WIDEST
+void largest_difference(const LaneArray& x, const LaneArray& y, LaneRow& out) {
+  Lanes most{};
+  for (std::size_t i = 0; i < x.size(); ++i) larger(most, x[i].v - y[i].v);
+  out.v = most;
+}
+
+DREV_WIDEST
+void finish(const LaneMatrices& m, const StepScheme& c, double h, double t, const LanePoint& from,
+            const LaneForces& by, const LaneRow& extra_input, LanePoint& to, LaneMask& good,
+            LaneEnergy& energy, LaneRow& force_scale) {
+  Sums sums;
+  sums.largest = force_scale;
+  if (m.common)
+    finish_with<double>(m, c, h, from, by, to, sums);
+  else
+    finish_with<LaneRow>(m, c, h, from, by, to, sums);
+  const Lanes work = sums.work.v;
+  Lanes loss = sums.loss.v, kinetic = sums.kinetic.v, stored = sums.stored.v, largest = sums.largest.v;
   stored *= 0.5;
   kinetic *= 0.5;
   for (std::size_t j = 0; j < to.laws.y.size(); ++j) {

@@ -17,14 +17,15 @@ struct LaneMatrices {
 
   int n = 0;
   SparseMatrix pattern;
-  LaneArray mass, damping, stiffness;
-  /// Of M and C, where they hold nothing else; else empty. A block wants to stay in the nearest cache.
-  LaneArray mass_diagonal, damping_diagonal;
+  LaneValues mass, damping, stiffness;
+  /// Of M and C, where they hold nothing else; else empty.
+  LaneValues mass_diagonal, damping_diagonal;
+  bool common = false;  ///< all are the same in all lanes
 };
 
-/// StepPoint in lanes; total is there with alpha_f != 0 only, kz not at all.
+/// StepPoint in lanes; total is there with alpha_f != 0 only, kz and cv not at all.
 struct LanePoint {
-  LaneArray z, v, a, p, cv, total;
+  LaneArray z, v, a, p, total;
   LanePointLaws laws;
   /// Copies a lane from and to a point of one variant.
   void get(int lane, StepPoint& point) const;
@@ -38,24 +39,23 @@ struct LaneEnergy {
   void set(int lane, const EnergyBalance& balance);
 };
 
-/// The step's motion with a = 0 and its known right side.
-struct LanePrediction {
-  LaneArray z_0, v_0, known;
-};
-/// to's z: where loads are looked up first, with the acceleration so far; v too, if rates are wanted.
+/// The motion with a = 0 at the step's end goes to to's z and v; known: the known right side.
 void predict(const LaneMatrices& matrices, const StepScheme& scheme, double h, const LanePoint& from,
-             bool rates, LanePrediction& step, LanePoint& to);
+             LaneArray& known, LanePoint& to);
 
-/// a -= phi W lambda, W by rows, then z from a; v too, if rates are wanted.
-void correct(const StepScheme& scheme, double h, const LanePrediction& step, const LaneArray& w,
-             const LaneArray& lambda, bool rates, LanePoint& to);
+/// a -= factor W lambda, W by rows. change: largest |a - before|.
+void correct(double factor, const LaneValues& w, const LaneArray& lambda, const LaneRow* before, LaneArray& a,
+             LaneRow& change);
 
-/// Everything else at the step's end, whose z, a, p and laws are there; by: B y. In the lanes that are good,
-/// enters the step, ending at t, into the balance, with extra input [J] of the laws, and the forces into the
-/// largest so far. Lanes with a number that is not finite are taken from good.
+/// Largest |x| and |x - y| in each lane.
+void largest(const LaneArray& x, LaneRow& out);
+void largest_difference(const LaneArray& x, const LaneArray& y, LaneRow& out);
+
+/// Everything else at the step's end: to has its a, p and laws, and the motion with a = 0; by: B y. In the
+/// lanes that are good, enters the step, ending at t, into the balance, with extra input [J] of the laws, and
+/// the forces into the largest so far. Lanes with a number that is not finite are taken from good.
 void finish(const LaneMatrices& matrices, const StepScheme& scheme, double h, double t,
-            const LanePoint& from, const LanePrediction& step, const LaneForces& by,
-            const LaneRow& extra_input, LanePoint& to, LaneMask& good, LaneEnergy& energy,
-            LaneRow& force_scale);
+            const LanePoint& from, const LaneForces& by, const LaneRow& extra_input, LanePoint& to,
+            LaneMask& good, LaneEnergy& energy, LaneRow& force_scale);
 
 }  // namespace drev

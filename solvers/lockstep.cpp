@@ -59,12 +59,12 @@ Lockstep::Lockstep(const std::vector<const System*>& systems, const TransientOpt
     assemblers_.emplace_back(*system);
   }
   for (LanePoint* point : {&now_, &next_}) {
-    for (LaneArray* a : {&point->z, &point->v, &point->a, &point->p, &point->cv}) a->resize(n);
+    for (LaneArray* a : {&point->z, &point->v, &point->a, &point->p}) a->resize(n);
     if (scheme_.alpha_f != 0.0) point->total.resize(n);
     laws_.prepare(point->laws);
   }
-  for (LaneArray* a : {&prediction_.z_0, &prediction_.v_0, &prediction_.known, &p_used_}) a->resize(n);
-  w_.resize(n * lambda_.size());
+  for (LaneArray* a : {&known_, &a_}) a->resize(n);
+  w_.rows.resize(n * lambda_.size());
   for (std::size_t lane = 0; lane < count_; ++lane) alive_[static_cast<int>(lane)] = -1;
 }
 
@@ -139,7 +139,6 @@ void Lockstep::start(double t, bool first) {
     if (first && alive(lane) && !point.state.a.allFinite())
       fail(lane, t, RunStatus::not_finite, "the initial acceleration");
   }
-  loads_.restart(t);
 }
 
 /// The factor and the compliance of the contacts for steps of length h.
@@ -162,27 +161,33 @@ void Lockstep::prepare(double h) {
   for (int j = 0; j < laws_.count(); ++j) {
     laws_.row(j, column);
     factor_.solve(column.data(), 0.0, zero.data(), column.data());
-    for (std::size_t i = 0; i < column.size(); ++i) w_[i * lambda_.size() + at(j)] = column[i];
+    for (std::size_t i = 0; i < column.size(); ++i) w_.rows[i * lambda_.size() + at(j)] = column[i];
   }
-  laws_.set_compliance(w_, weights.k, weights.c);
+  w_.find_common();
+  laws_.set_compliance(w_.rows, weights.k, weights.c);
 }
 
+DREV_WIDEST
 void Lockstep::solve(double h, double t_evaluate, LaneMask& failed) {
   const double phi = 1.0 - scheme_.alpha_f;
   const StepOptions& newton = options_.newton;
-  const LaneLaws::Free free{prediction_.z_0.data(), prediction_.v_0.data(), next_.a.data(),
-                            scheme_.beta * h * h, scheme_.gamma * h};
+  // Loads start at the acceleration so far.
+  LaneMotion motion{next_.z.data(), next_.v.data(), now_.a.data(), scheme_.beta * h * h, scheme_.gamma * h};
   LaneMask open = alive_;
-  LaneRow change, largest;
-  loads_.evaluate(next_.z.data(), next_.v.data(), open, nullptr, p_used_.data(), change, largest);
-  if (laws_.phased()) laws_.take_angles(assemblers_, next_.z, next_.laws);
   const Lanes none{}, one = none + 1.0;
+  loads_.evaluate(motion, open, next_.p);
+  if (laws_.phased()) laws_.take_angles(assemblers_, motion, next_.laws);
   for (int pass = 1;; ++pass) {
     passes_.v += open ? one : none;
-    factor_.solve(prediction_.known.data(), phi, p_used_.data(), next_.a.data());
-    LaneRow scale;
-    scale.v = force_scale_.v < largest.v ? largest.v : force_scale_.v;
+    factor_.solve(known_.data(), phi, next_.p.data(), a_.data());
+    LaneRow scale = force_scale_, change, steepness;
+    if (any(scale.v <= 0.0)) {
+      largest(next_.p, change);
+      scale.v = scale.v > 0.0 ? scale.v : change.v;
+    }
     if (laws_.count() > 0) {
+      LaneMotion free = motion;
+      free.a = a_.data();
       LaneMask unsolved = open;
       laws_.solve(free, t_evaluate, scale, newton.contact.tolerance, unsolved, lambda_.data(), next_.laws,
                   iterations_);
@@ -191,44 +196,49 @@ void Lockstep::solve(double h, double t_evaluate, LaneMask& failed) {
     } else {
       iterations_.v += open ? one : none;
     }
-    correct(scheme_, h, prediction_, w_, lambda_, loads_.want_rates(), next_);
-    if (!loads_.depend_on_motion()) {
-      std::swap(next_.p, p_used_);
-      return;
+    correct(phi, w_, lambda_, motion.a, a_, change);
+    a_.swap(next_.a);
+    motion.a = next_.a.data();
+    if (!loads_.depend_on_motion()) return;
+    const Lanes small = newton.load_tolerance * scale.v;
+    if (loads_.steepness_known()) {
+      loads_.steepness(steepness);
+      open &= steepness.v * (motion.kappa_z * change.v) > small;
+      if (!any(open)) return;
+      loads_.evaluate(motion, open, next_.p);
+    } else {
+      p_before_ = next_.p;
+      loads_.evaluate(motion, open, next_.p);
+      largest_difference(next_.p, p_before_, change);
+      open &= change.v > small;
+      if (!any(open)) return;
     }
-    loads_.evaluate(next_.z.data(), next_.v.data(), open, p_used_.data(), next_.p.data(), change, largest);
-    scale.v = force_scale_.v < largest.v ? largest.v : force_scale_.v;
-    const LaneMask settled = open & (change.v <= newton.load_tolerance * scale.v);
-    // While all are open, the next pass takes the new loads as they are.
-    const bool all_open = !any(settled | (alive_ & ~open));
-    open &= ~settled;
-    if (!any(open)) return;
     if (pass == newton.max_load_passes) {
       failed |= open;
       return;
     }
-    if (all_open)
-      std::swap(next_.p, p_used_);
-    else
-      for (std::size_t i = 0; i < p_used_.size(); ++i) p_used_[i].v = open ? next_.p[i].v : p_used_[i].v;
   }
 }
 
+DREV_WIDEST
 void Lockstep::step(double h, double t_new, double t_evaluate) {
   for (Assembler& assembler : assemblers_) assembler.set_time(t_evaluate);
   loads_.set_time(assemblers_);
   if (laws_.has_known()) laws_.take_known(assemblers_);
-  predict(matrices_, scheme_, h, now_, loads_.want_rates(), prediction_, next_);
+  predict(matrices_, scheme_, h, now_, known_, next_);
   LaneMask failed{};
   solve(h, t_evaluate, failed);
   LaneMask good = alive_ & ~failed;
   next_.laws.t = t_evaluate;
   laws_.energies(next_.laws);
+  laws_.forces(next_.laws.y, by_);
   LaneRow extra;
   if (laws_.extra_input())
-    laws_.add_extra_input(now_.laws, now_.z.data(), next_.laws, next_.z.data(), extra);
-  laws_.forces(next_.laws.y, by_);
-  finish(matrices_, scheme_, h, t_new, now_, prediction_, by_, extra, next_, good, energy_, force_scale_);
+    laws_.add_extra_input(now_.laws, now_.z.data(), next_.laws,
+                          {next_.z.data(), next_.v.data(), next_.a.data(), scheme_.beta * h * h,
+                           scheme_.gamma * h},
+                          extra);
+  finish(matrices_, scheme_, h, t_new, now_, by_, extra, next_, good, energy_, force_scale_);
   watch_.step(assemblers_, now_, next_, h, t_new, good);
   if (const LaneMask alone = alive_ & ~good; any(alone))
     for (int lane = 0; lane < kLanes; ++lane)
@@ -249,6 +259,7 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
 void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
   now_.get(lane, from_alone_);
   from_alone_.state.t = t_;
+  assemblers_[at(lane)].multiply_damping(from_alone_.state.v, from_alone_.cv);
   StepEquation& equation = steppers_[at(lane)]->equation();
   equation.start_from(from_alone_);
   equation.expect_force(force_scale_.v[lane]);

@@ -52,10 +52,9 @@ class Lockstep {
   LaneLoads loads_;
   LaneWatch watch_;
   LanePoint now_, next_;
-  LanePrediction prediction_;
   LaneEnergy energy_;
-  LaneArray w_;  // S^-1 B, by rows
-  LaneArray p_used_, lambda_, values_;
+  LaneValues w_;  // S^-1 B, by rows
+  LaneArray known_, a_, p_before_, lambda_, values_;
   LaneForces by_;
   LaneRow force_scale_, iterations_, passes_;
   LaneMask alive_{};
