@@ -5,6 +5,7 @@
 /// that the machine has when it starts. Elsewhere, and under sanitizers, it is compiled once.
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace drev {
@@ -30,8 +31,8 @@ struct LaneRow {
 };
 using LaneArray = std::vector<LaneRow>;
 
-/// Numbers that are often the same in all lanes: then kept singly too, for loops that read them again and again
-/// and want to stay in the nearest cache.
+/// Numbers that are often the same in all lanes: then kept singly too, for loops that read them often and
+/// want to stay in the nearest cache.
 struct LaneValues {
   LaneArray rows;
   std::vector<double> common;  ///< empty where lanes differ
@@ -58,6 +59,15 @@ constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 }
 [[gnu::always_inline]] inline void store(const Lanes& from, double* to) {
   std::memcpy(to, &from, sizeof from);
+}
+[[gnu::always_inline]] inline void magnitude(Lanes& x) {
+  x = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(x) & std::numeric_limits<std::int64_t>::max());
+}
+/// most = max(most, |x|).
+[[gnu::always_inline]] inline void larger(Lanes& most, const Lanes& x) {
+  Lanes size = x;
+  magnitude(size);
+  most = most < size ? size : most;
 }
 [[gnu::always_inline]] inline bool any(const LaneMask& mask) {
   static_assert(kLanes == 8);

@@ -42,7 +42,8 @@ void TableLoads::set_nominal(double phi, Values& values) const {
 }
 
 /// Angles here are arguments: less the offset.
-[[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(std::size_t e, double argument) const {
+[[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(std::size_t e,
+                                                                        double argument) const {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to whole numbers
   double turns = argument * inverse_period_[e] + kRound;
   turns -= kRound;

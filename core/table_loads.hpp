@@ -37,8 +37,8 @@ class TableLoads {
   void set_nominal(double phi, Values& values) const;
   /// Torques and steepness at z; NaN where that is not finite.
   void look_up(const double* z, Values& values) const;
-  /// The knot nearest to an angle = ratio phi + gain z: torque value + (d < 0 ? left : right) d at a distance d
-  /// from its angle, for every angle that it is nearest to, and as far as the next knot on either side.
+  /// The knot nearest to an angle = ratio phi + gain z of entry e: at a distance d from the knot's angle the
+  /// torque is value + (d < 0 ? left : right) d, as far as the next knot on either side.
   struct Nearest {
     double angle, value, left, right;  ///< rad, N m, N m/rad
   };

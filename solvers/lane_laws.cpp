@@ -10,8 +10,6 @@ namespace {
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();  // as in contact_newton.cpp
 constexpr int kMostIterations = 8;
 
-[[gnu::always_inline]] inline void magnitude(Lanes& x) { x = x < 0.0 ? -x : x; }
-
 std::span<const LawPiece> pieces_of(const ScalarTerm& term) {
   if (term.phase_node >= 0) return {};
   return term.force->product_pieces();
@@ -163,8 +161,9 @@ void LaneLaws::evaluate(const Law& law, double t, const LaneRow& x, const LaneRo
 
 struct LaneLawKernels {
   using Law = LaneLaws::Law;
-  DREV_WIDEST static void respond(Law& law, double t, const LaneRow& x, const LaneRow& x_dot,
-                                  const LaneRow& angle, LaneRow& y, LaneRow& dy_dx, LaneRow& dy_dx_dot) {
+  [[gnu::always_inline]] static inline void respond(Law& law, double t, const LaneRow& x,
+                                                    const LaneRow& x_dot, const LaneRow& angle, LaneRow& y,
+                                                    LaneRow& dy_dx, LaneRow& dy_dx_dot) {
     if (!law.in_pieces) return LaneLaws::evaluate(law, t, x, x_dot, angle, y, dy_dx, dy_dx_dot);
     LaneMask left{};
     for (const LaneLaws::Bound& b : law.bounds) left |= b.a.v + b.b_x.v * x.v + b.b_v.v * x_dot.v < 0.0;

@@ -160,7 +160,9 @@ struct LaneLoadKernels {
         const LaneLoads::Knot& k = knots[i];
         const LaneLoads::Factors<T>& f = factors[i];
         const Lanes d = (each(f.ratio) * phi - k.angle.v) + each(f.gain) * z;
-        out |= ((d < 0.0 ? -d : d) > each(f.width)) & bit;
+        Lanes distance = d;
+        magnitude(distance);
+        out = distance > each(f.width) ? out | bit : out;
         bit += bit;
         sum += k.value.v + (d < 0.0 ? k.left.v : k.right.v) * d;
       }

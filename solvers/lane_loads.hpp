@@ -1,7 +1,7 @@
 #pragma once
 /// The right side p(t, z, v) of kLanes variants at once: Assembler::external in lanes.
 ///
-/// Periodic tables of even spacing keep, in each lane, the knot nearest to their angle (core/table_loads.hpp).
+/// Periodic tables of even spacing keep, in each lane, the knot nearest to their angle, as TableLoads does.
 /// It serves as far as the next knot: a lane that has come nearer to another one takes that for the next
 /// evaluation, and only where a step leaps over it is the sum made anew. Other loads are evaluated lane by
 /// lane, in each pass or, where they do not depend on motion, once a step.

@@ -8,11 +8,6 @@ namespace drev {
 
 namespace {
 
-[[gnu::always_inline]] inline void larger(Lanes& most, const Lanes& x) {
-  const Lanes size = x < 0.0 ? -x : x;
-  most = most < size ? size : most;
-}
-
 /// A matrix by rows, or its diagonal where that is all there is. T: double where all lanes have one value.
 template <class T>
 struct Product {

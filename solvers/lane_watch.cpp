@@ -58,6 +58,7 @@ struct LaneWatchKernels {
 
   DREV_WIDEST static void peak(LaneWatch::Watched& c, const LaneRow& value, double t, const LaneMask& lanes) {
     const LaneMask above = lanes & (value.v > c.max.v), below = lanes & (value.v < c.min.v);
+    if (!any(above | below)) return;
     c.max.v = above ? value.v : c.max.v;
     c.max_time.v = above ? Lanes{} + t : c.max_time.v;
     c.min.v = below ? value.v : c.min.v;
@@ -68,24 +69,33 @@ struct LaneWatchKernels {
   DREV_WIDEST static void contact(LaneWatch::Contact& c, const LanePointLaws& from, const LanePointLaws& to,
                                   double h, double t, const LaneMask& lanes) {
     const auto j = static_cast<std::size_t>(c.law);
-    const Lanes x_0 = from.x[j].v, x_1 = to.x[j].v, one = Lanes{} + 1.0;
-    const LaneMask front = lanes & (x_0 <= c.high.v) & (x_1 > c.high.v);
-    const LaneMask back = lanes & (x_0 >= c.low.v) & (x_1 < c.low.v);
+    const Lanes x_0 = from.x[j].v, x_1 = to.x[j].v, c_low = c.low.v, c_high = c.high.v;
+    const LaneMask above_0 = x_0 > c_high, above_1 = x_1 > c_high;
+    const LaneMask below_0 = x_0 < c_low, below_1 = x_1 < c_low;
+    Lanes size = to.y[j].v;
+    magnitude(size);
+    if (const LaneMask more = lanes & (size > c.force.v); any(more)) {
+      c.force.v = more ? size : c.force.v;
+      c.force_time.v = more ? Lanes{} + t : c.force_time.v;
+    }
+    const LaneMask outside = above_0 | below_0;
+    if (!any(lanes & ((above_0 ^ above_1) | (below_0 ^ below_1)))) {  // each stays where it was
+      c.apart.v += (lanes & ~outside) ? Lanes{} + h : Lanes{};
+      return;
+    }
+    const Lanes one = Lanes{} + 1.0;
+    const LaneMask front = lanes & ~above_0 & above_1, back = lanes & ~below_0 & below_1;
     c.front.v += front ? one : Lanes{};
     c.back.v += back ? one : Lanes{};
-    const Lanes w = from.x_dot[j].v, speed = w < 0.0 ? -w : w;
+    Lanes speed = from.x_dot[j].v;
+    magnitude(speed);
     c.speed.v = ((front | back) & (speed > c.speed.v)) ? speed : c.speed.v;
     const Lanes low = x_0 < x_1 ? x_0 : x_1, high = x_0 < x_1 ? x_1 : x_0;
-    Lanes inside = (high < c.high.v ? high : c.high.v) - (low > c.low.v ? low : c.low.v);
+    Lanes inside = (high < c_high ? high : c_high) - (low > c_low ? low : c_low);
     inside = inside > 0.0 ? inside : Lanes{};
     const LaneMask stands = high == low;
-    const LaneMask between = (low >= c.low.v) & (low <= c.high.v);
-    const Lanes share = stands ? (between ? one : Lanes{}) : inside / (stands ? one : high - low);
+    const Lanes share = stands ? (outside ? Lanes{} : one) : inside / (stands ? one : high - low);
     c.apart.v += lanes ? h * share : Lanes{};
-    const Lanes y = to.y[j].v, size = y < 0.0 ? -y : y;
-    const LaneMask more = lanes & (size > c.force.v);
-    c.force.v = more ? size : c.force.v;
-    c.force_time.v = more ? Lanes{} + t : c.force_time.v;
   }
 };
 
