@@ -18,23 +18,31 @@ void TableLoads::add(const LoadTable& table, int unknown, double coeff, double r
   const std::size_t n = table.values.size();
   const auto [place, is_new] =
       begin_of_.try_emplace(table.values.data(), static_cast<int>(knots_.size()));
-  if (is_new)
+  if (is_new) {
+    std::vector<Knot> knots;
     for (std::size_t k = 0; k <= n; ++k) {
       const std::size_t i = k % n, before = (i + n - 1) % n;
       const double turn = k == n ? table.period : 0.0;
-      knots_.push_back({table.arguments[i] - table.arguments[0] + turn, table.values[i],
-                        table.slopes[before], table.slopes[i]});
+      knots.push_back({table.arguments[i] - table.arguments[0] + turn, table.values[i], table.slopes[before],
+                       table.slopes[i]});
     }
+    const auto same = std::find_if(turns_.begin(), turns_.end(), [&](const Turn& t) {
+      return t.count == static_cast<int>(n) &&
+             std::equal(knots.begin(), knots.end(), knots_.begin() + t.begin);
+    });
+    if (same != turns_.end())
+      place->second = same->begin;
+    else
+      knots_.insert(knots_.end(), knots.begin(), knots.end());
+  }
   unknown_.push_back(unknown);
-  coeff_.push_back(coeff);
   ratio_.push_back(ratio);
   gain_.push_back(gain);
   offset_.push_back(table.phase - table.arguments[0]);
-  period_.push_back(table.period);
-  inverse_period_.push_back(1.0 / table.period);
-  inverse_spacing_.push_back(static_cast<double>(n) / table.period);
-  begin_.push_back(place->second);
-  count_.push_back(static_cast<int>(n));
+  const double count = static_cast<double>(n);
+  inverse_spacing_.push_back(count / table.period);
+  turns_.push_back({coeff, offset_.back(), table.period, 1.0 / table.period, count / table.period,
+                    place->second, static_cast<int>(n)});
 }
 
 void TableLoads::set_nominal(double phi, Values& values) const {
@@ -45,20 +53,22 @@ void TableLoads::set_nominal(double phi, Values& values) const {
 [[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(std::size_t e,
                                                                         double argument) const {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to whole numbers
-  double turns = argument * inverse_period_[e] + kRound;
+  const Turn& t = turns_[e];
+  double turns = argument * t.inverse_period + kRound;
   turns -= kRound;
-  if (turns * period_[e] > argument) turns -= 1.0;
-  double place = (argument - period_[e] * turns) * inverse_spacing_[e] + 0.5;
+  if (turns * t.period > argument) turns -= 1.0;
+  double place = (argument - t.period * turns) * t.inverse_spacing + 0.5;
   place = place > 0.0 ? place : 0.0;  // NaN too
-  const Knot& k = knots_[static_cast<std::size_t>(begin_[e]) +
-                         static_cast<std::size_t>(std::min(place, static_cast<double>(count_[e])))];
-  return {k.argument + period_[e] * turns, coeff_[e] * k.value, coeff_[e] * k.left, coeff_[e] * k.right};
+  const Knot& k = knots_[static_cast<std::size_t>(t.begin) +
+                         static_cast<std::size_t>(std::min(place, static_cast<double>(t.count)))];
+  return {k.argument + t.period * turns, t.coeff * k.value, t.coeff * k.left, t.coeff * k.right};
 }
 
 TableLoads::Nearest TableLoads::nearest(int e, double angle) const {
   const auto i = static_cast<std::size_t>(e);
-  Nearest found = find_knot(i, angle + offset_[i]);
-  found.angle -= offset_[i];
+  const double offset = turns_[i].offset;
+  Nearest found = find_knot(i, angle + offset);
+  found.angle -= offset;
   return found;
 }
 

@@ -16,8 +16,7 @@ namespace drev {
 
 class TableLoads {
  public:
-  /// gain: coeff where the load follows the motion, else 0. Tables that share their values' array are kept
-  /// once.
+  /// gain: coeff where the load follows the motion, else 0. Equal tables are kept once.
   void add(const LoadTable& table, int unknown, double coeff, double ratio, double gain);
   int size() const { return static_cast<int>(unknown_.size()); }
   int unknown(int e) const { return unknown_[static_cast<std::size_t>(e)]; }
@@ -50,12 +49,19 @@ class TableLoads {
   struct Knot {
     double argument;  // less that of knot 0
     double value, left, right;  // slopes on both sides
+    bool operator==(const Knot&) const = default;
+  };
+  /// What a look-up needs of an entry, together; begin: of its table in knots_.
+  struct Turn {
+    double coeff, offset, period, inverse_period, inverse_spacing;
+    int begin, count;
   };
   Nearest find_knot(std::size_t e, double argument) const;
   std::vector<Knot> knots_;
   std::map<const double*, int> begin_of_;  // of a table in knots_, by its values' array
-  std::vector<double> coeff_, ratio_, gain_, offset_, period_, inverse_period_, inverse_spacing_;
-  std::vector<int> unknown_, begin_, count_;
+  std::vector<Turn> turns_;
+  std::vector<double> ratio_, gain_, offset_, inverse_spacing_;
+  std::vector<int> unknown_;
 };
 
 }  // namespace drev

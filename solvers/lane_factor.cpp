@@ -2,6 +2,7 @@
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 namespace drev {
@@ -10,35 +11,41 @@ namespace {
 
 template <class T>  // double where all lanes have one value
 struct Triangle {
-  int n;
-  const int *order, *row_begin, *left_unknown, *column_begin, *unknown_of;
-  const char* follows;
+  int n, entries;
+  const LaneFactor::Step *rows, *columns;
+  const int *left_unknown, *unknown_of;
   const T *by_rows, *lower, *inverse;
 };
 
-/// A chain's neighbour stays in a register: through memory each unknown would wait for the last one's store.
+/// A chain's neighbours stay in registers: through memory each unknown would wait for the last one's store.
 template <class T>
 [[gnu::always_inline]] inline void solve_with(const Triangle<T>& t, const LaneRow* b, double factor,
                                               const LaneRow* c, LaneRow* x) {
-  Lanes last{};
-  for (int k = 0; k < t.n; ++k) {
-    const int i = t.order[k];
-    Lanes sum = b[i].v + factor * c[i].v;
-    const int end = t.row_begin[k + 1];
-    const int apart = t.follows[k] ? end - 1 : end;
-    for (int e = t.row_begin[k]; e < apart; ++e) sum -= each(t.by_rows[e]) * x[t.left_unknown[e]].v;
-    if (t.follows[k]) sum -= each(t.by_rows[apart]) * last;
-    x[i].v = last = sum;
+  Lanes last{}, last_but_one{};
+  const T* l = t.by_rows;
+  const int* other = t.left_unknown;
+  for (const LaneFactor::Step *s = t.rows, *end = s + t.n; s != end; ++s) {
+    Lanes sum = b[s->unknown].v + factor * c[s->unknown].v;
+    for (const int* stop = other + s->others; other != stop; ++l, ++other) sum -= each(*l) * x[*other].v;
+    if (s->near == 2)
+      sum -= each(*l++) * last_but_one, ++other;
+    else if (s->near == 1)
+      sum -= each(*l++) * last, ++other;
+    last_but_one = last;
+    x[s->unknown].v = last = sum;
   }
-  for (int k = t.n - 1; k >= 0; --k) {
-    const int i = t.order[k];
-    Lanes sum = x[i].v * each(t.inverse[k]);
-    int e = t.column_begin[k];
-    const int first = e;
-    if (k + 1 < t.n && t.follows[k + 1]) ++e;
-    for (; e < t.column_begin[k + 1]; ++e) sum -= each(t.lower[e]) * x[t.unknown_of[e]].v;
-    if (k + 1 < t.n && t.follows[k + 1]) sum -= each(t.lower[first]) * last;
-    x[i].v = last = sum;
+  l = t.lower + t.entries;
+  other = t.unknown_of + t.entries;
+  const T* inverse = t.inverse + t.n;
+  for (const LaneFactor::Step* s = t.columns + t.n; s-- != t.columns;) {
+    Lanes sum = x[s->unknown].v * each(*--inverse);
+    for (const int* stop = other - s->others; other != stop;) sum -= each(*--l) * x[*--other].v;
+    if (s->near == 2)
+      sum -= each(*--l) * last_but_one, --other;
+    else if (s->near == 1)
+      sum -= each(*--l) * last, --other;
+    last_but_one = last;
+    x[s->unknown].v = last = sum;
   }
 }
 
@@ -55,45 +62,51 @@ void solve_lanes(const Triangle<LaneRow>& t, const LaneRow* b, double factor, co
 
 LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(pattern.rows())) {
   const auto n = static_cast<std::size_t>(n_);
-  order_.resize(n);
-  for (int k = 0; k < n_; ++k) order_[at(k)] = k;
-  std::vector<std::vector<int>> below = columns(pattern, order_);
+  std::vector<int> order(n);  // unknown at place k
   const auto filled = [](const std::vector<std::vector<int>>& all) {
     std::size_t sum = 0;
     for (const auto& c : all) sum += c.size();
     return sum;
   };
+  // From both ends a chain's solve is two chains of half the length, which run at once.
+  for (int k = 0; k < n_; ++k) order[at(k)] = k % 2 == 0 ? k / 2 : n_ - 1 - k / 2;
+  std::vector<std::vector<int>> below = columns(pattern, order);
+  std::vector<int> own(n), least(n);
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> amd;
   Eigen::AMDOrdering<int>()(pattern, amd);
-  std::vector<int> other(n);
-  for (int k = 0; k < n_; ++k) other[at(k)] = amd.indices()[k];
-  if (std::vector<std::vector<int>> c = columns(pattern, other); filled(c) < filled(below)) {
-    below = std::move(c);
-    order_ = std::move(other);
-  }
+  for (int k = 0; k < n_; ++k) own[at(k)] = k, least[at(k)] = amd.indices()[k];
+  for (std::vector<int>& other : {std::ref(own), std::ref(least)})
+    if (std::vector<std::vector<int>> c = columns(pattern, other); filled(c) < filled(below)) {
+      below = std::move(c);
+      order = std::move(other);
+    }
 
   std::vector<int> place(n);
-  for (int k = 0; k < n_; ++k) place[at(order_[at(k)])] = k;
-  follows_.assign(n, 0);
+  for (int k = 0; k < n_; ++k) place[at(order[at(k)])] = k;
+  for (const int i : order) rows_.push_back({i, 0, 0});
+  columns_ = rows_;
   std::vector<std::vector<int>> by_row(n);  // slots
   column_begin_.push_back(0);
   for (int k = 0; k < n_; ++k) {
     for (const int i : below[at(k)]) {
       by_row[at(i)].push_back(static_cast<int>(row_of_.size()));
       row_of_.push_back(i);
-      unknown_of_.push_back(order_[at(i)]);
-      if (i == k + 1) follows_[at(i)] = 1;
+      unknown_of_.push_back(order[at(i)]);
     }
     column_begin_.push_back(static_cast<int>(row_of_.size()));
+    columns_[at(k)].others = static_cast<int>(below[at(k)].size());
+    if (!below[at(k)].empty()) columns_[at(k)].take_near(below[at(k)].front() - k);
   }
-  row_begin_.push_back(0);
   for (int k = 0; k < n_; ++k) {
+    int left = -1;
     for (const int slot : by_row[at(k)]) {  // columns ascend with their slots
       row_slot_.push_back(slot);
       const auto column = std::upper_bound(column_begin_.begin(), column_begin_.end(), slot) - 1;
-      left_unknown_.push_back(order_[static_cast<std::size_t>(column - column_begin_.begin())]);
+      left = static_cast<int>(column - column_begin_.begin());
+      left_unknown_.push_back(order[at(left)]);
     }
-    row_begin_.push_back(static_cast<int>(row_slot_.size()));
+    rows_[at(k)].others = static_cast<int>(by_row[at(k)].size());
+    if (left >= 0) rows_[at(k)].take_near(k - left);
   }
   const auto target = [&](int row, int column) {
     if (row == column) return -1 - row;
@@ -178,8 +191,8 @@ void LaneFactor::factorize(const LaneArray& values) {
 
 void LaneFactor::solve(const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) const {
   const auto with = [&]<class T>(const T* by_rows, const T* lower, const T* inverse) {
-    solve_lanes(Triangle<T>{n_, order_.data(), row_begin_.data(), left_unknown_.data(), column_begin_.data(),
-                            unknown_of_.data(), follows_.data(), by_rows, lower, inverse},
+    solve_lanes(Triangle<T>{n_, static_cast<int>(row_of_.size()), rows_.data(), columns_.data(),
+                            left_unknown_.data(), unknown_of_.data(), by_rows, lower, inverse},
                 b, factor, c, x);
   };
   if (common_)

@@ -1,7 +1,7 @@
 #pragma once
 /// A = L D L' for kLanes symmetric positive definite matrices of one pattern at once, each in its lane. Not
 /// LL': without square roots a step has no division, and a pivot that is not positive is seen all the same.
-/// Ordered as sparse_cholesky.hpp does: in the unknowns' own order where that fills no more than AMD's.
+/// Ordered from both ends of the unknowns' own order, in that order, or by AMD: the first that fills least.
 #include <vector>
 
 #include "core/system.hpp"
@@ -23,14 +23,23 @@ class LaneFactor {
   /// x = A^-1 (b + factor c); x may be b or c.
   void solve(const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) const;
 
+  /// A row's or column's entries off the diagonal. near: one or two places from it stands its nearest entry,
+  /// a row's last or a column's first; 0: none there.
+  struct Step {
+    int unknown, others, near;  // others: but that one
+    void take_near(int places) {
+      near = places <= 2 ? places : 0;
+      others -= near != 0;
+    }
+  };
+
  private:
   std::vector<std::vector<int>> columns(const SparseMatrix& pattern, const std::vector<int>& order) const;
 
   int n_ = 0;
-  std::vector<int> order_;                               // unknown at place k
   std::vector<int> column_begin_, row_of_, unknown_of_;  // L by columns: places below the diagonal
-  std::vector<int> row_begin_, row_slot_, left_unknown_;  // by rows: slots, unknowns to the left
-  std::vector<char> follows_;                            // L(k, k - 1) is there, last in its row
+  std::vector<int> row_slot_, left_unknown_;               // by rows: slots, unknowns to the left
+  std::vector<Step> rows_, columns_;
   std::vector<int> pattern_slot_, pattern_target_;  // where A's lower triangle enters L; < 0: -1 - row of D
   std::vector<int> update_target_;                  // of every pair of rows of every column
   LaneValues lower_, by_rows_, inverse_;

@@ -225,7 +225,8 @@ struct LaneLawKernels {
         l.tangent_[j * m + j].v += 1.0;
       }
       for (std::size_t k = 0; k < m; ++k) {
-        const Lanes inverse = 1.0 / l.tangent_[k * m + k].v;
+        Lanes& inverse = l.tangent_[k * m + k].v;
+        inverse = 1.0 / inverse;
         for (std::size_t j = k + 1; j < m; ++j) {
           const Lanes part = l.tangent_[j * m + k].v * inverse;
           for (std::size_t i = k + 1; i < m; ++i) l.tangent_[j * m + i].v -= part * l.tangent_[k * m + i].v;
@@ -235,7 +236,7 @@ struct LaneLawKernels {
       for (std::size_t k = m; k-- > 0;) {
         Lanes sum = l.residual_[k].v;
         for (std::size_t i = k + 1; i < m; ++i) sum -= l.tangent_[k * m + i].v * l.residual_[i].v;
-        l.residual_[k].v = sum / l.tangent_[k * m + k].v;
+        l.residual_[k].v = sum * l.tangent_[k * m + k].v;
         lambda[k].v = open ? lambda[k].v + l.residual_[k].v : lambda[k].v;
       }
     }

@@ -16,8 +16,8 @@ using namespace drev;
 
 namespace {
 
-constexpr std::size_t kVariants = 64, kSingle = 4;
-constexpr double kDuration = 0.2;  // s
+constexpr std::size_t kVariants = 32, kSingle = 2;
+constexpr double kDuration = 1.0;  // s
 constexpr int kTurns = 5;
 
 Settings settings_of(std::size_t i) {
