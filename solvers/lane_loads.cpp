@@ -149,13 +149,13 @@ struct LaneLoadKernels {
     const LaneLoads::Row* row = l.rows_.data() + first;
     const LaneLoads::Row* const behind = l.rows_.data() + end;
     const LaneLoads::Knot* knots = l.knots_.data();
-    const LaneRow* base = l.base_.data();
+    const LaneRow* base = l.base_is_zero_ ? nullptr : l.base_.data();
     const Lanes phi = l.phi_.v;
     const LaneMask in = open;
     LaneMask out{}, bit = LaneMask{} + 1;
     for (; row != behind; ++row) {
       const Lanes z = motion.z_0[row->row].v + motion.kappa_z * motion.a[row->row].v;
-      Lanes sum = base[row->row].v;
+      Lanes sum = base ? base[row->row].v : Lanes{};
       for (int i = row->first; i < row->end; ++i) {
         const LaneLoads::Knot& k = knots[i];
         const LaneLoads::Factors<T>& f = factors[i];

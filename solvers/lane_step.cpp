@@ -22,7 +22,9 @@ struct Product {
       return;
     }
     out = Lanes{};
-    for (int s = outer[i]; s < outer[i + 1]; ++s) out += each(values[s]) * x[inner[s]].v;
+    const int* const end = inner + outer[i + 1];
+    const T* value = values + outer[i];
+    for (const int* j = inner + outer[i]; j != end; ++j) out += each(*value++) * x[*j].v;
   }
 };
 
@@ -197,6 +199,7 @@ template <class T>
                    mass = product<T>(m, m.mass, m.mass_diagonal);
   const int *next = by.rows.data(), *end = next + by.rows.size();
   Lanes work{}, loss{}, kinetic{}, stored{}, largest = sums.largest.v;
+  const bool a_before = c.alpha_m != 0.0, forces_before = c.alpha_f != 0.0;
   const bool rows_apart = mass.diagonal && damping.diagonal;
   if (!rows_apart)
     for (int i = 0; i < m.n; ++i) v[i].v = v[i].v + to_v * a[i].v;
@@ -210,11 +213,11 @@ template <class T>
     damping.row(i, v, drag);
     damping.row(i, v_0, drag_0);
     Lanes sum = -of_a * inertia;
-    if (c.alpha_m != 0.0) {
+    if (a_before) {
       mass.row(i, a_0, inertia);
       sum -= of_a_0 * inertia;
     }
-    if (c.alpha_f != 0.0) {
+    if (forces_before) {
       sum -= of_total * total_0[i].v;
       total[i].v = sum;
     }
