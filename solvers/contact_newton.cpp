@@ -64,6 +64,20 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
   return size;
 }
 
+void ContactNewton::expect(const std::vector<ScalarInput>& free, Vector& lambda) {
+  const std::size_t m = laws_.size();
+  for (std::size_t j = 0; j < m; ++j) {
+    double shift = 0.0;
+    for (std::size_t i = 0; i < m; ++i) shift += compliance_.data()[j * m + i] * lambda.data()[i];
+    const ScalarResponse& r = responses_[j];
+    residual_.data()[j] = r.y + r.dy_dx * (free[j].x - kappa_x_ * shift - inputs_[j].x) +
+                          r.dy_dx_dot * (free[j].x_dot - kappa_v_ * shift - inputs_[j].x_dot) -
+                          lambda.data()[j];
+  }
+  find_direction();
+  for (std::size_t j = 0; j < m; ++j) lambda.data()[j] += direction_.data()[j];
+}
+
 void ContactNewton::find_direction() {
   // Gauss' elimination with partial pivoting: for a handful of rows a library's call costs several times
   // its arithmetic.
@@ -99,10 +113,16 @@ void ContactNewton::find_direction() {
 NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double force_scale,
                                   const Options& options, Vector& lambda) {
   const double limit = options.tolerance * force_scale;
-  double size = evaluate(free, lambda);
   NewtonResult result;
+  if (options.expects && evaluated_) {
+    expect(free, lambda);
+    ++result.iterations;
+  }
+  double size = evaluate(free, lambda);
+  evaluated_ = std::isfinite(size);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     if (!std::isfinite(size)) {
+      evaluated_ = false;
       result.status = NewtonStatus::not_finite;
       return result;
     }

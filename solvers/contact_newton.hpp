@@ -34,6 +34,9 @@ class ContactNewton {
     /// |lambda - y| below tolerance * force_scale [-].
     double tolerance = 1e-12;
     bool line_search = true;  ///< false: plain Newton, to show that it cycles
+    /// Start from the forces that the laws' slopes in the solve() before lead to: exact as long as no law
+    /// leaves its piece, and then one look at the laws is enough.
+    bool expects = true;
   };
 
   ContactNewton() = default;
@@ -51,6 +54,8 @@ class ContactNewton {
  private:
   /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding.
   double evaluate(const std::vector<ScalarInput>& free, const Vector& lambda);
+  /// Newton's step from lambda by the slopes of the solve() before.
+  void expect(const std::vector<ScalarInput>& free, Vector& lambda);
   /// direction_ = (I + D G)^-1 residual_, D = kappa_x dy/dx + kappa_v dy/dx'.
   void find_direction();
   /// g_direction_ = G direction_; the potential's slope along the direction.
@@ -62,6 +67,7 @@ class ContactNewton {
   std::vector<const ScalarForce*> laws_;
   Eigen::MatrixXd compliance_;  // G, symmetric
   double kappa_x_ = 0.0, kappa_v_ = 0.0;
+  bool evaluated_ = false;  // inputs_ and responses_ are of a solve() before
   std::vector<ScalarInput> inputs_;
   std::vector<ScalarResponse> responses_;
   std::vector<double> tangent_, x_start_, kinks_;

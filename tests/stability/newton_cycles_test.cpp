@@ -79,7 +79,8 @@ class Problem {
     const Vector x = b_.transpose() * u_free_;
     for (std::size_t j = 0; j < free.size(); ++j) free[j].x = x[static_cast<Eigen::Index>(j)];
     const NewtonResult result =
-        contacts_.solve(free, 10.0, {.max_iterations = 100, .line_search = line_search}, lambda);
+        contacts_.solve(free, 10.0, {.max_iterations = 100, .line_search = line_search, .expects = false},
+                        lambda);
     u = u_free_ - w_ * lambda;
     return result;
   }
