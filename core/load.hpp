@@ -34,7 +34,7 @@ struct LoadStretch {
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// A load that is a periodic curve of its angle, straight between evenly spaced knots: what table_batch.hpp
+/// A load that is a periodic curve of its angle, straight between evenly spaced knots: what table_loads.hpp
 /// looks up without a call. Knot k stands at first + k spacing, to within a quarter of it.
 struct LoadTable {
   std::span<const double> arguments, values, slopes;  ///< rad, N m, N m/rad to the right of each knot
