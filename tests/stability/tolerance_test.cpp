@@ -113,8 +113,8 @@ TEST_CASE("The true error stays below 3 times the tolerance on 72 random models"
           INFO(kind.name << " " << seed << ", " << methods[m].name << " " << tolerance << ": " << ratio
                          << " of it, deviations grow by " << judge.growth << "; " << run.brief_report());
           CHECK(run.ok());
-          // sdirk4 lands within 1e-6 of its step before a contact change, which counts at 1e-9.
-          CHECK(ratio < (m == 2 && k == 3 ? 10.0 : kAllowed));
+          // At 1e-9 sdirk4 takes so many steps that the share of each is down at the rounding of its rates.
+          CHECK(ratio < (m == 2 && k == 3 ? 5.0 : kAllowed));
           worst[m][k] = std::max(worst[m][k], ratio);
         }
     }
