@@ -113,7 +113,7 @@ TEST_CASE("The true error stays below 3 times the tolerance on 72 random models"
           INFO(kind.name << " " << seed << ", " << methods[m].name << " " << tolerance << ": " << ratio
                          << " of it, deviations grow by " << judge.growth << "; " << run.brief_report());
           CHECK(run.ok());
-          // At 1e-9 sdirk4 takes so many steps that the share of each is down at the rounding of its rates.
+          // Where a contact damper lets go no step ends: there sdirk4 is of second order, which counts at 1e-9.
           CHECK(ratio < (m == 2 && k == 3 ? 5.0 : kAllowed));
           worst[m][k] = std::max(worst[m][k], ratio);
         }
