@@ -111,10 +111,8 @@ void TableLoads::look_up(const double* z, Values& values) const {
     g += a * behind + b * (d - behind);
     store(g, torque + e);
     load(gain + e, g);
-    a = a * g < 0.0 ? -a * g : a * g;
-    b = b * g < 0.0 ? -b * g : b * g;
-    a = a < b ? b : a;
-    most = most < a ? a : most;
+    larger(most, a * g);
+    larger(most, b * g);
   }
   double steepest = 0.0;
   for (int l = 0; l < kLanes; ++l) steepest = std::max(steepest, most[l]);

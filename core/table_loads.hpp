@@ -19,7 +19,6 @@ class TableLoads {
   /// gain: coeff where the load follows the motion, else 0. Equal tables are kept once.
   void add(const LoadTable& table, int unknown, double coeff, double ratio, double gain);
   int size() const { return static_cast<int>(unknown_.size()); }
-  int unknown(int e) const { return unknown_[static_cast<std::size_t>(e)]; }
 
   /// What was looked up, and about which knots: an entry keeps its knot until the argument leaves it. Two
   /// looks at the same arguments differ by rounding at most.

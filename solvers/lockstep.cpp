@@ -22,12 +22,6 @@ std::array<const System*, kLanes> fill(const std::vector<const System*>& systems
   return all;
 }
 
-double largest_force(const StepPoint& point) {
-  double largest = std::max(point.p.lpNorm<Eigen::Infinity>(), point.kz.lpNorm<Eigen::Infinity>());
-  for (const ScalarResponse& r : point.responses) largest = std::max(largest, std::abs(r.y));
-  return largest;
-}
-
 }  // namespace
 
 std::optional<std::string> why_not_lockstep(const System& system, const TransientOptions& o) {

@@ -12,7 +12,6 @@ class MatrixProduct {
 
   /// out += factor A x. out and x are different vectors.
   void add(double factor, const Vector& x, Vector& out) const;
-  bool is_zero() const { return diagonals_.empty() && !by_rows_; }
 
  private:
   struct Diagonal {

@@ -151,12 +151,12 @@ void StepEquation::start_from(const StepPoint& point) {
     lambda_[static_cast<Eigen::Index>(j)] = point.responses[j].y;
 }
 
-void StepEquation::update_scale(const StepPoint& point) {
-  const int n = system_.size();
-  force_scale_ = std::max(force_scale_, largest_size(n, point.p.data()));
-  force_scale_ = std::max(force_scale_, largest_size(n, point.kz.data()));
-  for (std::size_t j = 0; j < point.responses.size(); ++j)
-    force_scale_ = std::max(force_scale_, std::abs(point.responses[j].y));
+double largest_force(const StepPoint& point) {
+  const int n = static_cast<int>(point.p.size());
+  double largest = std::max(0.0, largest_size(n, point.p.data()));
+  largest = std::max(largest, largest_size(n, point.kz.data()));
+  for (const ScalarResponse& r : point.responses) largest = std::max(largest, std::abs(r.y));
+  return largest;
 }
 
 NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {

@@ -34,6 +34,9 @@ struct StepOptions {
   bool time_phases = false;  ///< keep where the time goes (slows the run a little)
 };
 
+/// Largest load, force K z or law's force at a point [N m or N].
+double largest_force(const StepPoint& point);
+
 class StepEquation {
  public:
   /// Coefficients mu = 1 - alpha_m, phi = 1 - alpha_f, beta, gamma are the scheme's.
@@ -70,7 +73,7 @@ class StepEquation {
   void filter(double h, Vector& e_z, Vector& e_v);
   /// Newton starts from the forces at this point.
   void start_from(const StepPoint& point);
-  void update_scale(const StepPoint& point);
+  void update_scale(const StepPoint& point) { expect_force(largest_force(point)); }
   /// The largest force so far is at least this: of a run that was stepped elsewhere [N or N m].
   void expect_force(double force) { force_scale_ = std::max(force_scale_, force); }
 

@@ -17,8 +17,7 @@ template <class Value>
   int i = 0;
   for (; i + kLanes <= n; i += kLanes) {
     value(i, x);
-    const Lanes size = x < 0.0 ? -x : x;
-    most = size > most ? size : most;
+    larger(most, x);
     bad += 0.0 * x;  // comparisons drop a NaN
   }
   for (; i < n; ++i) {
