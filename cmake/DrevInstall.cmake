@@ -1,8 +1,9 @@
-# Installs the rooms' libraries and headers, and what find_package(drev) reads. Headers keep their room:
-# #include "core/model.hpp" inside and outside. (app/CMakeLists.txt installs the command.)
+# Installs the rooms' libraries and headers, and what find_package(drev) and pkg-config read. Headers keep
+# their room: #include "core/model.hpp" inside and outside. (app/CMakeLists.txt installs the command.)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(drev_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/drev)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 
 install(TARGETS drev_core drev_elements drev_solvers drev_models EXPORT drevTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -22,3 +23,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/drevConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/drevConfig.cmake ${PROJECT_BINARY_DIR}/drevConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/DrevDependencies.cmake DESTINATION ${drev_cmake_dir})
+
+# Relative to the file's own place, so that an installed tree can be moved.
+file(RELATIVE_PATH drev_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" drev_pc_to_prefix ${drev_pc_to_prefix})
+configure_file(${PROJECT_SOURCE_DIR}/cmake/drev.pc.in ${PROJECT_BINARY_DIR}/drev.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/drev.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

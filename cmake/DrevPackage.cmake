@@ -1,0 +1,20 @@
+# Debian packages, by `cpack` in the build directory: drev (the command) and libdrev-dev (libraries and
+# headers). What linking CHOLMOD means for who passes them on: README, "Licence".
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "the drev developers")
+set(CPACK_PACKAGE_CONTACT "the drev developers <drev@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION "Modes, motion in time, mesh forces and their errors of shaft lines with
+gears, dampers and backlash; with the camshaft of a marine diesel and its gear drive.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL command development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME drev)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libdrev-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libsuitesparse-dev, libarpack2-dev")
+include(CPack)
