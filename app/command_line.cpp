@@ -6,9 +6,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "app/commands.hpp"
 #include "app/exit_codes.hpp"
 #include "app/help_texts.hpp"
+#include "app/text_layout.hpp"
 #include "models/scene.hpp"
 
 namespace drev::app {
@@ -20,55 +20,24 @@ constexpr const char* kPlace = "command line";
 /// What CLI11 fills; an option that was not given stays empty.
 struct Raw {
   std::string model;
-  std::vector<std::string> sets, records, methods;
-  // More than one is an error.
-  std::vector<std::string> method, step, tolerance, out, every, count, contact, limit, accuracy;
+  std::vector<std::string> sets;
+  std::map<std::string, std::vector<std::string>> options;
   bool json = false;
 };
 
-void add_text(CLI::App& sub, const std::string& option, std::vector<std::string>& target,
-              const std::string& type, const std::string& meaning) {
-  sub.add_option(option, target, meaning)->option_text(type)->allow_extra_args(false);
-}
-
-void add_model_options(CLI::App& sub, Raw& raw) {
+void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.allow_extras();  // unknown options are reported with the nearest right one
-  sub.add_option("MODEL", raw.model, "Name of the model; drev list shows them")->option_text(" ");
-  sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
-      ->option_text("NAME=VALUE ...");
+  if (command.takes_model) {
+    sub.add_option("MODEL", raw.model, "Name of the model; drev list shows them")->option_text(" ");
+    sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
+        ->option_text("NAME=VALUE ...");
+  }
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
-}
-
-void add_run_options(CLI::App& sub, Raw& raw) {
-  add_model_options(sub, raw);
-  add_text(sub, "--method", raw.method, "METHOD",
-           "Time integration; default: what suits the model; see below");
-  add_text(sub, "--step", raw.step, "SECONDS", "Time step; default: the model's");
-  add_text(sub, "--tolerance", raw.tolerance, "T",
-           "Relative: of exact, default 1e-10; of any other method, whose steps it controls");
-  add_text(sub, "--accuracy", raw.accuracy, "A",
-           "Finds the figures to the relative error A and states the error of each");
-  add_text(sub, "--out", raw.out, "DIR", "Creates DIR with history.csv and summary.json");
-  add_text(sub, "--record", raw.records, "CHANNEL,...",
-           "Columns of history.csv; default: the model's");
-  add_text(sub, "--every", raw.every, "SECONDS",
-           "Interval of history.csv; default: about duration / 1000");
-}
-
-void add_modes_options(CLI::App& sub, Raw& raw) {
-  add_model_options(sub, raw);
-  add_text(sub, "--count", raw.count, "N", "Elastic modes; default: 10, or all if fewer");
-  add_text(sub, "--contact", raw.contact, "STATE", "Contacts: closed (default) or open");
-}
-
-void add_chart_options(CLI::App& sub, Raw& raw) {
-  add_model_options(sub, raw);
-  sub.add_option("--methods", raw.methods, "Methods drawn; default: all that fit the model")
-      ->option_text("METHOD ...");
-  add_text(sub, "--limit", raw.limit, "SECONDS",
-           "Processor time of the longest run drawn; default: 1");
-  add_text(sub, "--out", raw.out, "DIR",
-           "Creates DIR with chart.csv, error_over_time.svg and error_over_work.svg");
+  for (const OptionEntry& option : command.options)
+    sub.add_option(option.name, raw.options[option.name], option.meaning)
+        ->option_text(option.type)
+        ->allow_extra_args(option.values == OptionEntry::Values::words);
+  sub.footer(command.footer);
 }
 
 std::vector<std::string> option_names(const CLI::App& sub) {
@@ -137,20 +106,6 @@ void take_sets(const Raw& raw, CommandLine& line) {
   }
 }
 
-void take_text(const std::string& option, const std::vector<std::string>& given,
-               std::optional<std::string>& target, std::vector<Finding>& findings) {
-  if (given.size() > 1) {
-    findings.push_back({kPlace, option, given[1], "", "was given already, as " + given[0]});
-    return;
-  }
-  for (const std::string& value : given) {
-    if (value.empty() || value.starts_with("--"))
-      findings.push_back({kPlace, option, value, "", "needs a value"});
-    else
-      target = value;
-  }
-}
-
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -161,37 +116,45 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-void take_records(const Raw& raw, CommandLine& line) {
-  if (raw.records.empty()) return;
-  line.record.emplace();
-  for (const std::string& list : raw.records)
-    for (const std::string& name : split(list)) {
+void take_option(const OptionEntry& option, const std::vector<std::string>& given, CommandLine& line) {
+  const auto report = [&](const std::string& value, const std::string& why) {
+    line.findings.push_back({kPlace, option.name, value, "", why});
+  };
+  if (given.empty()) return;
+  std::vector<std::string>& taken = line.options[option.name];
+  if (option.values == OptionEntry::Values::one) {
+    if (given.size() > 1)
+      report(given[1], "was given already, as " + given[0]);
+    else if (given[0].empty() || given[0].starts_with("--"))
+      report(given[0], "needs a value");
+    else
+      taken = given;
+    if (taken.empty()) line.options.erase(option.name);
+    return;
+  }
+  const bool commas = option.values == OptionEntry::Values::commas;
+  for (const std::string& text : given)
+    for (const std::string& name : commas ? split(text) : std::vector{text}) {
       if (name.empty() || name.starts_with("--"))
-        line.findings.push_back({kPlace, "--record", list, "", "must be CHANNEL,CHANNEL,..."});
-      else if (std::count(line.record->begin(), line.record->end(), name) > 0)
-        line.findings.push_back({kPlace, "--record", name, "", "is named twice"});
+        report(text, std::string("must be ") + option.type);
+      else if (std::count(taken.begin(), taken.end(), name) > 0)
+        report(name, "is named twice");
       else
-        line.record->push_back(name);
+        taken.push_back(name);
     }
 }
 
-void take_methods(const Raw& raw, CommandLine& line) {
-  if (raw.methods.empty()) return;
-  line.methods.emplace();
-  for (const std::string& name : raw.methods) {
-    if (name.empty() || name.starts_with("--"))
-      line.findings.push_back({kPlace, "--methods", name, "", "must be a method"});
-    else if (std::count(line.methods->begin(), line.methods->end(), name) > 0)
-      line.findings.push_back({kPlace, "--methods", name, "", "is named twice"});
-    else
-      line.methods->push_back(name);
-  }
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const CommandEntry& command : commands()) names.push_back(command.name);
+  return names;
 }
 
 int no_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
   if (words.empty()) {
-    std::cerr << "drev: no command given; it is one of run, modes, list, chart. drev --help says more.\n";
+    std::cerr << "drev: no command given; it is one of " << join(command_names())
+              << ". drev --help says more.\n";
     return kBadInput;
   }
   const std::string& word = words.front();
@@ -205,12 +168,24 @@ int no_command(const CLI::App& app) {
     std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
   else
     std::cerr << (word == "help" ? "; did you mean --help?"
-                                 : did_you_mean(word, {"run", "modes", "list", "chart"}))
-              << "\nThe commands are run, modes, list, chart.\n";
+                                 : did_you_mean(word, command_names()))
+              << "\nThe commands are " << join(command_names()) << ".\n";
   return kBadInput;
 }
 
 }  // namespace
+
+std::optional<std::string> CommandLine::option(const std::string& name) const {
+  const auto found = options.find(name);
+  if (found == options.end()) return {};
+  return found->second.front();
+}
+
+std::optional<std::vector<std::string>> CommandLine::list(const std::string& name) const {
+  const auto found = options.find(name);
+  if (found == options.end()) return {};
+  return found->second;
+}
 
 ParsedCommandLine parse_command_line(int argc, char** argv) {
   CLI::App app("drev: torsional dynamics of drivetrains", "drev");
@@ -218,19 +193,8 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   app.allow_extras();
   app.footer(std::string(kMainExamples) + "\n" + kExitCodesHelp);
   Raw raw;
-  CLI::App* run = app.add_subcommand("run", "Simulates a model in time and prints what it found");
-  add_run_options(*run, raw);
-  run->footer(std::string(kMethodsHelp) + "\n" + kRunExamples + "\n" + kExitCodesHelp);
-  CLI::App* modes = app.add_subcommand("modes", "Natural frequencies of a model");
-  add_modes_options(*modes, raw);
-  modes->footer(kModesExamples);
-  CLI::App* list = app.add_subcommand("list", "The models; or one model's settings and channels");
-  add_model_options(*list, raw);
-  list->footer(kListExamples);
-  CLI::App* chart =
-      app.add_subcommand("chart", "Error of the methods against run time and work, on one model");
-  add_chart_options(*chart, raw);
-  chart->footer(std::string(kMethodsHelp) + "\n" + kChartExamples);
+  for (const CommandEntry& command : commands())
+    add_options(*app.add_subcommand(command.name, command.summary), command, raw);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -248,11 +212,10 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
 
   const CLI::App& sub = *chosen.front();
   find_model_among_sets(raw);
-  CommandLine line{.model = raw.model, .json = raw.json};
-  line.command = &sub == run     ? CommandLine::Command::run
-                 : &sub == modes ? CommandLine::Command::modes
-                 : &sub == chart ? CommandLine::Command::chart
-                                 : CommandLine::Command::list;
+  const std::vector<CommandEntry>& table = commands();
+  const CommandEntry& command = *std::find_if(
+      table.begin(), table.end(), [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
+  CommandLine line{.command = &command, .model = raw.model, .json = raw.json};
   if (chosen.size() > 1)
     line.findings.push_back(
         {kPlace, "command", chosen[1]->get_name(), "", "is a second one; give one command"});
@@ -261,17 +224,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
                              "must stand after the command " + sub.get_name()});
   report_extras(sub.remaining(), sub, line.findings);
   take_sets(raw, line);
-  take_text("--method", raw.method, line.method, line.findings);
-  take_text("--step", raw.step, line.step, line.findings);
-  take_text("--tolerance", raw.tolerance, line.tolerance, line.findings);
-  take_text("--out", raw.out, line.out, line.findings);
-  take_text("--every", raw.every, line.every, line.findings);
-  take_text("--count", raw.count, line.count, line.findings);
-  take_text("--contact", raw.contact, line.contact, line.findings);
-  take_text("--accuracy", raw.accuracy, line.accuracy, line.findings);
-  take_text("--limit", raw.limit, line.limit, line.findings);
-  take_records(raw, line);
-  take_methods(raw, line);
+  for (const OptionEntry& option : command.options) take_option(option, raw.options[option.name], line);
   return {.command = std::move(line)};
 }
 

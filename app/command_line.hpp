@@ -1,25 +1,29 @@
 #pragma once
 /// The command line as text, split into its parts; what the parts are worth is checked in requests.hpp, so
 /// that everything wrong with one command line can be listed at once.
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/commands.hpp"
 #include "core/error.hpp"
 
 namespace drev::app {
 
 struct CommandLine {
-  enum class Command { run, modes, list, chart };
-  Command command = Command::list;
-  std::string model;                                               ///< empty: not given
+  const CommandEntry* command = nullptr;
+  std::string model = {};                                          ///< empty: not given
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
-  std::optional<std::string> method = {}, step = {}, tolerance = {}, out = {}, every = {}, count = {},
-                             contact = {}, limit = {}, accuracy = {};
-  std::optional<std::vector<std::string>> record = {}, methods = {};
+  std::map<std::string, std::vector<std::string>> options = {};    ///< those given, with their values
   bool json = false;
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...
+
+  /// The value of an option such as "--step"; nullopt if it was not given.
+  std::optional<std::string> option(const std::string& name) const;
+  /// The values of an option that takes several.
+  std::optional<std::vector<std::string>> list(const std::string& name) const;
 };
 
 /// Either a command to be done, or the exit code of a process that has done what was asked (help, version)

@@ -1,9 +1,38 @@
 #pragma once
-/// The commands of drev. Each returns its exit code; what is printed goes to stdout in one piece. Throw
-/// ModelError for bad input, SolverError for a computation that failed, OutputError.
-#include "app/command_line.hpp"
+/// The commands of drev, as a table: what `drev --help` shows, what the command line is split by, and what is
+/// then done.
+#include <string>
+#include <vector>
 
 namespace drev::app {
+
+struct CommandLine;
+
+/// An option with a value.
+struct OptionEntry {
+  enum class Values {
+    one,     ///< a single one
+    commas,  ///< NAME,NAME,... and as often as needed
+    words    ///< NAME NAME ...
+  };
+  const char* name;     ///< "--step"
+  const char* type;     ///< of its value, as --help shows it
+  const char* meaning;
+  Values values = Values::one;
+};
+
+struct CommandEntry {
+  const char* name;
+  const char* summary;
+  bool takes_model = true;  ///< MODEL, and --set for its settings
+  std::vector<OptionEntry> options = {};
+  std::string footer = {};
+  /// Does it and returns the exit code; what is printed goes to stdout in one piece. Throws ModelError for bad
+  /// input, SolverError for a computation that failed, OutputError.
+  int (*execute)(const CommandLine& line) = nullptr;
+};
+
+const std::vector<CommandEntry>& commands();
 
 int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);

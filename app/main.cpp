@@ -1,11 +1,10 @@
-// The command drev: simulates ready-made models and lists them. See drev --help.
+// The command drev. See drev --help.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 
 #include "app/command_line.hpp"
-#include "app/commands.hpp"
 #include "app/exit_codes.hpp"
 #include "app/output_file.hpp"
 
@@ -17,20 +16,6 @@ void print(const std::string& text) {
 }
 
 namespace {
-
-int execute(const CommandLine& line) {
-  switch (line.command) {
-    case CommandLine::Command::run:
-      return run_command(line);
-    case CommandLine::Command::modes:
-      return modes_command(line);
-    case CommandLine::Command::list:
-      return list_command(line);
-    case CommandLine::Command::chart:
-      return chart_command(line);
-  }
-  return kBadInput;
-}
 
 void complain(const ModelError& error) {
   const std::size_t count = error.findings().size();
@@ -46,7 +31,7 @@ void complain(const ModelError& error) {
 int guarded_main(int argc, char** argv) {
   try {
     const ParsedCommandLine parsed = parse_command_line(argc, argv);
-    return parsed.command ? execute(*parsed.command) : parsed.exit_code;
+    return parsed.command ? parsed.command->command->execute(*parsed.command) : parsed.exit_code;
   } catch (const ModelError& error) {
     complain(error);
     return kBadInput;

@@ -124,9 +124,9 @@ double read_time(const char* option, const std::string& text, double low, double
 
 void check_channels(const ModelRequest& model, const CommandLine& line, bool all_settings_right,
                     std::vector<Finding>& findings) {
-  if (!line.record) return;
+  if (!line.list("--record")) return;
   try {
-    find_channels(model.system, *line.record);
+    find_channels(model.system, *line.list("--record"));
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
       if (!all_settings_right) finding.range += " (with the settings that are right)";
@@ -137,12 +137,12 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
 
 /// The tolerance of exact propagation, or of controlled steps.
 double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>& findings) {
-  if (!line.tolerance) return exact ? ExactOptions{}.tolerance : 0.0;
+  if (!line.option("--tolerance")) return exact ? ExactOptions{}.tolerance : 0.0;
   const double low = exact ? kLeastTolerance : kLeastOfSteps;
   const double high = exact ? kLargestTolerance : kLargestOfSteps;
   double value = 0.0;
-  if (!read_number(*line.tolerance, value) || !(value >= low && value <= high))
-    findings.push_back({kPlace, "--tolerance", *line.tolerance, "",
+  if (!read_number(*line.option("--tolerance"), value) || !(value >= low && value <= high))
+    findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "",
                         "must be a number from " + short_digits(low, 3) + " to " +
                             short_digits(high, 3)});
   return value;
@@ -167,15 +167,15 @@ std::vector<std::string> chart_methods(const System& system) {
 }
 
 std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding>& findings) {
-  if (!line.accuracy) return {};
+  if (!line.option("--accuracy")) return {};
   double value = 0.0;
-  if (!read_number(*line.accuracy, value) || !(value >= kLeastAccuracy && value <= kLargestAccuracy))
-    findings.push_back({kPlace, "--accuracy", *line.accuracy, "",
+  if (!read_number(*line.option("--accuracy"), value) || !(value >= kLeastAccuracy && value <= kLargestAccuracy))
+    findings.push_back({kPlace, "--accuracy", *line.option("--accuracy"), "",
                         "must be a number from " + short_digits(kLeastAccuracy, 3) + " to " +
                             short_digits(kLargestAccuracy, 3)});
   const std::string why = "cannot be given with --accuracy, which finds it";
-  if (line.step) findings.push_back({kPlace, "--step", *line.step, "s", why});
-  if (line.tolerance) findings.push_back({kPlace, "--tolerance", *line.tolerance, "", why});
+  if (line.option("--step")) findings.push_back({kPlace, "--step", *line.option("--step"), "s", why});
+  if (line.option("--tolerance")) findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "", why});
   return value;
 }
 
@@ -186,7 +186,7 @@ Method stepping(const std::string& name, const CommandLine& line, double step,
   const std::size_t before = findings.size();
   check_method("--method", name, findings);
   Method method{.name = name, .tolerance = read_tolerance(line, false, findings)};
-  if (line.accuracy && findings.size() == before && step_scheme(name).order() > 2)
+  if (line.option("--accuracy") && findings.size() == before && step_scheme(name).order() > 2)
     method.tolerance = kControlledTolerance;
   if (!method.controlled()) method.step = step;
   return method;
@@ -198,24 +198,24 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
                          std::vector<Finding>& findings) {
   const double duration = model ? model->scene.duration : 1.0;
   const double step = model ? std::min(model->scene.default_step, duration) : 0.0;
-  if (line.method && *line.method != "exact")
-    return {stepping(*line.method, line, step, findings), "asked for"};
-  if (line.step && line.tolerance && !line.method) {
-    findings.push_back({kPlace, "--step", *line.step, "s",
+  if (line.option("--method") && *line.option("--method") != "exact")
+    return {stepping(*line.option("--method"), line, step, findings), "asked for"};
+  if (line.option("--step") && line.option("--tolerance") && !line.option("--method")) {
+    findings.push_back({kPlace, "--step", *line.option("--step"), "s",
                         "needs a --method with --tolerance, whose largest step it is"});
     return {};
   }
-  if (line.step && !line.method)
+  if (line.option("--step") && !line.option("--method"))
     return {stepping("average_acceleration", line, step, findings),
             "the default where a step is asked for"};
-  if (!line.method && !line.tolerance)
+  if (!line.option("--method") && !line.option("--tolerance"))
     return model ? choose_method(model->system, duration, step) : MethodChoice{};
   const std::string reason =
-      line.method ? "asked for" : "the default where a tolerance is asked for";
-  if (!line.method && model && why_not_exact(model->system))
+      line.option("--method") ? "asked for" : "the default where a tolerance is asked for";
+  if (!line.option("--method") && model && why_not_exact(model->system))
     return {stepping("dormand_prince", line, step, findings), reason};
-  if (line.step)
-    findings.push_back({kPlace, "--step", *line.step, "s",
+  if (line.option("--step"))
+    findings.push_back({kPlace, "--step", *line.option("--step"), "s",
                         "has no meaning for --method exact, which finds its own; see --tolerance"});
   check_exact(model, "--method", findings);
   return {{.name = "exact", .tolerance = read_tolerance(line, true, findings)}, reason};
@@ -247,19 +247,19 @@ RunRequest request_run(const CommandLine& line) {
   const double high = model ? duration : HUGE_VAL;
   const MethodChoice method = find_method(model, line, findings);
   Method chosen = method.method;
-  if (line.step && !chosen.exact())
-    chosen.step = read_time("--step", *line.step, duration / kMostSteps, high, limit, findings);
+  if (line.option("--step") && !chosen.exact())
+    chosen.step = read_time("--step", *line.option("--step"), duration / kMostSteps, high, limit, findings);
   const std::optional<double> accuracy = read_accuracy(line, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
-  if (line.every)
-    every = read_time("--every", *line.every, duration / kMostRows, high, limit, findings);
+  if (line.option("--every"))
+    every = read_time("--every", *line.option("--every"), duration / kMostRows, high, limit, findings);
   for (const char* option : {"--record", "--every"})
-    if (!line.out && (option[2] == 'r' ? line.record.has_value() : line.every.has_value()))
+    if (!line.option("--out") && (option[2] == 'r' ? line.list("--record").has_value() : line.option("--every").has_value()))
       findings.push_back({kPlace, option, "", "", "needs --out DIR, where to write the channels"});
   if (model) check_channels(*model, line, settings_right, findings);
   if (!findings.empty()) refuse(std::move(findings));
-  std::vector<std::string> record = line.record.value_or(model->scene.channels);
-  return {std::move(*model), chosen, accuracy, method.reason, line.out, std::move(record), every};
+  std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
+  return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"), std::move(record), every};
 }
 
 ModesRequest request_modes(const CommandLine& line) {
@@ -267,21 +267,21 @@ ModesRequest request_modes(const CommandLine& line) {
   std::optional<ModelRequest> model = build_model(line, findings);
   ModesOptions options;
   static const std::vector<std::string> states{"closed", "open"};
-  const std::string contact = line.contact.value_or("closed");
+  const std::string contact = line.option("--contact").value_or("closed");
   options.contact = contact == "open" ? Contact::open : Contact::closed;
   if (contact != "open" && contact != "closed")
     findings.push_back({kPlace, "--contact", contact, "",
                         "must be closed or open" + did_you_mean(contact, states)});
-  if (line.count) {
+  if (line.option("--count")) {
     double number = 0.0;
     const int elastic =
         model ? model->system.size() - model->system.rigid_mode_count(options.contact) : 0;
     const std::string range =
         "must be a whole number from 1" +
         (model ? " to " + std::to_string(elastic) + ", the model's elastic modes" : std::string());
-    if (!read_number(*line.count, number) || number != std::floor(number) || number < 1 ||
+    if (!read_number(*line.option("--count"), number) || number != std::floor(number) || number < 1 ||
         (model ? number > elastic : number > 1e9))
-      findings.push_back({kPlace, "--count", *line.count, "", range});
+      findings.push_back({kPlace, "--count", *line.option("--count"), "", range});
     else
       options.count = static_cast<int>(number);
   }
@@ -292,7 +292,7 @@ ModesRequest request_modes(const CommandLine& line) {
 ChartRequest request_chart(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
-  for (const std::string& name : line.methods.value_or(std::vector<std::string>{})) {
+  for (const std::string& name : line.list("--methods").value_or(std::vector<std::string>{})) {
     const std::size_t at = name.find("@tolerance");
     if (name == "exact")
       check_exact(model, "--methods", findings);
@@ -300,10 +300,10 @@ ChartRequest request_chart(const CommandLine& line) {
       check_method("--methods", at == name.npos ? name : name.substr(0, at), findings);
   }
   double limit = 1.0;
-  if (line.limit) limit = read_time("--limit", *line.limit, 1e-3, 1e4, "", findings);
+  if (line.option("--limit")) limit = read_time("--limit", *line.option("--limit"), 1e-3, 1e4, "", findings);
   if (!findings.empty()) refuse(std::move(findings));
-  std::vector<std::string> methods = line.methods.value_or(chart_methods(model->system));
-  return {std::move(*model), std::move(methods), limit, line.out};
+  std::vector<std::string> methods = line.list("--methods").value_or(chart_methods(model->system));
+  return {std::move(*model), std::move(methods), limit, line.option("--out")};
 }
 
 ModelRequest request_model(const CommandLine& line) {

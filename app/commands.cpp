@@ -1,0 +1,45 @@
+#include "app/commands.hpp"
+
+#include "app/exit_codes.hpp"
+#include "app/help_texts.hpp"
+
+namespace drev::app {
+
+const std::vector<CommandEntry>& commands() {
+  using enum OptionEntry::Values;
+  static const std::vector<CommandEntry> table{
+      {.name = "run",
+       .summary = "Simulates a model in time and prints what it found",
+       .options = {{"--method", "METHOD", "Time integration; default: what suits the model; see below"},
+                   {"--step", "SECONDS", "Time step; default: the model's"},
+                   {"--tolerance", "T",
+                    "Relative: of exact, default 1e-10; of any other method, whose steps it controls"},
+                   {"--accuracy", "A",
+                    "Finds the figures to the relative error A and states the error of each"},
+                   {"--out", "DIR", "Creates DIR with history.csv and summary.json"},
+                   {"--record", "CHANNEL,...", "Columns of history.csv; default: the model's", commas},
+                   {"--every", "SECONDS", "Interval of history.csv; default: about duration / 1000"}},
+       .footer = std::string(kMethodsHelp) + "\n" + kRunExamples + "\n" + kExitCodesHelp,
+       .execute = run_command},
+      {.name = "modes",
+       .summary = "Natural frequencies of a model",
+       .options = {{"--count", "N", "Elastic modes; default: 10, or all if fewer"},
+                   {"--contact", "STATE", "Contacts: closed (default) or open"}},
+       .footer = kModesExamples,
+       .execute = modes_command},
+      {.name = "list",
+       .summary = "The models; or one model's settings and channels",
+       .footer = kListExamples,
+       .execute = list_command},
+      {.name = "chart",
+       .summary = "Error of the methods against run time and work, on one model",
+       .options = {{"--methods", "METHOD ...", "Methods drawn; default: all that fit the model", words},
+                   {"--limit", "SECONDS", "Processor time of the longest run drawn; default: 1"},
+                   {"--out", "DIR",
+                    "Creates DIR with chart.csv, error_over_time.svg and error_over_work.svg"}},
+       .footer = std::string(kMethodsHelp) + "\n" + kChartExamples,
+       .execute = chart_command}};
+  return table;
+}
+
+}  // namespace drev::app
