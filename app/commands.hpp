@@ -27,8 +27,8 @@ struct CommandEntry {
   bool takes_model = true;  ///< MODEL, and --set for its settings
   std::vector<OptionEntry> options = {};
   std::string footer = {};
-  /// Does it and returns the exit code; what is printed goes to stdout in one piece. Throws ModelError for bad
-  /// input, SolverError for a computation that failed, OutputError.
+  /// Does it and returns the exit code; what is printed goes to stdout in one piece. Throws ModelError for
+  /// bad input, SolverError for a computation that failed, OutputError.
   int (*execute)(const CommandLine& line) = nullptr;
 };
 

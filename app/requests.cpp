@@ -169,13 +169,15 @@ std::vector<std::string> chart_methods(const System& system) {
 std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding>& findings) {
   if (!line.option("--accuracy")) return {};
   double value = 0.0;
-  if (!read_number(*line.option("--accuracy"), value) || !(value >= kLeastAccuracy && value <= kLargestAccuracy))
+  if (!read_number(*line.option("--accuracy"), value) ||
+      !(value >= kLeastAccuracy && value <= kLargestAccuracy))
     findings.push_back({kPlace, "--accuracy", *line.option("--accuracy"), "",
                         "must be a number from " + short_digits(kLeastAccuracy, 3) + " to " +
                             short_digits(kLargestAccuracy, 3)});
   const std::string why = "cannot be given with --accuracy, which finds it";
   if (line.option("--step")) findings.push_back({kPlace, "--step", *line.option("--step"), "s", why});
-  if (line.option("--tolerance")) findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "", why});
+  if (line.option("--tolerance"))
+    findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "", why});
   return value;
 }
 
@@ -253,13 +255,21 @@ RunRequest request_run(const CommandLine& line) {
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), duration / kMostRows, high, limit, findings);
-  for (const char* option : {"--record", "--every"})
-    if (!line.option("--out") && (option[2] == 'r' ? line.list("--record").has_value() : line.option("--every").has_value()))
+  for (const char* option : {"--record", "--every", "--format"})
+    if (!line.option("--out") && line.list(option))
       findings.push_back({kPlace, option, "", "", "needs --out DIR, where to write the channels"});
+  bool hdf5 = false;
+  for (const std::string& format : line.list("--format").value_or(std::vector<std::string>{})) {
+    hdf5 = hdf5 || format == "hdf5";
+    if (format != "csv" && format != "hdf5")
+      findings.push_back({kPlace, "--format", format, "",
+                          "must be csv or hdf5" + did_you_mean(format, {"csv", "hdf5"})});
+  }
   if (model) check_channels(*model, line, settings_right, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
-  return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"), std::move(record), every};
+  return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"),
+          std::move(record), every, hdf5};
 }
 
 ModesRequest request_modes(const CommandLine& line) {

@@ -29,6 +29,7 @@ struct RunRequest {
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv
   double every = 0.0;               ///< s
+  bool hdf5 = false;                ///< history.h5 too
 };
 
 struct ModesRequest {

@@ -3,12 +3,14 @@
 
 #include "app/commands.hpp"
 #include "app/exit_codes.hpp"
+#include "app/history_hdf5.hpp"
 #include "app/interrupt.hpp"
 #include "app/run_computation.hpp"
 #include "app/run_json.hpp"
 #include "app/run_report.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
+#include "core/channel.hpp"
 
 namespace drev::app {
 
@@ -43,9 +45,16 @@ class RunFiles {
     bool written = history_->error().empty();
     if (!written) say(history_->error());
     try {
-      summary_->write(run_as_json(request_, result));
+      const std::string summary = run_as_json(request_, result);
+      summary_->write(summary);
       if (complete && written) {
         summary_->commit();
+        if (request_.hdf5) {
+          std::vector<HistoryColumn> columns;
+          for (const Channel& channel : find_channels(request_.model.system, request_.record))
+            columns.push_back({channel.name(), channel.unit()});
+          write_hdf5(*request_.out, history_->path(), columns, summary);
+        }
         OutputFile report(*request_.out, "report", "html");
         report.write(run_report(request_, result, history_->path()));
         report.commit();

@@ -41,7 +41,7 @@ run_tests() {
   return $status
 }
 
-packages+=(valgrind)  # counts instructions
+packages+=(valgrind python3-h5py)  # count instructions; read results
 install_packages
 build release
 run_tests release "" || failed=1

@@ -1,7 +1,8 @@
-# cmake -DROOT=<source tree> -P quotes_test.cmake: every C++ block of README.md and docs/*.md that follows a
+# cmake -DROOT=<source tree> -P quotes_test.cmake: every block of code of README.md and docs/*.md that follows a
 # line
 #   <!-- quote: FILE -->          must be text of FILE, line for line;
-#   <!-- quote: FILE [mark] -->   must be all that FILE has between its two lines "// [mark]".
+#   <!-- quote: FILE [mark] -->   must be all that FILE has between its two lines "// [mark]", "# [mark]" or
+#                                 "% [mark]".
 # Indentation common to all lines is left out, so that code inside a function can be quoted.
 cmake_minimum_required(VERSION 3.22)
 set(faults "")
@@ -27,9 +28,9 @@ foreach(page IN LISTS pages)
   while(NOT at EQUAL -1)
     math(EXPR at "${at} + 12")
     string(SUBSTRING "${rest}" ${at} -1 rest)
-    string(FIND "${rest}" " -->\n```cpp\n" head)
-    string(SUBSTRING "${rest}" 0 ${head} source)
-    math(EXPR head "${head} + 12")
+    string(REGEX MATCH "^[^\n]* -->\n```[a-z]+\n" opening "${rest}")
+    string(LENGTH "${opening}" head)
+    string(REGEX REPLACE " -->.*" "" source "${opening}")
     string(SUBSTRING "${rest}" ${head} -1 rest)
     string(FIND "${rest}" "\n```" end)
     string(SUBSTRING "${rest}" 0 ${end} quoted)
@@ -37,10 +38,10 @@ foreach(page IN LISTS pages)
     set(mark "")
     if(source MATCHES "^(.*) \\[([a-z]+)\\]$")
       set(source "${CMAKE_MATCH_1}")
-      set(mark "// [${CMAKE_MATCH_2}]")
+      set(mark "[${CMAKE_MATCH_2}]")
     endif()
-    if(head LESS 13 OR end EQUAL -1)
-      string(APPEND faults "  ${name}: '${source}' is not followed by a block of C++\n")
+    if(NOT opening OR end EQUAL -1)
+      string(APPEND faults "  ${name}: a quote is not followed by a block of code\n")
     elseif(NOT EXISTS ${ROOT}/${source})
       string(APPEND faults "  ${name} quotes ${source}, which does not exist\n")
     else()
@@ -55,7 +56,8 @@ foreach(page IN LISTS pages)
           math(EXPR begin "${begin} + ${length}")
           math(EXPR length "${last} - ${begin}")
           string(SUBSTRING "${code}" ${begin} ${length} code)
-          string(REGEX REPLACE "\n *$" "\n" code "${code}")
+          string(FIND "${code}" "\n" length REVERSE)  # the last mark's line has begun behind it
+          string(SUBSTRING "${code}" 0 ${length} code)
           plain("${code}" code)
           if(code STREQUAL quoted)
             set(found 0)

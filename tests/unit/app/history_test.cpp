@@ -158,6 +158,20 @@ TEST_CASE("A full disk is an error, and the old result stays") {
   CHECK_FALSE(std::filesystem::exists(folder / "r/summary.json"));
 }
 
+TEST_CASE("A history.h5 that does not fit on the disk leaves the rest") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "r");
+  std::filesystem::create_symlink("/dev/full", folder / "r/history.partial.h5");
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=0.1", "--out",
+                                 (folder / "r").string(), "--format", "hdf5"});
+  CHECK(run.exit_code == 3);
+  CHECK(contains(run.err, "history.partial.h5"));
+  CHECK(std::filesystem::exists(folder / "r/history.csv"));
+  CHECK(std::filesystem::exists(folder / "r/summary.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/history.h5"));
+}
+
 TEST_CASE("Standard output on a full disk is an error") {
   if (!std::filesystem::exists("/dev/full")) return;
   CHECK(Process({"list"}, "/dev/full").wait().exit_code == 3);

@@ -1,0 +1,19 @@
+#pragma once
+/// history.h5: history.csv as HDF5, made of it when the run is complete. A dataset time_s and one for each
+/// channel, by its name, with the attribute "unit"; the file's attributes are "drev" (version) and "summary"
+/// (summary.json as text).
+#include <string>
+#include <vector>
+
+namespace drev::app {
+
+struct HistoryColumn {
+  std::string name, unit;
+};
+
+/// csv: path of a complete history.csv, its columns time_s and these. Writes DIRECTORY/history.h5, which
+/// stays what it was if that fails. Throws OutputError.
+void write_hdf5(const std::string& directory, const std::string& csv,
+                const std::vector<HistoryColumn>& columns, const std::string& summary);
+
+}  // namespace drev::app
