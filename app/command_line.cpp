@@ -22,7 +22,7 @@ struct Raw {
   std::string model;
   std::vector<std::string> sets;
   std::map<std::string, std::vector<std::string>> options;
-  bool json = false;
+  bool json = false, quiet = false;
 };
 
 void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
@@ -33,6 +33,7 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
         ->option_text("NAME=VALUE ...");
   }
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
+  sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
   for (const OptionEntry& option : command.options)
     sub.add_option(option.name, raw.options[option.name], option.meaning)
         ->option_text(option.type)
@@ -215,7 +216,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   const std::vector<CommandEntry>& table = commands();
   const CommandEntry& command = *std::find_if(
       table.begin(), table.end(), [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
-  CommandLine line{.command = &command, .model = raw.model, .json = raw.json};
+  CommandLine line{.command = &command, .model = raw.model, .json = raw.json, .quiet = raw.quiet};
   if (chosen.size() > 1)
     line.findings.push_back(
         {kPlace, "command", chosen[1]->get_name(), "", "is a second one; give one command"});

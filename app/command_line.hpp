@@ -18,6 +18,7 @@ struct CommandLine {
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
   std::map<std::string, std::vector<std::string>> options = {};    ///< those given, with their values
   bool json = false;
+  bool quiet = false;  ///< nothing to standard output; what is wrong still goes to standard error
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...
 
   /// The value of an option such as "--step"; nullopt if it was not given.

@@ -39,7 +39,7 @@ int modes_command(const CommandLine& line);
 int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
 
-/// Writes to stdout; throws OutputError if that fails (a full disk behind a redirection).
+/// Writes to stdout, unless --quiet was given; throws OutputError if that fails (a full disk behind a redirection).
 void print(const std::string& text);
 
 }  // namespace drev::app

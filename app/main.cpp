@@ -3,14 +3,21 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <string_view>
 
 #include "app/command_line.hpp"
+#include "app/completion.hpp"
 #include "app/exit_codes.hpp"
 #include "app/output_file.hpp"
 
 namespace drev::app {
 
+namespace {
+bool quiet = false;
+}
+
 void print(const std::string& text) {
+  if (quiet) return;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError(std::string("cannot write to standard output: ") + std::strerror(errno));
 }
@@ -30,8 +37,16 @@ void complain(const ModelError& error) {
 
 int guarded_main(int argc, char** argv) {
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "__complete") {
+      std::string text;
+      for (const std::string& offered : completions({argv + 2, argv + argc})) text += offered + "\n";
+      print(text);
+      return kSuccess;
+    }
     const ParsedCommandLine parsed = parse_command_line(argc, argv);
-    return parsed.command ? parsed.command->command->execute(*parsed.command) : parsed.exit_code;
+    if (!parsed.command) return parsed.exit_code;
+    quiet = parsed.command->quiet;
+    return parsed.command->command->execute(*parsed.command);
   } catch (const ModelError& error) {
     complain(error);
     return kBadInput;
