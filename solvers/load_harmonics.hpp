@@ -1,0 +1,35 @@
+#pragma once
+/// Harmonics of loads that are made of straight stretches of an angle (cam tables), without aliasing: their
+/// kinks have content far above the harmonics that move the drive.
+///
+///   F_n = (2/T) int f exp(-i n w t) dt
+///       = 1/N exp(-i n pi/N) sum_m (2m+1) (-i)^m j_m(n pi/N) sum_s mu_m(s) exp(-2 pi i n s/N)
+///
+/// mu_m(s): moments of f with the Legendre polynomials over cell s of N, split at the stretches' ends; by
+/// exp(-i x xi) = sum (2m+1) (-i)^m j_m(x) P_m(xi) (NIST Digital Library of Mathematical Functions, 10.60.8),
+/// cut where n <= N/4 leaves 1e-8.
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "core/system.hpp"
+
+namespace drev {
+
+class LoadHarmonics {
+ public:
+  explicit LoadHarmonics(const System& system);
+  /// Places in System::loads() of those on unknowns that are left to others.
+  const std::vector<int>& others() const { return others_; }
+  /// q, v: motion at N even times of the period 2 pi/w, unknowns x N; out: unknowns x (H + 1), H <= N/4.
+  void add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, Eigen::MatrixXcd& out) const;
+
+ private:
+  void moments(const LoadTerm& term, double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
+               Eigen::MatrixXd& mu) const;
+
+  const System& system_;
+  std::vector<int> taken_, others_;
+};
+
+}  // namespace drev

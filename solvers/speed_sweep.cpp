@@ -1,0 +1,56 @@
+#include "solvers/speed_sweep.hpp"
+
+#include <cmath>
+
+namespace drev {
+
+namespace {
+constexpr double kWidth = 1e-4;  // of the search, beside the grid
+}
+
+SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::vector<double>& speeds,
+                        const PeriodicOptions& options) {
+  std::vector<Finding> findings;
+  ParameterCheck check("speed sweep", findings);
+  check.increasing("speeds", speeds, "");
+  if (speeds.empty()) check.fail("speeds", "none", "", "must be at least one");
+  if (options.channels.empty()) check.fail("channels", "none", "", "must be at least one");
+  if (options.period != 0.0)
+    check.fail("period", to_text(options.period), "s", "must be 0: it changes with the speed");
+  if (!findings.empty()) throw ModelError(findings);
+
+  SpeedSweep sweep;
+  for (const double speed : speeds) sweep.curve.push_back({speed, solve_periodic(build(speed), options)});
+  sweep.worst.resize(options.channels.size());
+  for (std::size_t c = 0; c < options.channels.size(); ++c) {
+    SpeedSweep::Worst& worst = sweep.worst[c];
+    std::size_t top = 0;
+    const auto note = [&](double speed, const PeriodicResponse& r) {
+      if (!r.found) return 0.0;
+      const double amplitude = r.peaks[c].amplitude();
+      if (amplitude > worst.amplitude) worst = {speed, amplitude};
+      return amplitude;
+    };
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      const double before = worst.amplitude;
+      if (note(speeds[i], sweep.curve[i].response) > before) top = i;
+    }
+    double low = speeds[top > 0 ? top - 1 : 0], high = speeds[std::min(top + 1, speeds.size() - 1)];
+    const double width = kWidth * (high - low), golden = 0.5 * (std::sqrt(5.0) - 1.0);
+    const auto at_speed = [&](double speed) { return note(speed, solve_periodic(build(speed), options)); };
+    double left = high - golden * (high - low), right = low + golden * (high - low);
+    double y_left = high > low ? at_speed(left) : 0.0, y_right = high > low ? at_speed(right) : 0.0;
+    while (high - low > width) {
+      if (y_left >= y_right) {
+        high = right, right = left, y_right = y_left;
+        y_left = at_speed(left = high - golden * (high - low));
+      } else {
+        low = left, left = right, y_left = y_right;
+        y_right = at_speed(right = low + golden * (high - low));
+      }
+    }
+  }
+  return sweep;
+}
+
+}  // namespace drev
