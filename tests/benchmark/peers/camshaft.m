@@ -2,16 +2,16 @@
 % engine, NTNU, 2015, appendix A.2.1) steps it: dense matrices, Newmark with beta = 1/4 and gamma = 1/2, full
 % Newton whose matrix is made and factored in each iteration, tables entered by interp1.
 %
-%   octave-cli camshaft.m FOLDER interp1|direct STEP DURATION
+%   octave-cli camshaft.m FOLDER interp1|direct each|all STEP DURATION
 %
-% FOLDER as peer_files.hpp writes it. direct: interp1 replaced by a look-up in the evenly spaced table.
+% FOLDER as peer_files.hpp writes it. direct: interp1 replaced by a look-up in the evenly spaced table. each:
+% cam by cam, as the source does; all: all cams of a kind in one call, which the source could have done.
 % Prints: processor time of the loop [s], steps, then the free end's angle after each step [rad].
 1;
 
-% By table: all cams of a kind in one call (the source looks up cam by cam, which takes ten times as long).
 function torque = loads(model, theta, u, direct)
   torque = zeros(size(u));
-  for k = 1:numel(model.cams)
+  for k = 1:numel(model.cams)  % one for each cam, or each kind
     cam = model.cams(k);
     angle = mod(theta + cam.phase + u(cam.at), 2*pi);
     if direct
@@ -46,8 +46,9 @@ end
 
 folder = argv(){1};
 direct = strcmp(argv(){2}, 'direct');
-h = str2double(argv(){3});
-steps = round(str2double(argv(){4})/h);
+each = strcmp(argv(){3}, 'each');
+h = str2double(argv(){4});
+steps = round(str2double(argv(){5})/h);
 model.meshes = [];
 for name = {'M', 'C', 'K', 'tables', 'loads', 'meshes', 'run'}
   file = [folder '/' name{1} '.txt'];
@@ -55,10 +56,19 @@ for name = {'M', 'C', 'K', 'tables', 'loads', 'meshes', 'run'}
     model.(name{1}) = load(file);
   end
 end
+cams = {};
 for k = 1:columns(model.tables)
   mine = model.loads(model.loads(:, 2) == k, :);
-  model.cams(k) = struct('at', mine(:, 1), 'phase', mine(:, 3), 'torque', model.tables([1:end 1], k));
+  torque = model.tables([1:end 1], k);
+  if each
+    for c = 1:rows(mine)
+      cams{end + 1} = struct('at', mine(c, 1), 'phase', mine(c, 3), 'torque', torque);
+    end
+  else
+    cams{end + 1} = struct('at', mine(:, 1), 'phase', mine(:, 3), 'torque', torque);
+  end
 end
+model.cams = [cams{:}];
 knots = rows(model.tables);
 model.angles = linspace(0, 2*pi, knots + 1)';
 model.per_radian = knots/(2*pi);
