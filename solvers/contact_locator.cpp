@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/law_pieces.hpp"
 #include "solvers/polynomial.hpp"
 
 namespace drev {
@@ -11,6 +12,7 @@ namespace drev {
 namespace {
 
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kOnKnot = 1e-11;  // of an angle: above what next_knot() takes for one with a knot
 using Coefficients = StepPolynomial::Coefficients;
 
 /// Adds the quintic through values and rates (per step) at both ends and in the middle.
@@ -22,6 +24,8 @@ void add_known(double y_0, double d_0, double y_1, double d_1, double middle, do
   const double c_4 = 5 * r - q - 3 * c_2 - 2 * c_3, c_5 = r - c_2 - c_3 - c_4;
   x[0] += y_0, x[1] += d_0, x[2] += c_2, x[3] += c_3, x[4] += c_4, x[5] += c_5;
 }
+
+double value(const LawBound& b, double x, double x_dot) { return b.a + b.b_x * x + b.b_v * x_dot; }
 
 double sum(const std::vector<Entry>& entries, const Vector& q) {
   double s = 0.0;
@@ -35,7 +39,8 @@ ContactLocator::ContactLocator(const System& system)
     : system_(system), zero_(Vector::Zero(system.size())) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (!term.force->kinks().empty()) laws_.push_back(j);
+    if (auto pieces = LawPieces::of(term, term.force->product_pieces()); pieces.size() > 1)
+      laws_.push_back({j, std::move(pieces)});
     if (term.phase_node >= 0 && (term.force->next_knot(0.0, 1.0) || term.force->next_knot(0.0, -1.0)))
       phased_.push_back(j);
   }
@@ -59,49 +64,67 @@ ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State&
   return {angle, rate};
 }
 
-std::pair<double, double> ContactLocator::distance(const Crossing& c, const StepPoint& point) const {
-  const ScalarInput& in = point.inputs[c.law];
-  const double side = c.side;
-  const Value value = c.knot ? angle(system_.scalars()[c.law], point.state, in.angle)
-                             : Value{in.x, in.x_dot};
-  return {side * (value.value - c.at), side * value.rate};
+double ContactLocator::acceleration(const ScalarTerm& term, const State& state) const {
+  double a = sum(term.z, state.a);
+  for (const Entry& e : term.u)
+    if (const auto& known = system_.prescribed()[at(e.index)].at) a += e.coeff * known(state.t).acceleration;
+  return a;
 }
 
-std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(
-    std::size_t law, const Coefficients& x) const {
-  const auto kinks = system_.scalars()[law].force->kinks();
+std::pair<double, double> ContactLocator::distance(const Crossing& c, const StepPoint& point) const {
+  const ScalarTerm& term = system_.scalars()[c.law];
+  const ScalarInput& in = point.inputs[c.law];
+  const LawBound& b = c.bound;
+  const Value x = c.knot ? angle(term, point.state, in.angle) : Value{in.x, in.x_dot};
+  const double bend = b.b_v != 0.0 ? b.b_v * acceleration(term, point.state) : 0.0;
+  return {value(b, x.value, x.rate), b.b_x * x.rate + bend};
+}
+
+std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& law,
+                                                                     const ScalarInput& from,
+                                                                     const Coefficients& x,
+                                                                     double h) const {
   std::optional<Crossing> best;
-  for (std::size_t k = 0; k < kinks.size(); ++k) {
-    Coefficients g = x;
-    const double rounding = kRounding * (std::abs(x[0]) + std::abs(kinks[k]));
-    g[0] -= kinks[k];
-    // On the kink but for rounding: which side it leaves to, and whether it was evaluated on that side.
-    const bool on_kink = std::abs(g[0]) <= rounding;
-    const int seen = g[0] > 0.0 ? 1 : g[0] < 0.0 ? -1 : 0;
-    if (on_kink) g[0] = 0.0;
-    const auto leading = std::find_if(g.begin(), g.end(), [](double c) { return c != 0.0; });
-    if (leading == g.end()) continue;
-    const int side = *leading > 0.0 ? 1 : -1;
-    if (side != seen) return Crossing{0.0, law, kinks[k], -side};
-    if (side < 0)
-      for (double& c : g) c = -c;
-    if (const auto s = first_crossing(g, best ? best->s : 1.0)) best = {*s, law, kinks[k], side};
+  for (const LawBound& b : law.pieces[at(LawPieces::holding(law.pieces, from))].bounds) {
+    Coefficients g;
+    for (std::size_t k = 0; k < g.size(); ++k) g[k] = b.b_x * x[k];
+    if (b.b_v != 0.0)
+      for (std::size_t k = 1; k < g.size(); ++k) g[k - 1] += b.b_v / h * static_cast<double>(k) * x[k];
+    const double seen = g[0] = value(b, from.x, from.x_dot);
+    const double rounding =
+        kRounding * (std::abs(b.a) + std::abs(b.b_x * from.x) + std::abs(b.b_v * from.x_dot));
+    if (seen <= rounding) {  // on the bound, or beyond: which side it leaves to decides
+      if (seen >= -rounding) g[0] = 0.0;
+      const auto leading = std::find_if(g.begin(), g.end(), [](double c) { return c != 0.0; });
+      if (leading == g.end()) continue;
+      if (*leading < 0.0) return Crossing{0.0, law.index, b};
+      if (!(seen > 0.0)) return Crossing{0.0, law.index, {-b.a, -b.b_x, -b.b_v}};
+    }
+    if (const auto s = first_crossing(g, best ? best->s : 1.0)) best = {*s, law.index, b};
   }
   return best;
 }
 
 std::optional<ContactLocator::Crossing> ContactLocator::first_knot(std::size_t law,
                                                                    const Coefficients& angle) const {
+  const ScalarForce& force = *system_.scalars()[law].force;
+  const double near = kOnKnot * std::max(1.0, std::abs(angle[0]));
+  const double rounding = kRounding * std::max(kOnKnot, std::abs(angle[0]));
   std::optional<Crossing> best;
   for (const int side : {-1, 1}) {  // it is passed going up from below, or down from above
-    const auto knot = system_.scalars()[law].force->next_knot(angle[0], -side);
-    if (!knot) continue;
+    // The bound lies beyond the knot by rounding, so that what starts on a knot is led over it.
+    LawBound bound{0.0, static_cast<double>(side), 0.0};
+    const auto set_from = [&](double start) {
+      const auto knot = force.next_knot(start, -side);
+      if (knot) bound.a = -side * *knot + rounding;
+      return knot.has_value() && value(bound, angle[0], 0.0) > 0.0;
+    };
+    if (!set_from(angle[0] + side * near) && !set_from(angle[0])) continue;
     Coefficients g = angle;
-    g[0] -= *knot;
     if (side < 0)
       for (double& c : g) c = -c;
-    if (!(g[0] > 0.0)) continue;
-    if (const auto s = first_crossing(g, best ? best->s : 1.0)) best = {*s, law, *knot, side, true};
+    g[0] = value(bound, angle[0], 0.0);
+    if (const auto s = first_crossing(g, best ? best->s : 1.0)) best = {*s, law, bound, true};
   }
   return best;
 }
@@ -114,7 +137,9 @@ std::optional<ContactLocator::Crossing> ContactLocator::first(const StepPolynomi
   const auto take = [&](const std::optional<Crossing>& c) {
     if (c && (!best || c->s < best->s)) best = c;
   };
-  for (const std::size_t j : laws_) take(first_of_law(j, deflection(j, motion, from, to, assembler)));
+  for (const Law& law : laws_)
+    take(first_of_law(law, from.inputs[law.index], deflection(law.index, motion, from, to, assembler),
+                      motion.h()));
   for (const std::size_t j : phased_) take(first_knot(j, phase(j, motion, from, to, assembler)));
   return best;
 }
@@ -125,16 +150,18 @@ std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint&
   const auto take = [&](const std::optional<Crossing>& c) {
     if (c && (!best || c->s < best->s)) best = c;
   };
-  const auto along = [&](const std::vector<Entry>& entries, const Value& now) {
-    return Coefficients{now.value, h * now.rate, 0.5 * h * h * sum(entries, point.state.a), 0, 0, 0};
+  const auto along = [&](const Value& now, double bend) {
+    return Coefficients{now.value, h * now.rate, 0.5 * h * h * bend, 0, 0, 0};
   };
-  for (const std::size_t j : laws_) {
-    const ScalarInput& in = point.inputs[j];
-    take(first_of_law(j, along(system_.scalars()[j].z, {in.x, in.x_dot})));
+  for (const Law& law : laws_) {
+    const ScalarInput& in = point.inputs[law.index];
+    const double bend = acceleration(system_.scalars()[law.index], point.state);
+    take(first_of_law(law, in, along({in.x, in.x_dot}, bend), h));
   }
   for (const std::size_t j : phased_) {
     const ScalarTerm& term = system_.scalars()[j];
-    take(first_knot(j, along(of_phase(term), angle(term, point.state, point.inputs[j].angle))));
+    take(first_knot(j, along(angle(term, point.state, point.inputs[j].angle),
+                             sum(of_phase(term), point.state.a))));
   }
   return best;
 }

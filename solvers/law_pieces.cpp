@@ -43,29 +43,38 @@ bool opposite(const LawBound& a, const LawBound& b) {
 LawPieces::LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    const std::span<const LawPiece> own = term.force->pieces();
-    if (own.empty() || term.phase_node >= 0)
-      laws_[j].pieces = SmoothLaws::stretches(*term.force);
-    else
-      laws_[j].pieces.assign(own.begin(), own.end());
+    laws_[j].pieces = of(term, term.force->pieces());
   }
+}
+
+std::vector<LawPiece> LawPieces::of(const ScalarTerm& term, std::span<const LawPiece> own) {
+  if (own.empty() || term.phase_node >= 0) return SmoothLaws::stretches(*term.force);
+  return {own.begin(), own.end()};
+}
+
+int LawPieces::holding(std::span<const LawPiece> pieces, const ScalarInput& in) {
+  const auto value = [&](const LawBound& b) { return b.a + b.b_x * in.x + b.b_v * in.x_dot; };
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (std::ranges::all_of(pieces[i].bounds, [&](const LawBound& b) { return value(b) > 0.0; }))
+      return static_cast<int>(i);
+  // On a bound, or off all pieces by rounding: where the least, by its terms' size, is largest.
+  double best = -std::numeric_limits<double>::infinity();
+  int piece = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const LawBound& b : pieces[i].bounds) {
+      const double size = std::abs(b.a) + std::abs(b.b_x * in.x) + std::abs(b.b_v * in.x_dot);
+      least = std::min(least, size > 0.0 ? value(b) / size : 0.0);
+    }
+    if (least > best) best = least, piece = static_cast<int>(i);
+  }
+  return piece;
 }
 
 void LawPieces::locate(const std::vector<ScalarInput>& inputs) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
-    const std::vector<LawPiece>& pieces = laws_[j].pieces;
-    double best = -std::numeric_limits<double>::infinity();
+    laws_[j].piece = holding(laws_[j].pieces, inputs[j]);
     laws_[j].root = -1;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      double least = std::numeric_limits<double>::infinity();
-      for (const LawBound& b : pieces[i].bounds) {
-        const double size =
-            std::abs(b.a) + std::abs(b.b_x * inputs[j].x) + std::abs(b.b_v * inputs[j].x_dot);
-        const double g = b.a + b.b_x * inputs[j].x + b.b_v * inputs[j].x_dot;
-        least = std::min(least, size > 0.0 ? g / size : 0.0);
-      }
-      if (least > best) best = least, laws_[j].piece = static_cast<int>(i);
-    }
   }
 }
 

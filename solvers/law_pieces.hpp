@@ -25,6 +25,11 @@ class LawPieces {
 
   explicit LawPieces(const System& system);
 
+  /// `own` pieces of a term's law; where it has none, or follows its phase, the stretches between its kinks.
+  static std::vector<LawPiece> of(const ScalarTerm& term, std::span<const LawPiece> own);
+  /// The piece that holds at the input; where several meet, the first of them.
+  static int holding(std::span<const LawPiece> pieces, const ScalarInput& in);
+
   /// Every law on the piece that its input is on.
   void locate(const std::vector<ScalarInput>& inputs);
   int piece(int law) const { return laws_[at(law)].piece; }

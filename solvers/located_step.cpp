@@ -7,8 +7,10 @@ namespace drev {
 
 namespace {
 constexpr double kLanding = 1e-6;  // of the step
+constexpr double kLeastHop = 1e-12;  // of the step: who starts on a bound at t = 0 leaves it, too
 constexpr int kMaxTries = 30;
-constexpr int kMaxHops = 8;
+constexpr int kMaxHops = 10;
+constexpr double kBeyond = 1e-6, kFarther = 8.0;  // first part of a hop added where it falls short; growth
 }  // namespace
 
 LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_new,
@@ -49,7 +51,7 @@ LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_
         const double left = rate < 0.0 ? std::max(distance, 0.0) / -rate : high - low;
         if (left <= landing || high - low <= landing) {
           result.reached = target;
-          result.tau = std::min(left, high - low);
+          result.tau = std::max(std::min(left, high - low), kLeastHop * h);
           return result;
         }
         next = low + left;
@@ -59,7 +61,7 @@ LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_
       result.newton.status = NewtonStatus::converged;
       result.h = 0.0;
       result.reached = target;
-      result.tau = next;
+      result.tau = std::max(next, kLeastHop * h);
       return result;
     }
     next -= 0.5 * landing;
@@ -70,7 +72,8 @@ LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_
 
 double LocatedStep::hop(const ContactLocator::Crossing& crossing, double tau, const StepPoint& from,
                         StepPoint& to) {
-  const double least = 4 * std::numeric_limits<double>::epsilon() * std::abs(from.state.t);
+  // Behind a jump the Taylor series is wrong: little is added at first.
+  double more = std::max(4 * std::numeric_limits<double>::epsilon() * std::abs(from.state.t), kBeyond * tau);
   const State& s = from.state;
   for (int i = 0;; ++i) {
     to.state.t = s.t + tau;
@@ -80,7 +83,8 @@ double LocatedStep::hop(const ContactLocator::Crossing& crossing, double tau, co
     to.state.history = s.history;
     stepper_.start(to);
     if (locator_.distance(crossing, to).first < 0.0 || i == kMaxHops) return tau;
-    tau = 2.0 * std::max(tau, least);
+    tau += more;
+    more *= kFarther;
   }
 }
 

@@ -11,6 +11,7 @@ constexpr double kSafety = 0.9;
 constexpr double kLeastFactor = 0.2, kLargestFactor = 4.0;
 constexpr double kFailureFactor = 0.25;
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // of v_1 - v_0
 constexpr double kTooShort = 0.05;  // E with which the step grows
 constexpr double kLeastError = 1e-6;  // as far as the controller looks
 }  // namespace
@@ -75,7 +76,8 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
     const double inertia = system_.mass_values()[system_.diagonal_slots()[unknown]];
     const auto kind = static_cast<std::size_t>(kind_[unknown]);
     take(std::abs(e_z[i]), kRounding * std::abs(end.z[i]), s.z[kind]);
-    take(std::abs(e_v[i]), kRounding * h * force / inertia, s.v[kind]);
+    take(std::abs(e_v[i]), kRateRounding * std::abs(end.v[i]) + kRounding * h * force / inertia,
+         s.v[kind]);
   }
   return worst > share && beyond_rounding <= share ? kTooShort : worst / share;
 }

@@ -26,7 +26,6 @@ struct ModelRanges {
   int masses = 12, gaps = 6;   ///< at most
   double decades = 8.0;        ///< of stiffness, at most
   bool varying = false;        ///< cams, engine orders, functions, gear mesh by phase, smooth laws
-  bool jumps = true;           ///< mesh stiffness that steps, among what varies
   double duration = 300.0;     ///< in units of 1/fastest
 };
 
@@ -196,7 +195,7 @@ class RandomModelMaker {
       const auto smooth = MeshStiffness::fourier(0.6 * k, {{1.0, 0.2 * k, 0.3}, {2.0, 0.1 * k, 1.0}});
       const auto stepped = [&] {
         const double ratio = random_(1.2, 1.8);
-        return ranges_.jumps ? MeshStiffness::step(0.7 * k, k, ratio) : smooth;
+        return MeshStiffness::step(0.7 * k, k, ratio);
       };
       const int teeth_1 = 1 + random_.below(12), teeth_2 = teeth_1 + random_.below(12);
       add_mass(pinion);

@@ -141,3 +141,18 @@ TEST_CASE("A force that jumps at an unknown time is passed, and said") {
           Approx(static_z * (1 - std::cos(kTwoPi * 0.63))).margin(1e-3 * static_z));
   }
 }
+
+TEST_CASE("A tolerance whose share of a step is below rounding does not end the run") {
+  // Average acceleration asks for h = (12 tolerance/(T w^3))^(1/2) = 7e-8 s, whose share is 7e-21 of the rate.
+  const System system = unit_oscillator().build();
+  State state = State::initial(system);
+  state.v[0] = 1.0;
+  const RunSummary run = simulate(system,
+                                  {.tolerance = 1e-11,
+                                   .t_end = 100.0,
+                                   .progress = [calls = 0](double) mutable { return ++calls < 20; }},
+                                  state);
+  INFO(run.brief_report());
+  CHECK(run.status == RunStatus::interrupted);
+  CHECK(state.v[0] == Approx(std::cos(kTwoPi * state.t)).epsilon(1e-11));
+}
