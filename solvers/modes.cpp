@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/units.hpp"
 #include "solvers/modal_problem.hpp"
@@ -11,6 +12,7 @@ namespace drev {
 namespace {
 
 constexpr double kSameFrequency = 1e-8;  // relative, of lambda: copies of one mode
+constexpr double kClusterEnd = 1e-5;     // the same: a count behind it meets no tiny pivots
 
 int modes_wanted(const System& system, const ModesOptions& options, int elastic) {
   const std::string place = system.name() + "/modes";
@@ -53,18 +55,18 @@ void check_rigid(const System& system, Contact contact, const ModalProblem& prob
                         : ": an element ties a part to ground without saying so in its closures"));
 }
 
-/// First index beyond the modes [0, total) whose frequency differs from the last one's; -1 if
-/// unknown yet.
-int next_distinct(const Vector& lambda, int total) {
-  const double same = lambda[total - 1] * (1.0 + kSameFrequency);
+/// First index beyond the modes [0, total) that lies above the one before it by more than `apart`,
+/// relatively; -1 if unknown yet.
+int next_distinct(const Vector& lambda, int total, double apart = kSameFrequency) {
   for (int j = total; j < lambda.size(); ++j)
-    if (lambda[j] > same) return j;
+    if (lambda[j] > lambda[j - 1] * (1.0 + apart)) return j;
   return -1;
 }
 
 /// Compares a Sturm count between pairs[cut - 1] and pairs[cut] with cut; returns the surplus of
-/// the count.
-int sturm_surplus(ModalProblem& problem, const Vector& lambda, int cut, ModesSummary& summary) {
+/// the count, nullopt where tiny pivots make it worth nothing.
+std::optional<int> sturm_surplus(ModalProblem& problem, const Vector& lambda, int cut,
+                                 ModesSummary& summary) {
   for (const double fraction : {0.5, 0.382, 0.618, 0.236, 0.764}) {
     const double s = lambda[cut - 1] + fraction * (lambda[cut] - lambda[cut - 1]);
     const InertiaCount count = problem.sturm().count_below(s);
@@ -74,8 +76,7 @@ int sturm_surplus(ModalProblem& problem, const Vector& lambda, int cut, ModesSum
     summary.sturm_count = count.below;
     return count.below - cut;
   }
-  throw SolverError("modes: no Sturm count could be trusted between " + to_text(lambda[cut - 1]) +
-                    " and " + to_text(lambda[cut]) + " (rad/s)^2: tiny pivots");
+  return std::nullopt;
 }
 
 void fill(const System& system, const ModalProblem& problem, const ModalPairs& pairs, int first,
@@ -138,8 +139,15 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
   for (int round = 0; round < kRounds; ++round) {
     const ModalPairs pairs = problem.lowest(ask, round, prefer_dense);
     check_rigid(system, options.contact, problem, pairs);
-    const int cut = next_distinct(pairs.lambda, total);
-    const int surplus = cut < 0 ? 0 : sturm_surplus(problem, pairs.lambda, cut, summary);
+    const int next = next_distinct(pairs.lambda, total);
+    int cut = next, surplus = 0;
+    while (cut >= 0) {
+      if (const auto counted = sturm_surplus(problem, pairs.lambda, cut, summary)) {
+        surplus = *counted;
+        break;
+      }
+      cut = next_distinct(pairs.lambda, cut + 1, kClusterEnd);  // behind the cluster that it was inside of
+    }
     if (surplus < 0 || (surplus > 0 && pairs.count() == n))
       throw SolverError("modes of " + system.name() + ": " + std::to_string(cut) +
                         " modes found below " + to_text(summary.sturm_point) +
@@ -147,15 +155,15 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
                         std::to_string(summary.sturm_count) +
                         ": the matrices are too badly scaled to separate modes there");
     if (surplus == 0 && (cut >= 0 || pairs.count() == n)) {
-      summary.copies_not_returned = (cut < 0 ? n : cut) - total;
+      summary.copies_not_returned = (next < 0 ? n : next) - total;
       fill(system, problem, pairs, modes.rigid_modes, wanted, modes);
       return modes;
     }
     ++summary.widened;
     int more = surplus + 1;
-    if (cut < 0) {  // copies of the last mode up to the end: how many there are says the count
+    if (cut < 0) {  // copies of the last mode, or its cluster, up to the end: how many says the count
       const InertiaCount count =
-          problem.sturm().count_below(pairs.lambda[total - 1] * (1.0 + 1e-5));
+          problem.sturm().count_below(pairs.lambda[pairs.count() - 1] * (1.0 + kClusterEnd));
       ++summary.factorizations;
       more = std::max(count.trusted ? count.below + 1 - ask : 0, 1 + ask / 4);
     }

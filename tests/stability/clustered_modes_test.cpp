@@ -59,22 +59,20 @@ TEST_CASE("Branches that differ by little: one mode between each two of their ow
     }
 }
 
-TEST_CASE("Modes too close to count between them, yet apart: the lowest, or an error that says so",
-          "[modes]") {
-  // Relative distances of 1e-6 to 1e-9: a count between them meets tiny pivots. Never a wrong set.
+TEST_CASE("Modes too close to count between them, yet apart: counted behind their cluster", "[modes]") {
+  // Relative distances of 1e-6 to 1e-9: a count between them meets tiny pivots.
   const double low = (3.0 - std::sqrt(5.0)) / 2.0;
-  for (const int branches : {4, 8, 20})
+  for (const int branches : {4, 8, 20, 60})
     for (const double mistuning : {1e-6, 1e-7, 1e-8, 1e-9})
-      for (const int limit : {kAlwaysLanczos, kAlwaysDense}) try {
-          const ModeSet modes =
-              solve_modes(hub(branches, mistuning), {.count = 2, .dense_limit = limit});
-          for (int j = 0; j < 2; ++j) {
-            CHECK(lambda(modes, j) >= low * (1.0 + j * mistuning - 1e-12));
-            CHECK(lambda(modes, j) <= low * (1.0 + (j + 1) * mistuning + 1e-12));
-          }
-        } catch (const SolverError& e) {
-          CHECK(std::string(e.what()).find("Sturm count") != std::string::npos);
+      for (const int limit : {kAlwaysLanczos, kAlwaysDense}) {
+        INFO(branches << " branches, " << mistuning << (limit == kAlwaysDense ? ", dense" : ", Lanczos"));
+        const ModeSet modes =
+            solve_modes(hub(branches, mistuning), {.count = 2, .dense_limit = limit});
+        for (int j = 0; j < 2; ++j) {
+          CHECK(lambda(modes, j) >= low * (1.0 + j * mistuning - 1e-12));
+          CHECK(lambda(modes, j) <= low * (1.0 + (j + 1) * mistuning + 1e-12));
         }
+      }
 }
 
 TEST_CASE("Inertias and stiffnesses over twelve decades in one chain: closed form to 1e-12",

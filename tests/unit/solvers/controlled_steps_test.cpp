@@ -143,7 +143,7 @@ TEST_CASE("A force that jumps at an unknown time is passed, and said") {
 }
 
 TEST_CASE("A tolerance whose share of a step is below rounding does not end the run") {
-  // Average acceleration asks for h = (12 tolerance/(T w^3))^(1/2) = 7e-8 s, whose share is 7e-21 of the rate.
+  // Average acceleration asks for h = (12 tolerance/(T w^3))^(1/2) = 7e-8 s: a share of 7e-21 of the rate.
   const System system = unit_oscillator().build();
   State state = State::initial(system);
   state.v[0] = 1.0;
