@@ -16,6 +16,25 @@ Json place_of(const std::optional<Largest>& largest, const std::string& unit) {
   return largest && largest->unit == unit ? Json(largest->place()) : Json(nullptr);
 }
 
+Json distribution_object(const Distribution& d) {
+  const bool any = d.count() > 0;
+  Json object{{"count", d.count()}, {"mean", any ? number(d.mean()) : Json()}};
+  object["p50"] = any ? number(d.quantile(0.5)) : Json();
+  object["p90"] = any ? number(d.quantile(0.9)) : Json();
+  object["p99"] = any ? number(d.quantile(0.99)) : Json();
+  object["max"] = any ? number(d.largest()) : Json();
+  return object;
+}
+
+Json flanks_object(const Distribution& front, const Distribution& back, const std::string& unit) {
+  Distribution both = front;
+  both.add(back);
+  return {{"unit", unit},
+          {"front", distribution_object(front)},
+          {"back", distribution_object(back)},
+          {"both", distribution_object(both)}};
+}
+
 Json contact_object(const Contacts& c, double duration) {
   const bool newton = c.force_unit == "N";
   return {{"element", c.record.element},
@@ -25,7 +44,11 @@ Json contact_object(const Contacts& c, double duration) {
           {"time_apart_share", duration > 0.0 ? number(c.record.time_apart / duration) : Json()},
           {"max_force_N", newton ? number(c.record.largest_force) : Json()},
           {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
-          {"max_at_time_s", number(c.record.largest_force_time)}};
+          {"max_at_time_s", number(c.record.largest_force_time)},
+          {"impact_speed", flanks_object(c.record.front_speed, c.record.back_speed, c.speed_unit())},
+          {"impact_force", flanks_object(c.record.front_force, c.record.back_force, c.force_unit)},
+          {"impact_energy_J", number(c.record.impact_energy)},
+          {"rattle_index_W", number(c.record.rattle_index(duration))}};
 }
 
 void add_contacts(Json& results, const RunResult& r) {

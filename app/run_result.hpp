@@ -24,6 +24,7 @@ struct Largest {
 struct Contacts {
   ContactRecord record;
   std::string force_unit;  ///< N or N m
+  std::string speed_unit() const { return force_unit == "N" ? "m/s" : "rad/s"; }
 };
 
 struct RunResult {

@@ -86,6 +86,27 @@ std::string contact_line(const std::string& name, long front, long back, double 
          pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
 }
 
+/// "0.012, 0.045, 0.09 m/s"
+std::string quantiles_text(const Distribution& d, const std::string& unit) {
+  return digits(d.quantile(0.5), 3) + ", " + digits(d.quantile(0.9), 3) + ", " + digits(d.quantile(0.99), 3) +
+         " " + unit;
+}
+
+/// How hard the flanks meet; nothing without impacts.
+std::string impact_rows(const RunResult& r, double duration) {
+  std::string text;
+  for (const Contacts& c : r.contacts) {
+    const ContactRecord& k = c.record;
+    if (k.impacts() == 0) continue;
+    std::string line = "speed " + quantiles_text(k.speed(), c.speed_unit());
+    if (k.force().count() > 0) line += "; force " + quantiles_text(k.force(), c.force_unit);
+    text += "  " + pad_right(k.element, kLabel - 2) +
+            wrap(line + "; rattle index " + digits(k.rattle_index(duration), 3) + " W", kLabel);
+  }
+  if (text.empty()) return {};
+  return row("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
+}
+
 std::string contact_rows(const RunResult& r) {
   if (r.contacts.empty()) {
     if (!r.mesh_force) return {};
@@ -113,7 +134,7 @@ std::string contact_rows(const RunResult& r) {
     text += contact_line("together", front, back, apart,
                          apart / (duration * static_cast<double>(r.contacts.size())),
                          digits(hardest->record.largest_force, 5) + " " + hardest->force_unit);
-  return text;
+  return text + impact_rows(r, duration);
 }
 
 std::string energy_row(const EnergyBalance& e) {

@@ -303,6 +303,7 @@ class AccurateRun {
     for (const BatchWatch::Contact& c : fine.batches.contacts()) {
       add_statistic(c.element + ": share of time apart", "", batch_mean(c.share_apart, kBatches));
       add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
+      add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
       add_statistic(c.element + ": mean force", c.unit, batch_mean(c.mean_force, kBatches));
       add_statistic(c.element + ": rms force", c.unit, batch_mean(c.rms_force, kBatches));
     }

@@ -116,7 +116,7 @@ BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, doub
 
 void BatchWatch::start(const Assembler& assembler, const StepPoint& point) {
   statistics_.start(assembler, point);
-  before_ = statistics_.records();
+  begin_batch();
   done_ = point.state.t < begin_ - kSameTime * length_ ? 0 : 1;
 }
 
@@ -126,7 +126,7 @@ void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const S
   statistics_.step(assembler, from, to);
   const double h = to.state.t - from.state.t, same = kSameTime * length_;
   if (from.state.t < begin_ - same) {  // ahead of the first batch
-    before_ = statistics_.records();
+    begin_batch();
     if (to.state.t >= begin_ - same) done_ = 1;
     return;
   }
@@ -144,15 +144,20 @@ void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const S
   if (done_ <= batches_ && to.state.t >= next_stop(0.0) - same) close();
 }
 
+void BatchWatch::begin_batch() {
+  before_.clear();
+  for (const ContactRecord& r : statistics_.records())
+    before_.push_back({r.time_apart, r.impact_energy, r.impacts()});
+}
+
 void BatchWatch::close() {
   ++done_;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactRecord &a = before_[i], &b = statistics_.records()[i];
-    const auto impacts = [](const ContactRecord& r) {
-      return static_cast<double>(r.front_impacts + r.back_impacts);
-    };
+    const Begin& a = before_[i];
+    const ContactRecord& b = statistics_.records()[i];
     contacts_[i].share_apart.push_back((b.time_apart - a.time_apart) / length_);
-    contacts_[i].impacts_per_second.push_back((impacts(b) - impacts(a)) / length_);
+    contacts_[i].impacts_per_second.push_back(static_cast<double>(b.impacts() - a.impacts) / length_);
+    contacts_[i].impact_power.push_back((b.impact_energy - a.impact_energy) / length_);
     contacts_[i].mean_force.push_back(forces_[i].value / length_);
     contacts_[i].rms_force.push_back(std::sqrt(std::max(0.0, forces_[i].square / length_)));
     forces_[i] = {};
@@ -162,7 +167,7 @@ void BatchWatch::close() {
     averages_[c].rms.push_back(std::sqrt(std::max(0.0, values_[c].square / length_)));
     values_[c] = {};
   }
-  before_ = statistics_.records();
+  begin_batch();
 }
 
 }  // namespace drev

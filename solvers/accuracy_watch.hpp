@@ -62,7 +62,8 @@ class BatchWatch final : public Observer {
   /// Of one contact or channel: a value a batch.
   struct Contact {
     std::string element, unit;  ///< of its force
-    std::vector<double> share_apart = {}, impacts_per_second = {}, mean_force = {}, rms_force = {};
+    std::vector<double> share_apart = {}, impacts_per_second = {}, impact_power = {}, mean_force = {},
+                        rms_force = {};
   };
   struct Average {
     std::string channel, unit;
@@ -73,13 +74,19 @@ class BatchWatch final : public Observer {
 
  private:
   void close();
+  void begin_batch();
 
   std::vector<Channel> channels_;
   double begin_, length_;
   int batches_,
       done_ = 0;  // the next stop ends the first stretch, ahead of the batches, or batch done_
   ContactStatistics statistics_;
-  std::vector<ContactRecord> before_;
+  /// Of each contact where the batch began.
+  struct Begin {
+    double time_apart = 0.0, impact_energy = 0.0;
+    long impacts = 0;
+  };
+  std::vector<Begin> before_;
   std::vector<std::size_t> laws_;
   struct Sum {
     double value = 0.0, square = 0.0;

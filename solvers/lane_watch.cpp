@@ -33,6 +33,8 @@ LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std
       w.law = first.deflection_of();
     }
   }
+  std::array<std::vector<double>, kLanes> masses;
+  for (int lane = 0; lane < kLanes; ++lane) masses[at(lane)] = equivalent_masses(*systems[at(lane)]);
   for (std::size_t j = 0; j < systems[0]->scalars().size(); ++j) {
     if (!systems[0]->scalars()[j].force->gap()) continue;
     Contact c;
@@ -41,6 +43,7 @@ LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std
       const Gap gap = systems[at(lane)]->scalars()[j].force->gap().value_or(Gap{});
       c.low.v[lane] = gap.low;
       c.high.v[lane] = gap.high;
+      c.masses[at(lane)] = masses[at(lane)][j];
     }
     contacts_.push_back(c);
   }
@@ -65,8 +68,8 @@ struct LaneWatchKernels {
     c.min_time.v = below ? Lanes{} + t : c.min_time.v;
   }
 
-  /// contact_statistics.cpp in lanes.
-  DREV_WIDEST static void contact(LaneWatch::Contact& c, const LanePointLaws& from, const LanePointLaws& to,
+  /// contact_statistics.cpp in lanes. True: a lane passes an edge, its impacts are to be seen to.
+  DREV_WIDEST static bool contact(LaneWatch::Contact& c, const LanePointLaws& from, const LanePointLaws& to,
                                   double h, double t, const LaneMask& lanes) {
     const auto j = static_cast<std::size_t>(c.law);
     const Lanes x_0 = from.x[j].v, x_1 = to.x[j].v, c_low = c.low.v, c_high = c.high.v;
@@ -78,24 +81,20 @@ struct LaneWatchKernels {
       c.force.v = more ? size : c.force.v;
       c.force_time.v = more ? Lanes{} + t : c.force_time.v;
     }
+    c.largest.v = (lanes & (size > c.largest.v)) ? size : c.largest.v;
     const LaneMask outside = above_0 | below_0;
     if (!any(lanes & ((above_0 ^ above_1) | (below_0 ^ below_1)))) {  // each stays where it was
       c.apart.v += (lanes & ~outside) ? Lanes{} + h : Lanes{};
-      return;
+      return false;
     }
     const Lanes one = Lanes{} + 1.0;
-    const LaneMask front = lanes & ~above_0 & above_1, back = lanes & ~below_0 & below_1;
-    c.front.v += front ? one : Lanes{};
-    c.back.v += back ? one : Lanes{};
-    Lanes speed = from.x_dot[j].v;
-    magnitude(speed);
-    c.speed.v = ((front | back) & (speed > c.speed.v)) ? speed : c.speed.v;
     const Lanes low = x_0 < x_1 ? x_0 : x_1, high = x_0 < x_1 ? x_1 : x_0;
     Lanes inside = (high < c_high ? high : c_high) - (low > c_low ? low : c_low);
     inside = inside > 0.0 ? inside : Lanes{};
     const LaneMask stands = high == low;
     const Lanes share = stands ? (outside ? Lanes{} : one) : inside / (stands ? one : high - low);
     c.apart.v += lanes ? h * share : Lanes{};
+    return true;
   }
 };
 
@@ -135,7 +134,21 @@ void LaneWatch::step(const std::vector<Assembler>& assemblers, const LanePoint& 
     value(c, assemblers, to, t, now);
     LaneWatchKernels::peak(c, now, t, lanes);
   }
-  for (Contact& c : contacts_) LaneWatchKernels::contact(c, from.laws, to.laws, h, t, lanes);
+  for (Contact& c : contacts_)
+    if (LaneWatchKernels::contact(c, from.laws, to.laws, h, t, lanes)) cross(c, from.laws, to.laws, lanes);
+}
+
+void LaneWatch::cross(Contact& c, const LanePointLaws& from, const LanePointLaws& to, const LaneMask& lanes) {
+  const std::size_t j = at(c.law);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (lanes[lane] == 0) continue;
+    ContactInterval interval{c.met[at(lane)], c.largest.v[lane]};
+    note_crossings({c.low.v[lane], c.high.v[lane]}, {.x = from.x[j].v[lane], .x_dot = from.x_dot[j].v[lane]},
+                   {.x = to.x[j].v[lane], .x_dot = to.x_dot[j].v[lane]}, std::abs(to.y[j].v[lane]),
+                   c.masses[at(lane)], interval, c.records[at(lane)]);
+    c.met[at(lane)] = interval.met;
+    c.largest.v[lane] = interval.largest;
+  }
 }
 
 std::vector<Peak> LaneWatch::peaks(int lane) const {
@@ -149,13 +162,12 @@ std::vector<ContactRecord> LaneWatch::contacts(int lane) const {
   std::vector<ContactRecord> all;
   for (const Contact& c : contacts_) {
     const System& system = *systems_[at(lane)];
-    all.push_back({.element = system.placements()[at(index(system.scalars()[at(c.law)].element))].name,
-                   .front_impacts = static_cast<long>(c.front.v[lane]),
-                   .back_impacts = static_cast<long>(c.back.v[lane]),
-                   .time_apart = c.apart.v[lane],
-                   .largest_force = c.force.v[lane],
-                   .largest_force_time = c.force_time.v[lane],
-                   .largest_gap_speed = c.speed.v[lane]});
+    ContactRecord r = c.records[at(lane)];
+    r.element = system.placements()[at(index(system.scalars()[at(c.law)].element))].name;
+    r.time_apart = c.apart.v[lane];
+    r.largest_force = c.force.v[lane];
+    r.largest_force_time = c.force_time.v[lane];
+    all.push_back(std::move(r));
   }
   return all;
 }

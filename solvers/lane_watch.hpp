@@ -33,11 +33,16 @@ class LaneWatch {
   };
   struct Contact {
     int law = 0;
-    LaneRow low, high, front, back, apart, force, force_time, speed;
+    LaneRow low, high, apart, force, force_time;
+    LaneRow largest;  // of the contact at hand
+    std::array<bool, kLanes> met{};
+    std::array<double, kLanes> masses{};
+    std::array<ContactRecord, kLanes> records;  // of the impacts
   };
   friend struct LaneWatchKernels;
   void value(const Watched& c, const std::vector<Assembler>& assemblers, const LanePoint& point, double t,
              LaneRow& out) const;
+  void cross(Contact& c, const LanePointLaws& from, const LanePointLaws& to, const LaneMask& lanes);
 
   std::vector<Watched> watched_;
   std::vector<Contact> contacts_;

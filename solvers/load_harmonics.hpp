@@ -6,7 +6,7 @@
 ///       = 1/N exp(-i n pi/N) sum_m (2m+1) (-i)^m j_m(n pi/N) sum_s mu_m(s) exp(-2 pi i n s/N)
 ///
 /// mu_m(s): moments of f with the Legendre polynomials over cell s of N, split at the stretches' ends; by
-/// exp(-i x xi) = sum (2m+1) (-i)^m j_m(x) P_m(xi) (NIST Digital Library of Mathematical Functions, 10.60.8),
+/// exp(-i x xi) = sum (2m+1) (-i)^m j_m(x) P_m(xi) (NIST Digital Library of Mathematical Functions, 10.60.7),
 /// cut where n <= N/4 leaves 1e-8.
 #include <Eigen/Core>
 #include <complex>

@@ -56,6 +56,7 @@ TEST_CASE(
   CHECK(contains(accuracy.at("reason").get<std::string>(), "two runs differ by more than 0.001"));
   const Json apart = figure(json, "mesh_1: share of time apart");
   CHECK(apart.at("kind") == "95 % interval");
+  CHECK(figure(json, "mesh_1: rattle index").at("unit") == "W");
   // The run's own share over all its time, less than the batches' over nine tenths of it knows.
   CHECK(std::abs(apart.at("value").get<double>() -
                  json.at("results").at("contacts")[0].at("time_apart_share").get<double>()) < 0.1);

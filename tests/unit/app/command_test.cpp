@@ -147,6 +147,15 @@ TEST_CASE("The figures of a run are the library's") {
   }
   REQUIRE(results.at("contacts").size() == 2);
   CHECK(results.at("front_contacts") == front);
+  const drev::ContactRecord& record = contacts.records()[0];
+  const Json& mesh = results.at("contacts")[0];
+  CHECK(mesh.at("impact_speed").at("unit") == "m/s");
+  CHECK(mesh.at("impact_speed").at("both").at("p90").get<double>() ==
+        Approx(record.speed().quantile(0.9)).epsilon(1e-12));
+  CHECK(mesh.at("impact_speed").at("front").at("max").get<double>() ==
+        Approx(record.front_speed.largest()).epsilon(1e-12));
+  CHECK(mesh.at("impact_force").at("back").at("count") == record.back_force.count());
+  CHECK(mesh.at("rattle_index_W").get<double>() == Approx(record.impact_energy / 0.05).epsilon(1e-12));
   CHECK(results.at("max_mesh_force_N").get<double>() == Approx(force).epsilon(1e-12));
   double largest_static = 0.0;  // at other angles than drev's
   for (const drev::Peak& p : drev::static_sweep(system, drev::find_channels(system, scene.torques),
@@ -194,7 +203,7 @@ TEST_CASE("The table has its units, and says what the data are") {
   CHECK(run.err.empty());  // no progress where there is no terminal
   for (const char* part :
        {" deg between fuel_1 and inlet_9", " N m in shaft_", " Hz", "mesh_1", "mesh_2", "front",
-        "back", "apart [s]", "[%]", "Static torque", "Dynamic amplification", "Energy balance",
+        "back", "apart [s]", "rattle index", "[%]", "Static torque", "Dynamic amplification", "Energy balance",
         "average_acceleration", "step 1e-05 s", "halved", "iterations", "reconstruction"})
     CHECK(contains(run.out, part));
 }

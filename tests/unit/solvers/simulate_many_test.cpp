@@ -66,6 +66,18 @@ ManyResult check_same(const VariantBuilder& build, TransientOptions options, dou
       CHECK(std::abs(v.contacts[c].time_apart - expected.time_apart) <= tolerance * single.t_end);
       CHECK(std::abs(v.contacts[c].largest_force - expected.largest_force) <=
             tolerance * std::max(1.0, expected.largest_force));
+      CHECK(v.contacts[c].impact_energy == Approx(expected.impact_energy).epsilon(10 * tolerance));
+      const auto same = [tolerance](const Distribution& a, const Distribution& b) {
+        CHECK(a.count() == b.count());
+        CHECK(a.mean() == Approx(b.mean()).epsilon(10 * tolerance));
+        CHECK(a.largest() == Approx(b.largest()).epsilon(10 * tolerance));
+        // A value on the edge of a bin may be on either side of it.
+        CHECK(a.quantile(0.5) == Approx(b.quantile(0.5)).epsilon(0.045));
+      };
+      same(v.contacts[c].front_speed, expected.front_speed);
+      same(v.contacts[c].back_speed, expected.back_speed);
+      same(v.contacts[c].front_force, expected.front_force);
+      same(v.contacts[c].back_force, expected.back_force);
     }
   }
   return many;
