@@ -47,10 +47,10 @@ HarmonicBalance::HarmonicBalance(const System& system, double period)
       factor_(pattern_) {
   assembler_.contact_values({0.0, 0.0, 1.0}, Contact::closed, closed_k_);
   assembler_.contact_values({0.0, 1.0, 0.0}, Contact::closed, closed_c_);
-  scale_.resize(system.size());
+  scale_.resize(2 * system.size());
   for (int i = 0; i < system.size(); ++i) {
     const int s = system.diagonal_slots()[at(i)];
-    scale_[i] = std::abs(closed_k_[s]) + w_ * w_ * system.mass_values()[s];
+    scale_[2 * i] = scale_[2 * i + 1] = std::abs(closed_k_[s]) + w_ * w_ * system.mass_values()[s];
   }
   std::set<int> varying;
   for (const ScalarTerm& term : system.scalars()) varying.insert(term.slots.begin(), term.slots.end());
@@ -66,7 +66,9 @@ HarmonicBalance::HarmonicBalance(const System& system, double period)
 double HarmonicBalance::inner(const Harmonics& a, const Harmonics& b) const {
   double sum = 0.0;
   for (Eigen::Index n = 0; n < a.cols(); ++n) {
-    const double part = (a.col(n).conjugate().cwiseProduct(b.col(n))).real().dot(scale_);
+    const Eigen::Map<const Vector> x(reinterpret_cast<const double*>(a.col(n).data()), scale_.size()),
+        y(reinterpret_cast<const double*>(b.col(n).data()), scale_.size());
+    const double part = x.cwiseProduct(y).dot(scale_);
     sum += n == 0 ? part : 0.5 * part;
   }
   return sum;
@@ -78,13 +80,14 @@ HarmonicBalance::Samples HarmonicBalance::motion(const Harmonics& z, int derivat
   Samples all(z.rows(), samples);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<Complex> lines(at(samples / 2 + 1));
+  std::vector<Complex> lines(at(samples / 2 + 1)), factors;
+  for (Eigen::Index n = 0; n < z.cols(); ++n)
+    factors.push_back((n == 0 ? 1.0 : 0.5) * samples *
+                      std::pow(Complex(0.0, w_ * static_cast<double>(n)), derivative));
   std::vector<double> values(at(samples));
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    for (Eigen::Index n = 0; n < z.cols(); ++n)
-      lines[static_cast<std::size_t>(n)] = z(i, n) *
-                                           std::pow(Complex(0.0, w_ * static_cast<double>(n)), derivative) *
-                                           ((n == 0 ? 1.0 : 0.5) * samples);
+    for (std::size_t n = 0; n < factors.size(); ++n)
+      lines[n] = z(i, static_cast<Eigen::Index>(n)) * factors[n];
     fft.inv(values, lines, samples);
     for (int s = 0; s < samples; ++s) all(i, s) = values[at(s)];
   }

@@ -70,7 +70,8 @@ class HarmonicBalance {
   Assembler assembler_;
   LoadHarmonics loads_;
   double w_;
-  Vector closed_k_, closed_c_, scale_;
+  Vector closed_k_, closed_c_;
+  Vector scale_;  // of Re and Im of each unknown in inner()
   Vector history_;
   SparseMatrix pattern_;  // of S as a real matrix, (Re, Im) of each unknown together
   SparseLu factor_;

@@ -27,6 +27,27 @@ double spherical_bessel(int m, double x) {
   return factor * sum;
 }
 
+using Moments = Eigen::Matrix<double, kMoments, 1>;
+
+/// P_0 ... of xi.
+Moments legendre(double xi) {
+  Moments p;
+  p[0] = 1.0;
+  p[1] = xi;
+  for (int m = 2; m < kMoments; ++m) p[m] = ((2 * m - 1) * xi * p[m - 1] - (m - 1) * p[m - 2]) / m;
+  return p;
+}
+
+/// At Gauss's points of a cell that is not split, where nearly all of them are.
+const Eigen::Matrix<double, kMoments, kPoints.size()>& whole_cell() {
+  static const auto all = [] {
+    Eigen::Matrix<double, kMoments, kPoints.size()> p;
+    for (std::size_t g = 0; g < kPoints.size(); ++g) p.col(static_cast<Eigen::Index>(g)) = legendre(kPoints[g]);
+    return p;
+  }();
+  return all;
+}
+
 /// An angle over a cell: the cubic through values and rates (per half cell) at xi = -1 and 1.
 struct CellAngle {
   double a, b, c, d;
@@ -65,38 +86,40 @@ void LoadHarmonics::moments(const LoadTerm& term, double w, const Eigen::MatrixX
     }
     return theta;
   };
-  mu.setZero(cells, kMoments);
+  mu.setZero(kMoments, cells);
   MotionPoint left = angle(0);
+  double direction = left.rate >= 0.0 ? 1.0 : -1.0, t_0 = 0.0, theta_0 = left.value;
+  LoadStretch stretch = term.load->stretch(t_0, theta_0, direction).value_or(LoadStretch{});
   for (int s = 0; s < cells; ++s) {
     const MotionPoint right = angle(s + 1);
     const CellAngle theta(left.value, 0.5 * dt * left.rate, right.value, 0.5 * dt * right.rate);
-    double from = -1.0, knot = left.value;
+    double from = -1.0;
     for (int count = 1; from < 1.0; ++count) {
-      const double direction = right.value >= knot ? 1.0 : -1.0, t = (s + 0.5 * (1.0 + from)) * dt;
-      const LoadStretch stretch = term.load->stretch(t, knot, direction).value_or(LoadStretch{});
-      double to = 1.0;
-      const double edge = direction > 0.0 ? stretch.high : stretch.low, at_start = knot;
-      if (count < kMostStretches && direction * (right.value - edge) > 0.0) {
+      // The end of the stretch, on the side to which the angle goes.
+      double to = 1.0, edge = right.value;
+      if (right.value > stretch.high) edge = stretch.high, direction = 1.0;
+      if (right.value < stretch.low) edge = stretch.low, direction = -1.0;
+      const bool ends = edge != right.value && count < kMostStretches;
+      if (ends) {
         double low = from;
         for (int i = 0; i < kBisections; ++i) {
           const double middle = 0.5 * (low + to);
           (direction * (theta.at(middle) - edge) < 0.0 ? low : to) = middle;
         }
-        knot = edge;
       }
+      const double half = 0.5 * (to - from);
       for (std::size_t g = 0; g < kPoints.size(); ++g) {
-        const double half = 0.5 * (to - from), xi = from + half * (1.0 + kPoints[g]);
-        const double f = half * kWeights[g] *
-                         (stretch.torque + stretch.time_slope * 0.5 * dt * (xi - from) +
-                          stretch.angle_slope * (theta.at(xi) - at_start));
-        double p_0 = 1.0, p_1 = xi;
-        for (int m = 0; m < kMoments; ++m) {
-          mu(s, m) += f * p_0;
-          const double p_2 = ((2 * m + 3) * xi * p_1 - (m + 1) * p_0) / (m + 2);
-          p_0 = p_1, p_1 = p_2;
-        }
+        const double xi = from + half * (1.0 + kPoints[g]);
+        const double f = stretch.torque + stretch.time_slope * ((s + 0.5 * (1.0 + xi)) * dt - t_0) +
+                         stretch.angle_slope * (theta.at(xi) - theta_0);
+        const Moments p = half == 1.0 ? Moments(whole_cell().col(static_cast<Eigen::Index>(g))) : legendre(xi);
+        mu.col(s) += half * kWeights[g] * f * p;
       }
       from = to;
+      if (!ends) continue;
+      t_0 = (s + 0.5 * (1.0 + to)) * dt;
+      theta_0 = edge;
+      stretch = term.load->stretch(t_0, theta_0, direction).value_or(LoadStretch{});
     }
     left = right;
   }
@@ -122,8 +145,8 @@ void LoadHarmonics::add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixX
     const NodeMap& map = system_.node_map(term.node);
     moments(term, w, q, v, mu);
     for (int m = 0; m < kMoments; ++m) {
-      const std::vector<double> column(mu.col(m).begin(), mu.col(m).end());
-      fft.fwd(lines, column);
+      const std::vector<double> of_m(mu.row(m).begin(), mu.row(m).end());
+      fft.fwd(lines, of_m);
       for (Eigen::Index n = 0; n < out.cols(); ++n)
         out(map.unknown, n) += map.coeff * weights(n, m) * lines[static_cast<std::size_t>(n)];
     }
