@@ -38,11 +38,11 @@ Moments legendre(double xi) {
   return p;
 }
 
-/// At Gauss's points of a cell that is not split, where nearly all of them are.
-const Eigen::Matrix<double, kMoments, kPoints.size()>& whole_cell() {
+/// At Gauss's points of a cell that is not split, as nearly all are.
+const std::array<Moments, kPoints.size()>& whole_cell() {
   static const auto all = [] {
-    Eigen::Matrix<double, kMoments, kPoints.size()> p;
-    for (std::size_t g = 0; g < kPoints.size(); ++g) p.col(static_cast<Eigen::Index>(g)) = legendre(kPoints[g]);
+    std::array<Moments, kPoints.size()> p;
+    for (std::size_t g = 0; g < p.size(); ++g) p[g] = legendre(kPoints[g]);
     return p;
   }();
   return all;
@@ -112,8 +112,7 @@ void LoadHarmonics::moments(const LoadTerm& term, double w, const Eigen::MatrixX
         const double xi = from + half * (1.0 + kPoints[g]);
         const double f = stretch.torque + stretch.time_slope * ((s + 0.5 * (1.0 + xi)) * dt - t_0) +
                          stretch.angle_slope * (theta.at(xi) - theta_0);
-        const Moments p = half == 1.0 ? Moments(whole_cell().col(static_cast<Eigen::Index>(g))) : legendre(xi);
-        mu.col(s) += half * kWeights[g] * f * p;
+        mu.col(s) += half * kWeights[g] * f * (half == 1.0 ? whole_cell()[g] : legendre(xi));
       }
       from = to;
       if (!ends) continue;

@@ -14,7 +14,7 @@ namespace {
 using Harmonics = HarmonicBalance::Harmonics;
 
 constexpr int kFewest = 16, kMost = 4096;
-constexpr double kLargestUnknowns = 2e7;  // unknowns x harmonics: 320 MB a motion
+constexpr double kLargestSize = 2e7;  // unknowns x harmonics: 320 MB a motion
 constexpr double kFirstTail = 1e-3;
 constexpr double kPeriodicity = 1e-8;
 constexpr double kNewtonTolerance = 1e-2;  // of the tolerance
@@ -117,6 +117,7 @@ double given_period(const System& system, const PeriodicOptions& options, Period
 }
 
 std::string refusal(const System& system) {
+  if (system.size() == 0) return "every node is prescribed";
   if (const auto floating = system.floating_parts(Contact::closed); !floating.empty())
     return "a part of the model floats freely (with " + floating.front() + ")";
   for (const GeneralTerm& term : system.generals())
@@ -133,7 +134,7 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
   const std::vector<Channel> channels = find_channels(system, options.channels);
   response.reason = refusal(system);
   if (!response.reason.empty()) return response;
-  const auto most = static_cast<int>(std::min<double>(kMost, kLargestUnknowns / std::max(1, system.size())));
+  const auto most = static_cast<int>(std::clamp<double>(kLargestSize / system.size(), 2 * kFewest, kMost));
   const bool given = options.harmonics > 0;
 
   // Each level has twice the harmonics of the one before it, whose samples are every other one of its own.
