@@ -40,7 +40,13 @@ const std::vector<CommandEntry>& commands() {
                    {"--out", "DIR",
                     "Creates DIR with chart.csv, error_over_time.svg and error_over_work.svg"}},
        .footer = std::string(kMethodsHelp) + "\n" + kChartExamples,
-       .execute = chart_command}};
+       .execute = chart_command},
+      {.name = "advise",
+       .summary = "The cheapest model that finds a figure well enough, measured against the full one",
+       .options = {{"--for", "FIGURE", "'peak deflection' (default), 'peak torque', 'steady peak ...'; see below"},
+                   {"--within", "PART", "What it may be off by, 2% (default) or 0.02"}},
+       .footer = kAdviseExamples,
+       .execute = advise_command}};
   return table;
 }
 

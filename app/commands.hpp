@@ -38,6 +38,7 @@ int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);
 int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
+int advise_command(const CommandLine& line);
 
 /// Writes to stdout, unless --quiet was given; throws OutputError if that fails (a full disk behind a redirection).
 void print(const std::string& text);

@@ -25,7 +25,8 @@ inline constexpr const char* kMainExamples =
     "  drev list camshaft                 its settings and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
-    "  drev chart camshaft                which method to use for it, measured\n";
+    "  drev chart camshaft                which method to use for it, measured\n"
+    "  drev advise camshaft               how little of it a figure needs, measured\n";
 
 inline constexpr const char* kRunExamples =
     "Examples:\n"
@@ -61,6 +62,17 @@ inline constexpr const char* kChartExamples =
     "  drev chart gear_drive --methods exact average_acceleration hht:0.1 --limit 5\n"
     "\n"
     "Errors are relative to the largest value and to a reference that a second method checks.\n";
+
+inline constexpr const char* kAdviseExamples =
+    "Examples:\n"
+    "  drev advise camshaft --set duration_s=0.5\n"
+    "  drev advise camshaft --for 'steady peak torque' --within 5%\n"
+    "  drev advise gear_drive --for mesh_1.force_N --within 0.01 --json\n"
+    "\n"
+    "FIGURE is the largest |value| over the run of the model's deflection, of its torques, or of one\n"
+    "CHANNEL; with 'steady' before it that of the last turns. Simpler models are tried, from the gear\n"
+    "held to all of the model but one thing; each is measured against the full one, and the errors of\n"
+    "both figures count against it. cost: processor time over that of the full model.\n";
 
 inline constexpr const char* kListExamples =
     "Examples:\n"

@@ -316,6 +316,33 @@ ChartRequest request_chart(const CommandLine& line) {
   return {std::move(*model), std::move(methods), limit, line.option("--out")};
 }
 
+AdviseRequest request_advise(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  AdviseOptions options;
+  options.figure = line.option("--for").value_or(options.figure);
+  if (const std::optional<std::string> text = line.option("--within")) {
+    const bool percent = text->ends_with('%');
+    double value = 0.0;
+    if (!read_number(percent ? text->substr(0, text->size() - 1) : *text, value) ||
+        !(value >= (percent ? 0.01 : 1e-4) && value <= (percent ? 50.0 : 0.5)))
+      findings.push_back({kPlace, "--within", *text, "", "must be from 0.01% to 50%, or 1e-4 to 0.5"});
+    else
+      options.within = percent ? value / 100.0 : value;
+  }
+  if (model) try {
+      figure_options(model->scene, model->system, options);
+    } catch (const ModelError& error) {
+      for (Finding finding : error.findings()) {
+        finding.place = kPlace;
+        finding.parameter = "--for";
+        findings.push_back(std::move(finding));
+      }
+    }
+  if (!findings.empty()) refuse(std::move(findings));
+  return {std::move(*model), options};
+}
+
 ModelRequest request_model(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);

@@ -7,6 +7,7 @@
 
 #include "app/command_line.hpp"
 #include "core/system.hpp"
+#include "models/fidelity/advise.hpp"
 #include "models/scene.hpp"
 #include "solvers/method_choice.hpp"
 #include "solvers/modes.hpp"
@@ -44,9 +45,15 @@ struct ChartRequest {
   std::optional<std::string> out;  ///< directory
 };
 
+struct AdviseRequest {
+  ModelRequest model;
+  AdviseOptions options;
+};
+
 RunRequest request_run(const CommandLine& line);
 ModesRequest request_modes(const CommandLine& line);
 ChartRequest request_chart(const CommandLine& line);
+AdviseRequest request_advise(const CommandLine& line);
 ModelRequest request_model(const CommandLine& line);
 
 /// About x, as 1, 2 or 5 times a power of ten.

@@ -36,6 +36,7 @@ class DistributedShaft final : public Element {
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
 
+  const Params& params() const { return params_; }
   double segment_stiffness() const;  ///< k [N m/rad]
   double segment_inertia() const;    ///< J [kg m^2]
 

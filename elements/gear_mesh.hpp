@@ -54,6 +54,7 @@ class GearMesh final : public Element, public ScalarForce {
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
 
+  const Params& params() const { return params_; }
   double base_radius_1() const { return radius_1_; }
   double base_radius_2() const { return radius_2_; }
 

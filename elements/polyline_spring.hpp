@@ -31,6 +31,7 @@ class PolylineSpring final : public Element, public ScalarForce {
   static Params with_stops(double stiffness, double travel, double stop_stiffness,
                            double damping = 0.0);
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "polyline spring"; }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }

@@ -16,7 +16,7 @@ using drev::test::drev_command;
 using Json = nlohmann::json;
 
 TEST_CASE("Help and version") {
-  for (const char* command : {"run", "modes", "list", "chart"}) {
+  for (const char* command : {"run", "modes", "list", "chart", "advise"}) {
     const auto help = drev_command({command, "--help"});
     CHECK(help.exit_code == 0);
     CHECK(contains(help.out, "Examples:"));
@@ -89,6 +89,32 @@ TEST_CASE("Modes of small and of free models need no count") {
   CHECK(Json::parse(drev_command({"modes", "camshaft", "--count", "3", "--json"}).out)
             .at("frequencies_Hz")
             .size() == 3);
+}
+
+TEST_CASE("Advice: every model tried, the cheapest that holds") {
+  const std::vector<std::string> words{"advise", "gear_drive", "--set", "duration_s=0.2",
+                                       "torque_mean_Nm=-8000", "torque_amplitude_Nm=2000",
+                                       "mesh_damping_Ns_per_m=20000", "--for",
+                                       "steady peak mesh_2.force_N", "--within", "2%"};
+  const auto text = drev_command(words);
+  CHECK(text.exit_code == 0);
+  for (const char* part : {"full model", "no backlash", "cannot be used", "Use ", "2 %", "holds"})
+    CHECK(contains(text.out, part));
+  std::vector<std::string> as_json = words;
+  as_json.push_back("--json");
+  const Json json = Json::parse(drev_command(as_json).out);
+  CHECK(json.at("within") == 0.02);
+  CHECK(json.at("unit") == "N");
+  const Json& rungs = json.at("rungs");
+  REQUIRE(rungs.size() >= 4);
+  CHECK(rungs.back().at("name") == "full model");
+  for (const Json& rung : rungs) {
+    if (rung.at("name") != json.at("chosen")) continue;
+    CHECK(rung.at("holds") == true);
+    CHECK(std::abs(rung.at("value").get<double>() / rungs.back().at("value").get<double>() - 1.0) <=
+          0.02);
+    CHECK(rung.at("cost").get<double>() <= 1.0);
+  }
 }
 
 TEST_CASE("A run as JSON is one object with everything in it") {

@@ -16,7 +16,7 @@ struct Fault {
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> all{
       // commands and models
-      {{}, {"no command", "run, modes, list, chart"}},
+      {{}, {"no command", "run, modes, list, chart, advise"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
       {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
       {{"--verison"}, {"--verison", "did you mean '--version'?"}},
@@ -66,6 +66,10 @@ const std::vector<Fault>& faults() {
       {{"chart", "camshaft", "--step", "1e-5"}, {"--step", "drev run has it"}},
       {{"chart", "camshaft", "--methods", "exact", "hht", "exact"}, {"exact", "twice"}},
       {{"chart", "camshaft", "--methods", "hht:2"}, {"--methods alpha = 2", "0 and 0.333"}},
+      {{"advise", "camshaft", "--within", "0"}, {"--within = 0", "0.01%"}},
+      {{"advise", "camshaft", "--within", "80%"}, {"--within = 80%", "50%"}},
+      {{"advise", "camshaft", "--for", "peak deflexion"}, {"--for = peak deflexion", "peak deflection"}},
+      {{"advise", "camshaft", "--for", "mesh_3.force_N"}, {"--for", "mesh_3.force_N", "did you mean"}},
       {{"chart", "camshaft", "--limit", "0"}, {"--limit = 0 s", "0.001 s"}},
       {{"chart", "camshaft", "--limit", "soon"}, {"--limit = soon", "seconds"}},
       // settings
