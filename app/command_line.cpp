@@ -28,7 +28,8 @@ struct Raw {
 void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.allow_extras();  // unknown options are reported with the nearest right one
   if (command.takes_model) {
-    sub.add_option("MODEL", raw.model, "Name of the model; drev list shows them")->option_text(" ");
+    sub.add_option("MODEL", raw.model, "Name of the model, as drev list shows them, or a model file, FILE.toml")
+        ->option_text(" ");
     sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
         ->option_text("NAME=VALUE ...");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
+#include "app/model_file/model_file.hpp"
 #include "core/channel.hpp"
 #include "core/system.hpp"
 #include "models/scene.hpp"
@@ -12,10 +13,24 @@ namespace drev::app {
 
 namespace {
 
-const SceneEntry* model_in(const std::vector<std::string>& words) {
+/// The model that the words name: its scene, and its file if it is one. Both null: none, or a file with faults.
+struct NamedModel {
+  std::shared_ptr<const SceneEntry> entry = {};
+  std::shared_ptr<const ModelFile> file = {};
+};
+
+NamedModel model_in(const std::vector<std::string>& words) {
   for (const SceneEntry& entry : scenes())
-    if (std::find(words.begin(), words.end(), entry.name) != words.end()) return &entry;
-  return nullptr;
+    if (std::find(words.begin(), words.end(), entry.name) != words.end())
+      return {{std::shared_ptr<const void>(), &entry}};
+  for (const std::string& word : words) try {
+      if (!word.ends_with(".toml")) continue;
+      const auto file = std::make_shared<const ModelFile>(word, "");
+      return {{file, &file->entry()}, file};
+    } catch (const ModelError&) {
+      return {};
+    }
+  return {};
 }
 
 std::vector<std::string> settings_of(const SceneEntry& entry, const std::string& word) {
@@ -38,7 +53,7 @@ std::vector<std::string> channels_of(const SceneEntry& entry, const std::string&
   return offered;
 }
 
-std::vector<std::string> values_of(const OptionEntry& option, const SceneEntry* model,
+std::vector<std::string> values_of(const OptionEntry& option, const NamedModel& model,
                                    const std::string& word) {
   const std::string name = option.name;
   std::vector<std::string> methods = step_scheme_names();
@@ -46,7 +61,8 @@ std::vector<std::string> values_of(const OptionEntry& option, const SceneEntry* 
   if (name == "--method" || name == "--methods") return methods;
   if (name == "--contact") return {"closed", "open"};
   if (name == "--format") return {"csv", "hdf5"};
-  if (name == "--record" && model != nullptr) return channels_of(*model, word);
+  if (name == "--record" && model.entry) return channels_of(*model.entry, word);
+  if (name == "--run" && model.file) return model.file->run_names();
   return {};
 }
 
@@ -62,7 +78,7 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
                                     [&](const CommandEntry& entry) { return entry.name == words.front(); });
   if (command == table.end()) return {};
   const std::string& word = words.back();
-  const SceneEntry* model = model_in(words);
+  const NamedModel model = model_in(words);
   // The option that the word belongs to: the one before it, or before the words before it.
   const auto option = std::find_if(words.rbegin() + 1, words.rend(),
                                    [](const std::string& text) { return text.starts_with("--"); });
@@ -72,13 +88,13 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
     offered.insert(offered.end(), {"--json", "--quiet", "--help"});
     return offered;
   }
-  if (option != words.rend() && *option == "--set" && model != nullptr) return settings_of(*model, word);
+  if (option != words.rend() && *option == "--set" && model.entry) return settings_of(*model.entry, word);
   for (const OptionEntry& entry : command->options) {
     if (option == words.rend() || entry.name != *option) continue;
     if (option == words.rbegin() + 1 || entry.values == OptionEntry::Values::words)
       return values_of(entry, model, word);
   }
-  if (command->takes_model && model == nullptr)
+  if (command->takes_model && !model.entry)
     for (const SceneEntry& entry : scenes()) offered.push_back(entry.name);
   return offered;
 }

@@ -26,7 +26,10 @@ inline constexpr const char* kMainExamples =
     "  drev modes camshaft                its natural frequencies\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
     "  drev chart camshaft                which method to use for it, measured\n"
-    "  drev advise camshaft               how little of it a figure needs, measured\n";
+    "  drev advise camshaft               how little of it a figure needs, measured\n"
+    "  drev export camshaft --out my.toml the same as a file, to be changed\n"
+    "  drev check my.toml                 what is wrong with it, if anything\n"
+    "  drev run my.toml                   a file stands wherever a model does\n";
 
 inline constexpr const char* kRunExamples =
     "Examples:\n"
@@ -78,6 +81,23 @@ inline constexpr const char* kListExamples =
     "Examples:\n"
     "  drev list\n"
     "  drev list camshaft\n"
-    "  drev list camshaft --set cylinders=6 --json\n";
+    "  drev list camshaft --set cylinders=6 --json\n"
+    "  drev list my.toml\n";
+
+inline constexpr const char* kCheckExamples =
+    "Examples:\n"
+    "  drev check drive.toml\n"
+    "  drev check drive.toml --set backlash_mm=0.3\n"
+    "\n"
+    "Every fault is listed with file, line and column; exit code 2 if there is one. The model is built\n"
+    "for [run] and for each run named in it; --run NAME checks one. docs/model_file.md describes the format.\n";
+
+inline constexpr const char* kExportExamples =
+    "Examples:\n"
+    "  drev export two_inertia\n"
+    "  drev export camshaft --set cylinders=6 --out camshaft_6.toml\n"
+    "\n"
+    "The file holds the model as the settings make it, in SI units with every digit: running it gives\n"
+    "the same results to the last bit.\n";
 
 }  // namespace drev::app

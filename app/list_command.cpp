@@ -60,7 +60,7 @@ bool has_kind(const System& system, NodeKind kind) {
 
 std::string model_as_text(const ModelRequest& model) {
   const SceneEntry& entry = *model.entry;
-  std::size_t name = 0, standard = 0, range = 0;
+  std::size_t name = 0, standard = 9, range = 0;  // "default" and two blanks
   const auto default_of = [](const Setting& s) {
     return s.default_text + (s.unit.empty() ? "" : " " + s.unit);
   };
@@ -70,8 +70,9 @@ std::string model_as_text(const ModelRequest& model) {
     if (s.range().size() < 32) range = std::max(range, s.range().size() + 2);
   }
   std::string text = entry.name + ": " + wrap(entry.summary, entry.name.size() + 2);
-  text += "\n" + pad_right("Setting", name + 2) + pad_right("default", standard) +
-          pad_right("range", range) + "meaning\n";
+  if (!entry.settings.empty())
+    text += "\n" + pad_right("Setting", name + 2) + pad_right("default", standard) +
+            pad_right("range", range) + "meaning\n";
   const std::size_t indent = 2 + name + standard + range;
   for (const Setting& s : entry.settings) {
     text += "  " + pad_right(s.name, name) + pad_right(default_of(s), standard);
@@ -83,6 +84,8 @@ std::string model_as_text(const ModelRequest& model) {
   }
   text += "\nSimulated: " + short_digits(model.scene.duration, 6) + " s in steps of " +
           short_digits(model.scene.default_step, 4) + " s unless --step says otherwise.\n";
+  if (model.file && !model.file->run_names().empty())
+    text += "Runs, named by --run: " + join(model.file->run_names()) + ".\n";
   text += "\nChannels recorded unless --record says otherwise:\n  " +
           wrap(join(model.scene.channels), 2);
   text +=
@@ -128,6 +131,7 @@ std::string model_as_json(const ModelRequest& model) {
   object["summary"] = model.entry->summary;
   object["settings"] = Json::array();
   for (const Setting& s : model.entry->settings) object["settings"].push_back(setting_as_json(s));
+  object["runs"] = model.file ? Json(model.file->run_names()) : Json::array();
   object["duration_s"] = number(model.scene.duration);
   object["default_step_s"] = number(model.scene.default_step);
   object["default_channels"] = model.scene.channels;

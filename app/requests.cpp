@@ -44,8 +44,8 @@ std::vector<std::string> model_names() {
   return names;
 }
 
-/// Null, and a finding, if there is no such model.
-const SceneEntry* find_model(const std::string& name, std::vector<Finding>& findings) {
+/// Null, and a finding, if there is no such built-in model.
+const SceneEntry* find_built_in(const std::string& name, std::vector<Finding>& findings) {
   const std::vector<std::string> names = model_names();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return &scenes()[static_cast<std::size_t>(found - names.begin())];
@@ -53,7 +53,8 @@ const SceneEntry* find_model(const std::string& name, std::vector<Finding>& find
   // What is like no model may be the value of an option that does not exist.
   if (findings.empty() || !hint.empty())
     findings.push_back({kPlace, "MODEL", name, "",
-                        "is no model" + (hint.empty() ? "; the models are " + join(names) : hint)});
+                        "is no model" + (hint.empty() ? "; the models are " + join(names) : hint) +
+                            (name.find('/') != name.npos ? "; a model file ends in .toml" : "")});
   return nullptr;
 }
 
@@ -93,14 +94,23 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
           {kPlace, "MODEL", "", "", "is missing; the models are " + join(model_names())});
     return {};
   }
-  const SceneEntry* entry_found = find_model(line.model, findings);
-  if (entry_found == nullptr) return {};
   try {
-    const SceneEntry& entry = *entry_found;
-    Settings settings = right_settings(entry, line, findings);
-    Scene scene = entry.build(settings);
+    std::shared_ptr<const ModelFile> file;
+    std::shared_ptr<const SceneEntry> entry;
+    if (is_model_file(line.model)) {
+      file = std::make_shared<const ModelFile>(line.model, line.option("--run").value_or(""));
+      entry = {file, &file->entry()};
+    } else {
+      entry = {std::shared_ptr<const void>(), find_built_in(line.model, findings)};
+      if (!entry) return {};
+      if (const auto run = line.option("--run"))
+        findings.push_back(
+            {kPlace, "--run", *run, "", "is for model files only; " + line.model + " is built in"});
+    }
+    Settings settings = right_settings(*entry, line, findings);
+    Scene scene = entry->build(settings);
     System system = scene.model.build();
-    return ModelRequest{&entry, std::move(settings), std::move(scene), std::move(system)};
+    return ModelRequest{entry, file, std::move(settings), std::move(scene), std::move(system)};
   } catch (const ModelError& error) {
     take_findings(error, findings);
     return {};
@@ -223,6 +233,33 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   return {{.name = "exact", .tolerance = read_tolerance(line, true, findings)}, reason};
 }
 
+/// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
+void take_file_options(const ModelRequest& model, CommandLine& line) {
+  const RunOptions file = model.file->run_options(model.settings);
+  const auto given = [&](const char* option) { return line.options.contains(option); };
+  const auto take = [&](const char* option) {
+    const auto value = file.values.find(option);
+    if (given(option) || value == file.values.end()) return;
+    line.options[option] = {value->second};
+    if (const auto at = file.places.find(option); at != file.places.end())
+      line.from_file[option] = at->second.text() + ": run";
+  };
+  if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
+    for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
+  take("--out");
+  if (given("--out")) take("--every");
+}
+
+/// What is wrong with such an option is wrong in the file.
+void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
+  for (Finding& finding : findings) {
+    const auto option = line.from_file.find(finding.parameter.substr(0, finding.parameter.find(' ')));
+    if (finding.place != kPlace || option == line.from_file.end()) continue;
+    finding.place = option->second;
+    finding.parameter.erase(0, 2);
+  }
+}
+
 [[noreturn]] void refuse(std::vector<Finding> findings) { throw ModelError(std::move(findings)); }
 
 }  // namespace
@@ -238,10 +275,12 @@ double round_number(double x) {
   return value;
 }
 
-RunRequest request_run(const CommandLine& line) {
+RunRequest request_run(const CommandLine& given) {
+  CommandLine line = given;
   std::vector<Finding> findings = line.findings;
   const std::size_t before = findings.size();
   std::optional<ModelRequest> model = build_model(line, findings);
+  if (model && model->file) take_file_options(*model, line);
   const bool settings_right = findings.size() == before;
 
   const double duration = model ? model->scene.duration : 1.0;
@@ -266,6 +305,7 @@ RunRequest request_run(const CommandLine& line) {
                           "must be csv or hdf5" + did_you_mean(format, {"csv", "hdf5"})});
   }
   if (model) check_channels(*model, line, settings_right, findings);
+  blame_file(line, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
   return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"),

@@ -1,11 +1,13 @@
 #pragma once
 /// From a command line to something that can be done: the model built with its settings, numbers checked.
 /// Everything wrong with a command line is thrown as one ModelError.
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "app/model_file/model_file.hpp"
 #include "core/system.hpp"
 #include "models/fidelity/advise.hpp"
 #include "models/scene.hpp"
@@ -16,7 +18,8 @@ namespace drev::app {
 
 /// A model with settings, built.
 struct ModelRequest {
-  const SceneEntry* entry = nullptr;
+  std::shared_ptr<const SceneEntry> entry;
+  std::shared_ptr<const ModelFile> file;  ///< null for a built-in model
   Settings settings;
   Scene scene;
   System system;

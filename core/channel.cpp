@@ -1,6 +1,7 @@
 #include "core/channel.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace drev {
 
@@ -267,18 +268,21 @@ std::vector<Channel> all_channels(const System& system) { return ChannelFinder(s
 std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names) {
   const ChannelFinder finder(system);
   std::vector<std::string> known;
-  for (const Channel& c : finder.channels) known.push_back(c.name());
+  std::unordered_map<std::string, std::vector<std::size_t>> by_name;
+  for (const Channel& c : finder.channels) {
+    by_name[c.name()].push_back(known.size());
+    known.push_back(c.name());
+  }
   std::vector<Channel> found;
   std::vector<Finding> findings;
   for (const std::string& name : names) {
-    const auto it = std::find(known.begin(), known.end(), name);
+    const auto it = by_name.find(name);
     Channel difference;
-    if (it != known.end()) {
-      found.push_back(finder.channels[static_cast<std::size_t>(it - known.begin())]);
-      const auto same = std::count(known.begin(), known.end(), name);
-      if (same > 1)
+    if (it != by_name.end()) {
+      found.push_back(finder.channels[it->second.front()]);
+      if (it->second.size() > 1)
         findings.push_back({system.name(), "channel", name, "",
-                            "is the name of " + std::to_string(same) +
+                            "is the name of " + std::to_string(it->second.size()) +
                                 " channels of this model; rename an element"});
     } else if (const int readings = finder.find_difference(name, difference); readings == 1)
       found.push_back(difference);

@@ -5,12 +5,14 @@
 ///
 /// On a translational node a force [N].
 ///
-/// Either a function, with the times at which it jumps or kinks as breakpoints (at a jump it must
-/// give the value after it), or a TimeTable, which knows its own.
+/// A function, with the times at which it jumps or kinks as breakpoints (at a jump it must give the
+/// value after it); or a TimeTable, which knows its own; or harmonics, sum A cos(2 pi f t + phase).
 #include <functional>
 #include <optional>
 
 #include "core/element.hpp"
+#include "core/units.hpp"
+#include "elements/harmonic.hpp"
 #include "elements/time_table.hpp"
 
 namespace drev {
@@ -21,22 +23,29 @@ class AppliedTorque final : public Element, public Load {
     std::function<double(double t)> torque = {};  ///< N m over s; pure, callable from any thread
     std::vector<double> breakpoints = {};         ///< of the function [s]
     std::optional<TimeTable> table = {};          ///< instead of the function: s -> N m
+    std::vector<Harmonic> harmonics = {};  ///< or these: order = frequency f [Hz], N m, rad
   };
   explicit AppliedTorque(Params params) : params_(std::move(params)) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "applied torque"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {
-    if (static_cast<bool>(params_.torque) == params_.table.has_value())
-      check.fail("torque", params_.table ? "torque and table" : "nothing", "",
-                 "exactly one of torque and table must be given");
+    const int given = int(bool(params_.torque)) + int(params_.table.has_value()) +
+                      int(!params_.harmonics.empty());
+    if (given != 1)
+      check.fail("torque", given == 0 ? "nothing" : "several", "",
+                 "exactly one of torque, table and harmonics must be given");
     check.all_finite("breakpoints", params_.breakpoints, "s");
     if (params_.table) params_.table->check(check, "table", "N m");
+    check_harmonics(check, "harmonics", params_.harmonics, "N m", false);
   }
   void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
 
   LoadResponse evaluate(const LoadInput& in) const override {
-    return {.torque = params_.table ? params_.table->at(in.t).value : params_.torque(in.t)};
+    if (params_.table) return {.torque = params_.table->at(in.t).value};
+    return {.torque = params_.torque ? params_.torque(in.t)
+                                     : sum_at(params_.harmonics, kTwoPi * in.t).value};
   }
   bool depends_on_motion() const override { return false; }
   std::optional<LoadStretch> stretch(double t, double /*angle*/,

@@ -22,6 +22,7 @@ class CamTorque final : public Element, public Load {
   };
   explicit CamTorque(Params params) : params_(std::move(params)) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "cam torque"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {

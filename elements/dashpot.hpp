@@ -18,6 +18,7 @@ class Dashpot final : public Element {
   };
   explicit Dashpot(Params params) : params_(params) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "dashpot"; }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }

@@ -20,6 +20,7 @@ class EngineOrderTorque final : public Element, public Load {
   };
   explicit EngineOrderTorque(Params params) : params_(std::move(params)) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "engine order torque"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {

@@ -19,6 +19,7 @@ class GroundSpring final : public Element {
   };
   explicit GroundSpring(Params params) : params_(params) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "ground spring"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {

@@ -18,6 +18,7 @@ class IdealGear final : public Element {
   };
   explicit IdealGear(Params params) : params_(params) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "ideal gear"; }
   int min_nodes() const override { return 2; }
   void check(ParameterCheck& check) const override {

@@ -17,6 +17,7 @@ class Inertia final : public Element {
   };
   explicit Inertia(Params params) : params_(params) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "inertia"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {

@@ -45,7 +45,6 @@ class MeshStiffness {
   bool varies() const { return !std::holds_alternative<double>(law_); }
   void check(ParameterCheck& check, const std::string& parameter) const;
 
- private:
   struct Step {
     double single, both, contact_ratio;
   };
@@ -54,6 +53,9 @@ class MeshStiffness {
     std::vector<Harmonic> harmonics;
   };
   using Law = std::variant<double, Step, Fourier, PeriodicTable>;
+  const Law& law() const { return law_; }
+
+ private:
   explicit MeshStiffness(Law law) : law_(std::move(law)) {}
 
   Law law_;

@@ -31,6 +31,7 @@ class RayleighDamping final : public Element {
   /// a = 0, b = 2 xi/omega.
   static Params stiffness_proportional(double omega, double xi);
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "Rayleigh damping"; }
   int min_nodes() const override { return 0; }
   void check(ParameterCheck& check) const override {

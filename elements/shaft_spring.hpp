@@ -20,6 +20,7 @@ class ShaftSpring final : public Element {
   };
   explicit ShaftSpring(Params params) : params_(params) {}
 
+  const Params& params() const { return params_; }
   std::string_view type() const override { return "shaft spring"; }
   int min_nodes() const override { return 2; }
   void check(ParameterCheck& check) const override {

@@ -20,6 +20,8 @@ class TimeTable {
       : times_(std::move(times)), values_(std::move(values)) {}
 
   CurvePoint at(double t) const;
+  const std::vector<double>& times() const { return times_; }
+  const std::vector<double>& values() const { return values_; }
   std::vector<double> breakpoints() const;  ///< the knots, each once [s]
   void check(ParameterCheck& check, const std::string& parameter,
              const std::string& value_unit) const;

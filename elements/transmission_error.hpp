@@ -43,9 +43,11 @@ class TransmissionError {
     else
       check_harmonics(check, parameter, std::get<std::vector<Harmonic>>(law_), "m", true);
   }
+  using Law = std::variant<std::vector<Harmonic>, PeriodicTable>;
+  const Law& law() const { return law_; }
 
  private:
-  std::variant<std::vector<Harmonic>, PeriodicTable> law_;
+  Law law_;
 };
 
 }  // namespace drev

@@ -18,7 +18,11 @@ std::string Setting::range() const {
   std::string text;
   switch (kind) {
     case Kind::number:
-    case Kind::integer: return to_text(low) + " to " + to_text(high);
+    case Kind::integer:
+      if (low == -kNoLimit && high == kNoLimit) return "any number";
+      if (low == -kNoLimit) return "<= " + to_text(high);
+      if (high == kNoLimit) return ">= " + to_text(low);
+      return to_text(low) + " to " + to_text(high);
     case Kind::choice:
       for (const std::string& c : choices) text += (text.empty() ? "" : " | ") + c;
       return text;

@@ -1,12 +1,15 @@
 #pragma once
 /// Named settings of a ready-made model, with unit, default and range: what `drev list` shows and `--set
 /// name=value` changes.
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
 
 namespace drev {
+
+inline constexpr double kNoLimit = std::numeric_limits<double>::max();
 
 /// Description of one setting.
 struct Setting {
@@ -15,7 +18,7 @@ struct Setting {
   Kind kind = Kind::number;
   std::string default_text;
   std::string unit = {};                  ///< empty: none
-  double low = 0.0, high = 0.0;           ///< range of numbers and integers, ends included
+  double low = 0.0, high = 0.0;           ///< range of numbers and integers, ends included; +-kNoLimit: none
   std::vector<std::string> choices = {};  ///< of a choice
   std::string meaning = {};
   /// Range as text: "6 to 10", "gears | held | free", ...

@@ -12,8 +12,9 @@ set(app_may core elements solvers models app)
 set(solvers_libraries "^(cholmod|klu|umfpack|ldl|arpack/arpack|arpack)\\.h(pp)?$")
 set(app_libraries ".")
 # Libraries that stay behind one file each.
-set(behind_one_file cholmod arpack)
+set(behind_one_file cholmod arpack toml)
 set(cholmod_words "#[ \t]*include[ \t]*<(suitesparse/)?cholmod")
+set(toml_words "#[ \t]*include[ \t]*<toml")
 set(arpack_words "#[ \t]*include[ \t]*<(arpack/)?arpack|[^A-Za-z0-9_][sdcz][sn]aupd_")
 
 # A library prints nothing, opens no file and ends no process. (snprintf into a buffer is none of these.)

@@ -11,7 +11,7 @@
 namespace drev {
 
 void add_camshaft(Model& m, const CamshaftParams& p) {
-  const CamshaftData data;
+  const CamshaftData& data = camshaft_data();
   const CamTorques& torques = cam_torques();
   const std::vector<int> order =
       p.firing_order.empty() ? default_firing_order(p.cylinders) : p.firing_order;

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <array>
+#include <map>
+#include <sstream>
 #include <string_view>
 
 #include "core/units.hpp"
@@ -8,25 +11,44 @@
 
 namespace drev::data {
 extern const std::string_view camshaft_cam_torque;  // models/camshaft/data/cam_torque.csv
+extern const std::string_view camshaft_camshaft;    // models/camshaft/data/camshaft.toml
 }
 
 namespace drev {
 
 namespace {
 
-struct PrintedDamping {
-  double case_1_a, case_2_b;              // Table 3.2: 1/s, s
-  double case_3_a, case_3_b;              // Table 3.3: 1/s, s
-  double omega_1, omega_2;                // Table 3.3: rad/s
-};
-
 constexpr int kFewest = 6;
-constexpr std::array<PrintedDamping, 5> kPrinted{{{21.16, 1.89e-5, 29.69, 2.35e-6, 1046.6, 2579.7},
-                                                  {18.74, 2.13e-5, 24.48, 2.72e-6, 925.5, 2242.8},
-                                                  {16.88, 2.37e-5, 22.00, 2.95e-6, 859.9, 2068.0},
-                                                  {15.38, 2.60e-5, 17.54, 3.43e-6, 757.6, 1784.8},
-                                                  {14.16, 2.83e-5, 15.60, 3.67e-6, 719.0, 1672.0}}};
-constexpr std::array<double, 5> kEndInertia{0.4382, 0.3015, 0.04305, 0.2854, 0.3417};
+
+/// The lines "name = number" and "name = [number, ...]" of camshaft.toml.
+std::map<std::string, std::vector<double>> read_numbers() {
+  std::map<std::string, std::vector<double>> all;
+  std::string_view rest = data::camshaft_camshaft;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t equals = line.find(" = ");
+    if (equals == line.npos || line.starts_with('#')) continue;
+    std::string values(line.substr(equals + 3));
+    values.resize(std::min(values.find(" #"), values.size()));
+    for (char& c : values)
+      if (c == '[' || c == ']' || c == ',') c = ' ';
+    std::istringstream words(values);
+    std::vector<double> numbers;
+    double value = 0.0;
+    for (std::string word; words >> word && read_number(word, value);) numbers.push_back(value);
+    if (!numbers.empty()) all.emplace(line.substr(0, equals), std::move(numbers));
+  }
+  return all;
+}
+
+const std::vector<double>& numbers(const std::string& name) {
+  static const std::map<std::string, std::vector<double>> all = read_numbers();
+  const auto found = all.find(name);
+  if (found == all.end()) throw ModelError({{"camshaft.toml", name, "", "", "is missing"}});
+  return found->second;
+}
 
 std::size_t row(int cylinders) {
   if (cylinders < kFewest || cylinders > kFewest + 4)
@@ -34,6 +56,9 @@ std::size_t row(int cylinders) {
                        "must be between 6 and 10"}});
   return static_cast<std::size_t>(cylinders - kFewest);
 }
+
+/// Of a list with a number for each count of cylinders.
+double number(const std::string& name, int cylinders) { return numbers(name).at(row(cylinders)); }
 
 /// Columns angle_deg, fuel, exhaust, inlet; the row at 360 deg repeats the one at 0 and is left out.
 CamTorques read_cam_torques() {
@@ -65,7 +90,24 @@ CamTorques read_cam_torques() {
 
 }  // namespace
 
-double camshaft_end_inertia(int cylinders) { return kEndInertia[row(cylinders)]; }
+const CamshaftData& camshaft_data() {
+  const auto inertia = [](const std::string& of) { return numbers(of + "_inertia_kg_m2").front(); };
+  const auto stiffness = [](const std::string& of) { return numbers(of + "_stiffness_Nm_per_rad").front(); };
+  static const CamshaftData data{
+      .gear_inertia = inertia("gear"),
+      .journal_inertia = inertia("journal"),
+      .fuel_inertia = inertia("fuel"),
+      .exhaust_inertia = inertia("exhaust"),
+      .inlet_inertia = inertia("inlet"),
+      .gear_stiffness = stiffness("gear"),
+      .journal_stiffness = stiffness("journal"),
+      .fuel_stiffness = stiffness("fuel"),
+      .exhaust_stiffness = stiffness("exhaust"),
+      .inlet_stiffness = stiffness("inlet")};
+  return data;
+}
+
+double camshaft_end_inertia(int cylinders) { return number("end_inertia_kg_m2", cylinders); }
 
 const CamTorques& cam_torques() {
   static const CamTorques torques = read_cam_torques();
@@ -74,23 +116,18 @@ const CamTorques& cam_torques() {
 
 std::vector<int> default_firing_order(int cylinders) {
   row(cylinders);
-  switch (cylinders) {
-    case 6: return {1, 5, 3, 6, 2, 4};
-    case 7: return {1, 3, 5, 7, 6, 4, 2};
-    case 8: return {1, 8, 7, 2, 6, 5, 4, 3};
-    case 9: return {1, 4, 8, 2, 6, 9, 3, 5, 7};
-    default: return {1, 6, 2, 8, 4, 10, 5, 9, 3, 7};
-  }
+  const std::vector<double>& order = numbers("firing_order_" + std::to_string(cylinders));
+  return {order.begin(), order.end()};
 }
 
 RayleighCase rayleigh_case(const std::string& name, int cylinders) {
-  const PrintedDamping& p = kPrinted[row(cylinders)];
   if (name == "undamped") return {};
-  if (name == "case_1") return {p.case_1_a, 0.0};
-  if (name == "case_2") return {0.0, p.case_2_b};
-  if (name == "case_3") return {p.case_3_a, p.case_3_b};
+  if (name == "case_1") return {number("case_1_a_per_s", cylinders), 0.0};
+  if (name == "case_2") return {0.0, number("case_2_b_s", cylinders)};
+  if (name == "case_3") return {number("case_3_a_per_s", cylinders), number("case_3_b_s", cylinders)};
   if (name == "case_3_corrected") {
-    const auto ab = RayleighDamping::from_two_modes(p.omega_1, 0.01, p.omega_2, 0.02);
+    const auto ab = RayleighDamping::from_two_modes(number("omega_1_rad_per_s", cylinders), 0.01,
+                                                    number("omega_2_rad_per_s", cylinders), 0.02);
     return {ab.alpha_mass, ab.beta_stiffness};
   }
   throw ModelError({{"camshaft", "damping", name, "", "is no damping case"}});

@@ -1,8 +1,8 @@
 #pragma once
 /// The camshaft's data. NOT the builder's: the source (S. L. Sunde, NTNU, 2015) prints its results but not
 /// its inertias, stiffnesses and cam torques. They were reconstructed by fitting what it does print:
-///   - inertias and stiffnesses to the 20 free-free frequencies of Tables 5.1 to 5.4 (mode 5 of 9 cylinders
-///     with its misprint corrected): rms error 0.42 %, largest 0.95 %;
+///   - inertias and stiffnesses (data/camshaft.toml) to the 20 free-free frequencies of Tables 5.1 to 5.4
+///     (mode 5 of 9 cylinders with its misprint corrected): rms error 0.42 %, largest 0.95 %;
 ///   - cam torques (data/cam_torque.csv) to the 24 transient results of Tables 5.5 to 5.8, integrated at
 ///     the source's step of 1 ms: rms error about 20 %.
 #include <string>
@@ -12,12 +12,13 @@
 
 namespace drev {
 
+/// From data/camshaft.toml, which is a model file, too.
 struct CamshaftData {
-  double gear_inertia = 6.461, journal_inertia = 0.5204, fuel_inertia = 0.1546,
-         exhaust_inertia = 0.1009, inlet_inertia = 0.1098;  // kg m^2
-  double gear_stiffness = 8.75e7, journal_stiffness = 5.90e7, fuel_stiffness = 3.553e7,
-         exhaust_stiffness = 3.193e7, inlet_stiffness = 4.050e7;  // N m/rad
+  double gear_inertia, journal_inertia, fuel_inertia, exhaust_inertia, inlet_inertia;  // kg m^2
+  double gear_stiffness, journal_stiffness, fuel_stiffness, exhaust_stiffness,
+      inlet_stiffness;  // N m/rad
 };
+const CamshaftData& camshaft_data();
 
 /// Inertia of the free end [kg m^2] for 6 to 10 cylinders; that for 10 is the mean of 6, 7 and 9.
 double camshaft_end_inertia(int cylinders);

@@ -20,9 +20,12 @@ Scene build_two_inertia(Settings s) {
   m.add<ShaftSpring>("shaft", {"motor", "load"},
                      {.stiffness = s.number("stiffness_Nm_per_rad"),
                       .damping = s.number("damping_Nms_per_rad")});
-  m.add<AppliedTorque>(
-      "drive", {"motor"},
-      {.torque = [=](double t) { return amplitude * std::sin(hz(frequency) * t); }});
+  AppliedTorque::Params drive;  // a sine
+  if (frequency > 0.0)
+    drive.harmonics = {{frequency, amplitude, -kPi / 2}};
+  else
+    drive.table = TimeTable({0.0}, {0.0});
+  m.add<AppliedTorque>("drive", {"motor"}, drive);
   const double j_1 = s.number("inertia_1_kg_m2"), j_2 = s.number("inertia_2_kg_m2");
   const double omega =
       std::sqrt(s.number("stiffness_Nm_per_rad") * (j_1 + j_2) / (j_1 * j_2));

@@ -118,7 +118,7 @@ std::vector<Fault> parameter_faults() {
        {"drive/cam: angle_table", "NaN N m", "finite"}},
       {on_load<CamTorque>("cam", {.angle_table = PeriodicTable({0.0, 1.0}, {0.0})}),
        {"drive/cam: angle_table", "2", "1"}},
-      {on_load<AppliedTorque>("t", {}), {"drive/t: torque", "exactly one of torque and table"}},
+      {on_load<AppliedTorque>("t", {}), {"drive/t: torque", "exactly one of torque, table and harmonics"}},
       {on_load<AppliedTorque>("t", {.table = TimeTable({0.0, 2.0, 1.0}, {0.0, 1.0, 2.0})}),
        {"drive/t: table", "= 1 s", "2"}},
       {on_load<AppliedTorque>("t", {.table = TimeTable({0.0, 1.0, 1.0, 1.0}, {0., 1., 2., 3.})}),

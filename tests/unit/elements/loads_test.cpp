@@ -66,10 +66,10 @@ TEST_CASE("engine orders by hand") {
 }
 
 TEST_CASE("loads: faults") {
-  CHECK(contains(findings(AppliedTorque({})), "exactly one of torque and table"));
+  CHECK(contains(findings(AppliedTorque({})), "exactly one of torque, table and harmonics"));
   CHECK(contains(
       findings(AppliedTorque({.torque = [](double) { return 0.0; }, .table = TimeTable({0}, {1})})),
-      "exactly one of torque and table"));
+      "exactly one of torque, table and harmonics"));
   CHECK(contains(findings(AppliedTorque({.table = TimeTable({1, 0}, {1, 1})})), "table.times[1]"));
   CHECK(contains(
       findings(AppliedTorque({.torque = [](double) { return 0.0; }, .breakpoints = {NAN}})),

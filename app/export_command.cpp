@@ -1,0 +1,31 @@
+#include <filesystem>
+
+#include "app/commands.hpp"
+#include "app/exit_codes.hpp"
+#include "app/json_values.hpp"
+#include "app/model_file/export.hpp"
+#include "app/output_file.hpp"
+#include "app/requests.hpp"
+
+namespace drev::app {
+
+int export_command(const CommandLine& line) {
+  const ModelRequest model = request_model(line);
+  const std::string text = export_scene(*model.entry, model.settings, model.scene);
+  const std::optional<std::string> out = line.option("--out");
+  if (!out) {
+    print(line.json ? json_text({{"file", text}}) : text);
+    return kSuccess;
+  }
+  const std::filesystem::path path(*out);
+  const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  if (!path.has_filename() || path.extension() != ".toml")
+    throw ModelError({{"command line", "--out", *out, "", "must be the name of a file that ends in .toml"}});
+  create_directory(folder);
+  OutputFile file(folder, path.stem().string(), "toml");
+  file.write(text);
+  file.commit();
+  return kSuccess;
+}
+
+}  // namespace drev::app

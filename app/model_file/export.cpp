@@ -1,0 +1,166 @@
+#include "app/model_file/export.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "app/model_file/document.hpp"
+#include "app/model_file/element_table.hpp"
+#include "app/model_file/field_writer.hpp"
+#include "app/model_file/node_fields.hpp"
+#include "elements/applied_torque.hpp"
+
+namespace drev::app {
+
+namespace {
+
+class SceneWriter {
+ public:
+  SceneWriter(const Scene& scene) : scene_(scene), model_(scene.model) {}
+
+  std::string text(const SceneEntry& entry, const Settings& settings) {
+    const std::string nodes = write_nodes(), elements = write_elements();
+    std::string head = "# Written by drev export " + entry.name + settings_of(settings) + ".\n";
+    head += "format = " + std::to_string(kFormat) + "\nname = " + toml_text(model_.name()) + "\n";
+    if (!entry.summary.empty()) head += "summary = " + toml_text(entry.summary) + "\n";
+    if (!scene_.note.empty()) head += "note = " + toml_text(scene_.note) + "\n";
+    std::string all = head + "\n" + nodes + "\n" + store_.text() + elements + "\n" + write_run();
+    if (!findings_.empty()) throw ModelError(std::move(findings_));
+    return all;
+  }
+
+ private:
+  static std::string settings_of(const Settings& settings) {
+    std::string all;
+    for (std::size_t i = 0; i < settings.known().size(); ++i)
+      if (settings.values()[i] != settings.known()[i].default_text)
+        all += (all.empty() ? " --set " : " ") + settings.known()[i].name + "=" + settings.values()[i];
+    return all;
+  }
+
+  void refuse(const std::string& name, const std::string& what) {
+    findings_.push_back({model_.name() + (name.empty() ? "" : "/" + name), "", "", "",
+                         "cannot be written as a file: " + what});
+  }
+  const std::string& checked(const std::string& name) {
+    if (name.find('{') != std::string::npos) refuse(name, "its name has a '{'");
+    return name;
+  }
+  std::string name_of(const NodeRef& ref) const {
+    return ref.id ? model_.node_names()[at(index(*ref.id))] : ref.name;
+  }
+
+  std::string write_nodes() {
+    std::map<std::string, NodeParams> params;
+    for (const Model::Prescription& p : model_.prescriptions()) {
+      NodeParams& node = params[name_of(p.node)];
+      if (p.deviation)
+        refuse(name_of(p.node), "its given motion is a function of C++");
+      else if (p.omega)
+        node.constant_speed = *p.omega;
+      else
+        node.hold = true;
+    }
+    for (const auto& [ref, motion] : model_.references()) take_reference(name_of(ref), motion, params);
+    for (const Model::Initial& initial : model_.initials()) {
+      NodeParams& node = params[name_of(initial.node)];
+      node.initial_value = initial.deviation;
+      node.initial_rate = initial.rate;
+    }
+    std::vector<bool> internal(model_.node_names().size(), false);
+    for (const Placement& placement : model_.placements())
+      for (const NodeId node : placement.internal) internal[at(index(node))] = true;
+    std::string text = "[nodes]\n";
+    for (std::size_t i = 0; i < internal.size(); ++i) {
+      if (internal[i]) continue;
+      const std::string& name = checked(model_.node_names()[i]);
+      const NodeKind kind = model_.node_kinds()[i];
+      kinds_[name] = kind;
+      NodeParams node = params[name], plain;
+      node.kind = static_cast<int>(kind);
+      const FieldKeys defaults(kind, [&](Fields& f) { list_fields(f, plain); });
+      FieldWriter writer(kind, defaults, store_, name);
+      list_fields(writer, node);
+      text += toml_key(name) + " = " + writer.inline_table() + "\n";
+    }
+    return text;
+  }
+
+  /// Constant speed and run-up are told from their values: both are polynomials between their breakpoints.
+  void take_reference(const std::string& name, const Motion& motion,
+                      std::map<std::string, NodeParams>& params) {
+    NodeParams& node = params[name];
+    const MotionPoint start = motion.at(0.0);
+    if (motion.piecewise_quadratic && motion.breakpoints.empty() && start.acceleration == 0.0) {
+      node.nominal_speed = start.rate;
+      node.nominal_angle = start.value;
+      return;
+    }
+    if (motion.piecewise_quadratic && motion.breakpoints.size() == 2) {
+      const double t_0 = motion.breakpoints[0], t_1 = motion.breakpoints[1];
+      node.run_up = {motion.at(t_0 - 1.0).rate, motion.at(t_1).rate, t_0, t_1};
+      node.has_run_up = true;
+      const Motion same = run_up(node.run_up.speed_0, node.run_up.speed_1, t_0, t_1);
+      bool equal = true;
+      for (const double t : {t_0 - 1.0, t_0, 0.5 * (t_0 + t_1), t_1, t_1 + 1.0})
+        equal = equal && same.at(t).value == motion.at(t).value && same.at(t).rate == motion.at(t).rate;
+      if (equal) return;
+    }
+    refuse(name, "its nominal motion is a function of C++");
+  }
+
+  std::string write_elements() {
+    std::string text = "[elements]\n";
+    for (const Placement& placement : model_.placements()) {
+      const std::string& name = checked(placement.name);
+      std::vector<std::string> nodes;
+      for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(name_of(ref)));
+      const NodeKind kind = nodes.empty() ? NodeKind::rotational : kinds_[nodes.front()];
+      bool written = false;
+      for (const ElementType& type : element_types()) {
+        written = type.list(*placement.element, [&](const ListFields& list) {
+          FieldKeys defaults(kind);
+          type.make([&](const ListFields& plain) { plain(defaults); });
+          FieldWriter writer(kind, defaults, store_, name);
+          writer.add("type", toml_text(type.name));
+          if (nodes.size() == 1) writer.add("node", toml_text(nodes.front()));
+          if (nodes.size() > 1) writer.add("nodes", toml_texts(nodes));
+          list(writer);
+          text += toml_key(name) + " = " + writer.inline_table() + "\n";
+        });
+        if (written) break;
+      }
+      if (!written) refuse(name, "it is an element of C++");
+      if (const auto* torque = dynamic_cast<const AppliedTorque*>(placement.element.get()))
+        if (torque->params().torque) refuse(name, "its torque is a function of C++");
+    }
+    return text;
+  }
+
+  std::string write_run() {
+    std::string text = "[run]\n";
+    const auto add = [&](const char* key, const std::string& value) {
+      text += std::string(key) + " = " + value + "\n";
+    };
+    add("duration_s", toml_number(scene_.duration));
+    add("step_s", toml_number(scene_.default_step));
+    if (!scene_.deflection.empty()) add("deflection", toml_text(scene_.deflection));
+    add("torques", toml_texts(scene_.torques));
+    if (scene_.static_turn != 0.0) add("static_turn_rad", toml_number(scene_.static_turn));
+    add("record", toml_texts(scene_.channels));
+    return text;
+  }
+
+  const Scene& scene_;
+  const Model& model_;
+  TableStore store_;
+  std::map<std::string, NodeKind> kinds_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+std::string export_scene(const SceneEntry& entry, const Settings& settings, const Scene& scene) {
+  return SceneWriter(scene).text(entry, settings);
+}
+
+}  // namespace drev::app

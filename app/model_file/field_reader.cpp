@@ -1,0 +1,146 @@
+#include "app/model_file/field_reader.hpp"
+
+#include <algorithm>
+
+#include "app/model_file/column_reader.hpp"
+#include "app/model_file/key_finder.hpp"
+
+namespace drev::app {
+
+namespace {
+
+using Found = KeyFinder::Found;
+
+class FieldReader final : public Fields {
+ public:
+  FieldReader(const Value& table, const std::string& where, NodeKind kind,
+              const std::set<std::string>& others, const FieldKeys& keys, ReadContext& context)
+      : Fields(kind),
+        table_(table),
+        where_(where),
+        context_(context),
+        before_(context.findings.size()),
+        keys_(table, where, others, keys, context) {}
+
+  bool reading() const override { return true; }
+
+  void number(const Quantity& quantity, double& value, Need need) override {
+    const std::string name = quantity.name(kind);
+    if (const Found* found = keys_.find(name)) {
+      const std::optional<double> read =
+          read_number(found->entry->value, found->unit, place(*found), context_);
+      if (read) value = *read * found->factor;
+    } else if (need == Need::required) {
+      keys_.missing(name, spellings(name, quantity.dimension(kind)));
+    }
+  }
+  void whole(const std::string& name, int& value, Need need) override {
+    if (const Found* found = keys_.find(name)) {
+      const std::optional<int> read =
+          read_whole(found->entry->value, -1000000000, 1000000000, place(*found), context_);
+      if (read) value = *read;
+    } else if (need == Need::required) {
+      keys_.missing(name, name);
+    }
+  }
+  void flag(const std::string& name, bool& value) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return;
+    if (found->entry->value.is(Value::Kind::boolean))
+      value = found->entry->value.flag;
+    else
+      blame(*found, "must be true or false, not " + kind_name(found->entry->value));
+  }
+  void text(const std::string& name, std::string& value) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return;
+    if (const auto read = read_text(found->entry->value, place(*found), context_)) value = *read;
+  }
+  void texts(const std::string& name, std::vector<std::string>& values) override {
+    if (const Found* found = keys_.find(name))
+      values = read_texts(found->entry->value, place(*found), context_);
+  }
+  void choice(const std::string& name, const std::vector<std::string>& words, int& index) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return;
+    const Value& value = found->entry->value;
+    const auto word = std::find(words.begin(), words.end(), value.text);
+    if (value.is(Value::Kind::text) && word != words.end())
+      index = static_cast<int>(word - words.begin());
+    else
+      blame(*found, "must be one of " + list_of(words) + ", not " + kind_name(value) +
+                        did_you_mean(value.text, words));
+  }
+  bool group(const std::string& name, const ListFields& list) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return false;
+    if (!found->entry->value.is(Value::Kind::table)) {
+      blame(*found, "must be a table, { ... }, not " + kind_name(found->entry->value));
+      return false;
+    }
+    return read_fields(found->entry->value, place(*found), kind, {}, list, context_);
+  }
+  bool columns(const std::string& name, const std::vector<Column>& columns) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return false;
+    const Value* source = &found->entry->value;
+    std::string where = place(*found);
+    if (source->is(Value::Kind::text)) {
+      const auto named = context_.tables.find(source->text);
+      if (named == context_.tables.end()) {
+        std::vector<std::string> names;
+        for (const auto& [known, table] : context_.tables) names.push_back(known);
+        blame(*found, "names " + kind_name(*source) + ", which is none of [tables]" +
+                          did_you_mean(source->text, names));
+        return true;
+      }
+      where = "tables." + source->text;
+      source = named->second;
+    }
+    if (!source->is(Value::Kind::table)) {
+      blame(*found, "must be a table, { ... }, or the name of one of [tables], not " + kind_name(*source));
+      return true;
+    }
+    if (!read_columns(*source, where, kind, columns, context_)) refused_ = true;
+    return true;
+  }
+  void fault(const std::string& sentence) override {
+    // What is missing may be what another finding has refused.
+    if (!refused_ && context_.findings.size() == before_)
+      context_.findings.push_back(fault_at(table_.at, where_, sentence));
+  }
+
+  FieldPlaces places() const {
+    FieldPlaces all;
+    for (const auto& [name, found] : keys_.all()) all[name] = found.entry->at;
+    return all;
+  }
+
+ private:
+  std::string place(const Found& found) const { return where_ + "." + found.entry->key; }
+  void blame(const Found& found, const std::string& sentence) {
+    context_.findings.push_back(fault_at(found.entry->value.at, place(found), sentence));
+  }
+
+  const Value& table_;
+  const std::string& where_;
+  ReadContext& context_;
+  std::size_t before_;  ///< findings when this reader began
+  KeyFinder keys_;
+  bool refused_ = false;  ///< by a finding of an earlier table
+};
+
+}  // namespace
+
+bool read_fields(const Value& table, const std::string& where, NodeKind kind,
+                 const std::set<std::string>& others, const ListFields& list, ReadContext& context,
+                 FieldPlaces* places) {
+  const std::size_t before = context.findings.size();
+  const FieldKeys keys(kind, list);
+  FieldReader reader(table, where, kind, others, keys, context);
+  list(reader);
+  if (places != nullptr) *places = reader.places();
+  return context.findings.size() == before;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,20 @@
+#pragma once
+/// Reads the fields of a table: finds each key with its unit, and reports what is wrong with the others.
+#include <map>
+#include <set>
+
+#include "app/model_file/fields.hpp"
+#include "app/model_file/read_values.hpp"
+
+namespace drev::app {
+
+/// Where the fields of a table stand, by name, for findings that come later.
+using FieldPlaces = std::map<std::string, Position>;
+
+/// Reads `table`, which says what the sentence calls `where` ("elements.shaft"). Keys in `others` are the
+/// caller's. False if anything was wrong.
+bool read_fields(const Value& table, const std::string& where, NodeKind kind,
+                 const std::set<std::string>& others, const ListFields& list, ReadContext& context,
+                 FieldPlaces* places = nullptr);
+
+}  // namespace drev::app

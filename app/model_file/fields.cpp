@@ -1,0 +1,43 @@
+#include "app/model_file/fields.hpp"
+
+namespace drev::app {
+
+void FieldKeys::add(const Quantity& quantity, double default_number) {
+  const NodeKind other = kind == NodeKind::rotational ? NodeKind::translational : NodeKind::rotational;
+  keys_.push_back({.name = quantity.name(kind),
+                   .dimension = quantity.dimension(kind),
+                   .other_name = quantity.name(other),
+                   .other_dimension = quantity.dimension(other),
+                   .default_number = default_number});
+}
+
+void FieldKeys::plain(const std::string& name, std::string default_text) {
+  keys_.push_back({.name = name, .other_name = name, .default_text = std::move(default_text)});
+}
+
+const FieldKeys::Key* FieldKeys::find(const std::string& name) const {
+  for (const Key& key : keys_)
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+void FieldKeys::number(const Quantity& quantity, double& value, Need /*need*/) { add(quantity, value); }
+void FieldKeys::whole(const std::string& name, int& value, Need /*need*/) {
+  plain(name, std::to_string(value));
+}
+void FieldKeys::flag(const std::string& name, bool& value) { plain(name, value ? "true" : "false"); }
+void FieldKeys::text(const std::string& name, std::string& value) { plain(name, value); }
+void FieldKeys::texts(const std::string& name, std::vector<std::string>& /*values*/) { plain(name); }
+void FieldKeys::choice(const std::string& name, const std::vector<std::string>& words, int& index) {
+  plain(name, words[static_cast<std::size_t>(index)]);
+}
+bool FieldKeys::columns(const std::string& name, const std::vector<Column>& /*columns*/) {
+  plain(name);
+  return false;
+}
+bool FieldKeys::group(const std::string& name, const std::function<void(Fields&)>& /*list*/) {
+  plain(name);
+  return false;
+}
+
+}  // namespace drev::app

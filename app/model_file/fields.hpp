@@ -1,0 +1,99 @@
+#pragma once
+/// The keys of an element, node or run, listed once in a function list(Fields&, Params&). The same list reads
+/// a table of a file into the parameters (FieldReader), writes them (FieldWriter) and names them (FieldKeys).
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/model_file/units.hpp"
+#include "core/model.hpp"
+
+namespace drev::app {
+
+/// What a key holds: its name without unit, and its dimension, on a rotational node and on a translational
+/// one.
+struct Quantity {
+  Quantity(const char* both, Dimension dimension) : Quantity(both, dimension, both, dimension) {}
+  Quantity(const char* both, Dimension rotational, Dimension translational)
+      : Quantity(both, rotational, both, translational) {}
+  Quantity(const char* rotational, Dimension rotational_dimension, const char* translational,
+           Dimension translational_dimension)
+      : names{rotational, translational}, dimensions{rotational_dimension, translational_dimension} {}
+
+  std::string name(NodeKind kind) const { return names[static_cast<int>(kind)]; }
+  Dimension dimension(NodeKind kind) const { return dimensions[static_cast<int>(kind)]; }
+
+  const char* names[2];
+  Dimension dimensions[2];
+};
+
+enum class Need { optional, required };
+
+/// One column of a table, e.g. time_s beside torque_Nm. An optional one that is missing is zero.
+struct Column {
+  Quantity quantity;
+  std::vector<double>* values;
+  Need need = Need::required;
+};
+
+class Fields {
+ public:
+  explicit Fields(NodeKind kind) : kind(kind) {}
+  virtual ~Fields() = default;
+
+  /// True where parameters are filled: then every alternative is to be listed. False where they are written:
+  /// then only the one that is held.
+  virtual bool reading() const = 0;
+  virtual void number(const Quantity& quantity, double& value, Need need = Need::optional) = 0;
+  virtual void whole(const std::string& name, int& value, Need need = Need::optional) = 0;
+  virtual void flag(const std::string& name, bool& value) = 0;
+  virtual void text(const std::string& name, std::string& value) = 0;
+  virtual void texts(const std::string& name, std::vector<std::string>& values) = 0;
+  virtual void choice(const std::string& name, const std::vector<std::string>& words, int& index) = 0;
+  /// Columns of one length; true where they were given.
+  virtual bool columns(const std::string& name, const std::vector<Column>& columns) = 0;
+  /// A table of its own inside this one; true where it was given and its fields are right.
+  virtual bool group(const std::string& name, const std::function<void(Fields&)>& list) = 0;
+  /// What is wrong with the table as a whole.
+  virtual void fault(const std::string& sentence) = 0;
+
+  const NodeKind kind;  ///< of the nodes that the fields belong to
+};
+
+using ListFields = std::function<void(Fields&)>;
+
+/// Collects the keys with their defaults.
+class FieldKeys final : public Fields {
+ public:
+  struct Key {
+    std::string name;
+    Dimension dimension = Dimension::none;
+    std::string other_name = {};  ///< on a node of the other kind
+    Dimension other_dimension = Dimension::none;
+    double default_number = 0.0;
+    std::string default_text = {};
+  };
+  using Fields::Fields;
+  FieldKeys(NodeKind kind, const ListFields& list) : Fields(kind) { list(*this); }
+
+  bool reading() const override { return true; }
+  void number(const Quantity& quantity, double& value, Need need) override;
+  void whole(const std::string& name, int& value, Need need) override;
+  void flag(const std::string& name, bool& value) override;
+  void text(const std::string& name, std::string& value) override;
+  void texts(const std::string& name, std::vector<std::string>& values) override;
+  void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
+  bool columns(const std::string& name, const std::vector<Column>& columns) override;
+  bool group(const std::string& name, const std::function<void(Fields&)>& list) override;
+  void fault(const std::string&) override {}
+
+  const std::vector<Key>& keys() const { return keys_; }
+  const Key* find(const std::string& name) const;
+  void add(const Quantity& quantity, double default_number = 0.0);
+
+ private:
+  void plain(const std::string& name, std::string default_text = {});
+  std::vector<Key> keys_;
+};
+
+}  // namespace drev::app

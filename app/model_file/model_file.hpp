@@ -1,0 +1,45 @@
+#pragma once
+/// A model file as a scene: the model with its parameters as settings, and its runs. docs/model_file.md
+/// describes the format.
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/model_file/tree.hpp"
+#include "models/scene.hpp"
+
+namespace drev::app {
+
+struct Document;
+
+/// Options of `drev run` that a file gives, by name ("--method"), as the command line would.
+struct RunOptions {
+  std::map<std::string, std::string> values;
+  std::map<std::string, Position> places;
+};
+
+class ModelFile {
+ public:
+  /// `run`: a table of [run], laid over what [run] itself says; empty: [run] alone. Throws ModelError with
+  /// everything that is wrong with the file.
+  ModelFile(const std::string& path, const std::string& run);
+  /// The same of a text; `path` is its name, and its folder that of includes and tables.
+  ModelFile(const std::string& text, const std::string& path, const std::string& run);
+
+  /// Its build() throws ModelError by file, line and column.
+  const SceneEntry& entry() const { return entry_; }
+  RunOptions run_options(const Settings& settings) const;
+  std::vector<std::string> run_names() const;
+
+ private:
+  std::shared_ptr<const Document> document_;
+  std::string run_;
+  SceneEntry entry_;
+};
+
+/// Whether a MODEL of the command line means a file: it ends in .toml, or names a file and no built-in model.
+bool is_model_file(const std::string& model);
+
+}  // namespace drev::app

@@ -1,0 +1,69 @@
+#include "app/model_file/part.hpp"
+
+#include <set>
+
+namespace drev::app {
+
+Finding placed(Finding finding, const Part& part, const std::string& place) {
+  // Parameters of the catalogue that go by another name, or by several, in a file.
+  static const std::multimap<std::string, std::string> renamed{{"angle_table", "table"},
+                                                               {"x", "points"},
+                                                               {"x", "dead_band"},
+                                                               {"x", "with_stops"},
+                                                               {"y", "points"},
+                                                               {"y", "dead_band"},
+                                                               {"y", "with_stops"},
+                                                               {"omega", "constant_speed"},
+                                                               {"inertia", "mass"},
+                                                               {"torque", "force"},
+                                                               {"initial deviation", "initial_"},
+                                                               {"initial rate", "initial_"},
+                                                               {"omega_0", "run_up"},
+                                                               {"omega_1", "run_up"},
+                                                               {"t_0", "run_up"},
+                                                               {"t_1", "run_up"}};
+  const std::string stem = finding.parameter.substr(0, finding.parameter.find_first_of(".["));
+  Position best = part.at;
+  const auto try_name = [&](const std::string& name) {
+    for (const auto& [field, position] : part.fields)
+      if (field.starts_with(name)) best = position;
+  };
+  const auto [first, last] = renamed.equal_range(stem);
+  for (auto other = first; other != last; ++other) try_name(other->second);
+  try_name(stem.starts_with("node") ? "node" : stem + "_");
+  if (const auto exact = part.fields.find(stem); exact != part.fields.end()) best = exact->second;
+  finding.place = best.text() + ": " + place;
+  return finding;
+}
+
+std::vector<Finding> placed(const ModelError& error, const std::string& model, const Position& file,
+                            const std::map<std::string, Part>& nodes,
+                            const std::map<std::string, Part>& elements) {
+  std::vector<Finding> all;
+  for (const Finding& finding : error.findings()) {
+    const std::string prefix = model + "/";
+    const std::string name =
+        finding.place.starts_with(prefix) ? finding.place.substr(prefix.size()) : finding.value;
+    const auto node = nodes.find(name), element = elements.find(name);
+    // A node and an element may have one name.
+    const bool of_node = node != nodes.end() &&
+                         (element == elements.end() || finding.parameter == "mass" ||
+                          finding.parameter == "omega" || finding.parameter == "prescribed motion" ||
+                          finding.parameter == "node name" || finding.parameter.starts_with("initial") ||
+                          finding.range.find("not prescribed") != std::string::npos);
+    const Part& part = of_node ? node->second : element != elements.end() ? element->second : Part{file};
+    all.push_back(placed(finding, part, finding.place));
+  }
+  return all;
+}
+
+void remove_repeated(std::vector<Finding>& findings) {
+  std::set<std::string> seen;
+  std::erase_if(findings, [&](const Finding& f) {
+    const std::size_t of_model = f.place.find(": ");
+    const std::string parameter = of_model == std::string::npos ? "" : f.parameter;
+    return !seen.insert(f.place.substr(0, of_model) + "\n" + parameter + "\n" + f.range).second;
+  });
+}
+
+}  // namespace drev::app

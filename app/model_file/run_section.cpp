@@ -1,0 +1,177 @@
+#include "app/model_file/run_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/channel.hpp"
+#include "elements/not_given.hpp"
+
+namespace drev::app {
+
+namespace {
+
+using D = Dimension;
+
+constexpr std::size_t kMostNodesRecorded = 20;
+
+/// '*' stands for any characters.
+bool matches(const std::string& pattern, const std::string& name) {
+  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*')
+      star = p++, mark = n;
+    else if (p < pattern.size() && pattern[p] == name[n])
+      ++p, ++n;
+    else if (star != std::string::npos)
+      p = star + 1, n = ++mark;
+    else
+      return false;
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+/// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques.
+std::vector<std::string> carried(const System& system) {
+  std::unordered_map<std::string, std::string_view> types;
+  for (const Placement& placement : system.placements()) types[placement.name] = placement.element->type();
+  const auto carries = [&](const std::string& object) {
+    const auto whole = types.find(object);
+    if (whole != types.end())
+      return whole->second != "applied torque" && whole->second != "cam torque" &&
+             whole->second != "engine order torque";
+    const auto segments = types.find(object.substr(0, object.rfind('_')));
+    return segments != types.end() && segments->second == "distributed shaft";
+  };
+  std::vector<std::string> torques, forces;
+  for (const Channel& channel : all_channels(system)) {
+    const bool torque = channel.name().ends_with(".torque_Nm");
+    if (!torque && !channel.name().ends_with(".force_N")) continue;
+    if (carries(channel.name().substr(0, channel.name().rfind('.'))))
+      (torque ? torques : forces).push_back(channel.name());
+  }
+  return torques.empty() ? forces : torques;
+}
+
+std::vector<std::string> node_motions(const System& system) {
+  std::vector<std::string> names;
+  for (const Channel& channel : all_channels(system))
+    if ((channel.name().ends_with(".angle_rad") || channel.name().ends_with(".position_m")) &&
+        names.size() < kMostNodesRecorded)
+      names.push_back(channel.name());
+  return names;
+}
+
+}  // namespace
+
+RunSection::Params::Params() : every(kNotGiven), tolerance(kNotGiven), accuracy(kNotGiven) {}
+
+void RunSection::list(Fields& f, Params& p) {
+  f.number({"duration", D::time}, p.duration);
+  f.number({"step", D::time}, p.step);
+  f.text("method", p.method);
+  f.number({"tolerance", D::none}, p.tolerance);
+  f.number({"accuracy", D::none}, p.accuracy);
+  f.text("deflection", p.deflection);
+  f.texts("torques", p.torques);
+  f.number({"static_turn", D::angle}, p.static_turn);
+  f.texts("record", p.record);
+  f.number({"every", D::time}, p.every);
+  f.text("out", p.out);
+}
+
+RunSection::RunSection(const Document& document, const std::string& run, ReadContext& context) {
+  const ListFields fields = [&](Fields& f) { list(f, params_); };
+  if (document.run != nullptr) {
+    const std::vector<std::string> names = document.run_names();
+    tables_.push_back(document.run);
+    read_fields(*document.run, "run", NodeKind::rotational, {names.begin(), names.end()}, fields, context);
+    if (const Entry* named = document.run->find(run); !run.empty() && named != nullptr) {
+      tables_.push_back(&named->value);
+      read_fields(named->value, "run." + run, NodeKind::rotational, {"parameters"}, fields, context);
+    }
+  }
+  const auto positive = [&](const char* stem, double value) {
+    if (value > 0.0) return;
+    for (const Value* table : tables_)
+      for (const Entry& e : table->entries)
+        if (e.key.starts_with(stem) && !e.value.is(Value::Kind::table))
+          context.findings.push_back(fault_at(e.value.at, "run." + e.key, "must be > 0"));
+  };
+  positive("duration_", params_.duration);
+  positive("step_", params_.step);
+}
+
+const Entry* RunSection::entry(const std::string& key) const {
+  for (auto table = tables_.rbegin(); table != tables_.rend(); ++table)
+    for (const Entry& e : (*table)->entries)
+      if (e.key == key || e.key.starts_with(key + "_")) return &e;
+  return nullptr;
+}
+
+RunOptions RunSection::options() const {
+  RunOptions options;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (value.empty()) return;
+    options.values[std::string("--") + key] = value;
+    if (const Entry* e = entry(key)) options.places[std::string("--") + key] = e->value.at;
+  };
+  const auto number = [](double value) { return std::isnan(value) ? std::string() : to_text(value); };
+  add("method", params_.method);
+  add("tolerance", number(params_.tolerance));
+  add("accuracy", number(params_.accuracy));
+  add("every", number(params_.every));
+  add("out", params_.out);
+  return options;
+}
+
+std::vector<std::string> RunSection::channels(const std::string& key, const std::vector<std::string>& asked,
+                                              const System& system, ReadContext& context) const {
+  const Entry* given = entry(key);
+  const auto place = [&](std::size_t i) {
+    const Value& value = given->value;
+    return value.is(Value::Kind::array) && i < value.items.size() ? value.items[i].at : value.at;
+  };
+  std::vector<std::string> found, single;
+  std::unordered_map<std::string, std::size_t> origin;
+  std::vector<Channel> all;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (asked[i].find('*') == std::string::npos) {
+      found.push_back(asked[i]);
+      single.push_back(asked[i]);
+      origin.emplace(asked[i], i);
+      continue;
+    }
+    if (all.empty()) all = all_channels(system);
+    const std::size_t before = found.size();
+    for (const Channel& channel : all)
+      if (matches(asked[i], channel.name())) found.push_back(channel.name());
+    if (found.size() == before)
+      context.findings.push_back(fault_at(place(i), "run." + key, "\"" + asked[i] + "\" fits no channel"));
+  }
+  try {
+    find_channels(system, single);
+  } catch (const ModelError& error) {
+    for (Finding finding : error.findings()) {
+      finding.place = place(origin[finding.value]).text() + ": run." + key;
+      context.findings.push_back(std::move(finding));
+    }
+  }
+  return found;
+}
+
+void RunSection::complete(Scene& scene, const System& system, ReadContext& context) const {
+  scene.duration = params_.duration;
+  scene.default_step = params_.step;
+  scene.static_turn = params_.static_turn;
+  if (!params_.deflection.empty()) {
+    channels("deflection", {params_.deflection}, system, context);
+    scene.deflection = params_.deflection;
+  }
+  scene.torques = entry("torques") ? channels("torques", params_.torques, system, context) : carried(system);
+  scene.channels =
+      entry("record") ? channels("record", params_.record, system, context) : node_motions(system);
+}
+
+}  // namespace drev::app

@@ -1,0 +1,36 @@
+#pragma once
+/// [run] of a model file and the named runs inside it.
+#include "app/model_file/field_reader.hpp"
+#include "app/model_file/scene_reader.hpp"
+#include "core/system.hpp"
+
+namespace drev::app {
+
+class RunSection {
+ public:
+  /// Reads [run], then what the named run changes; what is wrong goes to the context.
+  RunSection(const Document& document, const std::string& run, ReadContext& context);
+
+  RunOptions options() const;
+  /// What the runs of the model need to know. Channels that do not exist are findings.
+  void complete(Scene& scene, const System& system, ReadContext& context) const;
+
+ private:
+  struct Params {
+    double duration = 1.0, step = 1e-4, static_turn = 0.0;
+    double every, tolerance, accuracy;
+    std::string method, out, deflection;
+    std::vector<std::string> torques, record;
+    Params();
+  };
+  static void list(Fields& f, Params& p);
+  /// The last table that has the key; null if none has.
+  const Entry* entry(const std::string& key) const;
+  std::vector<std::string> channels(const std::string& key, const std::vector<std::string>& asked,
+                                    const System& system, ReadContext& context) const;
+
+  std::vector<const Value*> tables_;  ///< [run], then the named run
+  Params params_;
+};
+
+}  // namespace drev::app

@@ -1,0 +1,312 @@
+#include "app/model_file/scene_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/model_file/element_table.hpp"
+#include "app/model_file/field_reader.hpp"
+#include "app/model_file/node_fields.hpp"
+#include "app/model_file/part.hpp"
+#include "app/model_file/run_section.hpp"
+#include "core/system.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kMostRepeats = 10000;
+constexpr std::size_t kMostParts = 300000;  // nodes and elements
+// A file with more faults is read no further, and names are compared with so many at most: suggestions take
+// time.
+constexpr std::size_t kMostFaults = 200, kMostCompared = 2000;
+
+class SceneReader {
+ public:
+  SceneReader(const Document& document, ReadContext& context)
+      : doc_(document), context_(context), model_(document.name) {}
+
+  /// Nothing, and findings, if something is wrong.
+  std::optional<Scene> read(const RunSection& run) {
+    for (const Block& block : doc_.blocks)
+      if (block.nodes != nullptr)
+        for_each(block, *block.nodes,
+                 [this](const Entry& entry, const std::string& name) { add_node(entry, name); });
+    for (const Block& block : doc_.blocks)
+      if (block.elements != nullptr)
+        for_each(block, *block.elements,
+                 [this](const Entry& entry, const std::string& name) { add_element(entry, name); });
+    if (!context_.findings.empty()) {
+      for (const Placement& placement : model_.placements()) check_alone(placement);
+      return {};
+    }
+    try {
+      const System system = model_.build();
+      Scene scene{.model = std::move(model_), .note = doc_.note};
+      run.complete(scene, system, context_);
+      return scene;
+    } catch (const ModelError& error) {
+      for (Finding& finding : placed(error, doc_.name, doc_.at, nodes_, elements_))
+        context_.findings.push_back(std::move(finding));
+      return {};
+    }
+  }
+
+ private:
+  void refuse(const Position& at, const std::string& where, const std::string& sentence) {
+    context_.findings.push_back(fault_at(at, where, sentence));
+  }
+
+  /// Each entry of a block's table with its name, as often as the block is repeated.
+  template <class Use>
+  void for_each(const Block& block, const Value& table, const Use& use) {
+    int first = 1, count = 1;
+    std::string counter = "i";
+    if (block.repeat != nullptr) {
+      // What is wrong with them was said where the nodes were read.
+      const std::size_t before = context_.findings.size();
+      const bool said = block.nodes != nullptr && &table == block.elements;
+      if (const Entry* e = block.repeat->find("counter")) {
+        if (e->value.is(Value::Kind::text) && !context_.scope.numbers.contains(e->value.text))
+          counter = e->value.text;
+        else
+          refuse(e->value.at, "repeat.counter",
+                 "must be a name that is no parameter, not " + kind_name(e->value));
+      }
+      if (const Entry* e = block.repeat->find("first"))
+        first = read_whole(e->value, -kMostRepeats, kMostRepeats, "repeat.first", context_).value_or(1);
+      if (const Entry* e = block.repeat->find("count"))
+        count = read_whole(e->value, 0, kMostRepeats, "repeat.count", context_).value_or(1);
+      if (said) context_.findings.resize(before);
+    }
+    for (int i = first; i < first + count; ++i) {
+      if (block.repeat != nullptr) context_.scope.numbers[counter] = i;
+      for (const Entry& entry : table.entries) {
+        if (too_many_faults()) break;
+        if (nodes_.size() + elements_.size() >= kMostParts) {
+          if (!too_many_)
+            refuse(entry.at, entry.key,
+                   "a model file may have " + std::to_string(kMostParts) + " nodes and elements at most");
+          too_many_ = true;
+          break;
+        }
+        try {
+          use(entry, expand(entry.key, context_.scope));
+        } catch (const ExpressionError& error) {
+          refuse(entry.at, entry.key, error.sentence);
+        }
+      }
+    }
+    if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
+  }
+
+  /// Then the rest is not read.
+  bool too_many_faults() {
+    if (context_.findings.size() <= kMostFaults) return false;
+    remove_repeated(context_.findings);
+    if (context_.findings.size() <= kMostFaults) return false;
+    if (!given_up_) refuse(doc_.at, "the file", "has more faults than these; the rest was not read");
+    given_up_ = true;
+    return true;
+  }
+
+  bool is_new(const std::map<std::string, Part>& parts, const Entry& entry, const std::string& where,
+              const std::string& name) {
+    const auto same = parts.find(name);
+    if (same == parts.end()) return true;
+    refuse(entry.at, where, "the name " + name + " is used twice; first in " + same->second.at.text());
+    return false;
+  }
+
+  void add_node(const Entry& entry, const std::string& name) {
+    const std::string where = "nodes." + name;
+    if (!is_new(nodes_, entry, where, name)) return;
+    Part& part = nodes_[name];
+    part.at = entry.at;
+    if (!entry.value.is(Value::Kind::table))
+      return refuse(entry.value.at, where,
+                    "must be a table, {} for a plain node, not " + kind_name(entry.value));
+    if (const Entry* kind = entry.value.find("kind"))
+      if (kind->value.is(Value::Kind::text) && kind->value.text == "translational")
+        part.kind = NodeKind::translational;
+    model_.add_node(name, part.kind);
+    NodeParams p;
+    if (read_fields(
+            entry.value, where, part.kind, {}, [&](Fields& f) { list_fields(f, p); }, context_, &part.fields))
+      add_motion(name, p, part);
+  }
+
+  void add_motion(const std::string& name, const NodeParams& p, const Part& part) {
+    if (p.hold) model_.hold(name);
+    if (!std::isnan(p.constant_speed)) model_.constant_speed(name, p.constant_speed);
+    if (p.has_given) {
+      const double w = hz(p.given.frequency);
+      model_.given_motion(name, {[g = p.given, w](double t) {
+                            const double c = g.amplitude * std::cos(w * t + g.phase),
+                                         s = g.amplitude * std::sin(w * t + g.phase);
+                            return MotionPoint{g.offset + c, -w * s, -w * w * c};
+                          }});
+    }
+    try {
+      if (!std::isnan(p.nominal_speed))
+        model_.set_reference(name, constant_speed(p.nominal_speed, p.nominal_angle));
+      if (p.has_run_up)
+        model_.set_reference(name,
+                             run_up(p.run_up.speed_0, p.run_up.speed_1, p.run_up.time_0, p.run_up.time_1));
+    } catch (const ModelError& error) {
+      for (const Finding& finding : error.findings())
+        context_.findings.push_back(placed(finding, part, "nodes." + name));
+    }
+    if (!std::isnan(p.initial_value) || !std::isnan(p.initial_rate))
+      model_.set_initial(name, std::isnan(p.initial_value) ? 0.0 : p.initial_value,
+                         std::isnan(p.initial_rate) ? 0.0 : p.initial_rate);
+  }
+
+  void add_element(const Entry& entry, const std::string& name) {
+    const std::string where = "elements." + name;
+    if (!is_new(elements_, entry, where, name)) return;
+    Part& part = elements_[name];
+    part.at = entry.at;
+    const Value& table = entry.value;
+    if (!table.is(Value::Kind::table))
+      return refuse(table.at, where, "must be a table, { type = ... }, not " + kind_name(table));
+    const std::vector<std::string> nodes = nodes_of(table, where, part);
+    const Entry* named = table.find("type");
+    if (named == nullptr) return refuse(table.at, where, "lacks type: " + one_of(element_type_names()));
+    const ElementType* type =
+        named->value.is(Value::Kind::text) ? find_element_type(named->value.text) : nullptr;
+    if (type == nullptr) {
+      const std::string hint = did_you_mean(named->value.text, element_type_names());
+      return refuse(named->value.at, where + ".type",
+                    "is " + kind_name(named->value) + ", which is no element" +
+                        (hint.empty() ? "; there are " + one_of(element_type_names()) : hint));
+    }
+    bool right = false;
+    try {
+      const std::shared_ptr<const Element> element = type->make([&](const ListFields& list) {
+        right = read_fields(table, where, part.kind, {"type", "node", "nodes"}, list, context_, &part.fields);
+      });
+      for (const char* key : {"node", "nodes"})
+        if (const Entry* e = table.find(key)) part.fields[key] = e->value.at;
+      if (right) model_.add(name, {nodes.begin(), nodes.end()}, element);
+    } catch (const ModelError& error) {
+      for (const Finding& finding : error.findings())
+        context_.findings.push_back(placed(finding, part, where));
+    }
+  }
+
+  static std::string one_of(const std::vector<std::string>& words) {
+    std::string all;
+    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+    return all;
+  }
+
+  /// Names of an element's nodes, which are looked up; sets the kind of the part.
+  std::vector<std::string> nodes_of(const Value& table, const std::string& where, Part& part) {
+    const Entry *one = table.find("node"), *several = table.find("nodes");
+    if (one != nullptr && several != nullptr) refuse(several->at, where + ".nodes", "is there beside node");
+    if (one == nullptr && several == nullptr) return {};
+    const Entry& given = one != nullptr ? *one : *several;
+    std::vector<std::string> names;
+    bool kind_known = false;
+    const auto look_up = [&](const Value& value) {
+      const std::optional<std::string> name = read_text(value, where + "." + given.key, context_);
+      if (!name) return;
+      names.push_back(*name);
+      const auto node = nodes_.find(*name);
+      if (node == nodes_.end()) {
+        if (known_nodes_.size() != nodes_.size()) {
+          known_nodes_.clear();
+          for (const auto& [known, place] : nodes_) known_nodes_.push_back(known);
+        }
+        refuse(value.at, where + "." + given.key,
+               "\"" + *name + "\" is none of the nodes" +
+                   (nodes_.size() > kMostCompared ? "" : did_you_mean(*name, known_nodes_)));
+      } else if (!kind_known) {
+        part.kind = node->second.kind;
+        kind_known = true;
+      }
+    };
+    if (given.value.is(Value::Kind::array))
+      for (const Value& item : given.value.items) look_up(item);
+    else
+      look_up(given.value);
+    if (!kind_known && !nodes_.empty() && std::all_of(nodes_.begin(), nodes_.end(), [](const auto& n) {
+          return n.second.kind == NodeKind::translational;
+        }))
+      part.kind = NodeKind::translational;
+    return names;
+  }
+
+  /// Parameters out of range, where the model as a whole cannot be built yet.
+  void check_alone(const Placement& placement) {
+    std::vector<Finding> findings;
+    ParameterCheck check(doc_.name + "/" + placement.name, findings);
+    placement.element->check(check);
+    for (const Finding& finding : findings)
+      context_.findings.push_back(placed(finding, elements_[placement.name], finding.place));
+  }
+
+  const Document& doc_;
+  ReadContext& context_;
+  Model model_;
+  std::map<std::string, Part> nodes_, elements_;
+  std::vector<std::string> known_nodes_;
+  bool too_many_ = false, given_up_ = false;
+};
+
+}  // namespace
+
+FileScene read_scene(const Document& document, const Settings& settings, const std::string& run,
+                     bool options_only) {
+  ReadContext context;
+  for (const Setting& setting : settings.known())
+    context.scope.numbers[setting.name] = settings.number(setting.name);
+  context.scope.lists = document.lists;
+  context.tables = document.tables;
+  FileScene result;
+  const RunSection section(document, run, context);
+  result.options = section.options();
+  if (!options_only) result.scene = SceneReader(document, context).read(section);
+  remove_repeated(context.findings);
+  if (!context.findings.empty()) result.scene.reset();
+  result.findings = std::move(context.findings);
+  return result;
+}
+
+void set_run_parameters(const Document& document, const std::string& run, std::vector<Setting>& settings,
+                        std::vector<Finding>& findings) {
+  const Entry* named = document.run != nullptr ? document.run->find(run) : nullptr;
+  if (run.empty() || named == nullptr) return;
+  const Entry* parameters = named->value.find("parameters");
+  if (parameters == nullptr) return;
+  const std::string where = "run." + run + ".parameters";
+  if (!parameters->value.is(Value::Kind::table)) {
+    findings.push_back(fault_at(parameters->value.at, where, "must be a table, { name = value }"));
+    return;
+  }
+  for (const Entry& entry : parameters->value.entries) {
+    std::vector<std::string> names;
+    for (const Setting& s : settings) names.push_back(s.name);
+    const auto found = std::find(names.begin(), names.end(), entry.key);
+    if (found == names.end()) {
+      findings.push_back(fault_at(entry.at, where + "." + entry.key,
+                                  "is none of [parameters]" + did_you_mean(entry.key, names)));
+      continue;
+    }
+    Setting& setting = settings[static_cast<std::size_t>(found - names.begin())];
+    Settings probe(document.name, {setting});
+    probe.set(entry.key, entry.value.numeric() ? to_text(entry.value.number) : kind_name(entry.value));
+    try {
+      probe.check();
+      setting.default_text = to_text(entry.value.number);
+    } catch (const ModelError& error) {
+      for (Finding finding : error.findings()) {
+        finding.place = entry.value.at.text() + ": " + where;
+        findings.push_back(std::move(finding));
+      }
+    }
+  }
+}
+
+}  // namespace drev::app

@@ -1,0 +1,60 @@
+#pragma once
+/// A model file as a tree of values, each with the place where it stands. Tables keep the order of the file.
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace drev::app {
+
+/// file:line:column, both counted from 1.
+struct Position {
+  std::shared_ptr<const std::string> file;
+  int line = 1, column = 1;
+  std::string text() const;
+};
+
+struct Entry;
+
+struct Value {
+  enum class Kind { boolean, whole, number, text, array, table, other };
+  Kind kind = Kind::table;
+  Position at = {};
+  bool flag = false;
+  std::int64_t whole = 0;
+  double number = 0.0;
+  std::string text = {};
+  std::vector<Value> items = {};    ///< of an array
+  std::vector<Entry> entries = {};  ///< of a table
+
+  bool is(Kind k) const { return kind == k; }
+  bool numeric() const { return is(Kind::whole) || is(Kind::number); }
+  /// Null if a table has no such key.
+  const Entry* find(const std::string& key) const;
+};
+
+struct Entry {
+  std::string key;
+  Position at;  ///< of the key
+  Value value;
+};
+
+/// "a table", "a text", ...
+std::string kind_name(const Value& value);
+
+/// What is wrong at a place of a file. `where` says what stands there, e.g. "elements.shaft".
+Finding fault_at(const Position& at, const std::string& where, const std::string& sentence);
+
+/// Reads TOML. Throws ModelError with one finding (the language's faults come one at a time); also for a text
+/// above kLargestFile bytes, and for tables nested deeper than kDeepest.
+Value parse_toml(const std::string& text, const std::string& name);
+
+inline constexpr std::size_t kLargestFile = std::size_t{1} << 24;
+inline constexpr int kDeepest = 32;
+
+/// A file as text. Throws ModelError, which blames `at` (or the file itself, where at is null).
+std::string read_text(const std::string& path, const Position* at);
+
+}  // namespace drev::app

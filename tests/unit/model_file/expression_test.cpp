@@ -1,0 +1,98 @@
+// Expressions: values by hand, units that go with them, faults.
+#include "app/model_file/expression.hpp"
+
+#include "app/model_file/units.hpp"
+#include "core/units.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev::app;
+
+namespace {
+
+const Scope kScope{{{"n", 9.0},
+                    {"i", 3.0},
+                    {"gap_mm", 0.15},
+                    {"play_mm", 0.05},
+                    {"gap_m", 1.0},
+                    {"f_Hz", 40.0},
+                    {"x_2", 7.0}},
+                   {{"order", {1, 4, 8, 2, 6, 9, 3, 5, 7}}, {"J_kg_m2", {0.5, 0.25}}}};
+
+std::string refused(const std::string& text) {
+  try {
+    evaluate(text, kScope);
+  } catch (const ExpressionError& error) {
+    return error.sentence;
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("Expressions have the values that they have in C++") {
+  const auto value = [](const char* text) { return evaluate(text, kScope).value; };
+  CHECK(value("1 + 2*3") == 7.0);
+  CHECK(value("(1 + 2)*3") == 9.0);
+  CHECK(value("2 - 3 - 4") == -5.0);
+  CHECK(value("8/4/2") == 1.0);
+  CHECK(value("-2*-3") == 6.0);
+  CHECK(value("--1e-3") == 1e-3);
+  CHECK(value(" 1.5e3 ") == 1500.0);
+  CHECK(value("n - i") == 6.0);
+  CHECK(value("x_{i-1} + 1") == 8.0);
+  CHECK(value("order[i]") == 8.0);
+  CHECK(value("position(order, i)") == 7.0);
+  CHECK(value("-2*pi*(position(order, i) - 1)/n") == -drev::kTwoPi * 6.0 / 9);
+}
+
+TEST_CASE("Units go with the values") {
+  const auto unit = [](const char* text) { return evaluate(text, kScope).unit; };
+  CHECK(unit("gap_mm").compare("mm") == 0);
+  CHECK(unit("2*gap_mm/3 + play_mm + 1").compare("mm") == 0);
+  CHECK(unit("gap_mm/play_mm").empty());
+  CHECK(unit("n*i").empty());
+  CHECK(unit("J_kg_m2[2]").compare("kg_m2") == 0);
+  CHECK_FALSE(evaluate("gap_mm*f_Hz", kScope).unit_followed);
+  CHECK_FALSE(evaluate("1/f_Hz", kScope).unit_followed);
+  CHECK(unit_suffix("stiffness_Nm_per_rad") == "Nm_per_rad");
+  CHECK(unit_suffix("speed_rad_per_s") == "rad_per_s");
+  CHECK(unit_suffix("cylinders").empty());
+  CHECK(unit_suffix("_mm").empty());
+}
+
+TEST_CASE("Faults of expressions are named") {
+  const std::vector<std::pair<const char*, const char*>> faults{
+      {"", "ends where a number or a name is expected"},
+      {"1 +", "ends where"},
+      {"1 1", "has '1' in column 3"},
+      {"2 $ 3", "has '$' in column 3"},
+      {"(1", "lacks a ')' at its end"},
+      {"m", "names m, which is no parameter"},
+      {"gap_nm", "did you mean 'gap_"},
+      {"gap_mm + gap_m", "adds mm and m"},
+      {"1/0", "gives no finite number"},
+      {"order", "needs a place in the list order"},
+      {"order[0]", "takes number 0 of order, which has 9"},
+      {"order[10]", "takes number 10"},
+      {"order[1.5]", "takes number 1.5"},
+      {"ordre[1]", "did you mean 'order'?"},
+      {"position(order, 10)", "seeks 10, which the list does not hold"},
+      {"position(order)", "lacks a ','"},
+      {"1e999", "has '1' in column 1"},
+      {".", "has '.' in column 1"}};
+  for (const auto& [text, said] : faults) {
+    INFO(text << ": " << refused(text));
+    CHECK(refused(text).find(said) != std::string::npos);
+  }
+  CHECK(refused(std::string(200, '(')).find("nested too deeply") != std::string::npos);
+  CHECK(refused(std::string(2000, '1')).find("longer than 1000") != std::string::npos);
+  CHECK(evaluate(std::string(900, '-') + "1", kScope).value == 1.0);
+}
+
+TEST_CASE("Names are filled in") {
+  CHECK(expand("fuel_{i}", kScope) == "fuel_3");
+  CHECK(expand("{i-1}-{i + 1}", kScope) == "2-4");
+  CHECK(expand("plain", kScope) == "plain");
+  for (const char* text : {"fuel_{", "fuel_{i/2}", "fuel_{}", "fuel_{j}", "{1e12}"})
+    CHECK_THROWS_AS(expand(text, kScope), ExpressionError);
+}
