@@ -17,9 +17,13 @@ const std::vector<CommandEntry>& commands() {
                     "Relative: of exact, default 1e-10; of any other method, whose steps it controls"},
                    {"--accuracy", "A",
                     "Finds the figures to the relative error A and states the error of each"},
-                   {"--out", "DIR", "Creates DIR with history.csv and summary.json"},
-                   {"--record", "CHANNEL,...", "Columns of history.csv; default: the model's", commas},
-                   {"--every", "SECONDS", "Interval of history.csv; default: about duration / 1000"},
+                   {"--out", "DIR", "Creates DIR with history.csv, summary.json and report.html"},
+                   {"--report", "FILE",
+                    "Writes the report, a page for any browser, to FILE.html, or printed to FILE.pdf"},
+                   {"--record", "CHANNEL,...",
+                    "Columns of history.csv, curves of the report; default: the model's", commas},
+                   {"--every", "SECONDS",
+                    "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
                    {"--format", "FORMAT,...", "Of the history: csv (always written), hdf5 (history.h5 too)",
                     commas},
                    run},
@@ -62,7 +66,14 @@ const std::vector<CommandEntry>& commands() {
        .summary = "Writes a model as a model file",
        .options = {{"--out", "FILE", "Writes FILE, which ends in .toml; default: to standard output"}, run},
        .footer = kExportExamples,
-       .execute = export_command}};
+       .execute = export_command},
+      {.name = "report",
+       .summary = "The report of a run once more, or of two runs compared",
+       .takes_model = false,
+       .options = {{"RUN", "RUN [RUN]", "Directory of drev run --out, or its report.html", words},
+                   {"--out", "FILE", "The report to write, .html or .pdf"}},
+       .footer = kReportExamples,
+       .execute = report_command}};
   return table;
 }
 

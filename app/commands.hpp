@@ -41,6 +41,7 @@ int chart_command(const CommandLine& line);
 int advise_command(const CommandLine& line);
 int check_command(const CommandLine& line);
 int export_command(const CommandLine& line);
+int report_command(const CommandLine& line);
 
 /// Writes to stdout, unless --quiet was given; throws OutputError if that fails (a full disk behind a redirection).
 void print(const std::string& text);

@@ -25,6 +25,7 @@ inline constexpr const char* kMainExamples =
     "  drev list camshaft                 its settings and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
+    "  drev run camshaft --report cam.html   the report of it, a page for any browser\n"
     "  drev chart camshaft                which method to use for it, measured\n"
     "  drev advise camshaft               how little of it a figure needs, measured\n"
     "  drev export camshaft --out my.toml the same as a file, to be changed\n"
@@ -36,6 +37,7 @@ inline constexpr const char* kRunExamples =
     "  drev run camshaft\n"
     "  drev run camshaft --set cylinders=6 --set drive=held damping=case_2\n"
     "  drev run camshaft --out result --record end.angle_rad,mesh_1.force_N --every 0.001\n"
+    "  drev run camshaft --report camshaft.html\n"
     "  drev run camshaft --method exact --set duration_s=1\n"
     "  drev run two_mass_backlash --accuracy 1e-6\n"
     "  drev run two_mass_backlash --method hht:0.1 --step 0.001 --json\n"
@@ -76,6 +78,11 @@ inline constexpr const char* kAdviseExamples =
     "CHANNEL; with 'steady' before it that of the last turns. Simpler models are tried, from the gear\n"
     "held to all of the model but one thing; each is measured against the full one, and the errors of\n"
     "both figures count against it. cost: processor time over that of the full model.\n";
+
+inline constexpr const char* kReportExamples =
+    "Examples:\n"
+    "  drev report result --out result.pdf\n"
+    "  drev report before after --out compared.html\n";
 
 inline constexpr const char* kListExamples =
     "Examples:\n"

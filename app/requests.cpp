@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/report_file.hpp"
 #include "app/text_layout.hpp"
 #include "core/channel.hpp"
 #include "solvers/exact_propagation.hpp"
@@ -295,8 +296,14 @@ RunRequest request_run(const CommandLine& given) {
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), duration / kMostRows, high, limit, findings);
   for (const char* option : {"--record", "--every", "--format"})
-    if (!line.option("--out") && line.list(option))
-      findings.push_back({kPlace, option, "", "", "needs --out DIR, where to write the channels"});
+    if (!line.option("--out") && !line.option("--report") && line.list(option))
+      findings.push_back(
+          {kPlace, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
+  if (line.option("--format") && line.option("--report") && !line.option("--out"))
+    findings.push_back({kPlace, "--format", "", "", "needs --out DIR"});
+  if (const auto report = line.option("--report"))
+    if (const auto why = why_no_report(*report))
+      findings.push_back({kPlace, "--report", *report, "", *why});
   bool hdf5 = false;
   for (const std::string& format : line.list("--format").value_or(std::vector<std::string>{})) {
     hdf5 = hdf5 || format == "hdf5";
@@ -309,7 +316,8 @@ RunRequest request_run(const CommandLine& given) {
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
   return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"),
-          std::move(record), every, hdf5};
+          std::move(record), every, hdf5, line.option("--report"),
+          line.option("--every") ? std::optional(every) : std::nullopt};
 }
 
 ModesRequest request_modes(const CommandLine& line) {

@@ -31,9 +31,11 @@ struct RunRequest {
   std::optional<double> accuracy;   ///< relative, of every figure; the method's step or tolerance follows
   std::string method_reason;        ///< why this one; a sentence without full stop
   std::optional<std::string> out;   ///< directory
-  std::vector<std::string> record;  ///< channels of history.csv
+  std::vector<std::string> record;  ///< channels of history.csv and of the report
   double every = 0.0;               ///< s
   bool hdf5 = false;                ///< history.h5 too
+  std::optional<std::string> report = {};  ///< file, .html or .pdf
+  std::optional<double> report_every = {};  ///< s, asked for
 };
 
 struct ModesRequest {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -5,9 +6,11 @@
 #include "app/exit_codes.hpp"
 #include "app/history_hdf5.hpp"
 #include "app/interrupt.hpp"
+#include "app/report_data.hpp"
+#include "app/report_file.hpp"
+#include "app/report_page.hpp"
 #include "app/run_computation.hpp"
 #include "app/run_json.hpp"
-#include "app/run_report.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
 #include "core/channel.hpp"
@@ -25,48 +28,50 @@ int exit_code(const RunResult& result) {
   return kNotTrusted;
 }
 
+/// Channels of the report: those asked for, and what the contacts carry.
+std::vector<std::string> report_channels(const RunRequest& request) {
+  constexpr std::size_t kMeshes = 6;
+  std::vector<std::string> names = request.record;
+  std::size_t meshes = 0;
+  for (const Channel& channel : mesh_channels(request.model.system))
+    if (meshes++ < kMeshes && std::find(names.begin(), names.end(), channel.name()) == names.end())
+      names.push_back(channel.name());
+  return names;
+}
+
 /// The files of one run. They get their own names only if the run came to its end.
 class RunFiles {
  public:
   RunFiles(const RunRequest& request) : request_(request) {
-    if (!request.out) return;
-    create_directory(*request.out);
-    history_.emplace(*request.out, request.record, request.every);
-    summary_.emplace(*request.out, "summary", "json");
+    if (request.out) {
+      create_directory(*request.out);
+      history_.emplace(*request.out, request.record, request.every);
+      summary_.emplace(*request.out, "summary", "json");
+    }
+    if (request.report) report_.emplace(*request.report);
+    if (request.out || request.report)
+      shown_.emplace(request.model.system, report_channels(request),
+                     report_interval(request, request.method));
   }
 
   HistoryFile* history() { return history_ ? &*history_ : nullptr; }
+  ReportHistory* shown() { return shown_ ? &*shown_ : nullptr; }
 
   /// Returns false, and says why, if something could not be written.
   bool close(const RunResult& result) {
-    if (!history_) return true;
+    if (!shown_) return true;
     const bool complete = result.ok() || result.status == "energy_error";
-    history_->close(complete);
-    bool written = history_->error().empty();
+    if (history_) history_->close(complete);
+    bool written = !history_ || history_->error().empty();
     if (!written) say(history_->error());
     try {
-      const std::string summary = run_as_json(request_, result);
-      summary_->write(summary);
-      if (complete && written) {
-        summary_->commit();
-        if (request_.hdf5) {
-          std::vector<HistoryColumn> columns;
-          for (const Channel& channel : find_channels(request_.model.system, request_.record))
-            columns.push_back({channel.name(), channel.unit()});
-          write_hdf5(*request_.out, history_->path(), columns, summary);
-        }
-        OutputFile report(*request_.out, "report", "html");
-        report.write(run_report(request_, result, history_->path()));
-        report.commit();
-        report_path_ = report.path();
-      } else {
-        summary_->flush();
-      }
+      if (summary_) write_summary(result, complete && written);
+      if (complete && written) write_reports(result);
     } catch (const OutputError& error) {
       say(error.what());
       written = false;
     }
-    if (!complete)
+    if (!complete && history_)
       say("what there is of the run is in " + history_->partial_path() + " and " +
           summary_->partial_path() + "; " + history_->path() +
           ", summary.json and report.html, if they are there, are of an older run");
@@ -75,19 +80,48 @@ class RunFiles {
 
   /// What was written where, for the table.
   std::string text() const {
-    if (!history_) return {};
-    return pad_right("History", 24) + wrap(std::to_string(history_->rows()) + " rows, every " +
-                                               short_digits(request_.every, 12) + " s, of " +
-                                               join(request_.record) + " in " + history_->path(),
-                                           24) +
-           pad_right("Report", 24) + report_path_ + "\n";
+    std::string text;
+    if (history_)
+      text += pad_right("History", 24) + wrap(std::to_string(history_->rows()) + " rows, every " +
+                                                  short_digits(request_.every, 12) + " s, of " +
+                                                  join(request_.record) + " in " + history_->path(),
+                                              24);
+    if (shown_) text += pad_right("Report", 24) + join(report_paths_) + "\n";
+    return text;
   }
 
  private:
+  void write_summary(const RunResult& result, bool commit) {
+    const std::string summary = run_as_json(request_, result);
+    summary_->write(summary);
+    if (!commit) return summary_->flush();
+    summary_->commit();
+    if (!request_.hdf5) return;
+    std::vector<HistoryColumn> columns;
+    for (const Channel& channel : find_channels(request_.model.system, request_.record))
+      columns.push_back({channel.name(), channel.unit()});
+    write_hdf5(*request_.out, history_->path(), columns, summary);
+  }
+
+  void write_reports(const RunResult& result) {
+    const std::string page = report_page({block_text(report_data(request_, result, *shown_))});
+    const auto commit = [&](ReportFile& file) {
+      file.commit(page);
+      report_paths_.push_back(file.path());
+    };
+    if (request_.out) {
+      ReportFile beside(*request_.out + "/report.html");
+      commit(beside);
+    }
+    if (report_) commit(*report_);
+  }
+
   const RunRequest& request_;
   std::optional<HistoryFile> history_;
   std::optional<OutputFile> summary_;
-  std::string report_path_;
+  std::optional<ReportFile> report_;
+  std::optional<ReportHistory> shown_;
+  std::vector<std::string> report_paths_;
 };
 
 }  // namespace
@@ -96,7 +130,7 @@ int run_command(const CommandLine& line) {
   const RunRequest request = request_run(line);
   watch_signals();
   RunFiles files(request);
-  const RunResult result = compute_run(request, files.history());
+  const RunResult result = compute_run(request, files.history(), files.shown());
   if (!result.ok()) say(warning_of(result));
   const bool written = files.close(result);
   if (line.json) {

@@ -70,19 +70,6 @@ void add_static_force(const ModelRequest& model, const std::vector<Channel>& tor
   result.static_time = timer.seconds();
 }
 
-/// Forces [N] of meshes, backlash or not, and of whatever else has a gap.
-std::vector<Channel> mesh_channels(const System& system) {
-  std::vector<Channel> found;
-  for (const Channel& channel : all_channels(system))
-    for (const ScalarTerm& term : system.scalars()) {
-      const std::string& element = system.placements()[static_cast<std::size_t>(term.element)].name;
-      if (channel.name() == element + ".force_N" &&
-          (term.along_line_of_action || term.force->gap()))
-        found.push_back(channel);
-    }
-  return found;
-}
-
 std::vector<Contacts> contacts_of(const System& system, const ContactStatistics& statistics) {
   const std::vector<Channel> channels = all_channels(system);
   std::vector<Contacts> contacts;
@@ -93,15 +80,6 @@ std::vector<Contacts> contacts_of(const System& system, const ContactStatistics&
     contacts.push_back({record, newton ? "N" : "N m"});
   }
   return contacts;
-}
-
-/// Time of the turn that static torques are sought over, where the shaft's speed is constant; else 0.
-double cycle_of(const ModelRequest& model) {
-  const auto& reference = model.system.reference();
-  if (!reference || !reference->at || !(model.scene.static_turn > 0.0)) return 0.0;
-  const double speed = reference->at(0.0).rate;
-  if (speed == 0.0 || reference->at(model.scene.duration).rate != speed) return 0.0;
-  return model.scene.static_turn / std::abs(speed);
 }
 
 /// Figures with their errors; false: the run failed, as the result says.
@@ -135,7 +113,27 @@ bool find_accuracy(const RunRequest& request, RunResult& result) {
 
 }  // namespace
 
-RunResult compute_run(const RunRequest& request, HistoryFile* history) {
+std::vector<Channel> mesh_channels(const System& system) {
+  std::vector<Channel> found;
+  for (const Channel& channel : all_channels(system))
+    for (const ScalarTerm& term : system.scalars()) {
+      const std::string& element = system.placements()[static_cast<std::size_t>(term.element)].name;
+      if (channel.name() == element + ".force_N" &&
+          (term.along_line_of_action || term.force->gap()))
+        found.push_back(channel);
+    }
+  return found;
+}
+
+double cycle_of(const ModelRequest& model) {
+  const auto& reference = model.system.reference();
+  if (!reference || !reference->at || !(model.scene.static_turn > 0.0)) return 0.0;
+  const double speed = reference->at(0.0).rate;
+  if (speed == 0.0 || reference->at(model.scene.duration).rate != speed) return 0.0;
+  return model.scene.static_turn / std::abs(speed);
+}
+
+RunResult compute_run(const RunRequest& request, HistoryFile* history, ReportHistory* report) {
   const System& system = request.model.system;
   const Scene& scene = request.model.scene;
   RunResult result;
@@ -158,6 +156,7 @@ RunResult compute_run(const RunRequest& request, HistoryFile* history) {
     recorder->set_sink([&](double /*t*/, const std::vector<double>& row) { history->add(row); });
     observers.push_back(&*recorder);
   }
+  if (report != nullptr) observers.push_back(report);
   if (request.accuracy && !find_accuracy(request, result)) return result;
   const Timer timer;
   try {

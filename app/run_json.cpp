@@ -133,7 +133,7 @@ Json accuracy_object(double asked, const AccuracyResult& a) {
 
 }  // namespace
 
-std::string run_as_json(const RunRequest& request, const RunResult& r) {
+Json run_object(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   Json object;
   object["model"] = request.model.entry->name;
@@ -166,7 +166,11 @@ std::string run_as_json(const RunRequest& request, const RunResult& r) {
                       {"accuracy_s", number(r.accuracy_time)},
                       {"simulation_s", number(r.run_time)}};
   object["note"] = text_or_null(request.model.scene.note);
-  return json_text(object);
+  return object;
+}
+
+std::string run_as_json(const RunRequest& request, const RunResult& result) {
+  return json_text(run_object(request, result));
 }
 
 }  // namespace drev::app

@@ -90,25 +90,6 @@ TEST_CASE("history.csv has the times asked for and the library's values") {
   CHECK_FALSE(std::filesystem::exists(folder / "deep/result/history.partial.csv"));
 }
 
-TEST_CASE("The report is one page with the table and a chart for each quantity") {
-  const TemporaryFolder folder;
-  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=1", "--out",
-                                 (folder / "r").string(), "--record",
-                                 "mass_1.position_m,mass_2.position_m,spring_1.force_N"});
-  CHECK(run.exit_code == 0);
-  CHECK(contains(run.out, "report.html"));
-  const std::string report = read_file(folder / "r/report.html");
-  std::size_t charts = 0;
-  for (std::size_t at = report.find("<svg"); at != std::string::npos; at = report.find("<svg", at + 1))
-    ++charts;
-  CHECK(charts == 2);  // positions share one
-  CHECK(contains(report, "position [m]"));
-  CHECK(contains(report, "force [N]"));
-  CHECK(contains(report, "Energy balance"));
-  CHECK_FALSE(contains(report, "http://www.w3.org/1999/xlink"));
-  CHECK(report.ends_with("</html>\n"));
-}
-
 TEST_CASE("The default interval is a round number, and the last row is the end of the run") {
   const TemporaryFolder folder;
   const auto run = drev_command(

@@ -1,0 +1,242 @@
+// Modes, and the speeds at which they resonate.
+
+const stillness = matchMedia("(prefers-reduced-motion: reduce)");
+const stopAnimations = [],
+  startAnimations = [];
+
+function showModes() {
+  const section = byId("modes");
+  const shown = distinct((r) => r.modes);
+  for (const run of shown) {
+    if (!run.modes.length) {
+      section.append(make("p", {}, prefixed(run, "There are no elastic modes.")));
+      continue;
+    }
+    if (shown.length > 1) section.append(make("h3", {}, `Run ${run.name}`));
+    const plan = layout(run.model);
+    const view = new ShapeView(run.model, plan, 1000, 76, false);
+    const words = make("p", { "aria-live": "polite" });
+    let moving = !stillness.matches,
+      mode = 0,
+      frame = 0;
+    const animate = (now) => {
+      if (!moving || printing) return;
+      view.move(Math.cos(now / 400));
+      frame = requestAnimationFrame(animate);
+    };
+    const buttons = run.modes.map((m, i) => {
+      const small = new ShapeView(run.model, plan, 120, 36, true);
+      small.show(m.shape);
+      return make(
+        "button",
+        {
+          type: "button",
+          "aria-pressed": "false",
+          "aria-label": `Mode ${i + 1}, ${sig(m.frequency_Hz, 5)} Hz`,
+          click: () => select(i),
+        },
+        make("b", {}, String(i + 1)),
+        `  ${sig(m.frequency_Hz, 5)} Hz`,
+        small.svg,
+      );
+    });
+    const select = (i) => {
+      mode = i;
+      buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === i)));
+      const m = run.modes[i];
+      const top = m.shape.map((v, k) => [Math.abs(v), k]).sort((a, b) => b[0] - a[0])[0][1];
+      view.show(m.shape);
+      view.svg.dataset.mode = i + 1;
+      words.replaceChildren(
+        make("b", {}, `Mode ${i + 1}: ${sig(m.frequency_Hz, 5)} Hz`),
+        `, moves most at ${run.model.nodes[top].name}; ` +
+          `elastic energy in ${m.energy.map((e) => `${e.element} ${percent(e.share, 2)}`).join(", ")}`,
+      );
+    };
+    const toggle = make(
+      "button",
+      {
+        type: "button",
+        click: () => {
+          moving = !moving;
+          toggle.textContent = moving ? "Hold" : "Move";
+          if (moving) animate(performance.now());
+          else view.move(1);
+        },
+      },
+      moving ? "Hold" : "Move",
+    );
+    section.append(
+      make("div", { class: "thumbs", role: "group", "aria-label": "Modes" }, buttons),
+      make("div", { class: "toolbar" }, words, toggle),
+      make(
+        "figure",
+        {},
+        view.svg,
+        make(
+          "figcaption",
+          { class: "note" },
+          "Motion of each node, forwards upwards, the largest 1; dotted: in mesh. Contacts closed, undamped" +
+            `${run.result.results.rigid_modes ? `; besides ${run.result.results.rigid_modes} rigid modes` : ""}.`,
+        ),
+      ),
+    );
+    select(0);
+    if (moving) animate(performance.now());
+    stopAnimations.push(() => {
+      cancelAnimationFrame(frame);
+      view.move(1);
+    });
+    startAnimations.push(() => moving && animate(performance.now()));
+  }
+  if (shown.length > 1) {
+    const count = Math.max(...runs.map((run) => run.modes.length));
+    const f = (run, i) => run.modes[i]?.frequency_Hz;
+    section.append(
+      make("h3", {}, "Natural frequencies"),
+      table(
+        ["mode", "A [Hz]", "B [Hz]", "B against A"],
+        Array.from({ length: count }, (_, i) => [
+          i + 1,
+          sig(f(runs[0], i), 5),
+          sig(f(runs[1], i), 5),
+          difference(f(runs[0], i), f(runs[1], i)),
+        ]),
+      ),
+    );
+  }
+}
+
+const CAMPBELL_MODES = 4; // shown unless zoomed out
+
+function showCampbell() {
+  const section = byId("campbell");
+  const shown = distinct((r) => [r.campbell, r.modes.map((m) => m.frequency_Hz)]);
+  for (const run of shown) {
+    const c = run.campbell;
+    if (shown.length > 1) section.append(make("h3", {}, `Run ${run.name}`));
+    if (!c) {
+      section.append(make("p", {}, "No shaft turns in this model, so there are no orders."));
+      continue;
+    }
+    const rpm = 60 / (2 * Math.PI),
+      runSpeed = Math.max(...c.speed) * rpm,
+      fastest = 1.6 * runSpeed;
+    const frequencies = run.modes.map((m) => m.frequency_Hz);
+    const high = 1.12 * (frequencies[Math.min(CAMPBELL_MODES, frequencies.length) - 1] ?? fastest / 6);
+    const modeNames = frequencies.map((_, i) => `mode ${i + 1}`);
+    const orderNames = c.orders.map((o) =>
+      o.of === "loads" ? `order ${tidy(o.order)}` : `teeth of ${o.of}`,
+    );
+    const labels = [...modeNames, ...orderNames, "resonance"];
+    const orderLimit = c.orders.map((o) => o.order);
+    const crossings = c.crossings
+      .filter((x) => orderLimit.some((o) => Math.abs(o - x.order) < 1e-6) && x.speed * rpm <= fastest)
+      .sort((a, b) => a.speed - b.speed);
+    const group = new Group([0, fastest], () => {});
+    const rows = () => {
+      const xs = [0, ...crossings.map((x) => x.speed * rpm), fastest];
+      return {
+        sparse: true,
+        rows: xs.map((x, k) => [
+          x,
+          ...frequencies,
+          ...c.orders.map((o) => (o.order * x) / 60),
+          k > 0 && k <= crossings.length ? frequencies[crossings[k - 1].mode] : null,
+        ]),
+      };
+    };
+    const chart = new Chart(section, {
+      group,
+      title: "Campbell diagram",
+      tall: true,
+      labels,
+      rows,
+      yLabel: "frequency [Hz]",
+      xName: "rpm",
+      xLabel: `speed of ${c.shaft} [rpm]`,
+      valueRange: [0, high],
+      caption: make(
+        "span",
+        { class: "note" },
+        "Level lines: natural frequencies (they do not depend on speed here). Rays: the orders of the " +
+          "loads that excite most, and tooth " +
+          `passing, per turn of ${c.shaft}. ● resonance. Drag to zoom, double click for all of it.`,
+      ),
+      colors: () => [
+        ...modeNames.map(() => style("--c0")),
+        ...c.orders.map((o) => style(o.of === "loads" ? "--c1" : "--c2")),
+        style("--ink"),
+      ],
+      series: (label, i) =>
+        i < modeNames.length
+          ? { strokePattern: null, strokeWidth: 1.4 }
+          : i < labels.length - 1
+            ? {
+                strokePattern: c.orders[i - modeNames.length].of === "loads" ? [6, 3] : [2, 3],
+                strokeWidth: 1.2,
+              }
+            : { strokeWidth: 0, drawPoints: true, pointSize: 3.5 },
+      underlay: (context, area, g) => {
+        const text = new Labels(context, area),
+          x = g.toDomXCoord(runSpeed),
+          right = area.x + area.w - 4;
+        line(context, x, area.y, x, area.y + area.h, style("--ink"), [1, 3]);
+        text.put(
+          c.speed[0] === c.speed[1] ? "this run" : "this run, at most",
+          x + 4,
+          area.y + 12,
+          style("--ink"),
+        );
+        frequencies.forEach((f, i) =>
+          text.put(`${i + 1}: ${sig(f, 4)} Hz`, area.x + 6, g.toDomYCoord(f) - 4, style("--c0")),
+        );
+        c.orders.forEach((o) => {
+          const [y0, y1] = g.yAxisRange(),
+            [, x1] = g.xAxisRange();
+          const top = (o.order * x1) / 60 > y1,
+            mesh = o.of !== "loads",
+            name = o.of === "loads" ? tidy(o.order) : o.of;
+          const px = top ? g.toDomXCoord((y1 * 60) / o.order) : right;
+          const py = top ? area.y + (mesh ? 12 : 26) : g.toDomYCoord((o.order * x1) / 60) - 4;
+          if (py > g.toDomYCoord(y0)) return;
+          text.put(
+            name,
+            top ? px - (mesh ? 6 : 9) : right,
+            py,
+            style(o.of === "loads" ? "--c1" : "--c2"),
+            "right",
+          );
+        });
+      },
+    });
+    chart.draw();
+    const near = [...c.crossings]
+      .filter((x) => x.speed * rpm > 0.5 * runSpeed && x.speed * rpm < 2 * runSpeed)
+      .sort((a, b) => b.static - a.static)
+      .slice(0, 12);
+    if (!near.length) continue;
+    section.append(
+      make("h3", {}, "Resonances between half and twice the speed of the run, most excited first"),
+      table(
+        ["mode", "frequency [Hz]", "order", "speed [rpm]", "from this run", "static answer"],
+        near.map((x) => [
+          x.mode + 1,
+          sig(frequencies[x.mode], 5),
+          tidy(x.order),
+          sig(x.speed * rpm),
+          difference(runSpeed, x.speed * rpm),
+          quantity(x.static, run.model.nodes[0].turns ? "rad" : "m", 3),
+        ]),
+      ),
+      make(
+        "p",
+        { class: "note" },
+        "Static answer: what the order's torques, all nodes and phases together, would move the mode by " +
+          "at its " +
+          "largest node if it were at rest; at the resonance it is 1/(2ζ) times that, as far as contacts " +
+          "stay closed.",
+      ),
+    );
+  }
+}

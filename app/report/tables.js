@@ -1,0 +1,296 @@
+// What is said in words and numbers.
+
+const RESULT_NAMES = {
+  deflection_deg: ["Largest deflection", "°", "deflection_of"],
+  deflection_m: ["Largest deflection", "m", "deflection_of"],
+  max_torque_Nm: ["Largest torque", "N m", "max_torque_at"],
+  max_force_N: ["Largest force", "N", "max_force_at"],
+  static_torque_Nm: ["Static torque", "N m", "static_at"],
+  static_force_N: ["Static force", "N", "static_at"],
+  dynamic_amplification: ["Dynamic amplification", "", null],
+  max_mesh_force_N: ["Largest mesh force", "N", "max_mesh_force_at"],
+  front_contacts: ["Impacts on front flanks", "", null],
+  back_contacts: ["Impacts on back flanks", "", null],
+  time_apart_s: ["Time apart, all contacts", "s", null],
+};
+
+const unitOf = (key) => {
+  const endings = {
+    _Nm: "N m",
+    _N: "N",
+    _s: "s",
+    _Hz: "Hz",
+    _m: "m",
+    _deg: "°",
+    _J: "J",
+    _m_per_s: "m/s",
+    _rad_per_s: "rad/s",
+    _rad: "rad",
+    _per_s: "1/s",
+  };
+  const found = Object.keys(endings)
+    .sort((a, b) => b.length - a.length)
+    .find((ending) => key.endsWith(ending));
+  return found ? [key.slice(0, -found.length), endings[found]] : [key, ""];
+};
+
+const valueText = (x, unit) =>
+  unit === "°" ? `${sig(x)}°` : Number.isInteger(x) && !unit ? integer(x) : quantity(x, unit);
+
+function figuresOf(run) {
+  const r = run.result.results,
+    list = [];
+  for (const [key, [name, unit, place]] of Object.entries(RESULT_NAMES))
+    if (r[key] !== null && r[key] !== undefined)
+      list.push({ name, unit, value: r[key], where: place && r[place] ? r[place] : "" });
+  if (r.frequencies_Hz && r.frequencies_Hz.length)
+    list.push({
+      name: "First natural frequency",
+      unit: "Hz",
+      value: r.frequencies_Hz[0],
+      where: `${r.rigid_modes} rigid modes`,
+    });
+  const e = run.result.energy_error;
+  if (e !== null && e !== undefined)
+    list.push({ name: "Energy error", unit: "%", value: 100 * e, where: "of the largest energy of the run" });
+  return list;
+}
+
+const figureText = (figure) =>
+  figure.unit === "%"
+    ? Math.abs(figure.value) < 1e-10
+      ? "rounding"
+      : percent(figure.value / 100, 2)
+    : valueText(figure.value, figure.unit);
+
+const difference = (a, b) => {
+  if (!Number.isFinite(a) || !Number.isFinite(b)) return "–";
+  if (a === b || Math.max(Math.abs(a), Math.abs(b)) < 1e-10) return "0";
+  return a === 0 ? "–" : `${b > a ? "+" : ""}${percent((b - a) / Math.abs(a), 3)}`;
+};
+
+function showFigures() {
+  const section = byId("figures");
+  if (!compared) {
+    section.append(
+      make(
+        "div",
+        { class: "cards" },
+        figuresOf(runs[0]).map((f) =>
+          make(
+            "div",
+            { class: "card" },
+            make("div", { class: "what" }, f.name),
+            make("div", { class: "value" }, figureText(f)),
+            make("div", { class: "where" }, f.where),
+          ),
+        ),
+      ),
+    );
+  } else {
+    const [a, b] = runs.map(figuresOf);
+    const names = [...new Set([...a, ...b].map((f) => f.name))];
+    section.append(
+      table(
+        ["", "A", "B", "B against A", "where (A)"],
+        names.map((name) => {
+          const [fa, fb] = [a, b].map((list) => list.find((f) => f.name === name));
+          return [
+            name,
+            fa ? figureText(fa) : "–",
+            fb ? figureText(fb) : "–",
+            difference(fa?.value, fb?.value),
+            fa?.where ?? "",
+          ];
+        }),
+      ),
+    );
+  }
+  for (const run of runs)
+    if (run.result.note) section.append(make("p", { class: "note" }, prefixed(run, run.result.note)));
+}
+
+const prefixed = (run, text) => (run.name ? `Run ${run.name}: ${text}` : text);
+/// "A: " where there are two.
+const headed = (run, text) => (run.name ? `${text} of run ${run.name}` : text);
+
+function showContactTable(section) {
+  for (const run of runs) {
+    const contacts = run.result.results.contacts || [];
+    if (!contacts.length) continue;
+    // Whatever numbers the run gives of each contact.
+    const keys = Object.keys(contacts[0]).filter(
+      (key) => key !== "element" && contacts.some((c) => typeof c[key] === "number"),
+    );
+    const heads = keys.map((key) => {
+      const [name, unit] = unitOf(key);
+      return (
+        name.replaceAll("_", " ").replace("max at time", "at time") +
+        (unit ? ` [${unit}]` : key.endsWith("_share") ? " [%]" : "")
+      );
+    });
+    section.append(
+      make("h3", {}, headed(run, "Contacts")),
+      table(
+        ["element", ...heads.map((h) => h.replace(" share", ""))],
+        contacts.map((c) => [
+          c.element,
+          ...keys.map((key) =>
+            key.endsWith("_share")
+              ? sig(100 * c[key], 3)
+              : Number.isInteger(c[key])
+                ? integer(c[key])
+                : sig(c[key]),
+          ),
+        ]),
+      ),
+    );
+  }
+}
+
+function showEnergyTable(section) {
+  const rows = (run) => {
+    const e = run.result.energy;
+    const start = e.kinetic_J + e.stored_J - e.input_J + e.dissipated_J - e.imbalance_J;
+    const clean = (x) => (Math.abs(x) < 1e-12 * e.scale_J ? 0 : x);
+    return [
+      ["At the start", clean(start)],
+      ["+ put in by loads and known motions", e.input_J],
+      ["− dissipated", -e.dissipated_J],
+      ["+ gained (lost) by the method", e.imbalance_J],
+      ["= kinetic at the end", e.kinetic_J],
+      ["+ stored at the end", e.stored_J],
+      ["Largest imbalance of the run", e.worst_imbalance_J],
+      ["Largest energy of the run", e.scale_J],
+    ];
+  };
+  const all = runs.map(rows);
+  section.append(
+    table(
+      ["", ...runs.map((run) => (run.name ? `${run.name} [J]` : "[J]"))],
+      all[0].map(([name], i) => [name, ...all.map((list) => sig(list[i][1]))]),
+    ),
+  );
+  for (const run of runs) {
+    const e = run.result.energy;
+    section.append(
+      make(
+        "p",
+        {},
+        prefixed(
+          run,
+          e.scale_J > 0
+            ? `The balance is off by ${percent(Math.abs(e.worst_imbalance_J / e.scale_J), 2)} of the ` +
+                `largest energy, worst at ` +
+                `${sig(e.worst_at_time_s)} s. What is off is energy that the method itself gained or lost.`
+            : "There was no energy in the run.",
+        ),
+      ),
+    );
+  }
+}
+
+function showAccuracy() {
+  const section = byId("accuracy");
+  for (const run of runs) {
+    const a = run.result.accuracy;
+    if (!a) {
+      section.append(
+        make(
+          "p",
+          {},
+          prefixed(
+            run,
+            "No accuracy was asked for, so no error of the figures is stated; what speaks " +
+              "for them is the method's tolerance or step below and the energy balance above. drev run … " +
+              "--accuracy 1e-4 finds the " +
+              "error of each figure.",
+          ),
+        ),
+      );
+      continue;
+    }
+    section.append(
+      make(
+        "p",
+        {},
+        prefixed(
+          run,
+          `Asked for: a relative error of ${tidy(a.asked)}: ` +
+            (a.reached ? "reached." : `not reached: ${a.reason}.`) +
+            ` Found by comparing ${a.coarse} with ${a.fine}.` +
+            (a.growth ? ` A small difference grows ${sig(a.growth, 3)} times at most.` : "") +
+            (a.horizon_s ? ` Beyond ${sig(a.horizon_s)} s, figures are statistics.` : ""),
+        ),
+      ),
+    );
+    section.append(
+      table(
+        ["figure", "value", "± error", "unit", "what the error is", "keeps it"],
+        a.figures.map((f) => [
+          f.name,
+          Number.isInteger(f.value)
+            ? integer(f.value)
+            : sig(
+                f.value,
+                f.error > 0
+                  ? Math.min(12, Math.max(2, Math.ceil(Math.log10(Math.abs(f.value) / f.error)) + 1))
+                  : 8,
+              ),
+          sig(f.error, 2),
+          unitText(f.unit),
+          f.kind,
+          f.keeps_accuracy === null ? "" : f.keeps_accuracy ? "yes" : "no",
+        ]),
+      ),
+    );
+  }
+}
+
+function showMethod() {
+  const section = byId("method");
+  const rows = [
+    ["Method", (r) => r.method],
+    ["Why", (r) => r.method_reason],
+    ["Tolerance", (r) => (r.tolerance ? sig(r.tolerance, 3) : "–")],
+    ["Step", (r) => (r.step_s ? quantity(r.step_s, "s") : "found by the method")],
+    ["Simulated", (r) => `${sig(r.t_end_s, 6)} s`],
+    [
+      "Steps",
+      (r) => integer(r.steps) + (r.rejected_steps ? `, and ${integer(r.rejected_steps)} rejected` : ""),
+    ],
+    [
+      "Contact changes located",
+      (r) => ((r.contact_changes ?? r.located) !== null ? integer(r.contact_changes ?? r.located) : "–"),
+    ],
+    ["Status", (r) => r.status + (r.reason ? `: ${r.reason}` : "")],
+    ["Time of the computation", (r) => quantity(r.run_time_s, "s", 3)],
+  ];
+  section.append(
+    table(
+      ["", ...runs.map((run) => run.name)],
+      [
+        ...rows.map(([name, of]) => [name, ...runs.map((run) => of(run.result))]),
+        ["drev", ...runs.map((run) => `version ${run.version}, ${run.made}`)],
+      ],
+    ),
+  );
+  for (const run of runs)
+    section.append(make("p", {}, prefixed(run, "again with "), make("code", {}, run.command)));
+}
+
+function showInputs() {
+  const section = byId("inputs"),
+    rows = [];
+  for (const input of runs[0].inputs) {
+    const others = runs.slice(1).map((run) => run.inputs.find((i) => i.name === input.name)?.value ?? "–");
+    const row = [input.name, input.value, ...others, input.unit, input.default, input.range, input.meaning];
+    row.changed = [input.value, ...others].some((value) => value !== input.default);
+    rows.push(row);
+  }
+  for (const input of (runs[1]?.inputs ?? []).filter((i) => !runs[0].inputs.some((j) => j.name === i.name)))
+    rows.push([input.name, "–", input.value, input.unit, input.default, input.range, input.meaning]);
+  section.append(
+    table(["setting", ...(compared ? ["A", "B"] : ["value"]), "unit", "default", "range", "meaning"], rows),
+  );
+}

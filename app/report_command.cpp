@@ -1,0 +1,51 @@
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "app/command_line.hpp"
+#include "app/commands.hpp"
+#include "app/exit_codes.hpp"
+#include "app/report_file.hpp"
+#include "app/report_page.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr const char* kPlace = "command line";
+
+/// The data block of one run; empty, and a finding, if there is none.
+std::string block_of(std::string run, std::vector<Finding>& findings) {
+  if (std::filesystem::is_directory(run)) run += "/report.html";
+  std::ifstream file(run, std::ios::binary);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::vector<std::string> blocks = blocks_of(page);
+  if (blocks.size() == 1) return blocks.front();
+  findings.push_back({kPlace, "RUN", run, "",
+                      !file               ? "cannot be read"
+                      : blocks.size() > 1 ? "compares two runs already; give each run's own report"
+                                          : "is no report of drev run"});
+  return {};
+}
+
+}  // namespace
+
+int report_command(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  const std::vector<std::string> runs = line.list("RUN").value_or(std::vector<std::string>{});
+  if (runs.empty() || runs.size() > 2)
+    findings.push_back({kPlace, "RUN", runs.empty() ? "" : runs.back(), "",
+                        "must be one run, or two to compare: directories of drev run --out, or reports"});
+  std::vector<std::string> blocks;
+  for (const std::string& run : runs) blocks.push_back(block_of(run, findings));
+  const std::string out = line.option("--out").value_or("");
+  if (const auto why = why_no_report(out)) findings.push_back({kPlace, "--out", out, "", *why});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+
+  ReportFile file(out);
+  file.commit(report_page(blocks));
+  print("Report " + file.path() + "\n");
+  return kSuccess;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,52 @@
+#include "app/report_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "app/report_pdf.hpp"
+
+namespace drev::app {
+
+namespace {
+
+std::string folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path().string() : ".";
+}
+
+}  // namespace
+
+std::optional<std::string> why_no_report(const std::string& path) {
+  const std::filesystem::path file(path);
+  const bool pdf = file.extension() == ".pdf";
+  if (!pdf && file.extension() != ".html") return "must be the name of an .html or a .pdf file";
+  if (pdf && find_browser().empty()) return kNoBrowser;
+  return {};
+}
+
+ReportFile::ReportFile(const std::string& path)
+    : path_(path),
+      stem_(std::filesystem::path(path).stem().string()),
+      pdf_(path.ends_with(".pdf")),
+      page_(folder_of(path), pdf_ ? stem_ + ".pdf-page" : stem_, "html") {}
+
+ReportFile::~ReportFile() {
+  if (!complete_) std::remove(page_.partial_path().c_str());
+}
+
+void ReportFile::commit(const std::string& page) {
+  page_.write(page);
+  if (!pdf_) {
+    page_.commit();
+    complete_ = true;
+    return;
+  }
+  page_.flush();
+  const std::string partial = folder_of(path_) + "/" + stem_ + ".partial.pdf";
+  print_as_pdf(page_.partial_path(), partial);
+  if (std::rename(partial.c_str(), path_.c_str()) != 0)
+    throw OutputError("cannot write " + path_ + ": " + std::strerror(errno));
+}
+
+}  // namespace drev::app

@@ -1,0 +1,17 @@
+#pragma once
+/// A page printed as PDF, by the Chromium that is installed.
+#include <string>
+
+namespace drev::app {
+
+inline constexpr const char* kNoBrowser =
+    "needs Chromium, which is not installed here (Debian's package: chromium; Ubuntu 24.04's snap: chromium). "
+    "Without it: --report FILE.html, which any browser prints well";
+
+/// Path of chromium, chromium-browser, google-chrome; empty: none is installed.
+std::string find_browser();
+
+/// html: path of a page of report_page(). Throws OutputError if no complete PDF came of it.
+void print_as_pdf(const std::string& html, const std::string& pdf);
+
+}  // namespace drev::app

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# browser_test.sh DREV [--break]: opens reports in Chromium, without a window, and does there what a reader
+# does (probe.html). --break: with a page that loses peaks and has an error, which must be found.
+#
+# Checked: no error, no request, all charts with the right number of points, none of which loses a peak, zoom
+# by mouse, wheel, keys and buttons, choice of a mode, themes, paper; sizes below 5 MB; a comparison; a PDF.
+# Prints how long the page took until it could be used, and checks nothing of that.
+set -euo pipefail
+drev=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
+if [ -z "$browser" ]; then
+  echo "SKIPPED: no Chromium here (Debian's package: chromium)"
+  exit 77
+fi
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+
+fail() {
+  echo "FAILED: $*"
+  failed=1
+}
+
+headless() {
+  local root=()
+  [ "$(id -u)" != 0 ] || root=(--no-sandbox)
+  timeout 120 "$browser" --headless --disable-gpu --no-first-run "${root[@]}" --enable-logging=stderr \
+    --user-data-dir="$folder/profile" "$@"
+}
+
+# probe <page> <name>: runs the probe in the page and shows what it found.
+probe() {
+  local page=$folder/probed.html found=$folder/found.txt log=$folder/log.txt
+  sed "/<meta charset/r $here/collect.html" "$1" >"$page"
+  cat "$here/probe.html" >>"$page"
+  headless --window-size=1280,1000 --virtual-time-budget=60000 --dump-dom "file://$page" \
+    >"$folder/dom.html" 2>"$log" || {
+    fail "$2: the browser ended with an error"
+    tail -n 5 "$log"
+    return
+  }
+  sed -n '/<pre id="probe">/,/<\/pre>/p' "$folder/dom.html" | sed 's/<[^>]*>//g' >"$found"
+  sed "s/^/$2: /" "$found" | grep -v ": $" || true
+  grep -q "^done" "$found" || fail "$2: the probe did not come to its end"
+  ! grep "^FAILED" "$found" || failed=1
+  ! grep -E "CONSOLE.*(Uncaught|Error)" "$log" || fail "$2: errors on the console"
+}
+
+below_5_MB() {
+  local size
+  size=$(stat -c %s "$1")
+  echo "$(basename "$1"): $size bytes"
+  [ "$size" -lt 5000000 ] || fail "$(basename "$1") has $size bytes"
+}
+
+cd "$folder"
+"$drev" run camshaft --every 5e-6 --report main.html --quiet  # a million samples
+if [ "${2:-}" = --break ]; then
+  sed -i -e 's/if (series.high\[i\] > high) high = series.high\[i\];/if (series.low[i] > high) high = series.low[i];/' \
+    -e 's/^window.drevCharts/setTimeout(() => nothing.at.all); &/' main.html
+  probe main.html broken
+  exit $failed
+fi
+below_5_MB main.html
+probe main.html main
+# In real time, as a reader waits.
+headless --dump-dom "file://$folder/main.html" 2>/dev/null |
+  sed -n 's/.*data-ready="\([0-9]*\)".*/ready after \1 ms/p'
+
+"$drev" run gear_drive --report first.html --quiet
+"$drev" run gear_drive --set backlash_mm=0.3 --step 1e-5 --report second.html --quiet
+"$drev" report first.html second.html --out both.html --quiet
+below_5_MB both.html
+probe both.html both
+"$drev" run two_mass_backlash --report short.html --quiet
+probe short.html short
+
+"$drev" report main.html --out main.pdf --quiet
+[ "$(head -c 5 main.pdf)" = "%PDF-" ] || fail "main.pdf is no PDF"
+below_5_MB main.pdf
+[ "$(stat -c %s main.pdf)" -gt 200000 ] || fail "main.pdf is too small to have the charts in it"
+[ -z "$(ls | grep partial || true)" ] || fail "partial files are left: $(ls)"
+exit $failed

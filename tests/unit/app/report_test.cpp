@@ -1,0 +1,248 @@
+// The report's data block: what it holds is the run, no peak is lost, and what is derived (bands, spectra,
+// resonances) agrees with closed forms. What the page makes of it: tests/browser.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::Process;
+using drev::test::read_file;
+using drev::test::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+std::vector<Json> blocks_of(const std::filesystem::path& path) {
+  const std::string page = read_file(path);
+  const std::string begin = R"(<script type="application/json" class="run">)";
+  std::vector<Json> blocks;
+  for (std::size_t at = page.find(begin); at != page.npos; at = page.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    blocks.push_back(Json::parse(page.substr(from, page.find("</script>", from) - from)));
+  }
+  return blocks;
+}
+
+template <class T>
+std::vector<T> decoded(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned word = 0, bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    word = word << 6 | static_cast<unsigned>(digits.find(c)), bits += 6;
+    if (bits >= 8) bits -= 8, bytes += static_cast<char>(word >> bits & 0xFFU);
+  }
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+/// Columns of a history.csv.
+std::vector<std::vector<double>> columns_of(const std::filesystem::path& path) {
+  std::istringstream file(read_file(path));
+  std::string line, cell;
+  std::getline(file, line);
+  const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  std::vector<std::vector<double>> columns(commas + 1);
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    for (auto& column : columns) {
+      std::getline(cells, cell, ',');
+      column.push_back(std::stod(cell));
+    }
+  }
+  return columns;
+}
+
+Json block_of_run(std::vector<std::string> words) {
+  const TemporaryFolder folder;
+  words.insert(words.begin(), "run");
+  words.insert(words.end(), {"--report", (folder / "r.html").string()});
+  const auto run = drev_command(words);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const std::vector<Json> blocks = blocks_of(folder / "r.html");
+  REQUIRE(blocks.size() == 1);
+  return blocks.front();
+}
+
+}  // namespace
+
+TEST_CASE("Of every group of samples the report has the lowest and the highest") {
+  const TemporaryFolder folder;
+  const auto run = drev_command({"run", "two_mass_backlash", "--out", (folder / "r").string(), "--every",
+                                 "0.0001", "--record", "mass_1.position_m,spring_2.force_N"});
+  REQUIRE(run.exit_code == 0);
+  CHECK(contains(run.out, "report.html"));
+  const Json data = blocks_of(folder / "r/report.html").at(0);
+  const Json& history = data.at("history");
+  const auto columns = columns_of(folder / "r/history.csv");
+  REQUIRE(columns[0].size() == 100001);
+  CHECK(history.at("samples") == 100001);
+  const std::size_t group = history.at("group"), groups = history.at("groups");
+  CHECK(group == 4);  // 2^15 places
+  CHECK(groups == (100001 + group - 1) / group);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Json& series = history.at("series").at(c);
+    const auto low = decoded<float>(series.at("low")), high = decoded<float>(series.at("high"));
+    REQUIRE(low.size() == groups);
+    REQUIRE(high.size() == groups);
+    for (std::size_t i = 0; i < groups; ++i) {
+      const auto begin = columns[c + 1].begin() + static_cast<std::ptrdiff_t>(i * group);
+      const auto end = columns[c + 1].begin() +
+                       static_cast<std::ptrdiff_t>(std::min((i + 1) * group, columns[0].size()));
+      REQUIRE(low[i] == static_cast<float>(*std::min_element(begin, end)));
+      REQUIRE(high[i] == static_cast<float>(*std::max_element(begin, end)));
+    }
+  }
+  CHECK(data.at("result").at("results") == Json::parse(read_file(folder / "r/summary.json")).at("results"));
+}
+
+TEST_CASE("A report records by itself, and does not change the run") {
+  const Json data = block_of_run({"two_mass_backlash", "--step", "0.003", "--set", "duration_s=3"});
+  // Constant steps are not cut: one sample a step, more where the force kinks.
+  CHECK(data.at("history").at("samples") == data.at("result").at("steps").get<long>() + 1);
+  const auto plain =
+      drev_command({"run", "two_mass_backlash", "--step", "0.003", "--set", "duration_s=3", "--json"});
+  CHECK(Json::parse(plain.out).at("results") == data.at("result").at("results"));
+  const auto times = decoded<double>(data.at("history").at("times"));
+  REQUIRE(times.size() == data.at("history").at("samples"));
+  CHECK(times.front() == 0.0);
+  CHECK(times.back() == 3.0);
+}
+
+TEST_CASE("Contact bands add up to the time apart") {
+  const Json data = block_of_run({"two_mass_backlash"});
+  const Json& history = data.at("history");
+  const double length = history.at("every").get<double>() * history.at("group").get<double>();
+  const double end = history.at("end");
+  REQUIRE(history.at("bands").size() == 2);
+  for (std::size_t b = 0; b < 2; ++b) {
+    const auto front = decoded<unsigned char>(history.at("bands")[b].at("front"));
+    const auto back = decoded<unsigned char>(history.at("bands")[b].at("back"));
+    double apart = 0.0;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      REQUIRE(front[i] + back[i] <= 256);
+      const double begin = static_cast<double>(i) * length;
+      apart += std::min(length, end - begin) * (1.0 - (front[i] + back[i]) / 255.0);
+    }
+    const Json& contact = data.at("result").at("results").at("contacts").at(b);
+    CHECK(history.at("bands")[b].at("element") == contact.at("element"));
+    // A byte is 1/255 of a group; only groups with a change in them are rounded.
+    const double impacts =
+        contact.at("front_contacts").get<double>() + contact.at("back_contacts").get<double>();
+    CHECK(std::abs(apart - contact.at("time_apart_s").get<double>()) <= length * (2.0 + 2.0 * impacts) / 255.0);
+  }
+}
+
+TEST_CASE("Resonances: speeds and static answers as in closed form") {
+  // One cyclic torque on the last of three gears, the first held: the modes' static answers, each taken at the
+  // loaded gear, add up to torque times static compliance.
+  const Json data = block_of_run(
+      {"gear_drive", "--set", "engine_rpm=3000", "torque_order=9", "duration_s=0.2"});
+  const Json &campbell = data.at("campbell"), &modes = data.at("modes");
+  REQUIRE(modes.size() == 2);
+  const auto gear = std::find_if(data["model"]["nodes"].begin(), data["model"]["nodes"].end(),
+                                 [](const Json& node) { return node.at("name") == "gear"; });
+  const auto place = static_cast<std::size_t>(gear - data["model"]["nodes"].begin());
+  const double ratio = std::abs(gear->at("ratio").get<double>());
+  CHECK(ratio == Approx(59.0 / 68 * 34 / 59));
+  CHECK(campbell.at("shaft") == "crank_gear");
+  double sum = 0.0;
+  int found = 0;
+  for (const Json& crossing : campbell.at("crossings")) {
+    REQUIRE(crossing.at("order").get<double>() == Approx(9 * ratio));
+    const Json& mode = modes.at(crossing.at("mode").get<std::size_t>());
+    CHECK(crossing.at("speed").get<double>() * 9 * ratio ==
+          Approx(2 * M_PI * mode.at("frequency_Hz").get<double>()));
+    sum += crossing.at("static").get<double>() * std::abs(mode.at("shape").at(place).get<double>());
+    ++found;
+  }
+  REQUIRE(found == 2);
+  double k[2] = {}, r[2][2] = {};
+  for (const Json& joint : data["model"]["joints"]) {
+    const std::size_t m = joint.at("name") == "mesh_1" ? 0 : 1;
+    k[m] = joint.at("stiffness");
+    r[m][0] = joint.at("radii")[0], r[m][1] = joint.at("radii")[1];
+  }
+  CHECK(r[0][0] == Approx(0.5 * 0.008 * 59 * std::cos(20 * M_PI / 180)));
+  const double idler = r[1][0] / r[0][1];  // force of mesh 1 over force of mesh 2
+  const double compliance = (1 / k[1] + idler * idler / k[0]) / (r[1][1] * r[1][1]);
+  CHECK(sum == Approx(6000 * compliance).epsilon(2e-5));  // shapes are given to 1e-5
+}
+
+TEST_CASE("Spectra find a known tone") {
+  // Driven at 40 Hz below the only mode: the shaft's torque swings at 40 Hz and, undamped, at 155.2 Hz.
+  const Json data = block_of_run({"two_inertia"});
+  const Json& channels = data.at("spectra").at("channels");
+  const auto torque = std::find_if(channels.begin(), channels.end(),
+                                   [](const Json& c) { return c.at("name") == "shaft.torque_Nm"; });
+  REQUIRE(torque != channels.end());
+  CHECK(torque->at("peaks")[0].at("frequency_Hz").get<double>() == Approx(40.0).margin(0.1));
+}
+
+TEST_CASE("Two reports are compared in one") {
+  const TemporaryFolder folder;
+  const std::string a = (folder / "a").string(), b = (folder / "b.html").string(),
+                    both = (folder / "both.html").string();
+  REQUIRE(drev_command({"run", "two_inertia", "--out", a}).exit_code == 0);
+  REQUIRE(drev_command({"run", "two_inertia", "--set", "duration_s=0.3", "--report", b}).exit_code == 0);
+  CHECK(drev_command({"report", a, b, "--out", both}).exit_code == 0);
+  const auto blocks = blocks_of(both);
+  REQUIRE(blocks.size() == 2);
+  CHECK(blocks[0] == blocks_of(folder / "a/report.html").at(0));
+  CHECK(blocks[1] == blocks_of(b).at(0));
+  const auto twice = drev_command({"report", both, b, "--out", (folder / "x.html").string()});
+  CHECK(twice.exit_code == 2);
+  CHECK(contains(twice.err, "compares two runs already"));
+  const auto none = drev_command({"report", (folder / "a/history.csv").string(), (folder / "no").string()});
+  CHECK(none.exit_code == 2);
+  CHECK(contains(none.err, "is no report of drev run"));
+  CHECK(contains(none.err, "cannot be read"));
+  CHECK(contains(none.err, "--out"));
+}
+
+TEST_CASE("A report that cannot be written is refused before the run, or said") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> long_run{"run", "camshaft", "--set", "duration_s=10000", "--report"};
+  const auto with = [&](const std::string& path) {
+    auto words = long_run;
+    words.push_back(path);
+    return words;
+  };
+  CHECK(drev_command(with((folder / "r.txt").string())).exit_code == 2);
+  CHECK(drev_command(with((folder / "no/r.html").string())).exit_code == 3);
+  // Interrupted: nothing of it is left.
+  const Process process(with((folder / "r.html").string()));
+  for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r.partial.html"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  process.send(SIGINT);
+  CHECK(process.wait().exit_code == 130);
+  CHECK(std::filesystem::is_empty(folder / ""));
+  if (!std::filesystem::exists("/dev/full")) return;
+  std::filesystem::create_symlink("/dev/full", folder / "f.partial.html");
+  const auto full = drev_command({"run", "two_inertia", "--report", (folder / "f.html").string()});
+  CHECK(full.exit_code == 3);
+  CHECK(contains(full.err, "f.partial.html: No space left on device"));
+  CHECK_FALSE(std::filesystem::exists(folder / "f.html"));
+}
+
+TEST_CASE("Texts cannot break out of the page") {
+  const TemporaryFolder folder;
+  const auto run = drev_command(
+      {"run", "two_inertia", "--set", "duration_s=0.1", "--report", (folder / "r.html").string()});
+  REQUIRE(run.exit_code == 0);
+  const std::string page = read_file(folder / "r.html"), begin = R"(class="run">)";
+  const std::size_t at = page.find(begin) + begin.size();
+  CHECK(page.substr(at, page.find("</script>", at) - at).find('<') == std::string::npos);
+  CHECK(page.ends_with("</html>\n"));
+}
