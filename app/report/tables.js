@@ -23,6 +23,7 @@ const unitOf = (key) => {
     _m: "m",
     _deg: "°",
     _J: "J",
+    _W: "W",
     _m_per_s: "m/s",
     _rad_per_s: "rad/s",
     _rad: "rad",
@@ -145,6 +146,40 @@ function showContactTable(section) {
         ]),
       ),
     );
+    showImpacts(section, run, contacts);
+  }
+}
+
+/// Distributions of the speed before and the largest force of each impact, by flank.
+function showImpacts(section, run, contacts) {
+  for (const [key, name] of [
+    ["impact_speed", "Speed at impact"],
+    ["impact_force", "Largest force of each impact"],
+  ]) {
+    const rows = contacts.flatMap((c) =>
+      ["front", "back"]
+        .filter((flank) => c[key]?.[flank]?.count > 0)
+        .map((flank) => {
+          const d = c[key][flank],
+            readable = readableUnit(c[key].unit, d.max);
+          return [c.element, flank, integer(d.count), readable.unit].concat(
+            [d.mean, d.p50, d.p90, d.p99, d.max].map((x) => sig(x * readable.factor, 3)),
+          );
+        }),
+    );
+    if (!rows.length) continue;
+    const head = [
+      "element",
+      "flank",
+      "impacts",
+      "unit",
+      "mean",
+      "median",
+      "90 % below",
+      "99 % below",
+      "largest",
+    ];
+    section.append(make("h3", {}, headed(run, name)), table(head, rows));
   }
 }
 
