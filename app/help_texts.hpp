@@ -25,7 +25,7 @@ inline constexpr const char* kMainExamples =
     "  drev list camshaft                 its settings and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
-    "  drev run camshaft --report cam.html   the report of it, a page for any browser\n"
+    "  drev run camshaft --report a.html  the report of it, a page for any browser\n"
     "  drev chart camshaft                which method to use for it, measured\n"
     "  drev advise camshaft               how little of it a figure needs, measured\n"
     "  drev export camshaft --out my.toml the same as a file, to be changed\n"

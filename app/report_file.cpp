@@ -32,7 +32,13 @@ ReportFile::ReportFile(const std::string& path)
       page_(folder_of(path), pdf_ ? stem_ + ".pdf-page" : stem_, "html") {}
 
 ReportFile::~ReportFile() {
-  if (!complete_) std::remove(page_.partial_path().c_str());
+  if (complete_) return;
+  std::remove(page_.partial_path().c_str());
+  if (pdf_) std::remove(partial_pdf().c_str());
+}
+
+std::string ReportFile::partial_pdf() const {
+  return folder_of(path_) + "/" + stem_ + ".partial.pdf";
 }
 
 void ReportFile::commit(const std::string& page) {
@@ -43,9 +49,8 @@ void ReportFile::commit(const std::string& page) {
     return;
   }
   page_.flush();
-  const std::string partial = folder_of(path_) + "/" + stem_ + ".partial.pdf";
-  print_as_pdf(page_.partial_path(), partial);
-  if (std::rename(partial.c_str(), path_.c_str()) != 0)
+  print_as_pdf(page_.partial_path(), partial_pdf());
+  if (std::rename(partial_pdf().c_str(), path_.c_str()) != 0)
     throw OutputError("cannot write " + path_ + ": " + std::strerror(errno));
 }
 

@@ -24,10 +24,12 @@ class ReportFile {
   const std::string& path() const { return path_; }
 
  private:
+  std::string partial_pdf() const;
+
   std::string path_, stem_;
   bool pdf_;
   OutputFile page_;
-  bool complete_ = false;
+  bool complete_ = false;  ///< the page is the report, under its name
 };
 
 }  // namespace drev::app

@@ -5,6 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cctype>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -58,6 +60,17 @@ int run_silently(std::vector<std::string> words) {
   return status;
 }
 
+std::string file_url(const std::string& path) {
+  std::string url = "file://";
+  for (const char c : std::filesystem::absolute(path).string()) {
+    char code[4];
+    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("/-._~", c) != nullptr;
+    url += plain ? std::string(1, c) : code;
+  }
+  return url;
+}
+
 /// A PDF says at its end that it is complete.
 bool is_complete_pdf(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
@@ -91,11 +104,11 @@ void print_as_pdf(const std::string& html, const std::string& pdf) {
                                  "--user-data-dir=" + profile.path(), "--no-pdf-header-footer",
                                  "--virtual-time-budget=20000", "--print-to-pdf=" + pdf};
   if (::geteuid() == 0) words.push_back("--no-sandbox");  // it refuses to run as root otherwise
-  words.push_back("file://" + std::filesystem::absolute(html).string());
+  words.push_back(file_url(html));
   const int status = run_silently(std::move(words));
   if (status != 0 || !is_complete_pdf(pdf))
     throw OutputError("cannot write " + pdf + ": " + browser +
-                      " could not print the page (disk full?); " + html + " is the page itself");
+                      " could not print the page (disk full?); --report FILE.html needs no browser");
 }
 
 }  // namespace drev::app

@@ -4,6 +4,22 @@ const DASHES = [null, [7, 4], [2, 3], [9, 3, 2, 3]];
 const charts = [];
 let printing = false;
 
+/// Charts still to be drawn for the first time: one after the other, so that the page can be used meanwhile.
+const waiting = [];
+
+function drawNext() {
+  if (waiting.length) {
+    waiting.shift().draw();
+    setTimeout(drawNext);
+  } else {
+    document.documentElement.dataset.drawn = Math.round(performance.now());
+  }
+}
+
+function drawAll() {
+  while (waiting.length) waiting.shift().draw();
+}
+
 const runColor = (i) => style(`--c${i}`);
 
 /// Charts that share their x axis: zoomed and moved together.
@@ -17,6 +33,7 @@ class Group {
   add(chart) {
     this.charts.push(chart);
     charts.push(chart);
+    waiting.push(chart);
   }
   show(from, to) {
     const [low, high] = this.whole,
@@ -301,6 +318,7 @@ class Band {
     group.add(this);
   }
   draw() {
+    if (!this.chart.graph) return;
     const { times, end } = this.run.history;
     const area = this.chart.graph.getArea(),
       width = Math.round(area.w),

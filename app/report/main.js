@@ -51,7 +51,9 @@ function showModel() {
           { class: "note" },
           `${run.model.nodes.length} nodes, ${run.model.unknowns} unknowns, ` +
             `${run.model.joints.length} joints, ${run.model.loads.length} loads` +
-            (held.length ? `; ${held.join(", ")} ${held.length > 1 ? "move" : "moves"} as given (hatched)` : "") +
+            (held.length
+              ? `; ${held.join(", ")} ${held.length > 1 ? "move" : "moves"} as given (hatched)`
+              : "") +
             ". Discs and shafts as " +
             "thick as the fourth root of inertia and stiffness, gears to scale among themselves; ▼ a load. " +
             "Point at a part for its data.",
@@ -68,6 +70,7 @@ function setTheme(theme) {
 
 function showTheme(theme) {
   setTheme(theme);
+  drawAll();
   charts.forEach((chart) => chart.draw());
 }
 
@@ -78,6 +81,7 @@ function layOutForPaper(on) {
   const root = document.documentElement;
   root.classList.toggle("paper", on);
   if (on) stopAnimations.forEach((stop) => stop());
+  drawAll();
   setTheme(on ? "light" : byId("theme").value);
   charts.forEach((chart) => chart.resize());
   if (!on) startAnimations.forEach((start) => start());
@@ -113,3 +117,4 @@ for (const show of [
   show();
 window.drevCharts = charts; // for tests, and for the console
 document.documentElement.dataset.ready = Math.round(performance.now());
+drawNext();

@@ -146,7 +146,7 @@ function showCampbell() {
         ]),
       };
     };
-    const chart = new Chart(section, {
+    new Chart(section, {
       group,
       title: "Campbell diagram",
       tall: true,
@@ -210,7 +210,6 @@ function showCampbell() {
         });
       },
     });
-    chart.draw();
     const near = [...c.crossings]
       .filter((x) => x.speed * rpm > 0.5 * runSpeed && x.speed * rpm < 2 * runSpeed)
       .sort((a, b) => b.static - a.static)

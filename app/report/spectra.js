@@ -34,6 +34,7 @@ function showSpectra() {
       change: () => {
         unit = Number(select.value);
         const named = unit === 1 ? "frequency [Hz]" : `order of ${select.selectedOptions[0].dataset.shaft}`;
+        drawAll();
         for (const chart of group.charts)
           chart.graph.updateOptions({
             xlabel: named,
@@ -140,7 +141,6 @@ function showSpectra() {
     chart.channel = channel.name;
   }
   group.window = [0, Math.min(full, busy || full)];
-  group.charts.forEach((chart) => chart.draw());
   group.describe(group.window);
   section.append(
     make(

@@ -133,6 +133,5 @@ function showHistories() {
   showEnergyTable(energy);
   bar(energy);
   channels.filter((c) => c.energy).forEach((c) => timeChart(energy, c));
-  histories.charts.forEach((chart) => chart.draw());
   histories.describe(histories.window);
 }

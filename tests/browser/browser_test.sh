@@ -13,6 +13,10 @@ if [ -z "$browser" ]; then
   echo "SKIPPED: no Chromium here (Debian's package: chromium)"
   exit 77
 fi
+if [[ $(readlink -f "$browser") = *snap* ]] || head -c 4000 "$browser" | grep -aq /snap/; then
+  echo "SKIPPED: Chromium is a snap here, which sees neither /tmp nor most other folders"
+  exit 77
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
