@@ -33,7 +33,7 @@ std::string now() {
 /// The command that gives this run again.
 std::string command_of(const RunRequest& request) {
   const Settings& settings = request.model.settings;
-  std::string text = "drev run " + request.model.entry->name;
+  std::string text = "drev run " + request.words;
   for (std::size_t i = 0; i < settings.known().size(); ++i)
     if (settings.values()[i] != settings.known()[i].default_text)
       text += " --set " + settings.known()[i].name + "=" + settings.values()[i];

@@ -248,7 +248,7 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
     for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
   take("--out");
-  if (given("--out")) take("--every");
+  if (given("--out") || given("--report")) take("--every");
 }
 
 /// What is wrong with such an option is wrong in the file.
@@ -317,7 +317,8 @@ RunRequest request_run(const CommandLine& given) {
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
   return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"),
           std::move(record), every, hdf5, line.option("--report"),
-          line.option("--every") ? std::optional(every) : std::nullopt};
+          line.option("--every") ? std::optional(every) : std::nullopt,
+          line.model + (line.option("--run") ? " --run " + *line.option("--run") : "")};
 }
 
 ModesRequest request_modes(const CommandLine& line) {

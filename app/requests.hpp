@@ -34,8 +34,9 @@ struct RunRequest {
   std::vector<std::string> record;  ///< channels of history.csv and of the report
   double every = 0.0;               ///< s
   bool hdf5 = false;                ///< history.h5 too
-  std::optional<std::string> report = {};  ///< file, .html or .pdf
+  std::optional<std::string> report = {};   ///< file, .html or .pdf
   std::optional<double> report_every = {};  ///< s, asked for
+  std::string words = {};                   ///< MODEL, and --run of a file
 };
 
 struct ModesRequest {
