@@ -49,8 +49,9 @@ function showModes() {
       view.svg.dataset.mode = i + 1;
       words.replaceChildren(
         make("b", {}, `Mode ${i + 1}: ${sig(m.frequency_Hz, 5)} Hz`),
-        `, moves most at ${run.model.nodes[top].name}; ` +
-          `elastic energy in ${m.energy.map((e) => `${e.element} ${percent(e.share, 2)}`).join(", ")}`,
+        `, moves most at ${run.model.nodes[top].name}`,
+        m.energy.length ? "; elastic energy in " : "",
+        m.energy.map((e) => `${e.element} ${percent(e.share, 2)}`).join(", "),
       );
     };
     const toggle = make(
@@ -107,6 +108,7 @@ function showModes() {
   }
 }
 
+const orderText = (order) => tidy(Number(order.toPrecision(4)));
 const CAMPBELL_MODES = 4; // shown unless zoomed out
 
 function showCampbell() {
@@ -126,7 +128,7 @@ function showCampbell() {
     const high = 1.12 * (frequencies[Math.min(CAMPBELL_MODES, frequencies.length) - 1] ?? fastest / 6);
     const modeNames = frequencies.map((_, i) => `mode ${i + 1}`);
     const orderNames = c.orders.map((o) =>
-      o.of === "loads" ? `order ${tidy(o.order)}` : `teeth of ${o.of}`,
+      o.of === "loads" ? `order ${orderText(o.order)}` : `teeth of ${o.of}`,
     );
     const labels = [...modeNames, ...orderNames, "resonance"];
     const orderLimit = c.orders.map((o) => o.order);
@@ -196,7 +198,7 @@ function showCampbell() {
             [, x1] = g.xAxisRange();
           const top = (o.order * x1) / 60 > y1,
             mesh = o.of !== "loads",
-            name = o.of === "loads" ? tidy(o.order) : o.of;
+            name = o.of === "loads" ? orderText(o.order) : o.of;
           const px = top ? g.toDomXCoord((y1 * 60) / o.order) : right;
           const py = top ? area.y + (mesh ? 12 : 26) : g.toDomYCoord((o.order * x1) / 60) - 4;
           if (py > g.toDomYCoord(y0)) return;
@@ -222,7 +224,7 @@ function showCampbell() {
         near.map((x) => [
           x.mode + 1,
           sig(frequencies[x.mode], 5),
-          tidy(x.order),
+          orderText(x.order),
           sig(x.speed * rpm),
           difference(runSpeed, x.speed * rpm),
           quantity(x.static, run.model.nodes[0].turns ? "rad" : "m", 3),

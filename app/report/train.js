@@ -151,7 +151,8 @@ function drawTrain(model) {
   for (const joint of model.joints) joint.turns = model.nodes[joint.nodes[0]].turns;
   const plan = layout(model);
   const widest = Math.max(...plan.lines.map((line) => line.width));
-  const pitch = Math.max(PITCH_LEAST, Math.min(130, 1120 / Math.max(widest, 1)));
+  const least = widest <= MOST_LABELS ? PITCH_LEAST : 0;
+  const pitch = Math.max(least, Math.min(130, 1120 / Math.max(widest, 1)));
   const gearGap = Math.min(26, Math.max(14, pitch * 0.6));
   const { x, offset, order } = place(plan, pitch, gearGap);
   const disc = fourth(
@@ -248,7 +249,7 @@ function drawTrain(model) {
   model.nodes.forEach((node, i) => {
     const [cx, cy] = at(i);
     const r = disc(node.inertia);
-    const width = Math.max(4, Math.min(14, pitch * 0.36));
+    const width = Math.max(Math.min(4, 0.7 * pitch), Math.min(14, 0.36 * pitch));
     const group = draw(
       "g",
       {},
@@ -344,7 +345,7 @@ class ShapeView {
   constructor(model, plan, width, rowHeight, bare) {
     this.plan = plan;
     const widest = Math.max(...plan.lines.map((line) => line.width));
-    const pitch = Math.max(bare ? 1.5 : 6, (width - (bare ? 10 : 120)) / Math.max(widest, 2));
+    const pitch = (width - (bare ? 10 : 120)) / Math.max(widest, 2);
     const { x, order } = place(plan, pitch, 0);
     // A bare view shows the longest line alone.
     if (bare && widest === 1) return this.asRow(model.nodes.length, width, rowHeight);
@@ -415,7 +416,11 @@ class ShapeView {
     this.dots = bare
       ? []
       : this.rows.map((row) =>
-          draw("circle", { class: "dot", r: 3.2, cx: row.x }, draw("title", {}, model.nodes[row.i].name)),
+          draw(
+            "circle",
+            { class: "dot", r: Math.min(3.2, 0.6 * pitch), cx: row.x },
+            draw("title", {}, model.nodes[row.i].name),
+          ),
         );
     this.svg.append(...this.dots);
   }
