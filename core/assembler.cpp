@@ -4,6 +4,12 @@ namespace drev {
 
 Assembler::Assembler(const System& system)
     : system_(system), u_(system.prescribed().size()), tables_(system.table_loads()) {
+  if (const int m = system.loaded_rows(); m > 0) {
+    const auto rows = system.rows().topRows(m).cwiseAbs();
+    row_gain_ = std::max(1.0, (rows.transpose() * rows.rowwise().sum()).maxCoeff());
+    z_and_rows_.resize(system.size() + m);
+    p_and_rows_.resize(system.size() + m);
+  }
   set_time(0.0);
 }
 
@@ -24,24 +30,22 @@ void Assembler::stand_at_angle(double phi) {
 
 MotionPoint Assembler::node_motion(int node, const State& s) const {
   const NodeMap& map = system_.node_map(node);
-  if (map.unknown >= 0)
-    return {map.coeff * s.z[map.unknown], map.coeff * s.v[map.unknown],
-            map.coeff * s.a[map.unknown]};
-  const MotionPoint& u = u_[at(map.prescribed)];
-  return {map.coeff * u.value, map.coeff * u.rate, map.coeff * u.acceleration};
+  return {map.coeff * over_coeff(map, s.z, &MotionPoint::value),
+          map.coeff * over_coeff(map, s.v, &MotionPoint::rate),
+          map.coeff * over_coeff(map, s.a, &MotionPoint::acceleration)};
 }
 
 double Assembler::node_angle(int node, const Vector& z) const {
   const NodeMap& map = system_.node_map(node);
-  const double q = map.unknown >= 0 ? z[map.unknown] : u_[at(map.prescribed)].value;
-  return system_.ratio(node) * nominal_.value + map.coeff * q;
+  return system_.ratio(node) * nominal_.value +
+         map.coeff * over_coeff(map, z, &MotionPoint::value);
 }
 
 LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector& v) const {
   const NodeMap& map = system_.node_map(term.node);
   const double n = system_.ratio(term.node);
-  const double q = map.unknown >= 0 ? z[map.unknown] : u_[at(map.prescribed)].value;
-  const double q_dot = map.unknown >= 0 ? v[map.unknown] : u_[at(map.prescribed)].rate;
+  const double q = over_coeff(map, z, &MotionPoint::value);
+  const double q_dot = over_coeff(map, v, &MotionPoint::rate);
   return term.load->evaluate({t_, n * nominal_.value, map.coeff * q,
                               n * nominal_.rate + map.coeff * q_dot});
 }
@@ -70,25 +74,37 @@ void Assembler::find_known() const {
   external_of_motions(known_);
   for (const int l : system_.known_loads()) {
     const LoadTerm& term = system_.loads()[at(l)];
-    const NodeMap& map = system_.node_map(term.node);
-    known_[map.unknown] +=
-        map.coeff * load(term, system_.initial_deviation(), system_.initial_rate()).torque;
+    add_torque(system_.node_map(term.node),
+               load(term, system_.initial_deviation(), system_.initial_rate()).torque, known_);
   }
   system_.table_loads().set_nominal(nominal_.value, tables_);
   known_found_ = true;
 }
 
+void Assembler::add_tables(const Vector& z, Vector& p) const {
+  const int m = system_.loaded_rows();
+  if (m == 0) {
+    system_.table_loads().look_up(z.data(), tables_);
+    system_.table_loads().add_to(tables_, p.data());
+    return;
+  }
+  const auto rows = system_.rows().topRows(m);
+  z_and_rows_.head(z.size()) = z;
+  z_and_rows_.tail(m).noalias() = rows * z;
+  p_and_rows_.setZero();
+  system_.table_loads().look_up(z_and_rows_.data(), tables_);
+  system_.table_loads().add_to(tables_, p_and_rows_.data());
+  p += p_and_rows_.head(z.size());
+  p.noalias() += rows.transpose() * p_and_rows_.tail(m);
+}
+
 void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
   if (!known_found_) find_known();
   p = known_;
-  if (system_.table_loads().size() > 0) {
-    system_.table_loads().look_up(z.data(), tables_);
-    system_.table_loads().add_to(tables_, p.data());
-  }
+  if (system_.table_loads().size() > 0) add_tables(z, p);
   for (const int l : system_.moving_loads()) {
     const LoadTerm& term = system_.loads()[at(l)];
-    const NodeMap& map = system_.node_map(term.node);
-    p[map.unknown] += map.coeff * load(term, z, v).torque;
+    add_torque(system_.node_map(term.node), load(term, z, v).torque, p);
   }
 }
 
@@ -213,12 +229,19 @@ void Assembler::tangent_values(const Weights& w, const Vector& z, const Vector& 
     add_scalar_slope(term, w.k * r.dy_dx + w.c * r.dy_dx_dot, values);
   }
   if (with_loads)
-    for (const LoadTerm& term : system_.loads())
-      if (term.slot >= 0 && term.load->depends_on_motion()) {
-        const LoadResponse r = load(term, z, v);
-        const double c = system_.node_map(term.node).coeff;
-        values[term.slot] -= c * c * (w.k * r.dtorque_dangle + w.c * r.dtorque_dspeed);
+    for (const LoadTerm& term : system_.loads()) {
+      const NodeMap& map = system_.node_map(term.node);
+      if (map.prescribed >= 0 || !term.load->depends_on_motion()) continue;
+      const LoadResponse r = load(term, z, v);
+      const double slope =
+          map.coeff * map.coeff * (w.k * r.dtorque_dangle + w.c * r.dtorque_dspeed);
+      if (map.unknown >= 0) {
+        values[term.slot] -= slope;
+      } else {  // the pattern is full
+        const auto row = system_.rows().row(map.row);
+        values.reshaped(row.size(), row.size()).noalias() -= slope * row.transpose() * row;
       }
+    }
   add_general_slopes(w, z, v, history, values);
 }
 

@@ -40,7 +40,8 @@ class Assembler {
   /// Bound of how any load's torque follows its unknown about where external() was last [N m/rad or N/m];
   /// infinite where there are loads whose steepness is not known.
   double load_steepness() const {
-    return system_.moving_loads().empty() ? tables_.steepest : std::numeric_limits<double>::infinity();
+    return system_.moving_loads().empty() ? row_gain_ * tables_.steepest
+                                          : std::numeric_limits<double>::infinity();
   }
   LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
 
@@ -79,6 +80,19 @@ class Assembler {
   }
 
  private:
+  /// coeff times this is the node's deviation, or its rate with v for z.
+  double over_coeff(const NodeMap& map, const Vector& z, double MotionPoint::*known) const {
+    if (map.unknown >= 0) return z[map.unknown];
+    return map.row < 0 ? u_[at(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
+  }
+  /// Adds a torque on a node that is not prescribed.
+  void add_torque(const NodeMap& map, double torque, Vector& p) const {
+    if (map.unknown >= 0)
+      p[map.unknown] += map.coeff * torque;
+    else
+      p += map.coeff * torque * system_.rows().row(map.row).transpose();
+  }
+  void add_tables(const Vector& z, Vector& p) const;
   void find_known() const;
   void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
   LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
@@ -91,10 +105,12 @@ class Assembler {
   double t_ = 0.0;
   MotionPoint nominal_;
   std::vector<MotionPoint> u_;
+  double row_gain_ = 1.0;  // bound of how a torque per deviation of loaded rows acts on the unknowns
   // Kept for one time: the part of p that is the same for all motions, and the tables.
   mutable bool known_found_ = false;
   mutable Vector known_;
   mutable TableLoads::Values tables_;
+  mutable Vector z_and_rows_, p_and_rows_;  // unknowns, then loaded rows
 };
 
 }  // namespace drev

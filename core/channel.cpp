@@ -79,11 +79,9 @@ class ChannelFinder {
     using Kind = Channel::Kind;
     c.direct_ = true;
     const auto add_node = [&](std::vector<Entry>& row, int node, double coeff) {
-      const NodeMap& map = system_.node_map(node);
-      if (map.unknown >= 0)
-        row.push_back({map.unknown, coeff * map.coeff});
-      else if (system_.prescribed()[at(map.prescribed)].at)
-        c.direct_ = false;  // the node moves by itself
+      for (const Entry& e : system_.row_of(node)) row.push_back({e.index, coeff * e.coeff});
+      const int known = system_.node_map(node).prescribed;
+      if (known >= 0 && system_.prescribed()[at(known)].at) c.direct_ = false;  // it moves by itself
     };
     if (c.kind_ == Kind::value) {
       add_node(c.z_, c.index_, 1.0);

@@ -13,6 +13,62 @@ int System::node(const std::string& name) const {
   throw ModelError({{name_, "node", name, "", "is no node of this model" + did_you_mean(name, names)}});
 }
 
+std::vector<Entry> System::row_of(int node) const {
+  const NodeMap& map = node_map(node);
+  std::vector<Entry> row;
+  if (map.unknown >= 0) row.push_back({map.unknown, map.coeff});
+  if (map.row >= 0)
+    for (int k = 0; k < size(); ++k)
+      if (rows_(map.row, k) != 0.0) row.push_back({k, map.coeff * rows_(map.row, k)});
+  return row;
+}
+
+void System::map_load(int number) {
+  const LoadTerm& term = loads_[at(number)];
+  const NodeMap& map = node_map(term.node);
+  const bool follows = term.load->depends_on_motion();
+  loads_depend_on_motion_ |= follows;
+  if (map.prescribed >= 0) return;
+  if (const auto table = term.load->table())
+    table_loads_.add(*table, map.unknown >= 0 ? map.unknown : size() + map.row, map.coeff,
+                     ratio(term.node), follows ? map.coeff : 0.0);
+  else
+    (follows ? moving_loads_ : known_loads_).push_back(number);
+}
+
+void System::find_slots() {
+  const auto slot = [this](int row, int col) {
+    const int* begin = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col];
+    const int* end = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col + 1];
+    return static_cast<int>(std::lower_bound(begin, end, row) - pattern_.innerIndexPtr());
+  };
+  diagonal_slots_.clear();
+  for (int k = 0; k < size(); ++k) diagonal_slots_.push_back(slot(k, k));
+  const auto only_diagonal = [this](Vector matrix) {
+    for (const int s : diagonal_slots_) matrix[s] = 0.0;
+    return matrix.isZero(0.0);
+  };
+  mass_is_diagonal_ = only_diagonal(mass_);
+  damping_is_diagonal_ = only_diagonal(damping_);
+  for (ScalarTerm& s : scalars_) {
+    s.slots.clear();
+    for (const Entry& r : s.z)
+      for (const Entry& c : s.z) s.slots.push_back(slot(r.index, c.index));
+  }
+  for (LoadTerm& l : loads_) {
+    const int k = node_map(l.node).unknown;
+    l.slot = k >= 0 ? diagonal_slots_[at(k)] : -1;
+  }
+  for (GeneralTerm& g : generals_) {
+    g.slots.clear();
+    for (const int i : g.nodes)
+      for (const int j : g.nodes) {
+        const int r = node_map(i).unknown, c = node_map(j).unknown;
+        g.slots.push_back(r >= 0 && c >= 0 ? slot(r, c) : -1);
+      }
+  }
+}
+
 std::vector<std::string> System::floating_parts(Contact contact) const {
   const std::vector<int> component =
       connected_components(node_count(), closures_, contact == Contact::closed);

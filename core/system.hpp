@@ -6,7 +6,8 @@
 ///
 /// Every node's deviation is q_i = coeff z_k or q_i = coeff u_k: prescribed nodes (u) and ideal gear
 /// ratios are eliminated. m = T^T M n, and d = T^T C n is the mean drag of dashpots whose ends differ in
-/// nominal speed (zero for shafts and meshes).
+/// nominal speed (zero for shafts and meshes). Of a projected system (projected_system.hpp) also q_i =
+/// coeff r z with a row r over all unknowns.
 #include <Eigen/SparseCore>
 #include <memory>
 #include <optional>
@@ -21,12 +22,15 @@ namespace drev {
 
 using Vector = Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
+/// Rows over the unknowns, each in one piece of memory.
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// q_node = coeff * z[unknown], or coeff * u[prescribed].
+/// q_node = coeff * z[unknown], or coeff * u[prescribed], or coeff * rows().row(row) z.
 struct NodeMap {
   int unknown = -1;
   int prescribed = -1;
   double coeff = 1.0;
+  int row = -1;
 };
 
 /// coefficient of one unknown (or prescribed motion, or node) in a row
@@ -50,7 +54,7 @@ struct LoadTerm {
   ElementId element{};
   int node = 0;
   const Load* load = nullptr;
-  int slot = -1;  ///< diagonal slot of its unknown; -1 where the node is prescribed
+  int slot = -1;  ///< diagonal slot of its unknown; -1 where the node has none
 };
 
 struct GeneralTerm {
@@ -96,6 +100,11 @@ class System {
   const std::vector<std::string>& node_names() const { return *node_names_; }
   NodeKind node_kind(int node) const { return node_kinds_[at(node)]; }
   const NodeMap& node_map(int node) const { return node_map_[at(node)]; }
+  /// Rows of the nodes that have one; the first loaded_rows() of them are nodes with loads.
+  const RowMatrix& rows() const { return rows_; }
+  int loaded_rows() const { return loaded_rows_; }
+  /// The node's deviation over the unknowns; empty where it is prescribed.
+  std::vector<Entry> row_of(int node) const;
   /// Position of a node by name; throws ModelError with the nearest name.
   int node(const std::string& name) const;
   const std::vector<Placement>& placements() const { return *placements_; }
@@ -147,6 +156,8 @@ class System {
   const std::vector<double>& breakpoints() const { return breakpoints_; }
   const Vector& initial_deviation() const { return initial_z_; }
   const Vector& initial_rate() const { return initial_v_; }
+  /// z' while the reference shaft turns at 1 rad/s more and everything with it at its ratio.
+  const Vector& nominal_direction() const { return nominal_direction_; }
 
   /// Number of rigid-body motions, from the graph: parts tied neither to ground nor to a prescribed
   /// node. Names of one node each, for messages.
@@ -157,13 +168,20 @@ class System {
 
  private:
   friend class SystemBuilder;
+  friend class SystemProjector;
   System() = default;
+  /// Puts load `number` with those that external() evaluates alike.
+  void map_load(int number);
+  /// Slots of the diagonal and of all terms in pattern_.
+  void find_slots();
 
   std::string name_;
   std::shared_ptr<const std::vector<std::string>> node_names_;  // the model's, as the placements
   std::vector<NodeKind> node_kinds_;
   std::shared_ptr<const std::vector<Placement>> placements_;
   std::vector<NodeMap> node_map_;
+  RowMatrix rows_;
+  int loaded_rows_ = 0;
   std::vector<int> unknown_node_, prescribed_node_;
   Kinematics kinematics_;
   std::vector<Closure> closures_;
@@ -171,7 +189,7 @@ class System {
   std::vector<Motion> prescribed_;
   SparseMatrix pattern_;
   Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, node_drag_,
-      initial_z_, initial_v_;
+      initial_z_, initial_v_, nominal_direction_;
   MatrixSet zu_, uu_;
   std::optional<MatrixSet> node_matrices_;
   std::vector<ScalarTerm> scalars_;

@@ -205,6 +205,10 @@ void SystemBuilder::set_initial() {
 }
 
 void SystemBuilder::finish() {
+  system_.nominal_direction_ = Vector::Zero(system_.size());
+  for (int i = 0; i < system_.node_count(); ++i)
+    if (const NodeMap& map = system_.node_map(i); map.unknown >= 0)
+      system_.nominal_direction_[map.unknown] = system_.ratio(i) / map.coeff;
   std::vector<double>& all = system_.breakpoints_;
   const auto append = [&all](const std::vector<double>& more) {
     all.insert(all.end(), more.begin(), more.end());

@@ -31,7 +31,6 @@ class SystemBuilder {
   void set_initial();
   // Matrices and terms over unknowns, of a model without findings.
   void map_terms();
-  void map_load(int number);
   void assemble_matrices();
   void check_values();
   void finish();

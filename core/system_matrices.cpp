@@ -101,19 +101,6 @@ void SystemBuilder::eliminate() {
                            "undetermined; make one of them elastic"});
 }
 
-void SystemBuilder::map_load(int number) {
-  const LoadTerm& term = system_.loads_[at(number)];
-  const NodeMap& map = system_.node_map_[at(term.node)];
-  const bool follows = term.load->depends_on_motion();
-  system_.loads_depend_on_motion_ |= follows;
-  if (map.unknown < 0) return;
-  if (const auto table = term.load->table())
-    system_.table_loads_.add(*table, map.unknown, map.coeff, system_.ratio(term.node),
-                             follows ? map.coeff : 0.0);
-  else
-    (follows ? system_.moving_loads_ : system_.known_loads_).push_back(number);
-}
-
 void SystemBuilder::map_terms() {
   for (ScalarTerm& term : system_.scalars_)
     for (const Entry& e : term.nodes) {
@@ -121,7 +108,7 @@ void SystemBuilder::map_terms() {
       if (map.unknown >= 0) add_entry(term.z, map.unknown, e.coeff * map.coeff);
       if (map.prescribed >= 0) add_entry(term.u, map.prescribed, e.coeff * map.coeff);
     }
-  for (int i = 0; i < static_cast<int>(system_.loads_.size()); ++i) map_load(i);
+  for (int i = 0; i < static_cast<int>(system_.loads_.size()); ++i) system_.map_load(i);
 }
 
 template <class Visit>
@@ -230,14 +217,7 @@ void SystemBuilder::assemble_matrices() {
   system_.mass_ = values_on_pattern(0);
   system_.damping_ = values_on_pattern(1);
   system_.stiffness_ = values_on_pattern(2);
-  for (int k = 0; k < nz; ++k) system_.diagonal_slots_.push_back(slot_of(system_.pattern_, k, k));
-  const auto only_diagonal = [&](const Vector& matrix) {
-    Vector rest = matrix;
-    for (const int slot : system_.diagonal_slots_) rest[slot] = 0.0;
-    return rest.isZero(0.0);
-  };
-  system_.mass_is_diagonal_ = only_diagonal(system_.mass_);
-  system_.damping_is_diagonal_ = only_diagonal(system_.damping_);
+  system_.find_slots();
   system_.zu_ = {from_triplets(nz, nu, zu[0]), from_triplets(nz, nu, zu[1]),
                  from_triplets(nz, nu, zu[2])};
   system_.uu_ = {from_triplets(nu, nu, uu[0]), from_triplets(nu, nu, uu[1]),
@@ -248,20 +228,6 @@ void SystemBuilder::assemble_matrices() {
                                        from_triplets(nodes, nodes, node[1]),
                                        from_triplets(nodes, nodes, node[2])};
   }
-
-  for (ScalarTerm& s : system_.scalars_)
-    for (const Entry& r : s.z)
-      for (const Entry& c : s.z) s.slots.push_back(slot_of(system_.pattern_, r.index, c.index));
-  for (LoadTerm& l : system_.loads_) {
-    const int k = system_.node_map_[at(l.node)].unknown;
-    if (k >= 0) l.slot = slot_of(system_.pattern_, k, k);
-  }
-  for (GeneralTerm& g : system_.generals_)
-    for (const int i : g.nodes)
-      for (const int j : g.nodes) {
-        const int r = system_.node_map_[at(i)].unknown, c = system_.node_map_[at(j)].unknown;
-        g.slots.push_back(r >= 0 && c >= 0 ? slot_of(system_.pattern_, r, c) : -1);
-      }
 }
 
 void SystemBuilder::check_values() {

@@ -16,7 +16,9 @@ namespace drev {
 
 class TableLoads {
  public:
-  /// gain: coeff where the load follows the motion, else 0. Equal tables are kept once.
+  /// unknown: its place in what look_up() and add_to() are given, which may go on behind the unknowns with
+  /// a system's loaded rows. gain: coeff where the load follows the motion, else 0. Equal tables are kept
+  /// once.
   void add(const LoadTable& table, int unknown, double coeff, double ratio, double gain);
   int size() const { return static_cast<int>(unknown_.size()); }
 

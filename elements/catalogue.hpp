@@ -12,4 +12,5 @@
 #include "elements/involute.hpp"
 #include "elements/polyline_spring.hpp"
 #include "elements/rayleigh_damping.hpp"
+#include "elements/segment_count.hpp"
 #include "elements/shaft_spring.hpp"

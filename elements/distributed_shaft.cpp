@@ -48,16 +48,19 @@ double DistributedShaft::segment_inertia() const {
 void DistributedShaft::describe(int nodes, Terms& terms) const {
   const double k = segment_stiffness(), j = segment_inertia();
   const int n = params_.segments;
+  const double coupled = params_.mass == SegmentMass::lumped       ? 0.0
+                         : params_.mass == SegmentMass::consistent ? j / 6.0
+                                                                   : j / 12.0;
   // Positions along the shaft 0..n in the element's node order: a, b, internal.
   const auto local = [n](int position) {
     return position == 0 ? 0 : position == n ? 1 : position + 1;
   };
   for (int s = 0; s < n; ++s) {
     const int a = local(s), b = local(s + 1);
-    terms.mass(a, a) += j / 3.0;
-    terms.mass(b, b) += j / 3.0;
-    terms.mass(a, b) += j / 6.0;
-    terms.mass(b, a) += j / 6.0;
+    terms.mass(a, a) += 0.5 * j - coupled;
+    terms.mass(b, b) += 0.5 * j - coupled;
+    terms.mass(a, b) += coupled;
+    terms.mass(b, a) += coupled;
     LocalRow row = LocalRow::Zero(nodes);
     row[a] = -1.0;
     row[b] = 1.0;

@@ -47,16 +47,15 @@ ContactLocator::ContactLocator(const System& system)
 }
 
 std::vector<Entry> ContactLocator::of_phase(const ScalarTerm& term) const {
-  const NodeMap& map = system_.node_map(term.phase_node);
-  if (map.unknown < 0) return {};
-  return {{map.unknown, map.coeff}};
+  return system_.row_of(term.phase_node);
 }
 
 ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State& state,
                                             double angle) const {
   const NodeMap& map = system_.node_map(term.phase_node);
   double rate = map.unknown >= 0 ? map.coeff * state.v[map.unknown] : 0.0;
-  if (map.unknown < 0 && map.prescribed >= 0)
+  if (map.row >= 0) rate = map.coeff * system_.rows().row(map.row).dot(state.v);
+  if (map.prescribed >= 0)
     if (const auto& known = system_.prescribed()[at(map.prescribed)].at)
       rate += map.coeff * known(state.t).rate;
   if (const auto& nominal = system_.reference())

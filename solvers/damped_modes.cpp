@@ -110,8 +110,7 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
     const Eigen::VectorXcd z = mass.matrixU().solve(y);
     auto shape = set.shapes.col(static_cast<Eigen::Index>(j));
     for (int i = 0; i < system.node_count(); ++i) {
-      const NodeMap& map = system.node_map(i);
-      if (map.unknown >= 0) shape[i] = map.coeff * z[map.unknown];
+      for (const Entry& e : system.row_of(i)) shape[i] += e.coeff * z[e.index];
     }
     Eigen::Index largest = 0;
     shape.cwiseAbs().maxCoeff(&largest);

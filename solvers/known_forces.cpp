@@ -25,7 +25,7 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 KnownForces::KnownForces(const System& system)
     : system_(system),
       assembler_(system),
-      stride_(whole_lanes(system.size())),
+      stride_(TaylorSeries::stride(system)),
       p_(at(kProjectionTerms * stride_)),
       base_(at(3 * stride_)),
       projection_(stride_),
@@ -34,8 +34,8 @@ KnownForces::KnownForces(const System& system)
       u_(at(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
-    if (map.unknown < 0) continue;  // its work is the prescribed node's
-    const Place place{&term, map.unknown, map.coeff, system.ratio(term.node),
+    if (map.prescribed >= 0) continue;  // its work is the prescribed node's
+    const Place place{&term, map.unknown >= 0 ? map.unknown : system.size() + map.row, map.coeff, system.ratio(term.node),
                       term.load->depends_on_motion()};
     if (term.load->stretch(0.0, 0.0, 1.0))
       loads_.push_back({place});
@@ -49,9 +49,9 @@ void KnownForces::move(double t, const Vector& z, const Vector& v) {
   assembler_.set_time(t);
   const MotionPoint& nominal = assembler_.nominal();
   for (Linear& l : loads_) {
-    l.deviation = l.feedback ? l.coeff * z[l.row] : 0.0;
+    l.deviation = l.feedback ? l.coeff * along(l.row, z) : 0.0;
     l.angle = l.ratio * nominal.value + l.deviation;
-    l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * v[l.row] : 0.0);
+    l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * along(l.row, v) : 0.0);
   }
   for (Smooth& l : smooth_) {
     l.torque = assembler_.load(*l.term, z, v).torque;
@@ -124,11 +124,11 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
   }
   for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.torque;
   for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < n; ++i) series.right_side(k)[i] += p(k, i);
+    for (int i = 0; i < stride_; ++i) series.right_side(k)[i] += p(k, i);
   for (const Linear& l : loads_) {
     if (!l.feedback || l.stretch.angle_slope == 0.0) continue;
     const double slope = l.coeff * l.coeff * l.stretch.angle_slope;
-    series.add_stiffness(l.term->slot, -slope);
+    series.add_row_stiffness(l.row, -slope);
     series.widen(l.row, slope, 0.0);
     // The slope acts on the change of the deviation over the step.
     series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
@@ -234,8 +234,8 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
     double size = 0.0;
     for (int j = 0; j < kProjectionTerms; ++j)
       size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
-    const double move = series.mobility(row) * h_;
-    const auto kind = at(series.kind(row));
+    const double move = series.reach(row) * h_;
+    const auto kind = at(row < series.size() ? series.kind(row) : 0);
     const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
     if (size > 0.0) change.size = std::max(change.size, move * size / scale);
     return scale > 0.0 ? move / scale : 0.0;
@@ -309,7 +309,7 @@ double KnownForces::work(const TaylorSeries& series, double s, const Vector& end
   double sum = series_work(stride_, series.energy_degree(), series.coefficients(0), degree_, p_.data(), s);
   for (const Linear& l : loads_)
     if (l.feedback && l.stretch.angle_slope != 0.0) {
-      const double turn = l.coeff * (end[l.row] - series.coefficient(0, l.row));
+      const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
       sum += 0.5 * l.stretch.angle_slope * turn * turn;
     }
   return sum;

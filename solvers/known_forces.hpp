@@ -61,7 +61,7 @@ class KnownForces {
  private:
   struct Place {
     const LoadTerm* term;
-    int row;
+    int row;  // of the series
     double coeff, ratio;
     bool feedback;
   };
@@ -78,6 +78,9 @@ class KnownForces {
   };
   void move(double t, const Vector& z, const Vector& v);
   void look_up(Linear& load, double direction);
+  double along(int row, const Vector& z) const {
+    return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
+  }
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
   double find_kinks(const TaylorSeries& series, double tolerance);
   double project_smooth(const TaylorSeries& series);

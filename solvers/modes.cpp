@@ -82,6 +82,7 @@ std::optional<int> sturm_surplus(ModalProblem& problem, const Vector& lambda, in
 void fill(const System& system, const ModalProblem& problem, const ModalPairs& pairs, int first,
           int count, ModeSet& modes) {
   modes.vectors = pairs.vectors.middleCols(first, count);
+  modes.rigid_vectors = pairs.vectors.leftCols(first);
   modes.shapes.resize(system.node_count(), count);
   for (int j = 0; j < count; ++j) {
     auto vector = modes.vectors.col(j);
@@ -89,7 +90,9 @@ void fill(const System& system, const ModalProblem& problem, const ModalPairs& p
     double largest = 0.0;
     for (int i = 0; i < system.node_count(); ++i) {
       const NodeMap& map = system.node_map(i);
-      shape[i] = map.unknown >= 0 ? map.coeff * vector[map.unknown] : 0.0;
+      shape[i] = map.unknown >= 0 ? map.coeff * vector[map.unknown]
+                 : map.row >= 0   ? map.coeff * system.rows().row(map.row).dot(vector)
+                                  : 0.0;
       largest = std::max(largest, std::abs(shape[i]));
     }
     // The first of the largest entries (ties within rounding) decides the sign.

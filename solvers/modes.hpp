@@ -64,6 +64,7 @@ struct ModeSet {
   /// prescribed. The entry of largest magnitude is positive.
   Eigen::MatrixXd shapes;
   Eigen::MatrixXd vectors;  ///< the same over the unknowns; x' M x = 1
+  Eigen::MatrixXd rigid_vectors;  ///< beside elastic modes: the rigid ones over the unknowns, x' M x = 1
   ModesSummary summary;
 
   int count() const { return static_cast<int>(frequency_Hz.size()); }

@@ -13,6 +13,7 @@ SmoothLaws::SmoothLaws(const System& system)
     const ScalarTerm& term = system.scalars()[j];
     if (!term.force->pieces().empty() && term.phase_node < 0) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
+    if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
     for (const Entry& e : term.z) rows_.push_back(e.index);
   }
 }
@@ -116,11 +117,10 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
       g_[2] += 0.5 * factor * m.acceleration * h_ * h_;
     };
     add_known(system_.ratio(law.term->phase_node), assembler_.nominal());
-    if (map.unknown < 0)
-      add_known(map.coeff, assembler_.prescribed(map.prescribed));
-    else
+    if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
+    for (const Entry& e : law.phase_row)
       for (int k = 1; k <= series.degree(); ++k)
-        g_[at(k)] += map.coeff * series.coefficient(k, map.unknown);
+        g_[at(k)] += e.coeff * series.coefficient(k, e.index);
     for (const double side : {1.0, -1.0}) {
       const std::optional<double> knot = law.term->force->next_knot(law.angle, side);
       if (!knot) continue;

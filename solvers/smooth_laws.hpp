@@ -46,6 +46,7 @@ class SmoothLaws {
   struct Law {
     int index;
     const ScalarTerm* term;
+    std::vector<Entry> phase_row = {};  // its phase node's deviation
     double k = 0.0, c = 0.0;
     double y = 0.0, x = 0.0, x_dot = 0.0;  // y and b^T z, b^T v at the start
     double angle = 0.0, stored = 0.0;

@@ -18,13 +18,12 @@ constexpr double kLeastError = 1e-6;  // as far as the controller looks
 
 StepControl::StepControl(const System& system, const Options& options)
     : system_(system), options_(options), kind_(static_cast<std::size_t>(system.size()), 0) {
-  Vector direction = Vector::Zero(system.size());
   for (int node = 0; node < system.node_count(); ++node) {
     const NodeMap& map = system.node_map(node);
     if (map.unknown < 0) continue;
     kind_[at(map.unknown)] = system.node_kind(node) == NodeKind::translational;
-    direction[map.unknown] = system.ratio(node) / map.coeff;
   }
+  const Vector& direction = system.nominal_direction();
   if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0)
     rigid_ = direction.normalized();
   set(options.first);

@@ -49,7 +49,22 @@ TaylorSeries::TaylorSeries(const System& system)
       kinds[at(system.node_map(node).unknown)] = 1;
   const auto translational = std::count(kinds.begin(), kinds.end(), 1);
   if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
+  find_rows();
   reset();
+}
+
+void TaylorSeries::find_rows() {
+  const int m = system_.loaded_rows();
+  row_slopes_.setZero(m);
+  row_mobility_.resize(m);
+  row_reach_.resize(m);
+  with_rows_.assign(at(stride_), 0.0);
+  for (int j = 0; j < m; ++j) {
+    solve_in_ = system_.rows().row(j).transpose();
+    solve_mass(solve_in_, solve_out_);
+    row_mobility_[j] = solve_in_.dot(solve_out_);
+    row_reach_[j] = solve_out_.lpNorm<Eigen::Infinity>();
+  }
 }
 
 void TaylorSeries::find_storage() {
@@ -59,7 +74,7 @@ void TaylorSeries::find_storage() {
     for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
       offsets.try_emplace(p.innerIndexPtr()[s] - row, 0);
   const auto entries = static_cast<std::size_t>(p.nonZeros());
-  stride_ = whole_lanes(n_);
+  stride_ = stride(system_);
   if (static_cast<double>(offsets.size()) * n_ > kDiagonalFill * static_cast<double>(entries))
     offsets.clear();
   for (auto& [offset, number] : offsets) {
@@ -96,6 +111,7 @@ void TaylorSeries::reset() {
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
+  row_slopes_.setZero();
   right_degree_ = 2;
 }
 
@@ -148,7 +164,10 @@ double TaylorSeries::rate() const {
 }
 
 void TaylorSeries::widen(int row, double k, double c) {
-  k_more_ = std::max(k_more_, std::abs(k) * mobility(row));
+  if (row >= n_)  // rows share unknowns
+    k_more_ += std::abs(k) * mobility(row);
+  else
+    k_more_ = std::max(k_more_, std::abs(k) * mobility(row));
   c_more_ = std::max(c_more_, std::abs(c) * mobility(row));
 }
 
@@ -193,9 +212,23 @@ void TaylorSeries::solve_mass(const Vector& rhs, Vector& out) {
   for (int i = 0; i < n_; ++i) out[i] = rhs[i] * inverse_mass_[at(i)];
 }
 
+/// with_rows_ = p with the rows' forces less their slopes times x_0.
+void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
+  const Eigen::Index m = row_slopes_.size();
+  const auto tail = [&](const double* x) { return Eigen::Map<const Vector>(x + n_, m); };
+  row_forces_ = tail(p) - row_slopes_.cwiseProduct(tail(x_0));
+  std::copy_n(p, n_, with_rows_.data());
+  Eigen::Map<Vector>(with_rows_.data(), n_).noalias() +=
+      system_.rows().topRows(m).transpose() * row_forces_;
+}
+
 TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   const double* p = k - 2 <= right_degree_ ? p_.data() + at((k - 2) * stride_) : zeros_.data();
   const double* x_0 = coefficients(k - 2);
+  if (row_slopes_.size() > 0) {
+    add_row_forces(p, x_0);
+    p = with_rows_.data();
+  }
   const double* x_1 = coefficients(k - 1);
   double* next = z_.data() + at(pad_ + k * stride_);
   const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
@@ -205,6 +238,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
     else if (main_damping_) c = c.subspan(at(main_), 1);
     const double largest = series_term(stride_, k_views_, c, c_factor, p, x_0, x_1,
                                        inverse_mass_.data(), factor, next);
+    rows_of(next);
     return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
   }
   std::copy_n(p, n_, solve_in_.data());
@@ -212,6 +246,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
   solve_mass(solve_in_, solve_out_);
   for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
+  rows_of(next);
   return norm(next);
 }
 
@@ -221,6 +256,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   const auto column = [&](int k) { return z_.data() + at(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
   for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
+  for (int k = 0; k < 2; ++k) rows_of(column(k));
   note_scale(z, v);
   Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
   z_scale = z_scale_;
@@ -260,7 +296,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   r *= kShorten;
   double power = 1.0;
   for (int k = 0; k <= degree_; ++k, power *= r)
-    for (int i = 0; i < n_; ++i) column(k)[i] *= power;
+    for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
   h_ = r * h;
   return h_;
 }

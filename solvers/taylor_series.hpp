@@ -4,7 +4,8 @@
 ///   M z'' + C z' + K z = P_0 + P_1 s + P_2 s^2 + ...,      z = sum Z_k s^k
 ///   (k+2)(k+1)/h^2 M Z_{k+2} = P_k - (k+1)/h C Z_{k+1} - K Z_k
 ///
-/// K and C are those of the system with the tangents of the pieces that hold (set by the caller).
+/// K and C are those of the system with the tangents of the pieces that hold (set by the caller). Rows of
+/// the series behind the unknowns are the system's loaded rows: forces and slopes there act through them.
 /// One sparse product a degree, by diagonals where the pattern has few of them; M diagonal is a
 /// scaling, else one solve with its factor. The series is carried until the next two terms are
 /// below the tolerance, as deflections and as rates, by (|.|: the largest eigenvalue, or row sum if less)
@@ -33,6 +34,13 @@ class TaylorSeries {
   /// K and C back to the system's own, the right side to zero; then add what the pieces add.
   void reset();
   void add_stiffness(int slot, double value) { k_[position_[at(slot)]] += value; }
+  /// The same on the diagonal of a row.
+  void add_row_stiffness(int row, double value) {
+    if (row < n_)
+      add_stiffness(system_.diagonal_slots()[at(row)], value);
+    else
+      row_slopes_[row - n_] += value;
+  }
   void add_damping(int slot, double value);
   /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
@@ -57,6 +65,9 @@ class TaylorSeries {
   int size() const { return n_; }
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
   int stride() const { return stride_; }
+  static int stride(const System& system) {
+    return whole_lanes(system.size() + system.loaded_rows());
+  }
   const double* coefficients(int k) const { return z_.data() + at(pad_ + k * stride_); }
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
@@ -75,8 +86,13 @@ class TaylorSeries {
   const Norm& z_scale() const { return z_step_scale_; }
   const Norm& v_scale() const { return v_step_scale_; }
   int kind(int row) const { return kinds_.empty() ? 0 : kinds_[at(row)]; }
-  /// Upper estimate of |M^-1 e_row| [1/(kg m^2) or 1/kg].
-  double mobility(int row) const { return diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_; }
+  /// Upper estimate of the acceleration of a row by a force on it [1/(kg m^2) or 1/kg].
+  double mobility(int row) const {
+    if (row >= n_) return row_mobility_[row - n_];
+    return diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
+  }
+  /// The same of the unknown that a force on a row moves most.
+  double reach(int row) const { return row < n_ ? mobility(row) : row_reach_[row - n_]; }
 
  private:
   struct Diagonal {
@@ -88,6 +104,15 @@ class TaylorSeries {
                         double factor, double* out) const;
   double largest_eigenvalue(const std::vector<double>& values);
   Norm next_term(int k, double h);
+  void find_rows();
+  /// Sets the loaded rows of a column from its unknowns.
+  void rows_of(double* column) const {
+    const Eigen::Index m = row_slopes_.size();
+    if (m > 0)
+      Eigen::Map<Vector>(column + n_, m).noalias() =
+          system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
+  }
+  void add_row_forces(const double* p, const double* x_0);
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
 
@@ -104,6 +129,9 @@ class TaylorSeries {
   SparseCholesky mass_;
   double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
   std::vector<double> p_, z_, rates_, forces_, zeros_;
+  // Of the system's loaded rows.
+  Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
+  std::vector<double> with_rows_;
   mutable std::vector<double> sums_;
   Vector solve_in_, solve_out_;
   std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
