@@ -44,6 +44,13 @@ class Assembler {
                                           : std::numeric_limits<double>::infinity();
   }
   LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
+  /// p += what a torque on a node that is not prescribed gives.
+  void add_torque(const NodeMap& map, double torque, Vector& p) const {
+    if (map.unknown >= 0)
+      p[map.unknown] += map.coeff * torque;
+    else
+      p += map.coeff * torque * system_.rows().row(map.row).transpose();
+  }
 
   /// What the law of a scalar term sees.
   ScalarInput input(const ScalarTerm& term, const Vector& z, const Vector& v) const;
@@ -84,13 +91,6 @@ class Assembler {
   double over_coeff(const NodeMap& map, const Vector& z, double MotionPoint::*known) const {
     if (map.unknown >= 0) return z[map.unknown];
     return map.row < 0 ? u_[at(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
-  }
-  /// Adds a torque on a node that is not prescribed.
-  void add_torque(const NodeMap& map, double torque, Vector& p) const {
-    if (map.unknown >= 0)
-      p[map.unknown] += map.coeff * torque;
-    else
-      p += map.coeff * torque * system_.rows().row(map.row).transpose();
   }
   void add_tables(const Vector& z, Vector& p) const;
   void find_known() const;

@@ -1,12 +1,12 @@
 #pragma once
 /// How many segments a distributed shaft needs.
 ///
-/// A uniform shaft in n equal segments carries a wave of frequency omega, with the phase theta = omega L/(n c)
-/// a segment, c = sqrt(G/rho), at another frequency omega (1 + error):
+/// A uniform shaft in n equal segments carries a wave of frequency omega, with a phase of theta = omega
+/// L/(n c) a segment, c = sqrt(G/rho), at another frequency omega (1 + error):
 ///
-///   lumped      M = J/2 [1 0; 0 1]      2 sin(theta/2)/theta                                    - theta^2/24
-///   consistent  M = J/6 [2 1; 1 2]      sqrt(6 (1 - cos theta)/(2 + cos theta))/theta           + theta^2/24
-///   averaged    M = J/12 [5 1; 1 5]     sqrt(12 (1 - cos theta)/(5 + cos theta))/theta          - theta^4/480
+///   lumped      M = J/2 [1 0; 0 1]      2 sin(theta/2)/theta                                   - theta^2/24
+///   consistent  M = J/6 [2 1; 1 2]      sqrt(6 (1 - cos theta)/(2 + cos theta))/theta          + theta^2/24
+///   averaged    M = J/12 [5 1; 1 5]     sqrt(12 (1 - cos theta)/(5 + cos theta))/theta         - theta^4/480
 ///
 /// K = k [1 -1; -1 1] in all, M the mean of the other two in the last; behind, the leading term of the error.
 /// theta = pi is the shortest wave that segments hold. That is exact of shafts with free or held ends. Where

@@ -124,8 +124,7 @@ HarmonicBalance::Samples HarmonicBalance::forces(const Samples& q, const Samples
       assembler_.external_of_motions(p);
       for (const int l : loads_.others()) {
         const LoadTerm& term = system_.loads()[at(l)];
-        const NodeMap& map = system_.node_map(term.node);
-        p[map.unknown] += map.coeff * assembler_.load(term, q_s, v_s).torque;
+        assembler_.add_torque(system_.node_map(term.node), assembler_.load(term, q_s, v_s).torque, p);
       }
     }
     f.setZero();

@@ -29,7 +29,23 @@ void advance(double w2, double d, double f_0, double f_1, double h, double& z, d
   v = slope - a * w2 * s + b * (c - delta * s);
 }
 
+Vector shares(const std::vector<Entry>& row, const Eigen::MatrixXd& modes) {
+  Vector sum = Vector::Zero(modes.cols());
+  for (const Entry& e : row) sum += e.coeff * modes.row(e.index).transpose();
+  return sum;
+}
+
 }  // namespace
+
+bool modal_shares(const System& system, const Channel& channel, const Eigen::MatrixXd& modes, Vector& z,
+                  Vector& v) {
+  const int law = std::max(channel.force_of(), channel.deflection_of());
+  if (law < 0 && !channel.is_linear()) return false;
+  z = shares(law >= 0 ? system.scalars()[at(law)].z : channel.z_row(), modes);
+  v = shares(channel.v_row(), modes);
+  if (channel.force_of() >= 0) v = z;
+  return true;
+}
 
 LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
                            const std::vector<std::string>& channels, int count)
@@ -69,13 +85,8 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
   damping_ = modes_.cwiseProduct(damped).colwise().sum();
   by_damping_ = damped.transpose() * r - damping_.asDiagonal() * by_mass_;
   by_laws_ = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(full.scalars().size()));
-  const auto shares = [&](const std::vector<Entry>& row) {
-    Vector sum = Vector::Zero(n);
-    for (const Entry& e : row) sum += e.coeff * modes_.row(e.index).transpose();
-    return sum;
-  };
   for (std::size_t l = 0; l < full.scalars().size(); ++l)
-    by_laws_.col(static_cast<Eigen::Index>(l)) = shares(full.scalars()[l].z);
+    by_laws_.col(static_cast<Eigen::Index>(l)) = shares(full.scalars()[l].z, modes_);
 
   std::vector<Finding> findings;
   const std::vector<Channel> of_full = find_channels(full, channels);
@@ -83,18 +94,10 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Channel& channel = of_full[c];
     Watched w{.name = channels[c], .channel = of_reduced[c], .law = channel.force_of()};
-    const int law = std::max(w.law, channel.deflection_of());
-    if (law >= 0) {
-      w.z = w.v = by_laws_.col(law);
-      if (w.law < 0) w.v.setZero();
-    } else if (channel.is_linear()) {
-      w.z = shares(channel.z_row());
-      w.v = shares(channel.v_row());
-    } else {
+    if (!modal_shares(full, channel, modes_, w.z, w.v))
       findings.push_back({full.name() + "/reduction error", "channel", channel.name(), "",
                           "is none whose error is estimated; take a deviation, a rate, a shaft's torque or "
                           "a law's force or deflection"});
-    }
     watched_.push_back(std::move(w));
   }
   asked_ = watched_.size();

@@ -27,6 +27,11 @@ struct ReductionErrorEstimate {
   double relative() const { return peak > 0.0 ? error / peak : 0.0; }
 };
 
+/// Shares of modes, columns over the unknowns, in a channel: value = sum z_j e_j + v_j e_j', for a law's
+/// force times its slopes. False for channels that are no deviation, rate, shaft's torque, force or deflection.
+bool modal_shares(const System& system, const Channel& channel, const Eigen::MatrixXd& modes, Vector& z,
+                  Vector& v);
+
 class LeftOutModes final : public Observer {
  public:
   /// Of a run of reduction.system from the model's initial conditions. Both must live as long. count: modes

@@ -64,15 +64,16 @@ struct CellAngle {
 LoadHarmonics::LoadHarmonics(const System& system) : system_(system) {
   for (std::size_t l = 0; l < system.loads().size(); ++l) {
     const LoadTerm& term = system.loads()[l];
-    if (system.node_map(term.node).unknown < 0) continue;
+    rows_.push_back(system.row_of(term.node));
+    if (system.node_map(term.node).prescribed >= 0) continue;
     const bool taken = term.load->breakpoints().empty() && term.load->stretch(0.0, 0.0, 1.0);
     (taken ? taken_ : others_).push_back(static_cast<int>(l));
   }
 }
 
-void LoadHarmonics::moments(const LoadTerm& term, double w, const Eigen::MatrixXd& q,
+void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q,
                             const Eigen::MatrixXd& v, Eigen::MatrixXd& mu) const {
-  const NodeMap& map = system_.node_map(term.node);
+  const LoadTerm& term = system_.loads()[at(load)];
   const auto cells = static_cast<int>(q.cols());
   const double dt = kTwoPi / (w * cells), ratio = system_.ratio(term.node);
   const bool follows = term.load->depends_on_motion();
@@ -80,10 +81,11 @@ void LoadHarmonics::moments(const LoadTerm& term, double w, const Eigen::MatrixX
     const MotionPoint phi = system_.reference() ? system_.reference()->at(s * dt) : MotionPoint{};
     const int k = s % cells;
     MotionPoint theta{ratio * phi.value, ratio * phi.rate, 0.0};
-    if (follows) {
-      theta.value += map.coeff * q(map.unknown, k);
-      theta.rate += map.coeff * v(map.unknown, k);
-    }
+    if (follows)
+      for (const Entry& e : rows_[at(load)]) {
+        theta.value += e.coeff * q(e.index, k);
+        theta.rate += e.coeff * v(e.index, k);
+      }
     return theta;
   };
   mu.setZero(kMoments, cells);
@@ -140,14 +142,13 @@ void LoadHarmonics::add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixX
   Eigen::MatrixXd mu;
   std::vector<std::complex<double>> lines;
   for (const int l : taken_) {
-    const LoadTerm& term = system_.loads()[at(l)];
-    const NodeMap& map = system_.node_map(term.node);
-    moments(term, w, q, v, mu);
+    moments(l, w, q, v, mu);
     for (int m = 0; m < kMoments; ++m) {
       const std::vector<double> of_m(mu.row(m).begin(), mu.row(m).end());
       fft.fwd(lines, of_m);
       for (Eigen::Index n = 0; n < out.cols(); ++n)
-        out(map.unknown, n) += map.coeff * weights(n, m) * lines[static_cast<std::size_t>(n)];
+        for (const Entry& e : rows_[at(l)])
+          out(e.index, n) += e.coeff * weights(n, m) * lines[static_cast<std::size_t>(n)];
     }
   }
 }

@@ -25,11 +25,12 @@ class LoadHarmonics {
   void add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v, Eigen::MatrixXcd& out) const;
 
  private:
-  void moments(const LoadTerm& term, double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
+  void moments(int load, double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
                Eigen::MatrixXd& mu) const;
 
   const System& system_;
   std::vector<int> taken_, others_;
+  std::vector<std::vector<Entry>> rows_;  // the deviations of all loads' nodes
 };
 
 }  // namespace drev

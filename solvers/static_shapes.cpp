@@ -73,6 +73,14 @@ class Residual {
   Vector stiffness_;
 };
 
+/// Two turns of the reference shaft, or up to the last breakpoint if that is later [s].
+double cycle(const System& system) {
+  const double rate = system.reference() ? std::abs(system.reference()->at(0.0).rate) : 0.0;
+  double duration = rate > 0.0 ? 4.0 * kPi / rate : 0.0;
+  if (!system.breakpoints().empty()) duration = std::max(duration, system.breakpoints().back());
+  return duration > 0.0 ? duration : 1.0;
+}
+
 /// Forces that are taken up whatever their share: laws, motions of prescribed nodes, mean drag.
 Matrix rows_of_laws(const System& system) {
   const bool moves = system.any_prescribed_moves();
@@ -141,13 +149,9 @@ KeptModes kept_modes(const System& system, int count, double up_to_Hz) {
   return kept;
 }
 
-Matrix sampled_loads(const System& system, int count) {
+Matrix sampled_loads(const System& system, double duration, int count) {
   if (system.loads().empty()) return Matrix(system.size(), 0);
   Assembler assembler(system);
-  const double rate = std::abs(assembler.nominal().rate);
-  double duration = rate > 0.0 ? 4.0 * kPi / rate : 0.0;
-  if (!system.breakpoints().empty()) duration = std::max(duration, system.breakpoints().back());
-  if (!(duration > 0.0)) duration = 1.0;
   const Vector rest = Vector::Zero(system.size());
   Matrix samples(system.size(), count);
   Vector with, without;
@@ -184,7 +188,7 @@ StaticShapes static_shapes(const System& system, const KeptModes& modes, double 
       needed = beside(needed, of_laws.col(j) / std::sqrt(whole_laws[j]));
   Matrix taken = orthonormal_in_energy(needed, kDependent);
 
-  const Matrix loads = patterns(sampled_loads(system, kSamples));
+  const Matrix loads = patterns(sampled_loads(system, cycle(system), kSamples));
   if (loads.cols() > 0) {
     Matrix of_loads = residual.solve(loads);
     const double whole = kept_energies(loads).sum() + loads.cwiseProduct(of_loads).sum();

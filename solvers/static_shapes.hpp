@@ -21,8 +21,8 @@ struct StaticShapes {
 /// accuracy: of the deflection under the loads.
 StaticShapes static_shapes(const System& system, const KeptModes& modes, double accuracy);
 
-/// Torques of the loads over the unknowns, at rest, over two turns of the reference shaft or to the last
-/// breakpoint if that is later: one column a sample; no column without loads.
-Eigen::MatrixXd sampled_loads(const System& system, int count);
+/// Torques of the loads over the unknowns, at rest, at even times in (0, duration): one column a sample; no
+/// column without loads.
+Eigen::MatrixXd sampled_loads(const System& system, double duration, int count);
 
 }  // namespace drev

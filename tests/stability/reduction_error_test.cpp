@@ -2,9 +2,11 @@
 #include <cmath>
 
 #include "core/channel.hpp"
+#include "models/camshaft/build_camshaft.hpp"
 #include "solvers/exact_propagation.hpp"
 #include "solvers/left_out_modes.hpp"
 #include "solvers/recorder.hpp"
+#include "solvers/reduction_choice.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/random_model.hpp"
 
@@ -81,4 +83,65 @@ TEST_CASE("Estimate of a reduced run's error: above the true one, and of its siz
     INFO((gaps ? "with stops: " : "linear: ") << "estimate over true error " << least << " to " << most);
     CHECK(most < (gaps ? 30.0 : 5.0));
   }
+}
+
+TEST_CASE("A reduction is chosen where it pays, with the accuracy asked for") {
+  // Two shafts in 50 segments each: the fastest of 102 unknowns at 10 kHz, loads below 100 Hz.
+  for (const bool mesh : {false, true}) {
+    Model m("long shafts");
+    for (const char* node : {"a", "b", "c", "d"}) m.add_node(node);
+    const DistributedShaft::Params shaft{.shear_modulus = 8e10,
+                                         .density = 7850,
+                                         .outer_diameter = 0.1,
+                                         .length = 5.0,
+                                         .segments = 50,
+                                         .mass = SegmentMass::lumped};
+    m.add<Inertia>("Ja", {"a"}, {.inertia = 5.0});
+    m.add<Inertia>("Jb", {"b"}, {.inertia = 1.0});
+    m.add<Inertia>("Jc", {"c"}, {.inertia = 1.0});
+    m.add<Inertia>("Jd", {"d"}, {.inertia = 5.0});
+    m.add<DistributedShaft>("s1", {"a", "b"}, shaft);
+    m.add<DistributedShaft>("s2", {"c", "d"}, shaft);
+    if (mesh)
+      m.add<GearMesh>("mesh", {"b", "c"}, {.base_radius_1 = 0.1,
+                                           .base_radius_2 = 0.1,
+                                           .stiffness = 1e8,
+                                           .normal_backlash = 1e-4});
+    else
+      m.add<ShaftSpring>("mesh", {"b", "c"}, {.stiffness = 1e6});
+    m.add<AppliedTorque>("drive", {"a"}, {.torque = [](double t) { return 2000 * std::sin(200 * t); }});
+    m.add<AppliedTorque>("load", {"d"}, {.torque = [](double t) { return 500 * std::sin(90 * t); }});
+    const System full = m.build();
+    const std::vector<std::string> channels{mesh ? "mesh.force_N" : "mesh.torque_Nm", "s1_20.torque_Nm"};
+    const double end = 0.1, within = 0.02;
+    const ReductionChoice choice = choose_reduction(full, within, channels, end);
+    INFO(choice.reason);
+    REQUIRE(choice.reduction);
+    CHECK(choice.gain > 3.0);
+    CHECK(choice.error <= 1.5 * within);
+    Recorder exact(full, channels, 1e-4), reduced(choice.reduction->system, channels, 1e-4);
+    const RunSummary run_full = propagate(full, {.t_end = end}, {&exact});
+    const RunSummary run = propagate(choice.reduction->system, {.t_end = end}, {&reduced});
+    CHECK(run_full.ok());
+    CHECK(run.ok());
+    // Steps go with the fastest mode.
+    CHECK(run.steps < run_full.steps / 3);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      double error = 0.0, peak = 0.0;
+      for (std::size_t i = 0; i < exact.times().size(); ++i) {
+        error = std::max(error, std::abs(exact.samples(c)[i] - reduced.samples(c)[i]));
+        peak = std::max(peak, std::abs(exact.samples(c)[i]));
+      }
+      INFO(channels[c] << ": " << error / peak);
+      CHECK(error <= within * peak);
+    }
+  }
+  // 39 unknowns, loads on 27 of them, and stiff meshes: nothing to gain.
+  Settings s("camshaft", camshaft_entry().settings);
+  s.set("drive", "gears");
+  const ReductionChoice none =
+      choose_reduction(camshaft_entry().build(s).model.build(), 0.01, {"mesh_1.force_N"}, 1.0);
+  INFO(none.reason);
+  CHECK(!none.reduction);
+  CHECK(none.reason.starts_with("not reduced: "));
 }

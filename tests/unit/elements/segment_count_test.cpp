@@ -101,7 +101,7 @@ TEST_CASE("segments_for: known counts of a shaft held at one end") {
 
 TEST_CASE("segments_for: drill string of published case 5 (Friswell 9.9)") {
   const double exact[] = {1.91033, 3.82066, 5.73100, 7.64133};  // continuum, with both end inertias
-  // Where a free end moves by q, the shaft's inertia moves by q^2/2 in the mean: p = 210/(J/2), J = rho I_p L.
+  // Where an end moves by q, the shaft moves by q^2/2 in the mean: p = 210/(J/2), J = rho I_p L.
   const double ends = 210.0 / (0.5 * 8000.0 * 800.0 * kPi / 32 * (std::pow(0.78, 4) - std::pow(0.65, 4)));
   const double c = torsional_wave_speed(kPipe.shear_modulus, kPipe.density);
   for (const SegmentMass mass : {SegmentMass::lumped, SegmentMass::consistent, SegmentMass::averaged})
