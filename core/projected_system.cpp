@@ -1,6 +1,6 @@
 #include "core/projected_system.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 namespace drev {

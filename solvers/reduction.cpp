@@ -1,11 +1,8 @@
 #include "solvers/reduction.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
-#include "core/units.hpp"
 #include "solvers/fixed_interface.hpp"
 #include "solvers/static_shapes.hpp"
 

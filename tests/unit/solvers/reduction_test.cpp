@@ -9,6 +9,7 @@
 #include "solvers/exact_propagation.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/peaks.hpp"
+#include "solvers/periodic_response.hpp"
 #include "solvers/statics.hpp"
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
@@ -143,6 +144,18 @@ TEST_CASE("All modes kept: the same motion in other coordinates") {
     CHECK(simulate(r.system, steps, d).ok());
     CHECK(((r.basis * d.z) - c.z).lpNorm<Eigen::Infinity>() < 1e-6 * c.z.lpNorm<Eigen::Infinity>());
   }
+}
+
+TEST_CASE("All modes kept: the same periodic response") {
+  const System full = camshaft("held");
+  const PeriodicOptions options{.tolerance = 1e-5, .channels = {"inlet_9-fuel_1.twist_rad"}};
+  const PeriodicResponse a = solve_periodic(full, options);
+  const PeriodicResponse b = solve_periodic(reduce(full, {.modes = full.size()}).system, options);
+  INFO(a.reason << b.reason);
+  REQUIRE(a.found);
+  REQUIRE(b.found);
+  CHECK(b.peaks[0].max == Approx(a.peaks[0].max).epsilon(1e-6));
+  CHECK(b.peaks[0].min == Approx(a.peaks[0].min).epsilon(1e-6));
 }
 
 TEST_CASE("Camshaft with gear drive, reduced: mesh forces and torques of the full model") {
