@@ -33,6 +33,9 @@ void list(Fields& f, DistributedShaft::Params& p) {
   f.number({"inner_diameter", D::length}, p.inner_diameter);
   f.number({"length", D::length}, p.length, Need::required);
   f.whole("segments", p.segments);
+  int mass = static_cast<int>(p.mass);
+  f.choice("mass", {"lumped", "consistent", "averaged"}, mass);
+  p.mass = static_cast<SegmentMass>(mass);
 }
 
 void list(Fields& f, Dashpot::Params& p) { f.number(kDamping, p.damping, Need::required); }
