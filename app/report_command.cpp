@@ -5,6 +5,7 @@
 #include "app/command_line.hpp"
 #include "app/commands.hpp"
 #include "app/exit_codes.hpp"
+#include "app/json_values.hpp"
 #include "app/report_file.hpp"
 #include "app/report_page.hpp"
 
@@ -44,7 +45,7 @@ int report_command(const CommandLine& line) {
 
   ReportFile file(out);
   file.commit(report_page(blocks));
-  print("Report " + file.path() + "\n");
+  print(line.json ? json_text({{"report", file.path()}}) : "Report " + file.path() + "\n");
   return kSuccess;
 }
 
