@@ -16,6 +16,9 @@ namespace {
 constexpr double kAccuracy = 0.05;       // of a figure's own error, over what is allowed
 constexpr double kEnoughSeconds = 0.01;  // of processor time measured
 constexpr int kRepeats = 3;
+constexpr double kMostCost = 3.0;  // of a rung over the full model; dearer ones are given up
+constexpr double kDear = 0.5;      // cost of few modes over that of all, with their static shapes
+constexpr double kStaticPart = 0.25;  // of the static shapes of loads, over what is allowed
 constexpr int kSteadyTurns = 2;
 constexpr double kSteadyPart = 0.2;
 
@@ -121,6 +124,7 @@ class Ladder {
       const std::string in = full ? "" : level.name + ", ",
                         and_out = full ? "" : level.leaves_out + "; ";
       if (figure_.from > 0.0) steady(level.model, in, and_out, rungs);
+      modes(level.model, in, and_out, whole.cost, rungs);
       shafts(level.model, in, and_out, rungs);
     }
     rungs.push_back(std::move(whole));
@@ -154,6 +158,29 @@ class Ladder {
     settle(rungs, first);
   }
 
+  /// Ever more modes until two in a row hold; where the static shapes of many loads are dear, without them.
+  void modes(const Model& model, const std::string& in, const std::string& and_out, double cost,
+             std::vector<Rung>& rungs) {
+    const int unknowns = model.build().size();
+    for (const bool shapes : {true, false}) {
+      const std::size_t first = rungs.size();
+      for (int n = 1; n <= unknowns / 2 && !confirmed(rungs, first); n *= 2) {
+        const std::string name = std::to_string(n) + (n == 1 ? " mode" : " modes");
+        rungs.push_back(measure(
+            {in + name + (shapes ? "" : " alone"),
+             and_out + (shapes ? "the inertia of the modes above" : "the modes above")},
+            {.model = model,
+             .figure = figure_,
+             .reduction = ReductionOptions{.modes = n,
+                                           .static_correction = shapes,
+                                           .static_accuracy = kStaticPart * options_.within}}));
+        if (!rungs.back().unsuitable.empty()) break;
+      }
+      settle(rungs, first);
+      if (rungs.size() == first || (rungs.back().holds && rungs[first].cost < kDear * cost)) return;
+    }
+  }
+
   static bool confirmed(const std::vector<Rung>& rungs, std::size_t first) {
     return rungs.size() >= first + 2 && rungs.back().holds && rungs[rungs.size() - 2].holds;
   }
@@ -182,7 +209,7 @@ class Ladder {
     take(full_estimate_, full_rung_);
     full_rung_.holds = true;
     full_rung_.cost = 1.0;
-    full_rung_.difference_error = full_rung_.error / std::abs(full_rung_.value);
+    full_rung_.difference_error = full_rung_.error / scale();
     full_rung_.evidence = evidence_.of_full(full_estimate_.watched);
     advice_.statistic = full_estimate_.statistic;
   }
@@ -216,6 +243,7 @@ class Ladder {
 
   Rung measure(const Name& name, Recipe recipe) const {
     recipe.figure.watch.clear();
+    recipe.figure.most_seconds = kMostCost * full_rung_.seconds;
     Rung rung{.name = name.name, .leaves_out = name.leaves_out, .recipe = std::move(recipe)};
     try {
       const FigureEstimate estimate = rung.recipe.estimate();
@@ -231,12 +259,15 @@ class Ladder {
     }
     const double truth = std::abs(full_rung_.value), off = std::abs(rung.value - full_rung_.value);
     const double errors = rung.error + full_rung_.error;
-    rung.difference = (rung.value - full_rung_.value) / truth;
-    rung.difference_error = errors / truth;
+    rung.difference = (rung.value - full_rung_.value) / scale();
+    rung.difference_error = errors / scale();
     rung.holds = off + errors <= options_.within * (truth - full_rung_.error);
     rung.cost = rung.seconds / full_rung_.seconds;
     return rung;
   }
+
+  /// What differences are relative to; a figure may be zero.
+  double scale() const { return full_rung_.value != 0.0 ? std::abs(full_rung_.value) : 1.0; }
 
   void choose() {
     advice_.chosen = advice_.rungs.size() - 1;

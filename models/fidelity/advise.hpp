@@ -2,16 +2,16 @@
 /// How much of a model a figure needs: a ladder of simpler models, each measured against the full one.
 ///
 ///   levels      gear held; rigid meshes; elastic meshes; with backlash; with varying stiffness
-///   of each     lumped shafts, or fewer segments of distributed ones; for figures of the steady state the
-///               periodic response in place of a run
+///   of each     its lowest modes with the static shapes of the others; lumped shafts, or fewer segments of
+///               distributed ones; for figures of the steady state the periodic response in place of a run
 ///
 /// Promise of a rung that holds:  |figure - figure of the full model| <= within |figure of the full model|,
-/// with the errors of both figures counted against it. Of a scene whose runs depend on their start to the last
-/// digit the errors are the intervals that hold a single run in 95 % of all cases.
+/// with the errors of both figures counted against it. Of a scene whose runs depend on the last digit of their
+/// start the errors are the intervals that hold a single run in 95 % of all cases.
 ///
-/// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds only
-/// if one that leaves out less does, and a discretisation only if the next finer one does. What holds does so
-/// for this scene and this figure (docs/fidelity.md).
+/// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
+/// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
+/// does so for this scene and this figure (docs/fidelity.md).
 #include <string>
 #include <vector>
 

@@ -79,6 +79,8 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
            }},
       state, observers);
   if (!summary.ok()) run.failure = summary.reason;
+  if (summary.status == RunStatus::interrupted)
+    run.failure = "a run takes longer than " + to_text(most_seconds) + " s";
   figure.peak().refine(system, method);
   run.value = figure.peak().value(), run.time = figure.peak().time();
   run.end = std::move(state);
@@ -184,22 +186,22 @@ double exact_seconds(const System& system, double t_end) {
 }  // namespace
 
 FigureEstimate estimate_figure(const System& system, const FigureOptions& o) {
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   Method method = choose_method(system, o.t_end, o.step).method;
   if (!method.exact()) {
     if (method.controlled()) method.tolerance = std::clamp(o.accuracy, kLeastTolerance, 1e-2);
-    return estimate_with(system, method, o, kNoLimit);
+    return estimate_with(system, method, o, o.most_seconds);
   }
   // Implicit steps that leave the fastest modes aside.
   if (const double seconds = exact_seconds(system, o.t_end); seconds > kWorthAsking) {
     const FigureEstimate stepped =
-        estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o, seconds);
+        estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o,
+                      std::min(seconds, o.most_seconds));
     if (stepped.failure.empty() && !stepped.statistic &&
         stepped.error <= o.accuracy * stepped.value)
       return stepped;
   }
   method.tolerance = std::clamp(kFirstOfExact * o.accuracy, kLeastTolerance, 1e-4);
-  return estimate_with(system, method, o, kNoLimit);
+  return estimate_with(system, method, o, o.most_seconds);
 }
 
 double figure_of_run(const System& system, const Method& method, const FigureOptions& options) {

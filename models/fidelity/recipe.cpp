@@ -24,7 +24,9 @@ SteadyPeak steady_peak(const System& system, const FigureOptions& figure, double
 
 }  // namespace
 
-System Recipe::build() const { return model.build(); }
+System Recipe::build() const {
+  return reduction ? reduce(model.build(), *reduction).system : model.build();
+}
 
 double Recipe::run() const {
   const System system = build();

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "models/fidelity/figure_estimate.hpp"
+#include "solvers/reduction.hpp"
 
 namespace drev {
 
@@ -10,8 +11,9 @@ struct Recipe {
   Model model;
   FigureOptions figure;  ///< its channels have this model's names
   Method method = {};
-  /// Turns of the reference shaft after which the loads repeat themselves: the periodic response in place of a
-  /// run.
+  std::optional<ReductionOptions> reduction = {};
+  /// Turns of the reference shaft after which the loads repeat themselves: the periodic response in place of
+  /// a run.
   std::optional<double> turns = {};
 
   System build() const;

@@ -1,8 +1,8 @@
 #pragma once
 /// Simpler models made from a model: one thing left out at a time, the rest as it was. Each returns nothing
-/// where the model has nothing of the kind. Initial conditions go along: parts that a simplification ties anew
-/// start turned as rigid bodies, so that every shaft starts with its twist. What cannot be built then (a load
-/// on a node that is gone) says so in Model::build().
+/// where the model has nothing of the kind. Initial conditions go along: parts that a simplification ties
+/// anew start turned as rigid bodies, so that every shaft starts with its twist. What cannot be built then (a
+/// load on a node that is gone) says so in Model::build().
 #include <map>
 #include <optional>
 #include <string>
@@ -31,8 +31,8 @@ std::optional<Model> with_rigid_meshes(const Model& model);
 /// Nodes that channels speak of: of the node or nodes named, or of the element's.
 std::vector<std::string> nodes_of(const Model& model, const std::vector<std::string>& channels);
 
-/// Cut at the gear mesh nearest to the nodes given that parts them from what is driven: the gear on their side
-/// is held at its nominal motion, and what lies beyond is left out.
+/// Cut at the gear mesh nearest to the nodes given that parts them from what is driven: the gear on their
+/// side is held at its nominal motion, and what lies beyond is left out.
 std::optional<Model> with_drive_held(const Model& model, const std::vector<std::string>& nodes);
 
 /// A model in which channels have other names: of the full model, of this one.
