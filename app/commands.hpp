@@ -38,6 +38,7 @@ int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);
 int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
+int study_command(const CommandLine& line);
 int advise_command(const CommandLine& line);
 int check_command(const CommandLine& line);
 int export_command(const CommandLine& line);

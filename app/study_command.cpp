@@ -1,0 +1,93 @@
+#include <algorithm>
+
+#include "app/command_line.hpp"
+#include "app/exit_codes.hpp"
+#include "app/interrupt.hpp"
+#include "app/output_file.hpp"
+#include "app/progress.hpp"
+#include "app/study.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr const char* kPictures = "pictures";
+
+/// One group by its name.
+struct StudyEntry {
+  const char* name;
+  StudyGroup (*compute)();
+};
+
+/// In the order of the report.
+const std::vector<StudyEntry>& studies() {
+  static const std::vector<StudyEntry> all{{"data", study_data},
+                                           {"benchmark", study_benchmark},
+                                           {"frequencies", study_frequencies},
+                                           {"held_frequencies", study_held_frequencies},
+                                           {"held", study_held},
+                                           {"run_up", study_run_up},
+                                           {"firing_order", study_firing_order},
+                                           {"gear_drive", study_gear_drive}};
+  return all;
+}
+
+void write(const std::string& directory, const std::string& name, const std::string& extension,
+           const std::string& text) {
+  OutputFile file(directory, name, extension);
+  file.write(text);
+  file.commit();
+}
+
+/// The groups asked for, in the order of the report.
+std::vector<StudyEntry> chosen(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::vector<std::string> names;
+  for (const StudyEntry& entry : studies()) names.push_back(entry.name);
+  const std::vector<std::string> only = line.list("--only").value_or(names);
+  for (const std::string& name : only)
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      std::string known;
+      for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+      findings.push_back({"command line", "--only", name, "",
+                          "is no study; they are " + known + did_you_mean(name, names)});
+    }
+  if (line.json)
+    findings.push_back(
+        {"command line", "--json", "", "", "is not for drev study; --out writes study.md"});
+  if (!findings.empty()) throw ModelError(findings);
+  std::vector<StudyEntry> entries;
+  for (const StudyEntry& entry : studies())
+    if (std::find(only.begin(), only.end(), entry.name) != only.end()) entries.push_back(entry);
+  return entries;
+}
+
+}  // namespace
+
+int study_command(const CommandLine& line) {
+  const std::vector<StudyEntry> entries = chosen(line);
+  const auto out = line.option("--out");
+  if (out) create_directory(*out + "/" + kPictures);
+  watch_signals();
+  Progress progress;
+  std::vector<StudyGroup> groups;
+  for (const StudyEntry& entry : entries) {
+    try {
+      groups.push_back(entry.compute());
+    } catch (const SolverError&) {
+      if (interrupted()) return kInterrupted;
+      throw;
+    }
+    progress.update(static_cast<double>(groups.size()) / static_cast<double>(entries.size()));
+  }
+  if (out) {
+    for (const StudyGroup& group : groups)
+      for (const StudyPicture& picture : group.pictures)
+        write(*out + "/" + kPictures, "study_" + picture.name, "svg", picture.svg);
+    write(*out, "study", "md", study_as_markdown(groups, kPictures));
+  }
+  print(study_as_text(groups));
+  return kSuccess;
+}
+
+}  // namespace drev::app

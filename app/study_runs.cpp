@@ -1,0 +1,211 @@
+#include "app/study_runs.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include "app/interrupt.hpp"
+#include "app/text_layout.hpp"
+#include "core/units.hpp"
+#include "models/camshaft/published.hpp"
+#include "solvers/contact_statistics.hpp"
+#include "solvers/growth.hpp"
+#include "solvers/statics.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kSettled = 1.0;                 // s
+constexpr double kNudge = 1e-9;                  // rad
+constexpr double kCoarse = 1e-7, kFine = 1e-11;  // tolerances of exact propagation
+constexpr int kStaticAngles = 1440;
+constexpr std::size_t kStepRuns = 8;
+
+}  // namespace
+
+void for_all(std::size_t count, const std::function<void(std::size_t)>& task) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        if (interrupted()) throw SolverError("interrupted");
+        task(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+  };
+  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  {
+    std::vector<std::jthread> pool;
+    for (std::size_t i = 1; i < std::min(threads, count); ++i) pool.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+Scene build_scene(const std::string& model, const SettingList& settings) {
+  const SceneEntry& entry = find_scene(model);
+  Settings values(entry.name, entry.settings);
+  for (const auto& [name, value] : settings) values.set(name, value);
+  return entry.build(values);
+}
+
+Method source_method() { return {.name = "average_acceleration", .step = published::kStep}; }
+
+Method exact_method(double tolerance) { return {.name = "exact", .tolerance = tolerance}; }
+
+RunSummary run_watched(const System& system, const Method& method, double t_end,
+                       const std::vector<Observer*>& observers) {
+  const RunSummary summary =
+      run_method(system, method,
+                 {.t_end = t_end, .progress = [](double) { return !interrupted(); }}, observers);
+  if (!summary.ok() && summary.status != RunStatus::energy_error)
+    throw SolverError(system.name() + ": " + summary.reason);
+  return summary;
+}
+
+WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start,
+                         double length)
+    : peaks_(std::move(channels), inside_steps),
+      inside_steps_(inside_steps),
+      start_(start),
+      length_(length) {}
+
+void WindowPeaks::start(const Assembler& assembler, const StepPoint& point) {
+  peaks_.start(assembler, point);
+}
+
+double WindowPeaks::next_stop(double t) const {
+  if (t < start_) return start_;
+  return edge(static_cast<long>(std::floor((t - start_) / length_ * (1.0 + 1e-12) + 1e-9)) + 1);
+}
+
+void WindowPeaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+  const double slack = 1e-9 * length_;
+  if (to.state.t <= start_ + slack) {
+    if (to.state.t >= start_ - slack) peaks_.start(assembler, to);
+    return;
+  }
+  peaks_.step(assembler, from, to);
+  if (to.state.t < edge(window_ + 1) - slack) return;
+  amplitudes_.push_back(peaks_.peaks()[peaks_.largest()].amplitude());
+  peaks_ = Peaks(peaks_.channels(), inside_steps_);
+  peaks_.start(assembler, to);
+  ++window_;
+}
+
+CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge) {
+  Scene scene = build_scene("camshaft", settings);
+  if (nudge != 0.0) scene.model.set_initial("end", nudge, 0.0);
+  const System system = scene.model.build();
+  const bool inside = method.exact();
+  Peaks deflection(find_channels(system, {scene.deflection}), inside);
+  Peaks torque(find_channels(system, scene.torques), inside);
+  const double revolution = scene.static_turn / std::abs(system.reference()->at(0.0).rate);
+  WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled,
+                                 revolution);
+  WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
+  ContactStatistics contacts(system, inside);
+  std::vector<Observer*> observers{&deflection, &torque, &contacts};
+  // Constant steps would be cut at the windows' ends, and a run that rattles be another.
+  if (method.exact()) observers.insert(observers.end(), {&settled_deflection, &settled_torque});
+  CamshaftFigures figures;
+  figures.summary = run_watched(system, method, scene.duration, observers);
+  figures.deflection = to_deg(deflection.peaks()[0].amplitude());
+  figures.torque = torque.peaks()[torque.largest()].amplitude();
+  figures.settled_deflection = to_deg(mean_of(settled_deflection.amplitudes()).value);
+  figures.settled_torque = mean_of(settled_torque.amplitudes()).value;
+  for (const ContactRecord& record : contacts.records()) {
+    figures.front += static_cast<double>(record.front_impacts);
+    figures.back += static_cast<double>(record.back_impacts);
+  }
+  return figures;
+}
+
+Known CamshaftCase::known(Member member) const {
+  if (!statistic) return from_two(exact[0].*member, exact[1].*member, kFine);
+  std::vector<double> values;
+  for (const CamshaftFigures& run : exact) values.push_back(run.*member);
+  return mean_of(values);
+}
+
+double CamshaftCase::at_step(Member member) const {
+  double sum = 0.0;
+  for (const CamshaftFigures& run : source) sum += run.*member;
+  return sum / static_cast<double>(source.size());
+}
+
+std::string CamshaftCase::step_cell(Member member) const {
+  if (!statistic) return cell(source[0].*member);
+  const auto [low, high] =
+      std::minmax_element(source.begin(), source.end(),
+                          [member](const auto& a, const auto& b) { return a.*member < b.*member; });
+  return digits(at_step(member), 4) + " (" + digits((*low).*member, 3) + " to " +
+         digits((*high).*member, 3) + ")";
+}
+
+std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int runs) {
+  const bool statistic = runs > 2;
+  const std::size_t at_step = statistic ? kStepRuns : 1,
+                    each = at_step + static_cast<std::size_t>(runs);
+  std::vector<CamshaftCase> results(cases.size());
+  for (CamshaftCase& result : results) {
+    result.statistic = statistic;
+    result.source.resize(at_step);
+    result.exact.resize(each - at_step);
+  }
+  for_all(cases.size() * each, [&](std::size_t i) {
+    SettingList settings{{"loads", "source"}};
+    for (const auto& setting : cases[i / each]) settings.push_back(setting);
+    CamshaftCase& result = results[i / each];
+    const std::size_t run = i % each;
+    if (run < at_step) {
+      result.source[run] =
+          run_camshaft(settings, source_method(), kNudge * static_cast<double>(run));
+      return;
+    }
+    const std::size_t k = run - at_step;
+    result.exact[k] =
+        statistic ? run_camshaft(settings, exact_method(1e-10), kNudge * static_cast<double>(k))
+                  : run_camshaft(settings, exact_method(k == 0 ? kCoarse : kFine), 0.0);
+  });
+  return results;
+}
+
+double static_torque(const Scene& scene) {
+  const System system = scene.model.build();
+  double largest = 0.0;
+  for (const Peak& peak : static_sweep(system, find_channels(system, scene.torques), 0.0,
+                                       scene.static_turn, kStaticAngles))
+    largest = std::max(largest, peak.amplitude());
+  return largest;
+}
+
+Known mean_of(const std::vector<double>& values) {
+  const MeanInterval mean = batch_mean(values, static_cast<int>(values.size()));
+  return {mean.mean, mean.half_width, true};
+}
+
+Known from_two(double coarse, double fine, double tolerance) {
+  return {fine, 2.0 * std::abs(fine - coarse) + std::max(tolerance, 1e-14) * std::abs(fine)};
+}
+
+std::string cell(double value) { return digits(value, 5); }
+
+std::string printed(double value) { return short_digits(value, 6); }
+
+std::string percent(double value, double reference) {
+  const double change = 100.0 * (value / reference - 1.0);
+  return (change < 0.0 ? "-" : "+") + digits(std::abs(change), std::abs(change) < 1.0 ? 1 : 2) +
+         " %";
+}
+
+}  // namespace drev::app
