@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <set>
 
 #include "app/commands.hpp"
 #include "app/exit_codes.hpp"
@@ -35,6 +35,7 @@ int check_command(const CommandLine& line) {
   }
   std::size_t nodes = 0, elements = 0;
   std::vector<Finding> findings;
+  std::set<std::string> said;
   for (const CommandLine& run : runs) try {
       const RunRequest request = request_run(run);
       if (&run != &runs.front()) continue;
@@ -42,9 +43,7 @@ int check_command(const CommandLine& line) {
       elements = request.model.scene.model.placements().size();
     } catch (const ModelError& error) {
       for (const Finding& finding : error.findings())
-        if (std::none_of(findings.begin(), findings.end(),
-                         [&](const Finding& said) { return said.text() == finding.text(); }))
-          findings.push_back(finding);
+        if (said.insert(finding.text()).second) findings.push_back(finding);
     }
   if (!findings.empty()) throw ModelError(std::move(findings));
   if (line.json)

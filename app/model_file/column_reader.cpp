@@ -9,6 +9,8 @@ namespace drev::app {
 
 namespace {
 
+constexpr std::size_t kMostFaults = 20;  // of one array
+
 class ColumnReader {
  public:
   ColumnReader(const Value& source, const std::string& where, NodeKind kind,
@@ -47,9 +49,12 @@ class ColumnReader {
         continue;
       }
       column.values->clear();
-      for (const Value& item : array.items)
+      const std::size_t before = context_.findings.size();
+      for (const Value& item : array.items) {
+        if (context_.findings.size() - before >= kMostFaults) break;
         if (const auto read = read_number(item, found->unit, where_ + "." + found->entry->key, context_))
           column.values->push_back(*read * found->factor);
+      }
     }
     same_length();
   }

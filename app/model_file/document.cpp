@@ -11,6 +11,7 @@ namespace drev::app {
 namespace {
 
 constexpr int kMostFiles = 100, kDeepestInclude = 10;
+constexpr std::size_t kMostParameters = 1000;
 
 bool is_identifier(const std::string& name) {
   return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
@@ -126,6 +127,8 @@ class DocumentReader {
   }
 
   void read_parameters(const Value& table) {
+    if (table.entries.size() > kMostParameters)
+      return refuse(table.at, "parameters", "a file may have " + std::to_string(kMostParameters) + " at most");
     for (const Entry& entry : table.entries) {
       const std::string where = "parameters." + entry.key;
       if (!is_identifier(entry.key) || entry.key == "pi" || entry.key == "position") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/model_file/part.hpp"
 #include "app/model_file/scene_reader.hpp"
 
 namespace drev::app {
@@ -25,6 +26,7 @@ ModelFile::ModelFile(const std::string& text, const std::string& path, const std
     // What else is wrong, as far as it can be told with the defaults.
     const FileScene rest = read_scene(*document, Settings(entry_.name, entry_.settings), run);
     findings.insert(findings.end(), rest.findings.begin(), rest.findings.end());
+    limit_findings(findings, document->at);
     throw ModelError(std::move(findings));
   }
   entry_.build = [document, run](Settings settings) {

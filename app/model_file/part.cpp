@@ -66,4 +66,12 @@ void remove_repeated(std::vector<Finding>& findings) {
   });
 }
 
+void limit_findings(std::vector<Finding>& findings, const Position& file) {
+  remove_repeated(findings);
+  if (findings.size() <= kMostFaults) return;
+  const std::size_t more = findings.size() - kMostFaults;
+  findings.resize(kMostFaults);
+  findings.push_back(fault_at(file, "the file", "has " + std::to_string(more) + " more faults at least"));
+}
+
 }  // namespace drev::app

@@ -27,4 +27,8 @@ std::vector<Finding> placed(const ModelError& error, const std::string& model, c
 /// differ.
 void remove_repeated(std::vector<Finding>& findings);
 
+inline constexpr std::size_t kMostFaults = 200;  ///< that are listed of one file
+/// Removes repeated ones, and those beyond the limit, which it counts instead.
+void limit_findings(std::vector<Finding>& findings, const Position& file);
+
 }  // namespace drev::app

@@ -17,9 +17,8 @@ namespace {
 
 constexpr int kMostRepeats = 10000;
 constexpr std::size_t kMostParts = 300000;  // nodes and elements
-// A file with more faults is read no further, and names are compared with so many at most: suggestions take
-// time.
-constexpr std::size_t kMostFaults = 200, kMostCompared = 2000;
+// Names are compared with so many at most: suggestions take time.
+constexpr std::size_t kMostCompared = 2000;
 
 class SceneReader {
  public:
@@ -100,14 +99,11 @@ class SceneReader {
     if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
   }
 
-  /// Then the rest is not read.
+  /// Then the rest of the nodes and elements is not read.
   bool too_many_faults() {
     if (context_.findings.size() <= kMostFaults) return false;
     remove_repeated(context_.findings);
-    if (context_.findings.size() <= kMostFaults) return false;
-    if (!given_up_) refuse(doc_.at, "the file", "has more faults than these; the rest was not read");
-    given_up_ = true;
-    return true;
+    return context_.findings.size() > kMostFaults;
   }
 
   bool is_new(const std::map<std::string, Part>& parts, const Entry& entry, const std::string& where,
@@ -252,7 +248,7 @@ class SceneReader {
   Model model_;
   std::map<std::string, Part> nodes_, elements_;
   std::vector<std::string> known_nodes_;
-  bool too_many_ = false, given_up_ = false;
+  bool too_many_ = false;
 };
 
 }  // namespace
@@ -268,7 +264,7 @@ FileScene read_scene(const Document& document, const Settings& settings, const s
   const RunSection section(document, run, context);
   result.options = section.options();
   if (!options_only) result.scene = SceneReader(document, context).read(section);
-  remove_repeated(context.findings);
+  limit_findings(context.findings, document.at);
   if (!context.findings.empty()) result.scene.reset();
   result.findings = std::move(context.findings);
   return result;
