@@ -57,7 +57,7 @@ const PREFIXES = [
 /// Factor and name of the unit in which a quantity of this size reads well: N -> kN, rad -> mrad.
 function readableUnit(unit, size) {
   const found = size > 0 ? PREFIXES.find(([value]) => size >= value) || PREFIXES.at(-1) : PREFIXES[3];
-  // Below a hundred thousand N or N m, and for angles near 1 rad, a prefix would not help.
+  // From 1 to 10 000 a prefix would not help.
   const [value, prefix] = size >= 1 && size < 1e4 ? PREFIXES[3] : found;
   return { factor: 1 / value, unit: prefix + unitText(unit) };
 }
