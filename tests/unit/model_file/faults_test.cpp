@@ -27,6 +27,7 @@ const std::vector<Fault>& faults() {
       // the language
       {"name = \"drive\"", "name = \"drive@\n", "is no TOML"},
       {"gear = {}", "gear = {@\n", "is no TOML"},
+      {"gear = {}", "gear = { hold = true, @/ }", "expected key or closing '}'"},
       {"gear = {}", "gear = {}\ngear = @{}", "is no TOML"},
       {"duration_s = 0.1", "duration_s = 0.1.2", "is no TOML"},
       {"gear = {}", "a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t.u.v.w.x.y.z.a.b.c.d.e.f.g@.h = {}",
