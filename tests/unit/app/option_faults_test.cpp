@@ -16,7 +16,7 @@ struct Fault {
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> all{
       // commands and models
-      {{}, {"no command", "run, modes, list, chart, advise"}},
+      {{}, {"no command", "run, modes, list, chart, study, advise"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
       {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
       {{"--verison"}, {"--verison", "did you mean '--version'?"}},
