@@ -62,7 +62,7 @@ TEST_CASE("bash completes words that it has split at =") {
   CHECK(lines_of(drev::test::read_file(out)) == Words{"held", "gears held free"});
 }
 
-TEST_CASE("--quiet prints nothing, and still says what is wrong") {
+TEST_CASE("Option --quiet prints nothing, and what is wrong is still said") {
   const auto good = drev_command({"run", "two_inertia", "--set", "duration_s=0.01", "--quiet"});
   CHECK(good.exit_code == 0);
   CHECK(good.out.empty());
