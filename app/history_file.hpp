@@ -31,7 +31,7 @@ class HistoryFile {
   double every_;
   long rows_ = 0;
   std::string line_, error_;
-  Clock::time_point flushed_ = Clock::now();
+  Clock::time_point flushed_ = {};  ///< the first row goes to the disk at once
 };
 
 }  // namespace drev::app

@@ -2,6 +2,7 @@
 #include "app/exit_codes.hpp"
 #include "app/json_values.hpp"
 #include "app/requests.hpp"
+#include "app/run_json.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
 #include "solvers/modes.hpp"
@@ -31,7 +32,7 @@ int modes_command(const CommandLine& line) {
   const ModeSet modes = solve_modes(request.model.system, request.options);
   const std::string contact = request.options.contact == Contact::closed ? "closed" : "open";
   if (line.json) {
-    Json object;
+    Json object = result_object("modes");
     object["model"] = request.model.entry->name;
     object["settings"] = settings_object(request.model.settings);
     object["frequencies_Hz"] = modes.frequency_Hz;

@@ -20,6 +20,48 @@ std::string message(const std::string& path, const std::string& reason) {
   return "cannot write " + path + ": " + reason;
 }
 
+[[noreturn]] void fail(const std::string& path, int error) {
+  throw OutputError(message(path, std::strerror(error)));
+}
+
+/// Two processes must not write one file, nor may one change what the other has just given its name. Closes
+/// the file and throws OutputError if another process writes it.
+void lock(int descriptor, const std::string& path) {
+  struct stat opened {
+  }, named{};
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &opened) == 0 &&
+      ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino)
+    return;
+  ::close(descriptor);
+  throw OutputError(message(path, "another process is writing it"));
+}
+
+void empty(int descriptor, const std::string& path) {
+  struct stat opened {};
+  if (::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode)) return;
+  if (::ftruncate(descriptor, 0) == 0) return;
+  const int error = errno;
+  ::close(descriptor);
+  fail(path, error);
+}
+
+/// 0, or errno.
+int write_all(int descriptor, const std::string& text) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    done += static_cast<std::size_t>(count);
+  }
+  return 0;
+}
+
+/// To the disk; 0, or errno.
+int sync(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
 }  // namespace
 
 void create_directory(const std::string& directory) {
@@ -36,27 +78,12 @@ OutputFile::OutputFile(const std::string& directory, const std::string& name,
       partial_(directory + "/" + name + ".partial." + extension) {
   descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(partial_, errno);
-  // Two processes must not write one file, nor may one empty what the other has just completed.
-  struct stat opened {
-  }, named{};
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || ::fstat(descriptor_, &opened) != 0 ||
-      ::stat(partial_.c_str(), &named) != 0 || opened.st_ino != named.st_ino) {
-    ::close(descriptor_);
-    throw OutputError(message(partial_, "another process is writing it"));
-  }
-  if (S_ISREG(opened.st_mode) && ::ftruncate(descriptor_, 0) != 0) {
-    const int error = errno;
-    ::close(descriptor_);
-    fail(partial_, error);
-  }
+  lock(descriptor_, partial_);
+  empty(descriptor_, partial_);
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-void OutputFile::fail(const std::string& path, int error) const {
-  throw OutputError(message(path, std::strerror(error)));
 }
 
 void OutputFile::write(const std::string& text) {
@@ -65,27 +92,55 @@ void OutputFile::write(const std::string& text) {
 }
 
 void OutputFile::flush() {
-  std::size_t done = 0;
-  while (done < buffer_.size()) {
-    const ssize_t count = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const int error = errno;
-      buffer_.clear();
-      fail(partial_, error);
-    }
-    done += static_cast<std::size_t>(count);
-  }
+  const int error = write_all(descriptor_, buffer_);
   buffer_.clear();
+  if (error != 0) fail(partial_, error);
 }
 
 void OutputFile::commit() {
   flush();
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(partial_, errno);
+  if (const int error = sync(descriptor_); error != 0) fail(partial_, error);
   if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail(path_, errno);
   const int closed = ::close(descriptor_);
   descriptor_ = -1;
   if (closed != 0) fail(path_, errno);
+}
+
+ReplacedFile::ReplacedFile(const std::string& directory, const std::string& name,
+                           const std::string& extension)
+    : path_(directory + "/" + name + "." + extension),
+      partial_(directory + "/" + name + ".partial." + extension),
+      next_(partial_ + ".next") {
+  descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0 && errno != ENOENT) fail(partial_, errno);
+  if (descriptor_ >= 0) lock(descriptor_, partial_);
+}
+
+ReplacedFile::~ReplacedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void ReplacedFile::replace(const std::string& text) {
+  const int next = ::open(next_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (next < 0) fail(next_, errno);
+  lock(next, next_);
+  empty(next, next_);
+  int error = write_all(next, text);
+  if (error == 0) error = sync(next);
+  if (error == 0 && std::rename(next_.c_str(), partial_.c_str()) != 0) error = errno;
+  if (error != 0) {
+    std::remove(next_.c_str());
+    ::close(next);
+    fail(partial_, error);
+  }
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = next;
+}
+
+void ReplacedFile::commit() {
+  if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail(path_, errno);
+  ::close(descriptor_);
+  descriptor_ = -1;
 }
 
 }  // namespace drev::app

@@ -1,6 +1,6 @@
 #pragma once
-/// A file that is never half written under its own name: DIR/NAME.partial.EXT becomes DIR/NAME.EXT when it
-/// is complete. Every write is checked.
+/// Files that are never half written under their own name: DIR/NAME.partial.EXT becomes DIR/NAME.EXT when it
+/// is complete. Every write is checked, and a file has one writer.
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +15,7 @@ class OutputError : public std::runtime_error {
 /// Creates the directory, with those above it. Throws OutputError.
 void create_directory(const std::string& directory);
 
+/// A file that grows.
 class OutputFile {
  public:
   /// Opens DIR/NAME.partial.EXT, empty. Throws OutputError, also when another process is writing it.
@@ -34,10 +35,30 @@ class OutputFile {
   const std::string& partial_path() const { return partial_; }
 
  private:
-  [[noreturn]] void fail(const std::string& path, int error) const;
-
   std::string path_, partial_, buffer_;
   int descriptor_ = -1;
+};
+
+/// A small file that is replaced as a whole: once written, DIR/NAME.partial.EXT always holds the latest text
+/// in full, also when the process is killed or the disk is full.
+class ReplacedFile {
+ public:
+  /// Throws OutputError when another process is writing it. A leftover stays until the first text.
+  ReplacedFile(const std::string& directory, const std::string& name, const std::string& extension);
+  ~ReplacedFile();
+  ReplacedFile(const ReplacedFile&) = delete;
+  ReplacedFile& operator=(const ReplacedFile&) = delete;
+
+  /// Throws OutputError; the text before then stays.
+  void replace(const std::string& text);
+  /// Gives the file its own name. Throws OutputError.
+  void commit();
+
+  const std::string& partial_path() const { return partial_; }
+
+ private:
+  std::string path_, partial_, next_;
+  int descriptor_ = -1;  ///< of partial_, locked; -1: there is none
 };
 
 }  // namespace drev::app

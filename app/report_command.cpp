@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,15 +16,38 @@ namespace {
 
 constexpr const char* kPlace = "command line";
 
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A sentence on a run in the directory that did not come to its end; empty: there is none.
+std::string partial_run(const std::string& directory) {
+  const std::string path = directory + "/summary.partial.json";
+  if (!std::filesystem::exists(path)) return {};
+  const Json summary = Json::parse(text_of(path), nullptr, false);
+  const std::string status = summary.is_object() ? summary.value("status", "unknown") : "unreadable";
+  return "the last run there did not come to its end (" + status + ": " + path + ")";
+}
+
 /// The data block of one run; empty, and a finding, if there is none.
 std::string block_of(std::string run, std::vector<Finding>& findings) {
-  if (std::filesystem::is_directory(run)) run += "/report.html";
-  std::ifstream file(run, std::ios::binary);
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
-  const std::vector<std::string> blocks = blocks_of(page);
-  if (blocks.size() == 1) return blocks.front();
+  std::string partial;
+  if (std::filesystem::is_directory(run)) {
+    partial = partial_run(run);
+    run += "/report.html";
+  }
+  const bool readable = std::ifstream(run).good();
+  const std::vector<std::string> blocks = blocks_of(text_of(run));
+  if (blocks.size() == 1) {
+    if (!partial.empty())
+      std::fprintf(stderr, "drev: %s is of an older run; %s\n", run.c_str(), partial.c_str());
+    return blocks.front();
+  }
   findings.push_back({kPlace, "RUN", run, "",
-                      !file               ? "cannot be read"
+                      !readable && !partial.empty()
+                          ? "does not exist: " + partial
+                      : !readable         ? "cannot be read"
                       : blocks.size() > 1 ? "compares two runs already; give each run's own report"
                                           : "is no report of drev run"});
   return {};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "app/commands.hpp"
@@ -47,6 +48,7 @@ class RunFiles {
       create_directory(*request.out);
       history_.emplace(*request.out, request.record, request.every);
       summary_.emplace(*request.out, "summary", "json");
+      summary_->replace(running_as_json(request));
     }
     if (request.report) report_.emplace(*request.report);
     if (request.out || request.report)
@@ -93,14 +95,19 @@ class RunFiles {
  private:
   void write_summary(const RunResult& result, bool commit) {
     const std::string summary = run_as_json(request_, result);
-    summary_->write(summary);
-    if (!commit) return summary_->flush();
+    summary_->replace(summary);
+    if (!commit) return;
     summary_->commit();
-    if (!request_.hdf5) return;
+    if (!request_.hdf5) return warn_of_old_hdf5();
     std::vector<HistoryColumn> columns;
     for (const Channel& channel : find_channels(request_.model.system, request_.record))
       columns.push_back({channel.name(), channel.unit()});
     write_hdf5(*request_.out, history_->path(), columns, summary);
+  }
+
+  void warn_of_old_hdf5() const {
+    const std::string old = *request_.out + "/history.h5";
+    if (std::filesystem::exists(old)) say(old + " is of an older run; --format hdf5 replaces it");
   }
 
   void write_reports(const RunResult& result) {
@@ -118,7 +125,7 @@ class RunFiles {
 
   const RunRequest& request_;
   std::optional<HistoryFile> history_;
-  std::optional<OutputFile> summary_;
+  std::optional<ReplacedFile> summary_;
   std::optional<ReportFile> report_;
   std::optional<ReportHistory> shown_;
   std::vector<std::string> report_paths_;

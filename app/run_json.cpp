@@ -1,5 +1,7 @@
 #include "app/run_json.hpp"
 
+#include <unistd.h>
+
 #include "app/json_values.hpp"
 #include "core/units.hpp"
 
@@ -131,21 +133,31 @@ Json accuracy_object(double asked, const AccuracyResult& a) {
           {"figures", std::move(figures)}};
 }
 
+/// What every run has, ended or not.
+Json head_object(const RunRequest& request, const std::string& scheme, const Method& method,
+                 const std::string& status, const std::string& reason) {
+  Json object = result_object("run");
+  object["model"] = request.model.entry->name;
+  object["settings"] = settings_object(request.model.settings);
+  object["method"] = scheme;
+  object["method_reason"] = request.method_reason;
+  object["step_s"] = method.step > 0.0 ? number(method.step) : Json();
+  object["tolerance"] = method.tolerance > 0.0 ? number(method.tolerance) : Json();
+  object["status"] = status;
+  object["reason"] = text_or_null(reason);
+  return object;
+}
+
 }  // namespace
+
+Json result_object(const char* kind) {
+  return {{"$schema", "urn:drev:results:1"}, {"kind", kind}, {"drev", DREV_VERSION}};
+}
 
 Json run_object(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
-  Json object;
-  object["model"] = request.model.entry->name;
-  object["settings"] = settings_object(request.model.settings);
-  object["method"] = s.scheme;
-  const bool exact = r.method.exact();
-  object["method_reason"] = request.method_reason;
-  const bool controlled = r.method.controlled();
-  object["step_s"] = r.method.step > 0.0 ? number(r.method.step) : Json();
-  object["tolerance"] = r.method.tolerance > 0.0 ? number(r.method.tolerance) : Json();
-  object["status"] = r.status;
-  object["reason"] = text_or_null(r.reason);
+  const bool exact = r.method.exact(), controlled = r.method.controlled();
+  Json object = head_object(request, s.scheme, r.method, r.status, r.reason);
   object["results"] = results_object(r);
   object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
   object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
@@ -171,6 +183,17 @@ Json run_object(const RunRequest& request, const RunResult& r) {
 
 std::string run_as_json(const RunRequest& request, const RunResult& result) {
   return json_text(run_object(request, result));
+}
+
+std::string running_as_json(const RunRequest& request) {
+  Json object = head_object(request, request.method.name, request.method, "running",
+                            "the run has not ended: it still goes on, or its process was killed");
+  object["process"] = ::getpid();
+  object["duration_s"] = number(request.model.scene.duration);
+  object["record"] = request.record;
+  object["every_s"] = number(request.every);
+  object["note"] = text_or_null(request.model.scene.note);
+  return json_text(object);
 }
 
 }  // namespace drev::app

@@ -1,5 +1,5 @@
 #pragma once
-/// The result of `drev run` as one JSON object.
+/// The result of `drev run` as one JSON object, as docs/results.schema.json describes it.
 #include <string>
 
 #include "app/json_values.hpp"
@@ -7,7 +7,11 @@
 
 namespace drev::app {
 
+/// With what all results have: kind is "run", "modes" or "runs".
+Json result_object(const char* kind);
 Json run_object(const RunRequest& request, const RunResult& result);
 std::string run_as_json(const RunRequest& request, const RunResult& result);
+/// What is known before the run has begun: status "running", and no figures.
+std::string running_as_json(const RunRequest& request);
 
 }  // namespace drev::app

@@ -187,6 +187,71 @@ TEST_CASE("An interrupted run leaves what it had") {
   }
 }
 
+TEST_CASE("A killed run leaves a readable part that says so, beside the result before it") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto kill_one = [&](const std::string& channel) {
+    const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--record",
+                           channel, "--out", out});
+    for (int i = 0; i < 1000; ++i) {
+      std::error_code missing;
+      if (std::filesystem::file_size(folder / "r/history.partial.csv", missing) > 1000 && !missing) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    process.send(SIGKILL);
+    CHECK(process.wait().exit_code == -1);
+  };
+  const auto partial = [&] { return Json::parse(read_file(folder / "r/summary.partial.json")); };
+
+  kill_one("end.angle_rad");
+  CHECK(partial().at("status") == "running");
+  CHECK(contains(partial().at("reason"), "killed"));
+  CHECK(partial().at("model") == "camshaft");
+  CHECK(partial().at("settings").at("duration_s") == 10000);
+  CHECK(partial().at("record") == Json::array({"end.angle_rad"}));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.json"));
+  CHECK(read_table(folder / "r/history.partial.csv").rows.size() >= 5);
+  const auto refused = drev_command({"report", out, "--out", (folder / "a.html").string()});
+  CHECK(refused.exit_code == 2);
+  CHECK(contains(refused.err, "did not come to its end (running: " + out + "/summary.partial.json)"));
+
+  // The next run takes the leftovers' place.
+  CHECK(drev_command({"run", "two_inertia", "--out", out, "--format", "hdf5"}).exit_code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.partial.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/history.partial.csv"));
+  const std::string before = read_file(folder / "r/summary.json");
+  CHECK(Json::parse(before).at("status") == "success");
+
+  // One more that is killed leaves that result, and is not mistaken for it.
+  kill_one("fuel_1.angle_rad");
+  CHECK(read_file(folder / "r/summary.json") == before);
+  CHECK(partial().at("record") == Json::array({"fuel_1.angle_rad"}));
+  const auto report = drev_command({"report", out, "--out", (folder / "a.html").string()});
+  CHECK(report.exit_code == 0);
+  CHECK(contains(report.err, "is of an older run; the last run there did not come to its end (running"));
+
+  // A text that was being written when a process was killed is in nobody's way.
+  std::ofstream(folder / "r/summary.partial.json.next") << "{";
+  const auto last = drev_command({"run", "two_inertia", "--out", out});
+  CHECK(last.exit_code == 0);
+  CHECK(contains(last.err, "history.h5 is of an older run"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.partial.json.next"));
+}
+
+TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::filesystem::create_symlink("/dev/full", folder / "r/summary.partial.json.next");
+  process.send(SIGTERM);
+  const auto run = process.wait();
+  CHECK(run.exit_code == 130);
+  CHECK(contains(run.err, "summary.partial.json: No space left on device"));
+  CHECK(Json::parse(read_file(folder / "r/summary.partial.json")).at("status") == "running");
+}
+
 TEST_CASE("Two runs do not write one file") {
   const TemporaryFolder folder;
   const Process first(
