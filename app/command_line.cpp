@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -20,6 +21,7 @@ constexpr const char* kPlace = "command line";
 /// What CLI11 fills; an option that was not given stays empty.
 struct Raw {
   std::string model;
+  std::vector<std::string> models;  ///< where there can be several
   std::vector<std::string> sets;
   std::map<std::string, std::vector<std::string>> options;
   bool json = false, quiet = false;
@@ -28,8 +30,12 @@ struct Raw {
 void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.allow_extras();  // unknown options are reported with the nearest right one
   if (command.takes_model) {
-    sub.add_option("MODEL", raw.model, "Name of the model, as drev list shows them, or a model file, FILE.toml")
-        ->option_text(" ");
+    std::string meaning = "Name of the model, as drev list shows them, or a model file, FILE.toml";
+    if (command.takes_models) meaning += "; several, and directories of files, with --out";
+    if (command.takes_models)
+      sub.add_option("MODEL", raw.models, meaning)->option_text("...");
+    else
+      sub.add_option("MODEL", raw.model, meaning)->option_text(" ");
     sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
         ->option_text("NAME=VALUE ...");
   }
@@ -80,15 +86,31 @@ void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
                                                              : "must be written --set " + extra});
 }
 
-/// --set a=1 MODEL: the model came to stand among the settings.
-void find_model_among_sets(Raw& raw) {
-  if (!raw.model.empty()) return;
-  const auto found = std::find_if(raw.sets.begin(), raw.sets.end(), [](const std::string& text) {
-    return text.find('=') == std::string::npos;
+bool names_model(const std::string& word) {
+  std::error_code error;
+  return std::filesystem::exists(word, error) ||
+         std::any_of(scenes().begin(), scenes().end(), [&](const SceneEntry& e) { return e.name == word; });
+}
+
+/// --set a=1 MODEL: models came to stand among the settings.
+void find_models_among_sets(Raw& raw, bool several) {
+  for (auto set = raw.sets.begin(); set != raw.sets.end();) {
+    if (set->find('=') == std::string::npos && (raw.models.empty() || (several && names_model(*set)))) {
+      raw.models.push_back(*set);
+      set = raw.sets.erase(set);
+    } else {
+      ++set;
+    }
+  }
+}
+
+/// MODEL a=1: a setting without --set.
+void find_sets_among_models(Raw& raw, std::vector<Finding>& findings) {
+  std::erase_if(raw.models, [&](const std::string& word) {
+    const bool set = word.find('=') != std::string::npos && !names_model(word);
+    if (set) findings.push_back({kPlace, "argument", word, "", "must be written --set " + word});
+    return set;
   });
-  if (found == raw.sets.end()) return;
-  raw.model = *found;
-  raw.sets.erase(found);
 }
 
 void take_sets(const Raw& raw, CommandLine& line) {
@@ -213,11 +235,15 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   if (chosen.empty()) return {.exit_code = no_command(app)};
 
   const CLI::App& sub = *chosen.front();
-  find_model_among_sets(raw);
   const std::vector<CommandEntry>& table = commands();
   const CommandEntry& command = *std::find_if(
       table.begin(), table.end(), [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
-  CommandLine line{.command = &command, .model = raw.model, .json = raw.json, .quiet = raw.quiet};
+  CommandLine line{.command = &command, .json = raw.json, .quiet = raw.quiet};
+  if (!raw.model.empty()) raw.models = {raw.model};
+  find_models_among_sets(raw, command.takes_models);
+  find_sets_among_models(raw, line.findings);
+  if (!raw.models.empty()) line.model = raw.models.front();
+  if (command.takes_models) line.options["MODEL"] = raw.models;
   if (chosen.size() > 1)
     line.findings.push_back(
         {kPlace, "command", chosen[1]->get_name(), "", "is a second one; give one command"});

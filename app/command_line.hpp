@@ -14,7 +14,7 @@ namespace drev::app {
 
 struct CommandLine {
   const CommandEntry* command = nullptr;
-  std::string model = {};                                          ///< name or file; empty: not given
+  std::string model = {};  ///< name or file, the first of several; empty: not given
   std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
   std::map<std::string, std::vector<std::string>> options = {};    ///< those given, with their values
   std::map<std::string, std::string> from_file = {};  ///< options that a model file gave: where it says so

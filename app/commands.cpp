@@ -10,7 +10,8 @@ const std::vector<CommandEntry>& commands() {
   static const OptionEntry run{"--run", "NAME", "Run of a model file that is meant; default: its [run]"};
   static const std::vector<CommandEntry> table{
       {.name = "run",
-       .summary = "Simulates a model in time and prints what it found",
+       .summary = "Simulates a model in time, or several, and prints what it found",
+       .takes_models = true,
        .options = {{"--method", "METHOD", "Time integration; default: what suits the model; see below"},
                    {"--step", "SECONDS", "Time step; default: the model's"},
                    {"--tolerance", "T",
@@ -26,6 +27,7 @@ const std::vector<CommandEntry>& commands() {
                     "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
                    {"--format", "FORMAT,...", "Of the history: csv (always written), hdf5 (history.h5 too)",
                     commas},
+                   {"--jobs", "N", "Of several models: so many at once; default: one a processor"},
                    run},
        .footer = std::string(kMethodsHelp) + "\n" + kRunExamples + "\n" + kExitCodesHelp,
        .execute = run_command},

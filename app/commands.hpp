@@ -25,6 +25,7 @@ struct CommandEntry {
   const char* name;
   const char* summary;
   bool takes_model = true;  ///< MODEL, and --set for its settings
+  bool takes_models = false;  ///< more than one, too: line.list("MODEL")
   std::vector<OptionEntry> options = {};
   std::string footer = {};
   /// Does it and returns the exit code; what is printed goes to stdout in one piece. Throws ModelError for

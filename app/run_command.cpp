@@ -12,6 +12,7 @@
 #include "app/report_page.hpp"
 #include "app/run_computation.hpp"
 #include "app/run_json.hpp"
+#include "app/run_many.hpp"
 #include "app/run_text.hpp"
 #include "app/text_layout.hpp"
 #include "core/channel.hpp"
@@ -134,6 +135,7 @@ class RunFiles {
 }  // namespace
 
 int run_command(const CommandLine& line) {
+  if (means_many(line)) return run_many(line);
   const RunRequest request = request_run(line);
   watch_signals();
   RunFiles files(request);
