@@ -41,7 +41,7 @@ run_tests() {
   return $status
 }
 
-packages+=(valgrind python3-h5py)  # count instructions; read results
+packages+=(valgrind python3-h5py python3-jsonschema)  # count instructions; read and check results
 # Opens reports. Ubuntu's is a snap, which could not: that test is skipped there.
 if grep -qx ID=debian /etc/os-release 2>/dev/null; then packages+=(chromium fonts-dejavu-core); fi
 install_packages

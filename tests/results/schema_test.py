@@ -1,0 +1,135 @@
+"""What drev writes as JSON is as docs/results.schema.json says; arguments: drev, the schema, a folder.
+
+Every kind of run is tried, every key of the schema must be met with a value, and the validator must refuse
+what is wrong in one place.
+"""
+import copy
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import jsonschema
+
+drev, schema_path, folder = sys.argv[1:]
+shutil.rmtree(folder, ignore_errors=True)
+os.makedirs(folder)
+os.chdir(folder)
+with open(schema_path) as file:
+    schema = json.load(file)
+jsonschema.Draft202012Validator.check_schema(schema)
+validator = jsonschema.Draft202012Validator(schema)
+
+
+def printed(*words, code=0):
+    run = subprocess.run([drev, *words, "--json"], capture_output=True, text=True)
+    assert run.returncode == code, (words, run.returncode, run.stderr)
+    return json.loads(run.stdout)
+
+
+def read(path):
+    with open(path) as file:
+        return json.load(file)
+
+
+def ended_by(number, path):
+    """The partial summary of a run that a signal has ended."""
+    run = subprocess.Popen([drev, "run", "camshaft", "--set", "duration_s=10000", "--out", path],
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    history = path + "/history.partial.csv"
+    while run.poll() is None and not (os.path.exists(history) and os.path.getsize(history)):
+        time.sleep(0.02)
+    run.send_signal(number)
+    run.wait()
+    return read(path + "/summary.partial.json")
+
+
+with open("torn.toml", "w") as file:
+    file.write("format = 1\n[nodes\n")
+os.mkdir("trains")
+with open("trains/other.toml", "w") as file:
+    file.write("colour = 1\n")
+with open("trains/at_rest.toml", "w") as file:
+    file.write('format = 1\nnote = "one disc"\n[nodes]\na = {}\n[elements]\n'
+               'J = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n')
+
+short = "duration_s=0.05"
+results = {
+    "exact": printed("run", "camshaft", "--set", short),
+    "held": printed("run", "camshaft", "--set", "drive=held", short),
+    "translational": printed("run", "two_mass_backlash"),
+    "constant steps": printed("run", "two_mass_backlash", "--method", "hht:0.1", "--step", "0.001"),
+    "controlled": printed("run", "gear_drive", "--set", short, "--method", "sdirk4", "--tolerance", "1e-4"),
+    "accuracy": printed("run", "two_mass_backlash", "--accuracy", "1e-4"),
+    "statistics": printed("run", "gear_drive", "--accuracy", "1e-2"),
+    "file": printed("run", "trains/at_rest.toml"),
+    "modes": printed("modes", "camshaft"),
+    "open": printed("modes", "gear_drive", "--contact", "open"),
+    "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",
+                        code=1),
+    "energy_error": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=1e6", "k_2_N_per_m=1e6", "--step",
+                            "2e-3", code=1),
+    "many": printed("run", "two_inertia", "torn.toml", "trains", "--out", "many", code=2),
+    "interrupted": ended_by(signal.SIGINT, "interrupted"),
+    "killed": ended_by(signal.SIGKILL, "killed"),
+}
+results["summary.json"] = read("many/two_inertia/summary.json")
+results["runs.json"] = read("many/runs.json")
+statuses = {name: result.get("status") for name, result in results.items()}
+assert (statuses["unstable"], statuses["interrupted"], statuses["killed"]) == ("unstable", "interrupted", "running")
+
+for name, result in results.items():
+    for error in validator.iter_errors(result):
+        sys.exit(f"{name}: {'/'.join(map(str, error.absolute_path))}: {error.message}")
+
+# Every key is described, numbers with their unit, and was met with a value.
+met = set()
+
+
+def meet(value):
+    if isinstance(value, dict):
+        met.update(key for key, inner in value.items() if inner is not None)
+    for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else []:
+        meet(inner)
+
+
+meet(list(results.values()))
+for kind, definition in schema["$defs"].items():
+    for key, about in definition["properties"].items():
+        assert about.get("description"), (kind, key)
+        types = about.get("type", [])
+        if {"number", "integer"} & set([types] if isinstance(types, str) else types):
+            unit = re.search(r"\[[^]]+\]", about["description"])
+            assert unit, (kind, key, "has no unit")
+            suffix = re.search(r"_(deg|m|N|Nm|s|J|W|Hz|per_s)$", key)
+            spelt = {"Nm": "N m", "per_s": "1/s"}
+            assert not suffix or unit[0] == f"[{spelt.get(suffix[1], suffix[1])}]", (kind, key, unit[0])
+        assert key in met, (kind, key, "was never met with a value")
+
+
+# It can refuse.
+def refused(name, change):
+    wrong = copy.deepcopy(results[name])
+    change(wrong)
+    assert not validator.is_valid(wrong), (name, "was taken, wrong as it is")
+
+
+refused("exact", lambda r: r.pop("energy"))
+refused("exact", lambda r: r.pop("kind"))
+refused("exact", lambda r: r.update(colour="red"))
+refused("exact", lambda r: r.update(steps=1.5))
+refused("exact", lambda r: r.update(status="good"))
+refused("exact", lambda r: r.update({"$schema": "urn:drev:results:0"}))
+refused("exact", lambda r: r["results"].update(max_torque_Nm="36602"))
+refused("exact", lambda r: r["results"]["contacts"][0]["impact_speed"]["both"].pop("p99"))
+refused("exact", lambda r: r.update(status="running"))  # which has no figures
+refused("killed", lambda r: r.update(status="success"))  # which has them
+refused("accuracy", lambda r: r["accuracy"]["figures"][0].pop("error"))
+refused("modes", lambda r: r["frequencies_Hz"].append("fast"))
+refused("many", lambda r: r["runs"][0]["summary"].pop("results"))
+refused("many", lambda r: r["runs"][1].pop("reason"))
+print(len(results), "results are as the schema says")
