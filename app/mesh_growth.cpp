@@ -1,12 +1,13 @@
 #include "app/mesh_growth.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <map>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "core/assembler.hpp"
+#include "core/dense_eigen.hpp"
 
 namespace drev::app {
 
@@ -52,7 +53,7 @@ double mesh_growth(const System& system, double period, int pieces) {
     }
     product = found->second * product;
   }
-  return std::log(product.eigenvalues().cwiseAbs().maxCoeff()) / period;
+  return std::log(spectral_radius(product)) / period;
 }
 
 }  // namespace drev::app

@@ -21,7 +21,10 @@ if(DREV_CCACHE AND DREV_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 if(DREV_SANITIZE)
-  add_compile_options(-fsanitize=${DREV_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # A null pointer ends the program all the same, alignment is asserted by Eigen; without these two checks
+  # the build takes three quarters of its time.
+  add_compile_options(-fsanitize=${DREV_SANITIZE} -fno-sanitize=null,alignment
+    -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${DREV_SANITIZE})
 endif()
 

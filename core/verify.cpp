@@ -1,6 +1,5 @@
 #include "core/verify.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,8 @@
 #include <limits>
 #include <map>
 #include <random>
+
+#include "core/dense_eigen.hpp"
 
 namespace drev {
 
@@ -346,8 +347,7 @@ void check_matrix(const char* name, const Eigen::MatrixXd& m, double tolerance, 
   if (!m.allFinite()) return out.add("not finite", std::string(name) + " matrix");
   out.require(m == m.transpose(), "unsymmetric matrix", name);
   const double size = m.cwiseAbs().maxCoeff();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(m, Eigen::EigenvaluesOnly);
-  const double least = solver.eigenvalues().minCoeff();
+  const double least = symmetric_eigen(m).values.minCoeff();
   out.require(least >= -tolerance * size, "matrix not positive semi-definite",
               std::string(name) + ", least eigenvalue " + to_text(least));
 }

@@ -1,14 +1,14 @@
 #include "solvers/damped_modes.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
 #include "core/assembler.hpp"
+#include "core/dense_eigen.hpp"
 #include "core/units.hpp"
 
 namespace drev {
@@ -23,16 +23,19 @@ Matrix dense(const SparseMatrix& pattern, const Vector& values) {
   return a;
 }
 
-/// Orthonormal columns; the first span the null space of K^ (smallest singular values first).
+/// Orthonormal columns; the first span the null space of K^.
 Matrix basis_by_stiffness(const Matrix& k, bool symmetric) {
-  if (!symmetric)
-    return Eigen::BDCSVD<Matrix>(k, Eigen::ComputeFullV).matrixV().rowwise().reverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(k);
-  const Vector size = solver.eigenvalues().cwiseAbs();
+  if (!symmetric) {
+    // K^' P = Q R: what R does not reach is orthogonal to the rows of K^.
+    const Matrix q = Eigen::ColPivHouseholderQR<Matrix>(k.transpose()).householderQ();
+    return q.rowwise().reverse();
+  }
+  const SymmetricEigen eigen = symmetric_eigen(k);
+  const Vector size = eigen.values.cwiseAbs();
   std::vector<int> order(static_cast<std::size_t>(size.size()));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int a, int b) { return size[a] < size[b]; });
-  return solver.eigenvectors()(Eigen::all, order);
+  return eigen.vectors(Eigen::all, order);
 }
 
 void check_rigid(const System& system, const Matrix& k, const Matrix& v, int rigid) {
@@ -87,26 +90,25 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   a.block(0, e + r, e, e) = w0 * Matrix::Identity(e, e);
   a.block(e, 0, n, e) = -k.rightCols(e) / w0;
   a.block(e, e, n, n) = -c;
-  const Eigen::EigenSolver<Matrix> solver(a);
-  if (solver.info() != Eigen::Success)
+  const GeneralEigen eigen = general_eigen(a);
+  if (!eigen.converged)
     throw SolverError("damped modes of " + system.name() + ": the eigensolver did not converge");
 
   std::vector<int> oscillating;
   for (int j = 0; j < e + n; ++j) {
-    const std::complex<double> lambda = solver.eigenvalues()[j];
+    const std::complex<double> lambda = eigen.values[j];
     if (lambda.imag() == 0.0) set.real_lambda.push_back(lambda.real());
     if (lambda.imag() > 0.0) oscillating.push_back(j);
   }
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
   std::sort(oscillating.begin(), oscillating.end(), [&](int i, int j) {
-    return std::abs(solver.eigenvalues()[i]) < std::abs(solver.eigenvalues()[j]);
+    return std::abs(eigen.values[i]) < std::abs(eigen.values[j]);
   });
   set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
-  const Eigen::MatrixXcd vectors = solver.eigenvectors();
   for (std::size_t j = 0; j < oscillating.size(); ++j) {
-    set.modes.push_back(to_mode(solver.eigenvalues()[oscillating[j]]));
+    set.modes.push_back(to_mode(eigen.values[oscillating[j]]));
     // Rates are lambda times the shape: the common factor is scaled away.
-    const Eigen::VectorXcd y = v * vectors.col(oscillating[j]).tail(n);
+    const Eigen::VectorXcd y = v * eigen.vectors.col(oscillating[j]).tail(n);
     const Eigen::VectorXcd z = mass.matrixU().solve(y);
     auto shape = set.shapes.col(static_cast<Eigen::Index>(j));
     for (int i = 0; i < system.node_count(); ++i) {

@@ -1,11 +1,11 @@
 #include "solvers/fixed_interface.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "core/dense_eigen.hpp"
 #include "core/units.hpp"
 #include "solvers/inertia_count.hpp"
 #include "solvers/lanczos.hpp"
@@ -128,9 +128,9 @@ void FixedInterface::find_modes(int count) {
       throw SolverError("reduction of " + system_.name() +
                         ": the modes with kept nodes held were not all found; keep more nodes");
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> all{Matrix(mass_), Matrix(stiffness_)};
-  lambda_ = all.eigenvalues().reverse().cwiseInverse();
-  vectors_ = all.eigenvectors().rowwise().reverse();
+  const SymmetricEigen all = symmetric_eigen(Matrix(mass_), Matrix(stiffness_));
+  lambda_ = all.values.reverse().cwiseInverse();
+  vectors_ = all.vectors.rowwise().reverse();
   for (int j = 0; j < n; ++j) vectors_.col(j) /= std::sqrt(vectors_.col(j).dot(mass_ * vectors_.col(j)));
 }
 

@@ -1,9 +1,9 @@
 #include "solvers/modal_problem.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense_eigen.hpp"
 #include "solvers/lanczos.hpp"
 
 namespace drev {
@@ -95,12 +95,12 @@ const ModalPairs& ModalProblem::dense() {
   dense_shift_ = summary_.shift;
   const Eigen::MatrixXd mass = to_dense(system_.pattern(), mass_);
   const Eigen::MatrixXd shifted = to_dense(system_.pattern(), stiffness_ - summary_.shift * mass_);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass, shifted);
-  if (solver.info() != Eigen::Success)
+  const SymmetricEigen eigen = symmetric_eigen(mass, shifted);
+  if (!eigen.converged)
     throw SolverError("modes of " + system_.name() + ": the dense eigensolver did not converge");
   ModalPairs& pairs = dense_pairs_;
-  pairs.lambda = solver.eigenvalues().reverse().cwiseInverse().array() + summary_.shift;
-  pairs.vectors = solver.eigenvectors().rowwise().reverse();
+  pairs.lambda = eigen.values.reverse().cwiseInverse().array() + summary_.shift;
+  pairs.vectors = eigen.vectors.rowwise().reverse();
   refine(pairs);
   return pairs;
 }

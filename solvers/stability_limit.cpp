@@ -1,11 +1,11 @@
 #include "solvers/stability_limit.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "core/assembler.hpp"
+#include "core/dense_eigen.hpp"
 #include "solvers/sparse_cholesky.hpp"
 
 namespace drev {
@@ -84,14 +84,14 @@ std::vector<Complex> arnoldi(const std::function<void(const Vector&, Vector&)>& 
     if (m < size) q.col(m) = w / h(m, m - 1);
   }
   if (m == size) h(m, m - 1) = 0.0;
-  const Eigen::EigenSolver<Eigen::MatrixXd> eigen(h.topLeftCorner(m, m));
+  const GeneralEigen eigen = general_eigen(h.topLeftCorner(m, m));
   std::vector<Complex> values(static_cast<std::size_t>(m));
   Eigen::Index largest = 0;
   for (Eigen::Index i = 0; i < m; ++i) {
-    values[static_cast<std::size_t>(i)] = eigen.eigenvalues()[i];
-    if (std::abs(eigen.eigenvalues()[i]) > std::abs(eigen.eigenvalues()[largest])) largest = i;
+    values[static_cast<std::size_t>(i)] = eigen.values[i];
+    if (std::abs(eigen.values[i]) > std::abs(eigen.values[largest])) largest = i;
   }
-  const Eigen::VectorXcd u = eigen.eigenvectors().col(largest);
+  const Eigen::VectorXcd u = eigen.vectors.col(largest);
   residual = h(m, m - 1) * std::abs(u[m - 1]) / u.norm();
   return values;
 }

@@ -1,12 +1,11 @@
 #include "solvers/static_shapes.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/assembler.hpp"
+#include "core/dense_eigen.hpp"
 #include "core/units.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/sparse_cholesky.hpp"
@@ -97,21 +96,20 @@ Matrix rows_of_laws(const System& system) {
 /// Patterns of the loads: columns whose products with themselves sum to the samples' mean.
 Matrix patterns(const Matrix& samples) {
   if (samples.isZero(0.0)) return Matrix(samples.rows(), 0);
-  const Eigen::BDCSVD<Matrix> svd(samples, Eigen::ComputeThinU);
-  const Vector& s = svd.singularValues();
-  const auto count = (s.array() > kSamePattern * s[0]).count();
-  return svd.matrixU().leftCols(count) * s.head(count).asDiagonal() /
-         std::sqrt(static_cast<double>(samples.cols()));
+  const SymmetricEigen gram = symmetric_eigen(samples.transpose() * samples);
+  const Vector& squares = gram.values;
+  const auto count = (squares.array() > kSamePattern * kSamePattern * squares[squares.size() - 1]).count();
+  return samples * gram.vectors.rightCols(count) / std::sqrt(static_cast<double>(samples.cols()));
 }
 
 /// Combinations of columns with energies above a share of the largest, scaled to energy 1; energies: x' K x
 /// of the columns.
 Matrix independent(const Matrix& energies, double least) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(energies);
-  const Vector& e = eigen.eigenvalues();
+  const SymmetricEigen eigen = symmetric_eigen(energies);
+  const Vector& e = eigen.values;
   const auto count = (e.array() > least * e[e.size() - 1]).count();
   if (!(e[e.size() - 1] > 0.0)) return Matrix(energies.rows(), 0);
-  return eigen.eigenvectors().rightCols(count) *
+  return eigen.vectors.rightCols(count) *
          e.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
@@ -193,22 +191,22 @@ StaticShapes static_shapes(const System& system, const KeptModes& modes, double 
     Matrix of_loads = residual.solve(loads);
     const double whole = kept_energies(loads).sum() + loads.cwiseProduct(of_loads).sum();
     if (taken.cols() > 0) of_loads -= taken * (taken.transpose() * residual.stiffness(of_loads));
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(of_loads.transpose() *
-                                                      residual.stiffness(of_loads));
-    const Vector energies = eigen.eigenvalues().cwiseMax(0.0);
+    const SymmetricEigen eigen =
+        symmetric_eigen(of_loads.transpose() * residual.stiffness(of_loads));
+    const Vector energies = eigen.values.cwiseMax(0.0);
     const auto all = energies.size();
     double rest = energies.sum();
     Eigen::Index count = 0;
     while (count < all && rest > accuracy * accuracy * whole) rest -= energies[all - ++count];
     found.error = whole > 0.0 ? std::sqrt(std::max(rest, 0.0) / whole) : 0.0;
-    const Matrix most = of_loads * eigen.eigenvectors().rightCols(count);
+    const Matrix most = of_loads * eigen.vectors.rightCols(count);
     taken = beside(taken, orthonormal_in_energy(most, kDependent));
   }
   if (taken.cols() == 0) return found;
   // Among them: K-orthonormal already, but for rounding, so M x = mu K x.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen(
-      taken.transpose() * residual.stiffness(taken), taken.transpose() * residual.mass(taken));
-  found.columns = taken * eigen.eigenvectors();
+  found.columns = taken * symmetric_eigen(taken.transpose() * residual.stiffness(taken),
+                                          taken.transpose() * residual.mass(taken))
+                              .vectors;
   return found;
 }
 

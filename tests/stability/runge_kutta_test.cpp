@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 /// The root of positive argument at omega h: R(i omega h).
 Complex principal(const std::string& method, double omega_h) {
   Complex root = 0.0;
-  for (const Complex& r : amplification(method, omega_h).eigenvalues())
+  for (const Complex& r : roots(amplification(method, omega_h)))
     if (r.imag() > 0.0 || root == 0.0) root = r;
   return root;
 }

@@ -2,6 +2,8 @@
 // refused with the limit named, or grows without bound.
 #include <Eigen/Dense>
 
+#include "elements/ground_spring.hpp"
+#include "elements/inertia.hpp"
 #include "elements/shaft_spring.hpp"
 #include "solvers/modes.hpp"
 #include "tests/catch.hpp"
