@@ -1,0 +1,43 @@
+// docs/tutorial.md: its commands, typed as they stand, print what it shows.
+#include <cstdlib>
+#include <sstream>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::read_file;
+
+TEST_CASE("The commands of the tutorial print what it says") {
+  const drev::test::TemporaryFolder folder;
+  std::filesystem::copy_file(DREV_SOURCE_DIR "/models/tutorial/train.toml", folder / "train.toml");
+  const auto printed_by = [&](const std::string& command) {
+    std::ofstream(folder / "command") << command << "\n";
+    const std::string line = "cd '" + (folder / "").string() + "' && PATH=\"$(dirname '" DREV_EXECUTABLE
+                             "'):$PATH\" sh ./command > printed 2>&1";
+    CHECK(std::system(line.c_str()) != -1);
+    return read_file(folder / "printed");
+  };
+  std::istringstream page(read_file(DREV_SOURCE_DIR "/docs/tutorial.md"));
+  int commands = 0, lines = 0;
+  bool console = false;
+  std::string printed;
+  std::size_t at = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("```")) {
+      console = line == "```console";
+    } else if (console && line.starts_with("$ ")) {
+      printed = printed_by(line.substr(2));
+      at = 0;
+      ++commands;
+    } else if (console) {  // the lines shown are some of those printed, in their order
+      INFO("shown:\n" << line << "\nprinted:\n" << printed);
+      const std::size_t found = printed.find(line, at);
+      CHECK(found != std::string::npos);
+      if (found != std::string::npos) at = found + line.size();
+      ++lines;
+    }
+  }
+  CHECK(commands >= 8);
+  CHECK(lines >= 25);
+  CHECK(read_file(folder / "train.html").size() > 100000);
+}
