@@ -13,7 +13,8 @@ struct OptionEntry {
   enum class Values {
     one,     ///< a single one
     commas,  ///< NAME,NAME,... and as often as needed
-    words    ///< NAME NAME ...
+    words,   ///< NAME NAME ...
+    again    ///< one each time that it is given, as often as needed
   };
   const char* name;     ///< "--step"
   const char* type;     ///< of its value, as --help shows it

@@ -88,7 +88,7 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
     offered.insert(offered.end(), {"--json", "--quiet", "--help"});
     return offered;
   }
-  if (option != words.rend() && *option == "--set" && model.entry) return settings_of(*model.entry, word);
+  if (option != words.rend() && (*option == "--set" || *option == "--vary") && model.entry) return settings_of(*model.entry, word);
   for (const OptionEntry& entry : command->options) {
     if (option == words.rend() || entry.name != *option) continue;
     if (option == words.rbegin() + 1 || entry.values == OptionEntry::Values::words)

@@ -300,7 +300,7 @@ RunRequest request_run(const CommandLine& given) {
       findings.push_back(
           {kPlace, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
   if (const auto jobs = line.option("--jobs"))
-    findings.push_back({kPlace, "--jobs", *jobs, "", "is for several models"});
+    findings.push_back({kPlace, "--jobs", *jobs, "", "is for several runs"});
   if (line.option("--format") && line.option("--report") && !line.option("--out"))
     findings.push_back({kPlace, "--format", "", "", "needs --out DIR"});
   if (const auto report = line.option("--report"))

@@ -74,6 +74,7 @@ results = {
     "energy_error": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=1e6", "k_2_N_per_m=1e6", "--step",
                             "2e-3", code=1),
     "many": printed("run", "two_inertia", "torn.toml", "trains", "--out", "many", code=2),
+    "varied": printed("run", "two_inertia", "--vary", "duration_s=0.01,0.02", "--out", "varied"),
     "interrupted": ended_by(signal.SIGINT, "interrupted"),
     "killed": ended_by(signal.SIGKILL, "killed"),
 }

@@ -26,7 +26,7 @@ const std::vector<Fault>& faults() {
       {{"list", "gear_driv"}, {"did you mean 'gear_drive'?"}},
       {{"modes", "two_mass"}, {"two_mass", "is no model"}},
       {{"modes", "two_inertia", "camshaft"}, {"camshaft", "one too many"}},
-      {{"run", "two_inertia", "camshaft"}, {"--out", "needed for several models"}},
+      {{"run", "two_inertia", "camshaft"}, {"--out", "needed for several runs"}},
       {{"run", "two_inertia", "duration_s=1"}, {"--set duration_s=1"}},
       {{"--json", "run", "two_inertia"}, {"--json", "after the command run"}},
       {{"run", "modes"}, {"modes", "give one command"}},

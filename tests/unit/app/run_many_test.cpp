@@ -2,6 +2,7 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "tests/catch.hpp"
@@ -130,7 +131,7 @@ TEST_CASE("Several models: faults of the command line start nothing") {
   CHECK(contains(refused.err, "5 faults"));
   for (const char* part :
        {"b/a.toml, has the name of", "both results would be in DIR/a", "--jobs = 0",
-        "directory without a model file", "--report = x.html, is for one model", "--stp"})
+        "directory without a model file", "--report = x.html, is for one run", "--stp"})
     CHECK(contains(refused.err, part));
   CHECK_FALSE(std::filesystem::exists(out));
 }
@@ -193,4 +194,66 @@ TEST_CASE(
   CHECK(run_of(all, "a").at("summary").at("status") == "interrupted");
   CHECK(contains(run.out, "not_started"));
   CHECK(contains(run.out, "0 of 3 succeeded"));
+}
+
+TEST_CASE("Settings varied: every combination, with one table of figures") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run = drev_command({"run", "two_inertia", "--vary", "inertia_1_kg_m2=0.01:0.01:0.03", "--vary",
+                                 "stiffness_Nm_per_rad=8000,9000.5", "--set", "duration_s=0.05", "--out", out});
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+  CHECK(contains(run.out, "6 of 6 succeeded"));
+  const Json all = json_file(folder / "r/runs.json");
+  REQUIRE(all.at("runs").size() == 6);
+  std::vector<std::string> rows;
+  std::istringstream csv(read_file(folder / "r/runs.csv"));
+  for (std::string row; std::getline(csv, row);) rows.push_back(row);
+  REQUIRE(rows.size() == 7);
+  CHECK(rows[0].starts_with("name,status,inertia_1_kg_m2,stiffness_Nm_per_rad,deflection_deg,"));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Json& one = all.at("runs")[i];
+    const std::string inertia = std::vector<std::string>{"0.01", "0.02", "0.03"}[i / 2];
+    const std::string stiffness = i % 2 == 0 ? "8000" : "9000.5";
+    const std::string name = "inertia_1_kg_m2=" + inertia + ",stiffness_Nm_per_rad=" + stiffness;
+    CHECK(one.at("name") == name);
+    const Json& settings = one.at("summary").at("settings");
+    CHECK(settings.at("inertia_1_kg_m2") == std::stod(inertia));
+    CHECK(settings.at("stiffness_Nm_per_rad") == std::stod(stiffness));
+    CHECK(settings.at("duration_s") == 0.05);
+    CHECK(one.at("varied").at("inertia_1_kg_m2") == std::stod(inertia));
+    CHECK(rows[i + 1].starts_with('"' + name + "\",success," + inertia + "," + stiffness + ","));
+    const Json alone = Json::parse(
+        drev_command({"run", "two_inertia", "--json", "--out", (folder / "alone").string(), "--set", "duration_s=0.05",
+                      "inertia_1_kg_m2=" + inertia, "stiffness_Nm_per_rad=" + stiffness})
+            .out);
+    CHECK(alone.at("results") == one.at("summary").at("results"));
+    CHECK(contains(rows[i + 1], "," + alone.at("results").at("max_torque_Nm").dump() + ","));
+  }
+  CHECK(std::filesystem::exists(folder / "r/inertia_1_kg_m2=0.03,stiffness_Nm_per_rad=9000.5/history.csv"));
+}
+
+TEST_CASE("What is wrong with --vary is said once, before anything is run") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults{
+      {{"two_inertia", "--vary", "stiffnes_Nm_per_rad=1,2"}, "did you mean 'stiffness_Nm_per_rad'?"},
+      {{"two_inertia", "--vary", "duration_s"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
+      {{"two_inertia", "--vary", "duration_s=1,,2"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
+      {{"two_inertia", "--vary", "duration_s=1:2"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
+      {{"two_inertia", "--vary", "duration_s=1:0:2"}, "does not lead from FIRST to LAST"},
+      {{"two_inertia", "--vary", "duration_s=1:-1:2"}, "does not lead from FIRST to LAST"},
+      {{"two_inertia", "--vary", "duration_s=1:1e-9:2"}, "more values than 10000"},
+      {{"two_inertia", "--vary", "duration_s=1,1"}, "has 1 twice"},
+      {{"two_inertia", "--vary", "duration_s=1", "--vary", "duration_s=2"}, "duration_s is varied already"},
+      {{"--vary", "duration_s=1,2"}, "MODEL"}};
+  for (const auto& [words, said] : faults) {
+    std::vector<std::string> line{"run", "--out", out};
+    line.insert(line.end(), words.begin(), words.end());
+    const auto run = drev_command(line);
+    INFO(run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(contains(run.err, said));
+  }
+  CHECK_FALSE(std::filesystem::exists(out));
 }

@@ -1,0 +1,23 @@
+#pragma once
+/// Values that --vary gives to settings: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where the
+/// steps lead to it.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace drev::app {
+
+struct Variant {
+  std::vector<std::pair<std::string, std::string>> settings;
+  /// "backlash_mm=0.1,engine_rpm=750"; empty without settings.
+  std::string name() const;
+};
+
+/// Every combination, the last setting varying fastest; one Variant without settings where there are no
+/// words.
+std::vector<Variant> read_variants(const std::vector<std::string>& words,
+                                   std::vector<Finding>& findings);
+
+}  // namespace drev::app
