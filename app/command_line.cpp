@@ -31,7 +31,7 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.allow_extras();  // unknown options are reported with the nearest right one
   if (command.takes_model) {
     std::string meaning = "Name of the model, as drev list shows them, or a model file, FILE.toml";
-    if (command.takes_models) meaning += "; several, and directories of files, with --out";
+    if (command.takes_models) meaning += ",\nor several, or directories of files, with --out";
     if (command.takes_models)
       sub.add_option("MODEL", raw.models, meaning)->option_text("...");
     else

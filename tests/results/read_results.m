@@ -10,7 +10,7 @@ fclose(file);
 history = dlmread([directory '/history.csv'], ',', 1, 0);
 values = history(:, strcmp(names, channel));
 summary = jsondecode(fileread([directory '/summary.json']));
-printf('%s %.6g\n', summary.status, max(abs(values)));
+fprintf('%s %.6g\n', summary.status, max(abs(values)));
 % [csv]
 
 assert(size(history, 2) == numel(names));
