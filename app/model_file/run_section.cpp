@@ -92,21 +92,19 @@ RunSection::RunSection(const Document& document, const std::string& run, ReadCon
       read_fields(named->value, "run." + run, NodeKind::rotational, {"parameters"}, fields, context);
     }
   }
-  const auto positive = [&](const char* stem, double value) {
+  const auto positive = [&](const char* key, double value) {
     if (value > 0.0) return;
-    for (const Value* table : tables_)
-      for (const Entry& e : table->entries)
-        if (e.key.starts_with(stem) && !e.value.is(Value::Kind::table))
-          context.findings.push_back(fault_at(e.value.at, "run." + e.key, "must be > 0"));
+    if (const Entry* e = entry(key))
+      context.findings.push_back(fault_at(e->value.at, "run." + e->key, "must be > 0"));
   };
-  positive("duration_", params_.duration);
-  positive("step_", params_.step);
+  positive("duration", params_.duration);
+  positive("step", params_.step);
 }
 
 const Entry* RunSection::entry(const std::string& key) const {
   for (auto table = tables_.rbegin(); table != tables_.rend(); ++table)
     for (const Entry& e : (*table)->entries)
-      if (e.key == key || e.key.starts_with(key + "_")) return &e;
+      if (!e.value.is(Value::Kind::table) && (e.key == key || e.key.starts_with(key + "_"))) return &e;
   return nullptr;
 }
 
@@ -166,7 +164,11 @@ void RunSection::complete(Scene& scene, const System& system, ReadContext& conte
   scene.default_step = params_.step;
   scene.static_turn = params_.static_turn;
   if (!params_.deflection.empty()) {
-    channels("deflection", {params_.deflection}, system, context);
+    if (params_.deflection.find('*') != std::string::npos)
+      context.findings.push_back(
+          fault_at(entry("deflection")->value.at, "run.deflection", "must be one channel, without '*'"));
+    else
+      channels("deflection", {params_.deflection}, system, context);
     scene.deflection = params_.deflection;
   }
   scene.torques = entry("torques") ? channels("torques", params_.torques, system, context) : carried(system);

@@ -24,7 +24,7 @@ class RunSection {
     Params();
   };
   static void list(Fields& f, Params& p);
-  /// The last table that has the key; null if none has.
+  /// The last entry of the key, with or without a unit; null if there is none.
   const Entry* entry(const std::string& key) const;
   std::vector<std::string> channels(const std::string& key, const std::vector<std::string>& asked,
                                     const System& system, ReadContext& context) const;

@@ -149,6 +149,7 @@ const std::vector<Fault>& faults() {
       {"duration_s = 0.1", "@duration = 0.1", "needs a unit: duration_s, duration_ms or duration_us"},
       {"\"end.angle_rad\"", "@\"end.angle\"", "did you mean 'end.angle_rad'?"},
       {"\"shaft*.torque_Nm\"", "@\"shafts*.torque_Nm\"", "fits no channel"},
+      {"record = [", "deflection = @\"*.twist_rad\"\nrecord = [", "must be one channel, without '*'"},
       {"method = \"exact\"", "@metod = \"exact\"", "did you mean 'method'?"}};
   return all;
 }

@@ -193,6 +193,12 @@ TEST_CASE("Runs: a named one is laid over [run]") {
   CHECK(options.at("--tolerance") == to_text(5 * 1e-6));
 }
 
+TEST_CASE("A named run is no key of [run], whatever its name") {
+  const Scene scene = read(std::string(kDisc) + "[run]\nduration_s = 1\n[run.record_all]\nstep_s = 1e-5\n" +
+                           "[run.torques_of_shafts]\nstep_s = 1e-5\n[run.step_s_short]\nstep_s = 1e-5\n");
+  CHECK(scene.channels == std::vector<std::string>{"a.angle_rad"});
+}
+
 TEST_CASE("Rayleigh damping, stops, stiffness and error by their other names") {
   const Scene scene = read(std::string(kDisc) + R"(
 b = { type = "rayleigh_damping", stiffness_proportional = { frequency_Hz = 50, damping_ratio = 0.02 } }
