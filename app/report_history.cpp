@@ -40,7 +40,7 @@ ReportHistory::ReportHistory(const System& system, const std::vector<std::string
 
 void ReportHistory::start(const Assembler& assembler, const StepPoint& point) {
   start_ = point.state.t;
-  sample(assembler, point.state);
+  sample(assembler, point);
 }
 
 void ReportHistory::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
@@ -52,7 +52,7 @@ void ReportHistory::step(const Assembler& assembler, const StepPoint& from, cons
   }
   end_ = to.state.t;
   if (every_ == 0.0 || to.state.t >= next_stop(0.0) - kSameTime * every_)
-    sample(assembler, to.state);
+    sample(assembler, to);
 }
 
 double ReportHistory::next_stop(double /*t*/) const {
@@ -60,7 +60,8 @@ double ReportHistory::next_stop(double /*t*/) const {
   return start_ + static_cast<double>(samples_) * every_;
 }
 
-void ReportHistory::sample(const Assembler& assembler, const State& state) {
+void ReportHistory::sample(const Assembler& assembler, const StepPoint& point) {
+  const State& state = point.state;
   if (in_group_ == 0) open_group(state.t);
   const bool full = tail_times_.size() == tail_places_;
   const std::size_t place = full ? oldest_ : tail_times_.size();
@@ -77,12 +78,8 @@ void ReportHistory::sample(const Assembler& assembler, const State& state) {
       assembler.multiply_mass(state.v, product_);
       value = 0.5 * state.v.dot(product_);
     } else {
-      assembler.multiply_stiffness(state.z, product_);
-      value = 0.5 * state.z.dot(product_);
-      for (const ScalarTerm& term : assembler.system().scalars())
-        value += assembler.respond(term, state.z, state.v).stored_energy;
-      if (!assembler.system().generals().empty())
-        value += assembler.general_energy(state, state.history).first;
+      value = 0.5 * state.z.dot(point.kz) + point.general_energy;
+      for (const ScalarResponse& r : point.responses) value += r.stored_energy;
     }
     Series& series = series_[s];
     series.tail[place] = value;

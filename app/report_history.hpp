@@ -57,7 +57,7 @@ class ReportHistory final : public Observer {
 
  private:
   std::size_t tail_place(std::size_t i) const { return (oldest_ + i) % tail_times_.size(); }
-  void sample(const Assembler& assembler, const State& state);
+  void sample(const Assembler& assembler, const StepPoint& point);
   void open_group(double t);
   void join_neighbours();
 

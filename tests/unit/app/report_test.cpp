@@ -118,6 +118,13 @@ TEST_CASE("A report records by itself, and does not change the run") {
   REQUIRE(times.size() == data.at("history").at("samples"));
   CHECK(times.front() == 0.0);
   CHECK(times.back() == 3.0);
+  // Its energies are those of the balance.
+  const Json& series = data.at("history").at("series");
+  const Json& energy = data.at("result").at("energy");
+  CHECK(decoded<float>(series.at(series.size() - 2).at("low")).back() ==
+        Approx(energy.at("kinetic_J").get<double>()).epsilon(1e-6));
+  CHECK(decoded<float>(series.back().at("low")).back() ==
+        Approx(energy.at("stored_J").get<double>()).epsilon(1e-6));
 }
 
 TEST_CASE("Contact bands add up to the time apart") {
@@ -238,11 +245,16 @@ TEST_CASE("A report that cannot be written is refused before the run, or said") 
 
 TEST_CASE("Texts cannot break out of the page") {
   const TemporaryFolder folder;
-  const auto run = drev_command(
-      {"run", "two_inertia", "--set", "duration_s=0.1", "--report", (folder / "r.html").string()});
+  const std::string summary = "a </script><script>alert(1)</script><!--";
+  std::ofstream(folder / "m.toml") << "format = 1\nsummary = \"" << summary
+                                   << "\"\n[nodes]\na = {}\n[elements]\n"
+                                   << "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n";
+  const auto run =
+      drev_command({"run", (folder / "m.toml").string(), "--report", (folder / "r.html").string()});
+  INFO(run.err);
   REQUIRE(run.exit_code == 0);
-  const std::string page = read_file(folder / "r.html"), begin = R"(class="run">)";
-  const std::size_t at = page.find(begin) + begin.size();
-  CHECK(page.substr(at, page.find("</script>", at) - at).find('<') == std::string::npos);
-  CHECK(page.ends_with("</html>\n"));
+  const std::vector<Json> blocks = blocks_of(folder / "r.html");
+  REQUIRE(blocks.size() == 1);
+  CHECK(blocks.front().at("about") == summary);
+  CHECK(!contains(read_file(folder / "r.html"), "alert(1)</script>"));
 }
