@@ -38,7 +38,7 @@ function showModel() {
     r.model.joints.map((joint) => [joint.name, joint.kind, joint.nodes]),
   ];
   for (const run of distinct(train)) {
-    const { svg } = drawTrain(run.model);
+    const svg = drawTrain(run.model);
     const held = run.model.nodes.filter((node) => node.held).map((node) => node.name);
     if (distinct(train).length > 1) section.append(make("h3", {}, `Run ${run.name}`));
     section.append(

@@ -37,28 +37,22 @@ function layout(model) {
     for (let i = ends.order.at(-1); i >= 0; i = ends.from.get(i)) trunk.push(i);
     if (trunk[0] > trunk.at(-1)) trunk.reverse();
     const line = { nodes: all, rows: 1, width: trunk.length };
-    const free = [Infinity]; // first place that is taken, of each row, from the right
+    const taken = new Set(); // places of branches
     trunk.forEach((i, x) =>
       Object.assign(nodes[i], { line: lines.length, x, row: 0, from: trunk[x - 1] ?? -1 }),
     );
     for (let t = trunk.length - 1; t >= 0; --t) {
-      // branches, from the right, each on the first row that is free
+      // branches, from the right, each straight on or on the next row that is free
       const branch = [[trunk[t], t]];
       while (branch.length) {
         const [i, x] = branch.pop();
         for (const j of next[i])
           if (nodes[j].line < 0) {
-            let row = 1;
-            while ((free[row] ?? Infinity) <= x + 1) ++row;
-            const straight = nodes[i].row > 0 && nodes[j].line < 0 && branch.every(([k]) => k !== i);
-            Object.assign(nodes[j], {
-              line: lines.length,
-              x: x + 1,
-              row: straight ? nodes[i].row : row,
-              from: i,
-            });
-            free[nodes[j].row] = x;
-            line.rows = Math.max(line.rows, nodes[j].row + 1);
+            let row = Math.max(1, nodes[i].row);
+            while (taken.has(`${row} ${x + 1}`)) ++row;
+            taken.add(`${row} ${x + 1}`);
+            Object.assign(nodes[j], { line: lines.length, x: x + 1, row, from: i });
+            line.rows = Math.max(line.rows, row + 1);
             line.width = Math.max(line.width, x + 2);
             branch.push([j, x + 1]);
           }
@@ -110,7 +104,7 @@ function place(plan, pitch, gap) {
   return { x, offset, order };
 }
 
-/// Adds to `at` a zigzag between two points.
+/// A zigzag between two points.
 function zigzag(x0, y0, x1, y1, size = 4) {
   const points = [];
   for (let i = 0; i <= 8; ++i) {
@@ -337,13 +331,12 @@ function drawTrain(model) {
       ),
     );
   }
-  return { svg, plan };
+  return svg;
 }
 
 /// Curves of a mode shape over the train: one axis a line, in the order from top to bottom.
 class ShapeView {
   constructor(model, plan, width, rowHeight, bare) {
-    this.plan = plan;
     const widest = Math.max(...plan.lines.map((line) => line.width));
     const pitch = (width - (bare ? 10 : 120)) / Math.max(widest, 2);
     const { x, order } = place(plan, pitch, 0);
