@@ -74,13 +74,10 @@ class Orders {
 };
 
 /// Name of the node through which the reference motion was given.
-std::string reference_name(const Model& model, const System& system) {
-  const auto name = [&](const NodeRef& node) {
-    return node.id ? system.node_names()[static_cast<std::size_t>(*node.id)] : node.name;
-  };
-  if (!model.references().empty()) return name(model.references().front().first);
+std::string reference_name(const Model& model) {
+  if (!model.references().empty()) return model.name_of(model.references().front().first);
   for (const Model::Prescription& p : model.prescriptions())
-    if (p.omega) return name(p.node);
+    if (p.omega) return model.name_of(p.node);
   return "reference shaft";
 }
 
@@ -139,8 +136,7 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
   for (const Placement& placement : system.placements())
     if (const auto* mesh = dynamic_cast<const GearMesh*>(placement.element.get());
         mesh != nullptr && mesh->params().teeth_1 > 0) {
-      const NodeRef& node = placement.nodes.front();
-      const int gear = node.id ? static_cast<int>(*node.id) : system.node(node.name);
+      const int gear = system.node_of(placement.nodes.front());
       list.push_back(
           {{"order", mesh->params().teeth_1 * std::abs(system.ratio(gear))}, {"of", placement.name}});
     }
@@ -149,7 +145,7 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
   for (const Crossing& c : all)
     crossings.push_back(
         {{"mode", c.mode}, {"order", c.order}, {"speed", c.speed}, {"static", number(c.answer)}});
-  const std::string name = reference_name(model, system);
+  const std::string name = reference_name(model);
   return {{"shaft", name},
           {"speed", {std::abs(first), std::abs(last)}},
           {"orders", std::move(list)},

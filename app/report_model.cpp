@@ -13,8 +13,7 @@ constexpr double kShareShown = 0.005;
 
 std::vector<int> nodes_of(const Placement& placement, const System& system) {
   std::vector<int> nodes;
-  for (const NodeRef& node : placement.nodes)
-    nodes.push_back(node.id ? static_cast<int>(*node.id) : system.node(node.name));
+  for (const NodeRef& node : placement.nodes) nodes.push_back(system.node_of(node));
   for (const NodeId node : placement.internal) nodes.push_back(static_cast<int>(node));
   return nodes;
 }

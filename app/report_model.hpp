@@ -10,8 +10,9 @@
 
 namespace drev::app {
 
-/// {nodes: [{name, kind, ratio, inertia, held}], joints: [{name, type, kind, nodes, ...}], loads: [...]}.
-/// kind of a joint: shaft, mesh, gear, spring (a law), damper, other; one node: to ground.
+/// {nodes: [{name, turns, ratio, inertia, held}], joints: [{name, type, kind, nodes, ...}], loads: [{name,
+/// type, node}], unknowns}. kind of a joint: shaft, mesh, gear, spring (a law), damper, other; one node: to
+/// ground.
 Json model_object(const Model& model, const System& system);
 
 /// [{frequency_Hz, shape: [a number a node, largest 1], energy: [{element, share}]}]: share of the mode's

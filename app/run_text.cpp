@@ -29,7 +29,7 @@ std::string place_text(const Model& model, const Largest& l) {
     if (placement.name != place) continue;
     std::vector<std::string> nodes;
     for (const NodeRef& node : placement.nodes)
-      nodes.push_back(node.id ? model.node_names()[static_cast<std::size_t>(*node.id)] : node.name);
+      nodes.push_back(model.name_of(node));
     return place + " (" + join(nodes, " to ") + ")";
   }
   return place;

@@ -269,6 +269,16 @@ void Assembler::multiply(const Vector& values, const Vector& x, Vector& out) con
   }
 }
 
+Eigen::MatrixXd Assembler::product(const Vector& values, const Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd out(x.rows(), x.cols());
+  Vector column;
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    multiply(values, x.col(j), column);
+    out.col(j) = column;
+  }
+  return out;
+}
+
 void Assembler::multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const {
   const std::vector<int>& slots = system_.diagonal_slots();
   out.resize(x.size());

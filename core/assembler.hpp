@@ -79,6 +79,8 @@ class Assembler {
 
   /// out = A x with the symmetric A's values on the pattern.
   void multiply(const Vector& values, const Vector& x, Vector& out) const;
+  /// A X, by columns.
+  Eigen::MatrixXd product(const Vector& values, const Eigen::MatrixXd& x) const;
   /// out = M x, C x, K x.
   void multiply_mass(const Vector& x, Vector& out) const;
   void multiply_damping(const Vector& x, Vector& out) const;

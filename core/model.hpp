@@ -83,6 +83,9 @@ class Model {
   };
   const std::string& name() const { return name_; }
   const std::vector<std::string>& node_names() const { return *node_names_; }
+  const std::string& name_of(const NodeRef& ref) const {
+    return ref.id ? node_names_->at(static_cast<std::size_t>(*ref.id)) : ref.name;
+  }
   const std::vector<NodeKind>& node_kinds() const { return node_kinds_; }
   const std::vector<Placement>& placements() const { return *placements_; }
   const std::vector<Prescription>& prescriptions() const { return prescriptions_; }

@@ -1,6 +1,7 @@
 #include "core/system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/state.hpp"
 
@@ -12,6 +13,8 @@ int System::node(const std::string& name) const {
   if (found != names.end()) return static_cast<int>(found - names.begin());
   throw ModelError({{name_, "node", name, "", "is no node of this model" + did_you_mean(name, names)}});
 }
+
+double System::reference_speed() const { return reference_ ? std::abs(reference_->at(0.0).rate) : 0.0; }
 
 std::vector<Entry> System::row_of(int node) const {
   const NodeMap& map = node_map(node);
@@ -30,18 +33,18 @@ void System::map_load(int number) {
   loads_depend_on_motion_ |= follows;
   if (map.prescribed >= 0) return;
   if (const auto table = term.load->table())
-    table_loads_.add(*table, map.unknown >= 0 ? map.unknown : size() + map.row, map.coeff,
-                     ratio(term.node), follows ? map.coeff : 0.0);
+    table_loads_.add(*table, place(map), map.coeff, ratio(term.node), follows ? map.coeff : 0.0);
   else
     (follows ? moving_loads_ : known_loads_).push_back(number);
 }
 
+int System::slot(int row, int col) const {
+  const int* begin = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col];
+  const int* end = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col + 1];
+  return static_cast<int>(std::lower_bound(begin, end, row) - pattern_.innerIndexPtr());
+}
+
 void System::find_slots() {
-  const auto slot = [this](int row, int col) {
-    const int* begin = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col];
-    const int* end = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col + 1];
-    return static_cast<int>(std::lower_bound(begin, end, row) - pattern_.innerIndexPtr());
-  };
   diagonal_slots_.clear();
   for (int k = 0; k < size(); ++k) diagonal_slots_.push_back(slot(k, k));
   const auto only_diagonal = [this](Vector matrix) {

@@ -107,6 +107,9 @@ class System {
   std::vector<Entry> row_of(int node) const;
   /// Position of a node by name; throws ModelError with the nearest name.
   int node(const std::string& name) const;
+  int node_of(const NodeRef& ref) const { return ref.id ? index(*ref.id) : node(ref.name); }
+  /// Place of a node that is not prescribed among the unknowns and, behind them, rows().
+  int place(const NodeMap& map) const { return map.unknown >= 0 ? map.unknown : size() + map.row; }
   const std::vector<Placement>& placements() const { return *placements_; }
   /// A node that stands for unknown z[k], for messages.
   const std::string& unknown_name(int k) const { return (*node_names_)[at(unknown_node_[at(k)])]; }
@@ -114,6 +117,8 @@ class System {
   /// n_i: nominal ratio of the node to the reference shaft.
   double ratio(int node) const { return kinematics_.ratio[at(node)]; }
   const std::optional<Motion>& reference() const { return reference_; }
+  /// |phi'| at t = 0 [rad/s]; 0 without a reference shaft.
+  double reference_speed() const;
   /// Motions u_k of the prescribed nodes; empty function: u = 0.
   const std::vector<Motion>& prescribed() const { return prescribed_; }
   int prescribed_node(int k) const { return prescribed_node_[at(k)]; }
@@ -165,6 +170,8 @@ class System {
   int rigid_mode_count(Contact contact) const {
     return static_cast<int>(floating_parts(contact).size());
   }
+  /// The other modes, contacts closed.
+  int elastic_mode_count() const { return size() - rigid_mode_count(Contact::closed); }
 
  private:
   friend class SystemBuilder;
@@ -172,6 +179,7 @@ class System {
   System() = default;
   /// Puts load `number` with those that external() evaluates alike.
   void map_load(int number);
+  int slot(int row, int col) const;  // in pattern_
   /// Slots of the diagonal and of all terms in pattern_.
   void find_slots();
 

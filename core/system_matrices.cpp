@@ -18,12 +18,6 @@ SparseMatrix from_triplets(int rows, int cols, const Triplets& triplets) {
   return m;
 }
 
-int slot_of(const SparseMatrix& pattern, int row, int col) {
-  const int* begin = pattern.innerIndexPtr() + pattern.outerIndexPtr()[col];
-  const int* end = pattern.innerIndexPtr() + pattern.outerIndexPtr()[col + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - pattern.innerIndexPtr());
-}
-
 void add_entry(std::vector<Entry>& row, int dof, double coeff) {
   for (Entry& e : row)
     if (e.index == dof) {
@@ -175,7 +169,7 @@ Vector SystemBuilder::values_on_pattern(int matrix) const {
   for_each_entry(matrix, [&](int i, int j, double value) {
     const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
     if (a.unknown >= 0 && b.unknown >= 0)
-      v[slot_of(system_.pattern_, a.unknown, b.unknown)] += value * a.coeff * b.coeff;
+      v[system_.slot(a.unknown, b.unknown)] += value * a.coeff * b.coeff;
   });
   return v;
 }

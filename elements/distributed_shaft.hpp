@@ -7,9 +7,10 @@
 /// The consistent mass approaches the continuum's frequencies from above, with an error of
 /// (omega L/(n c))^2/24 relative, c = sqrt(G/rho): at least 10 segments per wavelength keep it near
 /// 2 %. The averaged mass M = J/12 [5 1; 1 5] comes from below, with a far smaller error where the ends carry
-/// little inertia; segments_for() (segment_count.hpp) picks n. Positive torque is that of a positive twist, end b minus end a, as in ShaftSpring; outputs
-/// "1".."n" count the segments from a to b. Nodes: a, b, then the n - 1 internal ones from a to b.
-/// Takes part in Rayleigh damping. density = 0 makes a massless spring, then with one segment only.
+/// little inertia; segments_for() (segment_count.hpp) picks n. Positive torque is that of a positive twist,
+/// end b minus end a, as in ShaftSpring; outputs "1".."n" count the segments from a to b. Nodes: a, b, then
+/// the n - 1 internal ones from a to b. Takes part in Rayleigh damping. density = 0 makes a massless spring,
+/// then with one segment only.
 ///
 /// Source: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees, Dynamics of Rotating Machines,
 /// Cambridge University Press, 2010, chapter 9.

@@ -29,7 +29,6 @@ constexpr double kChaos = 1e6;  // growth past which tightening moves the horizo
 constexpr int kBatches = 20, kOrders = 5;
 constexpr double kSettled = 0.1;  // of the run: left out of time averages
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
-constexpr double kPerturbation = 1e-9;
 
 /// Everything watched in one run.
 struct Watched {
@@ -321,11 +320,7 @@ class AccurateRun {
       PeakWatch deflection(o_.deflection.empty() ? std::vector<Channel>{}
                                                  : find_channels(system_, {o_.deflection}));
       PeakWatch torque(find_channels(system_, o_.torques));
-      State state = State::initial(system_);
-      for (int k = 0; k < system_.size(); ++k) {
-        state.z[k] += kPerturbation * result_.growth.z_scale * std::sin(i * (1.0 + 2.0 * k));
-        state.v[k] += kPerturbation * result_.growth.v_scale * std::cos(i * (2.0 + 3.0 * k));
-      }
+      State state = neighbour(system_, i, result_.growth.z_scale, result_.growth.v_scale);
       const RunSummary run =
           run_method(system_, result_.coarse, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state,
                      {&deflection, &torque});

@@ -1,6 +1,6 @@
 #pragma once
 /// What accuracy.cpp watches in each of its runs: peaks with the state ahead of them, changes of contact with
-/// their times, time averages in batches. Internal to accuracy.cpp.
+/// their times, time averages in batches. Internal to accuracy.cpp, but for the peaks.
 #include <vector>
 
 #include "solvers/contact_statistics.hpp"

@@ -38,7 +38,7 @@ struct ContactRecord {
   }
 };
 
-/// m_eq of every scalar term that has a gap [kg or kg m^2], in System::scalars(); 0 for the others.
+/// m_eq of every law that is not linear [kg or kg m^2], in System::scalars(); 0 for the others.
 std::vector<double> equivalent_masses(const System& system);
 
 /// The contact at hand: whether an impact began it, and its largest |y| so far.

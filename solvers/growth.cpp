@@ -41,6 +41,15 @@ class Scale final : public Observer {
 
 }  // namespace
 
+State neighbour(const System& system, int i, double z_scale, double v_scale) {
+  State state = State::initial(system);
+  for (int k = 0; k < system.size(); ++k) {
+    state.z[k] += kSeparation * z_scale * std::sin(i * (1.0 + 2.0 * k));
+    state.v[k] += kSeparation * v_scale * std::cos(i * (2.0 + 3.0 * k));
+  }
+  return state;
+}
+
 MeanInterval batch_mean(const std::vector<double>& samples, int batches) {
   const std::size_t n = samples.size(), count = std::min(static_cast<std::size_t>(batches), n);
   if (count < 2) return {n == 1 ? samples[0] : 0.0, std::numeric_limits<double>::infinity()};

@@ -39,6 +39,9 @@ struct Growth {
 
 Growth measure_growth(const System& system, const GrowthOptions& options);
 
+/// The model's initial state and beside it 1e-9 of the scales, in the i-th of arbitrary directions.
+State neighbour(const System& system, int i, double z_scale, double v_scale);
+
 /// Mean of samples in order of time with the half-width of its 95 % confidence interval, by the means of
 /// batches and Student's t. infinity with less than two samples.
 struct MeanInterval {

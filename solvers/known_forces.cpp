@@ -35,8 +35,7 @@ KnownForces::KnownForces(const System& system)
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
     if (map.prescribed >= 0) continue;  // its work is the prescribed node's
-    const int row = map.unknown >= 0 ? map.unknown : system.size() + map.row;
-    const Place place{&term, row, map.coeff, system.ratio(term.node),
+    const Place place{&term, system.place(map), map.coeff, system.ratio(term.node),
                       term.load->depends_on_motion()};
     if (term.load->stretch(0.0, 0.0, 1.0))
       loads_.push_back({place});

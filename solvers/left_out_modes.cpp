@@ -47,26 +47,23 @@ bool modal_shares(const System& system, const Channel& channel, const Eigen::Mat
   return true;
 }
 
+Finding no_estimate(const std::string& place, const Channel& channel) {
+  return {place, "channel", channel.name(), "",
+          "is none whose error is estimated; take a deviation, a rate, a shaft's torque or a law's force or "
+          "deflection"};
+}
+
 LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
                            const std::vector<std::string>& channels, int count)
     : full_(full), basis_(reduction.basis), assembler_(full) {
-  const int elastic = full.size() - full.rigid_mode_count(Contact::closed);
+  const int elastic = full.elastic_mode_count();
   const int wanted =
       std::min(elastic, reduction.modes + (count > 0 ? count : kFollowed + 2 * reduction.modes));
   const ModeSet modes = solve_modes(full, {.count = wanted});
-  const auto times = [&](const Vector& values, const Eigen::MatrixXd& x) {
-    Eigen::MatrixXd out(x.rows(), x.cols());
-    Vector product;
-    for (Eigen::Index j = 0; j < x.cols(); ++j) {
-      assembler_.multiply(values, x.col(j), product);
-      out.col(j) = product;
-    }
-    return out;
-  };
   all_followed_ = wanted == elastic;
   // Modes that the reduced space holds leave nothing.
   const Eigen::MatrixXd& r = basis_;
-  const Eigen::MatrixXd mass_r = times(full.mass_values(), r);
+  const Eigen::MatrixXd mass_r = assembler_.product(full.mass_values(), r);
   const Eigen::LLT<Eigen::MatrixXd> reduced_mass(r.transpose() * mass_r);
   std::vector<int> followed;
   for (int j = 0; j < modes.count(); ++j) {
@@ -81,7 +78,7 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
     lambda_[j] = std::pow(modes.omega(followed[static_cast<std::size_t>(j)]), 2);
   }
   by_mass_ = modes_.transpose() * mass_r;
-  const Eigen::MatrixXd damped = times(full.damping_values(), modes_);
+  const Eigen::MatrixXd damped = assembler_.product(full.damping_values(), modes_);
   damping_ = modes_.cwiseProduct(damped).colwise().sum();
   by_damping_ = damped.transpose() * r - damping_.asDiagonal() * by_mass_;
   by_laws_ = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(full.scalars().size()));
@@ -95,9 +92,7 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
     const Channel& channel = of_full[c];
     Watched w{.name = channels[c], .channel = of_reduced[c], .law = channel.force_of()};
     if (!modal_shares(full, channel, modes_, w.z, w.v))
-      findings.push_back({full.name() + "/reduction error", "channel", channel.name(), "",
-                          "is none whose error is estimated; take a deviation, a rate, a shaft's torque or "
-                          "a law's force or deflection"});
+      findings.push_back(no_estimate(full.name() + "/reduction error", channel));
     watched_.push_back(std::move(w));
   }
   asked_ = watched_.size();
@@ -105,8 +100,8 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
     if (full.scalars()[at(l)].force->pieces().size() != 1)
       watched_.push_back({.law = l, .z = by_laws_.col(l), .v = by_laws_.col(l)});
   if (!findings.empty()) throw ModelError(findings);
-  z_ = modes_.transpose() * times(full.mass_values(), full.initial_deviation());
-  v_ = modes_.transpose() * times(full.mass_values(), full.initial_rate());
+  z_ = modes_.transpose() * assembler_.product(full.mass_values(), full.initial_deviation());
+  v_ = modes_.transpose() * assembler_.product(full.mass_values(), full.initial_rate());
 }
 
 Vector LeftOutModes::force(const StepPoint& point) {

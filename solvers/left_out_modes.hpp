@@ -31,6 +31,8 @@ struct ReductionErrorEstimate {
 /// force times its slopes. False for channels that are no deviation, rate, shaft's torque, force or deflection.
 bool modal_shares(const System& system, const Channel& channel, const Eigen::MatrixXd& modes, Vector& z,
                   Vector& v);
+/// What is said of those.
+Finding no_estimate(const std::string& place, const Channel& channel);
 
 class LeftOutModes final : public Observer {
  public:

@@ -23,8 +23,7 @@ void Peaks::step(const Assembler& assembler, const StepPoint& from, const StepPo
     const double higher = std::max(value, last_[c]), lower = std::min(value, last_[c]);
     const double near = kNear * (p.max - p.min);
     last_[c] = value;
-    if (value > p.max) p.max = value, p.max_time = to.state.t;
-    if (value < p.min) p.min = value, p.min_time = to.state.t;
+    p.note(value, to.state.t);
     if (inside_steps_ && (higher > p.max - near || lower < p.min + near))
       look_inside(c, assembler, from, to);
   }
@@ -38,11 +37,7 @@ void Peaks::look_inside(std::size_t c, const Assembler& assembler, const StepPoi
   const double h = to.state.t - from.state.t;
   const auto inside = cubic_peak(channels_[c].evaluate(assembler, from.state), *rate_0,
                                  channels_[c].evaluate(assembler, to.state), *rate_1, h);
-  if (!inside) return;
-  const double y = inside->value, t = from.state.t + inside->s * h;
-  Peak& p = peaks_[c];
-  if (y > p.max) p.max = y, p.max_time = t;
-  if (y < p.min) p.min = y, p.min_time = t;
+  if (inside) peaks_[c].note(inside->value, from.state.t + inside->s * h);
 }
 
 std::size_t Peaks::largest() const {

@@ -12,6 +12,10 @@ struct Peak {
   double min = 0.0, min_time = 0.0;
   double amplitude() const { return std::max(max, -min); }  ///< largest |value|
   double time() const { return max >= -min ? max_time : min_time; }
+  void note(double value, double t) {
+    if (value > max) max = value, max_time = t;
+    if (value < min) min = value, min_time = t;
+  }
 };
 
 class Peaks final : public Observer {

@@ -59,16 +59,12 @@ Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& 
 /// Largest and smallest value of a channel: at the samples, and of the cubic between them.
 Peak peak_of(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& rate, double h) {
   Peak p{y[0], 0.0, y[0], 0.0};
-  const auto note = [&p](double value, double t) {
-    if (value > p.max) p.max = value, p.max_time = t;
-    if (value < p.min) p.min = value, p.min_time = t;
-  };
   for (Eigen::Index s = 0; s < y.size(); ++s) {
     const Eigen::Index next = (s + 1) % y.size();
     const double t = h * static_cast<double>(s);
-    note(y[s], t);
+    p.note(y[s], t);
     if (const auto inside = cubic_peak(y[s], rate[s], y[next], rate[next], h))
-      note(inside->value, t + inside->s * h);
+      p.note(inside->value, t + inside->s * h);
   }
   return p;
 }
@@ -107,7 +103,7 @@ double given_period(const System& system, const PeriodicOptions& options, Period
   check.positive("turns", options.turns, "");
   check.within("harmonics", options.harmonics, 0, kMost, "");
   check.within("tolerance", options.tolerance, 1e-10, 1e-1, "");
-  const double speed = system.reference() ? std::abs(system.reference()->at(0.0).rate) : 0.0;
+  const double speed = system.reference_speed();
   if (options.period == 0.0 && speed == 0.0)
     check.fail("period", "0", "s", "must be given: no reference shaft turns");
   if (!findings.empty()) throw ModelError(findings);

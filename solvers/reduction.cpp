@@ -41,7 +41,7 @@ std::string in_Hz(double frequency) {
 }
 
 Reduction modal(const System& system, const ReductionOptions& o) {
-  const int elastic = system.size() - system.rigid_mode_count(Contact::closed);
+  const int elastic = system.elastic_mode_count();
   const KeptModes kept = kept_modes(system, o.modes > 0 ? std::min(o.modes, elastic) : 0, o.up_to_Hz);
   Matrix basis = kept.vectors;
   Reduction r{.system = system, .modes = kept.elastic, .first_left_out_Hz = kept.first_left_out_Hz};

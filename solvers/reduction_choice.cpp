@@ -7,10 +7,10 @@
 #include <unsupported/Eigen/FFT>
 
 #include "core/units.hpp"
+#include "solvers/contact_statistics.hpp"
 #include "solvers/left_out_modes.hpp"
 #include "solvers/method_choice.hpp"
 #include "solvers/modes.hpp"
-#include "solvers/sparse_cholesky.hpp"
 #include "solvers/static_shapes.hpp"
 
 namespace drev {
@@ -28,8 +28,8 @@ constexpr double kDensePart = 0.25;  // of an unknown's cost: an entry of a full
 
 /// Two turns of the reference shaft if it turns, else the run.
 double spectrum_length(const System& system, double duration) {
-  const double rate = system.reference() ? std::abs(system.reference()->at(0.0).rate) : 0.0;
-  return rate > 0.0 ? 4.0 * kPi / rate : duration;
+  const double speed = system.reference_speed();
+  return speed > 0.0 ? 2.0 * kTwoPi / speed : duration;
 }
 
 /// Estimated errors of a channel, relative, with the first m modes kept: one for each m < modes / 2.
@@ -55,9 +55,7 @@ class Predictor {
   std::vector<double> errors(const Channel& channel) const {
     Vector z, v;
     if (!modal_shares(system_, channel, modes_.vectors, z, v))
-      throw ModelError({{system_.name() + "/reduction", "channel", channel.name(), "",
-                         "is none whose error is estimated; take a deviation, a rate, a shaft's torque or "
-                         "a law's force or deflection"}});
+      throw ModelError({no_estimate(system_.name() + "/reduction", channel)});
     if (channel.force_of() >= 0) {
       const ScalarForce& law = *system_.scalars()[at(channel.force_of())].force;
       z *= law.closed_stiffness();
@@ -106,18 +104,13 @@ class Predictor {
   std::vector<double> start_;
 };
 
-/// The highest frequency of a law that changes, on its closed stiffness with the masses at its ends [Hz].
+/// The highest frequency of a law that is not linear: its closed stiffness on the masses next to it [Hz].
 double contact_frequency(const System& system) {
-  SparseCholesky mass(system.pattern());
-  if (mass.factorize(system.pattern(), system.mass_values()) != FactorStatus::success) return 0.0;
+  const std::vector<double> masses = equivalent_masses(system);
   double highest = 0.0;
-  for (const ScalarTerm& term : system.scalars()) {
-    if (term.force->pieces().size() == 1) continue;
-    Vector b = Vector::Zero(system.size()), x;
-    for (const Entry& e : term.z) b[e.index] += e.coeff;
-    mass.solve(b, x);
-    highest = std::max(highest, term.force->closed_stiffness() * b.dot(x));
-  }
+  for (std::size_t j = 0; j < masses.size(); ++j)
+    if (masses[j] > 0.0)
+      highest = std::max(highest, system.scalars()[j].force->closed_stiffness() / masses[j]);
   return to_hz(std::sqrt(highest));
 }
 
@@ -143,7 +136,7 @@ ReductionChoice choose_reduction(const System& system, double within,
   };
   if (system.rows().rows() > 0) return refuse("it is a projected system already");
   if (const auto why = why_not_exact(system)) return refuse("exact propagation cannot be used: " + *why);
-  const int elastic = system.size() - system.rigid_mode_count(Contact::closed);
+  const int elastic = system.elastic_mode_count();
   if (elastic < 2) return refuse("it has no mode to leave out");
   const ModeSet modes = solve_modes(system, {.count = std::min(elastic, kMostModes)});
   const Predictor predictor(system, modes, duration);

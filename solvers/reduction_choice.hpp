@@ -11,9 +11,8 @@
 /// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; LeftOutModes gives a better
 /// one with the run.
 ///
-/// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's n
-/// unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r; within a factor of 1.6 of what was
-/// measured.
+/// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
+/// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
 #include <optional>
 #include <string>
 #include <vector>

@@ -26,8 +26,7 @@ constexpr double kDependent = 1e-10;  // in energy, of shapes
 class Residual {
  public:
   Residual(const System& system, const KeptModes& modes) : modes_(modes), assembler_(system) {
-    double first = modes.rigid + modes.elastic > modes.rigid ? modes.lambda[modes.rigid] : 1.0;
-    first *= kShift;
+    const double first = kShift * (modes.elastic > 0 ? modes.lambda[modes.rigid] : 1.0);
     Vector shifted;
     assembler_.contact_values({.m = first, .k = 1.0}, Contact::closed, shifted);
     assembler_.contact_values({.k = 1.0}, Contact::closed, stiffness_);
@@ -52,20 +51,10 @@ class Residual {
     }
     return shapes;
   }
-  Matrix mass(const Matrix& x) const { return times(assembler_.system().mass_values(), x); }
-  Matrix stiffness(const Matrix& x) const { return times(stiffness_, x); }
+  Matrix mass(const Matrix& x) const { return assembler_.product(assembler_.system().mass_values(), x); }
+  Matrix stiffness(const Matrix& x) const { return assembler_.product(stiffness_, x); }
 
  private:
-  Matrix times(const Vector& values, const Matrix& x) const {
-    Matrix out(x.rows(), x.cols());
-    Vector product;
-    for (Eigen::Index j = 0; j < x.cols(); ++j) {
-      assembler_.multiply(values, x.col(j), product);
-      out.col(j) = product;
-    }
-    return out;
-  }
-
   const KeptModes& modes_;
   Assembler assembler_;
   SparseCholesky factor_;
@@ -74,8 +63,8 @@ class Residual {
 
 /// Two turns of the reference shaft, or up to the last breakpoint if that is later [s].
 double cycle(const System& system) {
-  const double rate = system.reference() ? std::abs(system.reference()->at(0.0).rate) : 0.0;
-  double duration = rate > 0.0 ? 4.0 * kPi / rate : 0.0;
+  const double speed = system.reference_speed();
+  double duration = speed > 0.0 ? 2.0 * kTwoPi / speed : 0.0;
   if (!system.breakpoints().empty()) duration = std::max(duration, system.breakpoints().back());
   return duration > 0.0 ? duration : 1.0;
 }
@@ -122,7 +111,7 @@ Matrix beside(const Matrix& a, const Matrix& b) {
 }  // namespace
 
 KeptModes kept_modes(const System& system, int count, double up_to_Hz) {
-  const int all = system.size() - system.rigid_mode_count(Contact::closed);
+  const int all = system.elastic_mode_count();
   if (all < 1)
     throw ModelError({{system.name() + "/reduction", "system", "no elastic mode", "",
                        "there is nothing to leave out"}});

@@ -45,24 +45,21 @@ class SceneWriter {
     if (name.find('{') != std::string::npos) refuse(name, "its name has a '{'");
     return name;
   }
-  std::string name_of(const NodeRef& ref) const {
-    return ref.id ? model_.node_names()[at(index(*ref.id))] : ref.name;
-  }
 
   std::string write_nodes() {
     std::map<std::string, NodeParams> params;
     for (const Model::Prescription& p : model_.prescriptions()) {
-      NodeParams& node = params[name_of(p.node)];
+      NodeParams& node = params[model_.name_of(p.node)];
       if (p.deviation)
-        refuse(name_of(p.node), "its given motion is a function of C++");
+        refuse(model_.name_of(p.node), "its given motion is a function of C++");
       else if (p.omega)
         node.constant_speed = *p.omega;
       else
         node.hold = true;
     }
-    for (const auto& [ref, motion] : model_.references()) take_reference(name_of(ref), motion, params);
+    for (const auto& [ref, motion] : model_.references()) take_reference(model_.name_of(ref), motion, params);
     for (const Model::Initial& initial : model_.initials()) {
-      NodeParams& node = params[name_of(initial.node)];
+      NodeParams& node = params[model_.name_of(initial.node)];
       node.initial_value = initial.deviation;
       node.initial_rate = initial.rate;
     }
@@ -113,7 +110,7 @@ class SceneWriter {
     for (const Placement& placement : model_.placements()) {
       const std::string& name = checked(placement.name);
       std::vector<std::string> nodes;
-      for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(name_of(ref)));
+      for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(model_.name_of(ref)));
       const NodeKind kind = nodes.empty() ? NodeKind::rotational : kinds_[nodes.front()];
       bool written = false;
       for (const ElementType& type : element_types()) {

@@ -17,13 +17,9 @@ namespace {
 
 using ElementPtr = std::shared_ptr<const Element>;
 
-std::string name_of(const Model& model, const NodeRef& ref) {
-  return ref.id ? model.node_names().at(at(index(*ref.id))) : ref.name;
-}
-
 std::vector<std::string> names_of(const Model& model, const Placement& p) {
   std::vector<std::string> names;
-  for (const NodeRef& ref : p.nodes) names.push_back(name_of(model, ref));
+  for (const NodeRef& ref : p.nodes) names.push_back(model.name_of(ref));
   return names;
 }
 
@@ -51,7 +47,7 @@ Model copy(const Model& model, const Place& place, const std::set<std::string>& 
       place(to, p, {nodes.begin(), nodes.end()});
   }
   for (const Model::Prescription& p : model.prescriptions()) {
-    const std::string node = name_of(model, p.node);
+    const std::string node = model.name_of(p.node);
     if (is_gone(node)) continue;
     if (p.omega)
       to.constant_speed(node, *p.omega);
@@ -61,7 +57,7 @@ Model copy(const Model& model, const Place& place, const std::set<std::string>& 
       to.hold(node);
   }
   for (const auto& [node, motion] : model.references())
-    if (!is_gone(name_of(model, node))) to.set_reference(name_of(model, node), motion);
+    if (!is_gone(model.name_of(node))) to.set_reference(model.name_of(node), motion);
   return to;
 }
 
@@ -106,7 +102,7 @@ std::vector<int> parts_of(const Model& model, const System& system,
   for (const Placement& p : model.placements()) {
     if (!ties(p)) continue;
     std::vector<int> nodes;
-    for (const NodeRef& ref : p.nodes) nodes.push_back(system.node(name_of(model, ref)));
+    for (const NodeRef& ref : p.nodes) nodes.push_back(system.node_of(ref));
     for (const NodeId id : p.internal) nodes.push_back(index(id));
     for (std::size_t k = 1; k < nodes.size(); ++k)
       closures.push_back({.first = nodes[0], .second = nodes[k]});
@@ -142,7 +138,7 @@ std::optional<Model> replace(const Model& model,
   });
   if (!any) return {};
   for (const Model::Initial& i : model.initials())
-    to.set_initial(name_of(model, i.node), i.deviation, i.rate);
+    to.set_initial(model.name_of(i.node), i.deviation, i.rate);
   return to;
 }
 
@@ -170,9 +166,9 @@ ElementPtr closed_polyline(const PolylineSpring& spring, int flank) {
 std::vector<int> driven_nodes(const Model& model, const System& system) {
   std::vector<int> nodes;
   for (const Model::Prescription& p : model.prescriptions())
-    nodes.push_back(system.node(name_of(model, p.node)));
+    nodes.push_back(system.node_of(p.node));
   for (const auto& [node, motion] : model.references())
-    nodes.push_back(system.node(name_of(model, node)));
+    nodes.push_back(system.node_of(node));
   return nodes;
 }
 
@@ -250,7 +246,7 @@ std::optional<Model> with_rigid_meshes(const Model& model) {
     going_on = false;
     for (const Placement& p : model.placements()) {
       if (!is_mesh(p)) continue;
-      int a = system.node(name_of(model, p.nodes[0])), b = system.node(name_of(model, p.nodes[1]));
+      int a = system.node_of(p.nodes[0]), b = system.node_of(p.nodes[1]);
       double ratio = ratio_of(p);
       if (settled.contains(part[at(a)]) == settled.contains(part[at(b)])) continue;
       if (settled.contains(part[at(b)])) std::swap(a, b), ratio = 1.0 / ratio;
@@ -338,8 +334,8 @@ std::string torque_of(const std::string& shaft, int segment) {
 
 /// Its node at a position from 0 to `segments`.
 std::string node_at(const Model& model, const Placement& p, int position, int segments) {
-  if (position == 0) return name_of(model, p.nodes[0]);
-  if (position == segments) return name_of(model, p.nodes[1]);
+  if (position == 0) return model.name_of(p.nodes[0]);
+  if (position == segments) return model.name_of(p.nodes[1]);
   return p.name + "_" + std::to_string(position);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/channel.hpp"
+#include "core/units.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
 #include "solvers/exact_propagation.hpp"
@@ -61,7 +62,7 @@ TEST_CASE("Modal reduction keeps the modes of a free chain") {
   CHECK(r.system.mass_is_diagonal());
   CHECK(names(r.system) == names(full));
   const auto closed_form = [](int j) {
-    return std::sqrt(kStiffness / kInertia) * std::sin(j * M_PI / (2.0 * kCount)) / M_PI;
+    return std::sqrt(kStiffness / kInertia) * std::sin(j * kPi / (2.0 * kCount)) / kPi;
   };
   const ModeSet modes = solve_modes(r.system, {.count = 5});
   CHECK(modes.rigid_modes == 1);
@@ -70,7 +71,7 @@ TEST_CASE("Modal reduction keeps the modes of a free chain") {
     // cos(j pi (i + 1/2)/n) at node i.
     const double end = modes.shapes(0, j - 1), other = modes.shapes(6, j - 1);
     CHECK(other / end ==
-          Approx(std::cos(j * M_PI * 6.5 / kCount) / std::cos(j * M_PI * 0.5 / kCount)).epsilon(1e-8));
+          Approx(std::cos(j * kPi * 6.5 / kCount) / std::cos(j * kPi * 0.5 / kCount)).epsilon(1e-8));
   }
   CHECK(r.first_left_out_Hz == Approx(closed_form(6)).epsilon(1e-10));
   CHECK(reduce(full, {.up_to_Hz = 0.5 * (closed_form(8) + closed_form(9))}).modes == 8);
@@ -93,7 +94,7 @@ TEST_CASE("Static correction: the deflection under a constant torque is exact") 
   const int n = kCount - 1;
   double expected = 0.0;
   for (int j = 1; j <= 3; ++j) {
-    const double theta = (2 * j - 1) * M_PI / (2 * n + 1);
+    const double theta = (2 * j - 1) * kPi / (2 * n + 1);
     expected += std::pow(std::sin(n * theta) / std::sin(0.5 * theta), 2) / (n * (2 * n + 1));
   }
   CHECK(share == Approx(expected).epsilon(1e-10));
