@@ -55,7 +55,8 @@ HarmonicBalance::HarmonicBalance(const System& system, double period)
   std::set<int> varying;
   for (const ScalarTerm& term : system.scalars()) varying.insert(term.slots.begin(), term.slots.end());
   for (const LoadTerm& term : system.loads())
-    if (term.load->depends_on_motion()) varying.insert(term.slot);
+    if (term.load->depends_on_motion() && system.node_map(term.node).prescribed < 0)
+      feedback_.push_back({&term, system.row_of(term.node)});
   for (const GeneralTerm& term : system.generals()) varying.insert(term.slots.begin(), term.slots.end());
   const SparseMatrix& p = system.pattern();
   for (int column = 0; column < p.cols(); ++column)
@@ -225,20 +226,25 @@ HarmonicBalance::Outcome HarmonicBalance::start(int harmonics, int samples, Harm
 
 void HarmonicBalance::find_slopes(const Harmonics& z, int samples) {
   const auto count = static_cast<Eigen::Index>(slopes_.size());
-  dk_.resize(count, samples);
-  dc_.resize(count, samples);
+  dk_.resize(count + static_cast<Eigen::Index>(feedback_.size()), samples);
+  dc_.resize(dk_.rows(), samples);
   const Samples q = motion(z, 0, samples), v = motion(z, 1, samples);
   Vector q_s, v_s, k, c;
   for (int s = 0; s < samples; ++s) {
     assembler_.set_time(kTwoPi / w_ * (static_cast<double>(s) / samples));
     q_s = q.col(s);
     v_s = v.col(s);
-    assembler_.tangent_values({0.0, 0.0, 1.0}, q_s, v_s, history_, true, k);
-    assembler_.tangent_values({0.0, 1.0, 0.0}, q_s, v_s, history_, true, c);
+    assembler_.tangent_values({0.0, 0.0, 1.0}, q_s, v_s, history_, false, k);
+    assembler_.tangent_values({0.0, 1.0, 0.0}, q_s, v_s, history_, false, c);
     for (Eigen::Index i = 0; i < count; ++i) {
       const int slot = slopes_[static_cast<std::size_t>(i)].slot;
       dk_(i, s) = k[slot] - closed_k_[slot];
       dc_(i, s) = c[slot] - closed_c_[slot];
+    }
+    for (Eigen::Index i = count; i < dk_.rows(); ++i) {
+      const LoadResponse r = assembler_.load(*feedback_[static_cast<std::size_t>(i - count)].term, q_s, v_s);
+      dk_(i, s) = -r.dtorque_dangle;
+      dc_(i, s) = -r.dtorque_dspeed;
     }
   }
 }
@@ -250,6 +256,16 @@ bool HarmonicBalance::apply(const Harmonics& d, int samples, Harmonics& out) {
     const Slope& e = slopes_[i];
     const auto row = static_cast<Eigen::Index>(i);
     f.row(e.row) += dk_.row(row).cwiseProduct(q.row(e.column)) + dc_.row(row).cwiseProduct(v.row(e.column));
+  }
+  for (std::size_t i = 0; i < feedback_.size(); ++i) {
+    const auto of = static_cast<Eigen::Index>(slopes_.size() + i);
+    Eigen::RowVectorXd q_node = Eigen::RowVectorXd::Zero(samples), v_node = q_node;
+    for (const Entry& e : feedback_[i].row) {
+      q_node += e.coeff * q.row(e.index);
+      v_node += e.coeff * v.row(e.index);
+    }
+    const Eigen::RowVectorXd torque = dk_.row(of).cwiseProduct(q_node) + dc_.row(of).cwiseProduct(v_node);
+    for (const Entry& e : feedback_[i].row) f.row(e.index) += e.coeff * torque;
   }
   out = to_harmonics(f, static_cast<int>(d.cols()) - 1);
   if (!solve_stiffness(out)) return false;
@@ -295,7 +311,7 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
     outcome.residual = left > 0.0 ? left / largest : 0.0;
     if (left <= tolerance * largest) return outcome;
     if (outcome.iterations == kMaxNewton) break;
-    if (slopes_.empty()) {
+    if (slopes_.empty() && feedback_.empty()) {
       d = error;
     } else {
       find_slopes(z, samples);

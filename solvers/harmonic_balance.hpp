@@ -50,14 +50,18 @@ class HarmonicBalance {
   double size(const Harmonics& z) const;
 
  private:
-  struct Slope {  // an entry of the matrix that may vary, and how it does over the period
+  struct Slope {  // an entry of the matrix that may vary
     int row = 0, column = 0, slot = 0;
+  };
+  struct Feedback {  // a load that follows the motion, and its node over the unknowns
+    const LoadTerm* term;
+    std::vector<Entry> row;
   };
   double inner(const Harmonics& a, const Harmonics& b) const;
   /// p - B y - g in the motion, at `later` periods: of all loads, or without those of loads_.
   Samples forces(const Samples& q, const Samples& v, double later, bool all_loads);
   Harmonics force_harmonics(const Harmonics& z, int samples);
-  /// right -> S^-1 right. False: singular, order_ says where.
+  /// right -> S^-1 right. False: singular, singular_harmonic_ says where.
   bool solve_stiffness(Harmonics& right);
   /// -S^-1 R.
   bool correction(const Harmonics& z, int samples, Harmonics& out);
@@ -76,7 +80,8 @@ class HarmonicBalance {
   SparseMatrix pattern_;  // of S as a real matrix, (Re, Im) of each unknown together
   SparseLu factor_;
   std::vector<Slope> slopes_;
-  Eigen::MatrixXd dk_, dc_;  // slopes x N
+  std::vector<Feedback> feedback_;
+  Eigen::MatrixXd dk_, dc_;  // of slopes_, then feedback_, x N
   int singular_harmonic_ = 0;
 };
 
