@@ -52,6 +52,12 @@ std::string counted(long n, const std::string& thing) {
 
 }  // namespace
 
+long contact_count(const System& system) {
+  return std::count_if(system.scalars().begin(), system.scalars().end(), [](const ScalarTerm& s) {
+    return s.force->gap() || s.force->pieces().size() > 1;
+  });
+}
+
 double fastest_rate(const System& system) {
   if (system.size() == 0) return 0.0;
   const Assembler assembler(system);
@@ -123,19 +129,15 @@ MethodChoice choose_method(const System& system, double duration, double step) {
   } catch (const SolverError& error) {
     return {constant, std::string("exact propagation cannot be used: ") + error.what()};
   }
-  const long contacts =
-      std::count_if(system.scalars().begin(), system.scalars().end(),
-                    [](const ScalarTerm& s) { return s.force->gap() || s.force->pieces().size() > 1; });
+  const long contacts = contact_count(system);
   const double steps = std::max(1.0, rate * duration / kRateTimesStep);
   const double cost = kUnknownsOfStep + system.size() + kUnknownsOfContact * static_cast<double>(contacts);
-  const auto affordable = [&](double products_in_step) {
-    return steps * products_in_step * cost <= kMostWork;
-  };
+  const auto work = [&](double products_in_step) { return steps * products_in_step * cost; };
   std::ostringstream text;
   text.precision(2);
   text << "its fastest mode, " << to_hz(rate) << " Hz, ";
   if (why_not) {
-    if (affordable(kProductsOfStages))
+    if (work(kProductsOfStages) <= kMostWork)
       return {{.name = "dormand_prince", .tolerance = kControlledTolerance},
               refused + "; steps controlled by their error"};
     text << "would cost explicit methods " << steps << " steps; controlled steps of an implicit method";
@@ -143,11 +145,14 @@ MethodChoice choose_method(const System& system, double duration, double step) {
   }
   const std::string model = "the model is " + std::string(kind_of(system)) + ", with " +
                             counted(system.size(), "unknown") + " and " + counted(contacts, "contact");
-  if (affordable(kProductsInStep))
+  const double exact_work = work(kProductsInStep);
+  if (exact_work <= kMostWork)
     return {{.name = "exact", .tolerance = ExactOptions{}.tolerance},
-            model + ": exact between located changes"};
+            model + ": exact between located changes",
+            exact_work};
   text << "would cost exact propagation " << kProductsInStep * steps << " products: controlled steps";
-  return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str()};
+  return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str(),
+          exact_work};
 }
 
 }  // namespace drev

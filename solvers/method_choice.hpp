@@ -47,12 +47,17 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
 struct MethodChoice {
   Method method;
   std::string reason;  ///< one sentence without full stop
+  /// What exact propagation would cost: products times the last factor above; 0 where it cannot be used.
+  double exact_work = 0.0;
 };
 
 inline constexpr double kControlledTolerance = 1e-4;  ///< of stepping methods, unless another is asked for
 
 /// duration: to be simulated [s]; step: where it comes to constant steps [s].
 MethodChoice choose_method(const System& system, double duration, double step);
+
+/// Laws that have a gap or pieces.
+long contact_count(const System& system);
 
 /// max(sqrt |M^-1 K|, |M^-1 C|) [1/s], contacts closed, general elements as at the start, within some percent
 /// from below (20 steps of the power method). Throws SolverError where M is singular.

@@ -83,7 +83,7 @@ class Ladder {
       levels.push_back(std::move(level));
       last = {levels.size() - 1};
     };
-    const Flanks flanks = flanks_at_start(full_);
+    const Flanks& flanks = evidence_.flanks();
     const auto mean = with_mean_stiffness(scene_.model);
     const auto closed = without_backlash(scene_.model, flanks);
     if (mean)

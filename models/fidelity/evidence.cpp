@@ -61,7 +61,7 @@ std::string Evidence::contacts(const std::vector<Peak>& forces) const {
 
 std::string Evidence::parametric() const {
   if (!system_.reference()) return "";
-  const double speed = std::abs(system_.reference()->at(0.0).rate);
+  const double speed = system_.reference_speed();
   std::vector<double> f;
   try {
     const ModeSet modes = solve_modes(system_, {});

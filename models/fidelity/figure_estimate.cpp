@@ -20,12 +20,9 @@ constexpr double kLeastTolerance = 1e-12;
 constexpr int kLevels = 4, kLevelsOfSteps = 8;
 constexpr double kFirstSteps = 500.0;  // in the run
 constexpr double kLeastOrder = 0.25;   // of a difference of constant steps over the one before
-constexpr double kSecondsOfProduct = 2e-9, kProductsInStep = 25.0,
-                 kRateTimesStep = 3.0;  // as choose_method
-constexpr double kWorthAsking =
-    5e-3;                            // s of exact propagation beyond which stepping may be cheaper
-constexpr double kSensitive = 0.01;  // relative difference of the last states: another trajectory
-constexpr double kPerturbation = 1e-9;
+constexpr double kSecondsOfWork = 2e-9;  // of MethodChoice::exact_work
+constexpr double kWorthAsking = 5e-3;    // s of exact propagation beyond which stepping may be cheaper
+constexpr double kSensitive = 0.01;      // relative difference of the last states: another trajectory
 constexpr int kEnsemble = 8;
 
 /// The peak over the part of the run that counts.
@@ -54,7 +51,7 @@ class FigureWatch final : public Observer {
 };
 
 struct Run {
-  double value = 0.0, time = 0.0;
+  double value = 0.0;
   State end;
   std::vector<Peak> watched;
   std::string failure;
@@ -82,7 +79,7 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
   if (summary.status == RunStatus::interrupted)
     run.failure = "a run takes longer than " + to_text(most_seconds) + " s";
   figure.peak().refine(system, method);
-  run.value = figure.peak().value(), run.time = figure.peak().time();
+  run.value = figure.peak().value();
   run.end = std::move(state);
   run.watched = watched.peaks();
   return run;
@@ -103,13 +100,6 @@ Method tighter(Method m) {
   return m;
 }
 
-/// Whether small differences of the state can grow without bound.
-bool has_contacts(const System& system) {
-  return std::any_of(system.scalars().begin(), system.scalars().end(), [](const ScalarTerm& s) {
-    return s.force->gap() || s.force->pieces().size() > 1;
-  });
-}
-
 double largest(const Vector& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
 bool apart(const State& a, const State& b) {
@@ -123,12 +113,7 @@ void as_statistic(const System& system, const FigureOptions& o, const Run& first
   std::vector<double> values{first.value, second.value};
   const double z = largest(first.end.z), v = largest(first.end.v);
   for (int i = 1; i <= kEnsemble; ++i) {
-    State state = State::initial(system);
-    for (int k = 0; k < system.size(); ++k) {
-      state.z[k] += kPerturbation * z * std::sin(i * (1.0 + 2.0 * k));
-      state.v[k] += kPerturbation * v * std::cos(i * (2.0 + 3.0 * k));
-    }
-    const Run run = run_once(system, e.method, o, std::move(state));
+    const Run run = run_once(system, e.method, o, neighbour(system, i, z, v));
     if (run.failure.empty()) values.push_back(run.value);
   }
   const auto n = static_cast<int>(values.size());
@@ -143,7 +128,8 @@ void as_statistic(const System& system, const FigureOptions& o, const Run& first
 FigureEstimate estimate_with(const System& system, const Method& first, const FigureOptions& o,
                              double most_seconds) {
   FigureEstimate e{.method = first};
-  const bool contacts = has_contacts(system), constant = first.tolerance == 0.0;
+  // Contacts let small differences of the state grow without bound.
+  const bool contacts = contact_count(system) > 0, constant = first.tolerance == 0.0;
   double before = 0.0;  // the last difference: one of constant steps may be small by chance
   try {
     Run coarse = run_once(system, e.method, o, most_seconds);
@@ -151,7 +137,7 @@ FigureEstimate estimate_with(const System& system, const Method& first, const Fi
       const Method fine_method = tighter(e.method);
       const Run fine = run_once(system, fine_method, o, most_seconds);
       e.failure = fine.failure;
-      e.value = coarse.value, e.time = coarse.time;
+      e.value = coarse.value;
       e.watched = coarse.watched;
       const double difference = std::abs(coarse.value - fine.value);
       e.error =
@@ -174,25 +160,17 @@ FigureEstimate estimate_with(const System& system, const Method& first, const Fi
   return e;
 }
 
-/// What exact propagation will take [s of processor time].
-double exact_seconds(const System& system, double t_end) {
-  const auto contacts = static_cast<double>(
-      std::count_if(system.scalars().begin(), system.scalars().end(),
-                    [](const ScalarTerm& s) { return s.force->gap().has_value(); }));
-  return fastest_rate(system) * t_end / kRateTimesStep * kProductsInStep *
-         (20.0 + system.size() + 10.0 * contacts) * kSecondsOfProduct;
-}
-
 }  // namespace
 
 FigureEstimate estimate_figure(const System& system, const FigureOptions& o) {
-  Method method = choose_method(system, o.t_end, o.step).method;
+  const MethodChoice choice = choose_method(system, o.t_end, o.step);
+  Method method = choice.method;
   if (!method.exact()) {
     if (method.controlled()) method.tolerance = std::clamp(o.accuracy, kLeastTolerance, 1e-2);
     return estimate_with(system, method, o, o.most_seconds);
   }
   // Implicit steps that leave the fastest modes aside.
-  if (const double seconds = exact_seconds(system, o.t_end); seconds > kWorthAsking) {
+  if (const double seconds = kSecondsOfWork * choice.exact_work; seconds > kWorthAsking) {
     const FigureEstimate stepped =
         estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o,
                       std::min(seconds, o.most_seconds));

@@ -30,7 +30,6 @@ struct FigureOptions {
 
 struct FigureEstimate {
   double value = 0.0, error = 0.0;  ///< of the channels' unit; of a run with `method`
-  double time = 0.0;                ///< s
   bool statistic = false;           ///< mean and 95 % interval of one run
   Method method = {};               ///< the cheapest tried that keeps the error
   std::vector<Peak> watched = {};

@@ -39,7 +39,7 @@ FigureEstimate Recipe::estimate() {
   if (turns) {
     try {
       const SteadyPeak steady = steady_peak(system, figure, *turns);
-      return {.value = steady.value, .error = steady.error, .time = 0.0};
+      return {.value = steady.value, .error = steady.error};
     } catch (const SolverError& error) {
       return {.failure = error.what()};
     }

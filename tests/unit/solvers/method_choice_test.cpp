@@ -55,6 +55,10 @@ TEST_CASE("The method follows what the model is") {
   CHECK(stiff.method.name == "sdirk4");
   CHECK(stiff.method.tolerance == 1e-4);
   CHECK(stiff.reason.find("1 Hz") != std::string::npos);
+  // 25 products in each step of 3/omega, times 20 + unknowns + 10 contacts.
+  CHECK(linear.exact_work == Approx(25 * kTwoPi * 10 / 3 * 21).epsilon(1e-9));
+  CHECK(contact.exact_work == Approx(25 * fastest_rate(backlash_oscillator(0.0, 1.0)) * 10 / 3 * 31));
+  CHECK(other.exact_work == 0.0);
 }
 
 TEST_CASE("A motion that is an unknown function: controlled steps, to their tolerance of the closed form") {
