@@ -53,8 +53,7 @@ std::vector<Entry> ContactLocator::of_phase(const ScalarTerm& term) const {
 ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State& state,
                                             double angle) const {
   const NodeMap& map = system_.node_map(term.phase_node);
-  double rate = map.unknown >= 0 ? map.coeff * state.v[map.unknown] : 0.0;
-  if (map.row >= 0) rate = map.coeff * system_.rows().row(map.row).dot(state.v);
+  double rate = sum(of_phase(term), state.v);
   if (map.prescribed >= 0)
     if (const auto& known = system_.prescribed()[at(map.prescribed)].at)
       rate += map.coeff * known(state.t).rate;

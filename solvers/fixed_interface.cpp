@@ -9,7 +9,6 @@
 #include "core/units.hpp"
 #include "solvers/inertia_count.hpp"
 #include "solvers/lanczos.hpp"
-#include "solvers/sparse_cholesky.hpp"
 
 namespace drev {
 
@@ -69,16 +68,15 @@ Matrix FixedInterface::basis(int modes, double up_to_Hz) {
   const int n = static_cast<int>(inside_.size());
   Matrix inner(n, b);
   if (n > 0) {
-    SparseCholesky factor;
-    if (factor.factorize(stiffness_, values_of(stiffness_)) != FactorStatus::success) {
-      const int column = factor.failed_column();
+    if (factor_.factorize(stiffness_, values_of(stiffness_)) != FactorStatus::success) {
+      const int column = factor_.failed_column();
       throw SolverError("reduction of " + system_.name() + ": the part with node " +
                         system_.unknown_name(inside_[at(std::max(column, 0))]) +
                         " hangs on no kept node: keep one of its nodes");
     }
     Vector x;
     for (Eigen::Index j = 0; j < b; ++j) {
-      factor.solve(-Vector(boundary_stiffness_.col(j)), x);
+      factor_.solve(-Vector(boundary_stiffness_.col(j)), x);
       inner.col(j) = x;
     }
     const auto below = [&] {
@@ -104,12 +102,10 @@ Matrix FixedInterface::basis(int modes, double up_to_Hz) {
 void FixedInterface::find_modes(int count) {
   const int n = static_cast<int>(inside_.size());
   if (n > kDense && 2 * count + 1 < n) {
-    SparseCholesky factor;
-    factor.factorize(stiffness_, values_of(stiffness_));
     ShiftInvertProblem problem;
     problem.size = n;
     problem.count = count;
-    problem.solve = [&](const Vector& f, Vector& x) { factor.solve(f, x); };
+    problem.solve = [&](const Vector& f, Vector& x) { factor_.solve(f, x); };
     problem.mass = [&](const Vector& x, Vector& y) { y = mass_ * x; };
     ShiftInvertResult found = lanczos_shift_invert(problem, count, kLanczosTolerance);
     if (found.status == ArpackStatus::success) {

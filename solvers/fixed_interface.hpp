@@ -2,6 +2,7 @@
 /// The Craig-Bampton basis of a system: static shapes of its kept unknowns and modes with them held.
 /// Internal to reduction.cpp.
 #include "core/system.hpp"
+#include "solvers/sparse_cholesky.hpp"
 
 namespace drev {
 
@@ -25,6 +26,7 @@ class FixedInterface {
   const System& system_;
   std::vector<int> kept_, inside_;
   SparseMatrix stiffness_, mass_, boundary_stiffness_;  // K_ii, M_ii on one pattern, K_ib
+  SparseCholesky factor_;    // of K_ii
   Vector lambda_;            // the lowest, of the unknowns inside
   Eigen::MatrixXd vectors_;
   int modes_ = 0;

@@ -1,6 +1,8 @@
 #include "solvers/speed_sweep.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace drev {
 
@@ -20,24 +22,31 @@ SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::v
   if (!findings.empty()) throw ModelError(findings);
 
   SpeedSweep sweep;
-  for (const double speed : speeds) sweep.curve.push_back({speed, solve_periodic(build(speed), options)});
+  std::map<double, std::vector<double>> amplitudes;  // of all channels, by speed; none without a response
+  const auto solve = [&](double speed) {
+    PeriodicResponse response = solve_periodic(build(speed), options);
+    std::vector<double>& here = amplitudes[speed];
+    for (const Peak& peak : response.peaks) here.push_back(peak.amplitude());
+    return response;
+  };
+  for (const double speed : speeds) sweep.curve.push_back({speed, solve(speed)});
   sweep.worst.resize(options.channels.size());
   for (std::size_t c = 0; c < options.channels.size(); ++c) {
     SpeedSweep::Worst& worst = sweep.worst[c];
-    std::size_t top = 0;
-    const auto note = [&](double speed, const PeriodicResponse& r) {
-      if (!r.found) return 0.0;
-      const double amplitude = r.peaks[c].amplitude();
+    const auto at_speed = [&](double speed) {
+      if (!amplitudes.contains(speed)) solve(speed);
+      const std::vector<double>& here = amplitudes[speed];
+      const double amplitude = here.empty() ? 0.0 : here[c];
       if (amplitude > worst.amplitude) worst = {speed, amplitude};
       return amplitude;
     };
+    std::size_t top = 0;
     for (std::size_t i = 0; i < speeds.size(); ++i) {
       const double before = worst.amplitude;
-      if (note(speeds[i], sweep.curve[i].response) > before) top = i;
+      if (at_speed(speeds[i]) > before) top = i;
     }
     double low = speeds[top > 0 ? top - 1 : 0], high = speeds[std::min(top + 1, speeds.size() - 1)];
     const double width = kWidth * (high - low), golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    const auto at_speed = [&](double speed) { return note(speed, solve_periodic(build(speed), options)); };
     double left = high - golden * (high - low), right = low + golden * (high - low);
     double y_left = high > low ? at_speed(left) : 0.0, y_right = high > low ? at_speed(right) : 0.0;
     while (high - low > width) {
