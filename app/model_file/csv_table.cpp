@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, int>> cells_of(const std::string& line) {
 CsvTable read_csv(const std::string& path, const Position& named_at) {
   const std::string text = read_text(path, &named_at);
   const auto file = std::make_shared<const std::string>(path);
-  CsvTable table{.path = path, .names = {}, .columns = {}};
+  CsvTable table;
   std::vector<Finding> findings;
   int number = 0;
   for (std::size_t begin = 0; begin < text.size() && findings.size() < kMostFindings;) {

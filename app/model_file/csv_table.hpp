@@ -9,7 +9,6 @@
 namespace drev::app {
 
 struct CsvTable {
-  std::string path;
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
 };

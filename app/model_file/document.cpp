@@ -153,7 +153,6 @@ class DocumentReader {
         *same = setting;
       else
         doc_.parameters.push_back(setting);
-      doc_.parameter_places[entry.key] = value.at;
     }
   }
 

@@ -3,7 +3,6 @@
 /// the defaults of parameters and the lists.
 #include <deque>
 #include <map>
-#include <set>
 
 #include "app/model_file/tree.hpp"
 #include "models/settings.hpp"
@@ -23,7 +22,6 @@ struct Document {
   std::string name, summary, note;
   Position at;  ///< of the file
   std::vector<Setting> parameters;
-  std::map<std::string, Position> parameter_places;
   std::map<std::string, std::vector<double>> lists;
   std::map<std::string, const Value*> tables;
   std::vector<Block> blocks;  ///< in the order in which they count: what is included comes first

@@ -49,13 +49,6 @@ void list(Fields& f, RayleighDamping::Params& p) {
   f.number({"alpha_mass", D::rate}, p.alpha_mass);
   f.number({"beta_stiffness", D::time}, p.beta_stiffness);
   if (!f.reading()) return;
-  const auto from = [&](const std::function<RayleighDamping::Params()>& make) {
-    try {
-      p = make();
-    } catch (const ModelError& error) {
-      for (const Finding& finding : error.findings()) f.fault(finding.text());
-    }
-  };
   double f_1 = 0.0, f_2 = 0.0, xi_1 = 0.0, xi_2 = 0.0;
   if (f.group("from_two_modes", [&](Fields& g) {
         g.number({"frequency_1", D::frequency}, f_1, Need::required);
@@ -63,15 +56,15 @@ void list(Fields& f, RayleighDamping::Params& p) {
         g.number({"frequency_2", D::frequency}, f_2, Need::required);
         g.number({"damping_ratio_2", D::none}, xi_2, Need::required);
       }))
-    from([&] { return RayleighDamping::from_two_modes(hz(f_1), xi_1, hz(f_2), xi_2); });
+    f.guarded([&] { p = RayleighDamping::from_two_modes(hz(f_1), xi_1, hz(f_2), xi_2); });
   const auto one = [&](Fields& g) {
     g.number({"frequency", D::frequency}, f_1, Need::required);
     g.number({"damping_ratio", D::none}, xi_1, Need::required);
   };
   if (f.group("mass_proportional", one))
-    from([&] { return RayleighDamping::mass_proportional(hz(f_1), xi_1); });
+    f.guarded([&] { p = RayleighDamping::mass_proportional(hz(f_1), xi_1); });
   if (f.group("stiffness_proportional", one))
-    from([&] { return RayleighDamping::stiffness_proportional(hz(f_1), xi_1); });
+    f.guarded([&] { p = RayleighDamping::stiffness_proportional(hz(f_1), xi_1); });
 }
 
 void list(Fields& f, PolylineSpring::Params& p) {

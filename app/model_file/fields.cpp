@@ -2,6 +2,16 @@
 
 namespace drev::app {
 
+void Fields::guarded(const std::function<void()>& make) {
+  try {
+    make();
+  } catch (const ModelError& error) {
+    std::string all;
+    for (const Finding& finding : error.findings()) all += (all.empty() ? "" : "; ") + finding.text();
+    fault(all);
+  }
+}
+
 void FieldKeys::add(const Quantity& quantity, double default_number) {
   const NodeKind other = kind == NodeKind::rotational ? NodeKind::translational : NodeKind::rotational;
   keys_.push_back({.name = quantity.name(kind),

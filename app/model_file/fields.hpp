@@ -56,6 +56,8 @@ class Fields {
   virtual bool group(const std::string& name, const std::function<void(Fields&)>& list) = 0;
   /// What is wrong with the table as a whole.
   virtual void fault(const std::string& sentence) = 0;
+  /// Calls make(); what it throws is a fault.
+  void guarded(const std::function<void()>& make);
 
   const NodeKind kind;  ///< of the nodes that the fields belong to
 };

@@ -1,12 +1,8 @@
 #include "app/model_file/key_finder.hpp"
 
+#include "app/model_file/node_fields.hpp"
+
 namespace drev::app {
-
-namespace {
-
-constexpr const char* kKinds[] = {"rotational", "translational"};
-
-}  // namespace
 
 std::string list_of(const std::vector<std::string>& words) {
   std::string all;
@@ -31,17 +27,20 @@ void KeyFinder::missing(const std::string& name, const std::string& spelled) {
 }
 
 void KeyFinder::recognise(const Entry& entry, const std::set<std::string>& others, const FieldKeys& keys) {
-  std::vector<std::string> known(others.begin(), others.end());
   for (const FieldKeys::Key& key : keys.keys()) {
+    if (!entry.key.starts_with(key.name)) continue;
     if (key.dimension == Dimension::none) {
-      known.push_back(key.name);
       if (entry.key == key.name) return take(key.name, {&entry, ""});
       continue;
     }
-    for (const Unit& unit : units_of(key.dimension)) {
-      known.push_back(key.name + "_" + unit.suffix);
-      if (entry.key == known.back()) return take(key.name, {&entry, unit.suffix, unit.factor});
-    }
+    for (const Unit& unit : units_of(key.dimension))
+      if (entry.key == key.name + "_" + unit.suffix)
+        return take(key.name, {&entry, unit.suffix, unit.factor});
+  }
+  std::vector<std::string> known(others.begin(), others.end());
+  for (const FieldKeys::Key& key : keys.keys()) {
+    if (key.dimension == Dimension::none) known.push_back(key.name);
+    for (const Unit& unit : units_of(key.dimension)) known.push_back(key.name + "_" + unit.suffix);
   }
   const auto refuse = [&](const std::string& sentence) {
     context_.findings.push_back(fault_at(entry.at, where_ + "." + entry.key, sentence));
@@ -55,9 +54,9 @@ void KeyFinder::recognise(const Entry& entry, const std::set<std::string>& other
     for (const Unit& unit : units_of(key.other_dimension))
       if (entry.key == key.other_name + "_" + unit.suffix) {
         refused_.insert(key.name);
-        return refuse(std::string("belongs to ") + kKinds[1 - static_cast<int>(keys.kind)] + " nodes; on a " +
-                      kKinds[static_cast<int>(keys.kind)] + " one it is " +
-                      spellings(key.name, key.dimension));
+        const auto kind = static_cast<std::size_t>(keys.kind);
+        return refuse("belongs to " + node_kind_names()[1 - kind] + " nodes; on a " +
+                      node_kind_names()[kind] + " one it is " + spellings(key.name, key.dimension));
       }
   }
   if (stem != nullptr) {

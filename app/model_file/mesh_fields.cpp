@@ -17,11 +17,7 @@ void list_contact_ratio(Fields& f, double& ratio) {
   int given = std::isnan(ratio) ? 0 : 1;
   const auto from = [&](const std::function<double()>& involute) {
     ++given;
-    try {
-      ratio = involute();
-    } catch (const ModelError& error) {
-      for (const Finding& finding : error.findings()) f.fault(finding.text());
-    }
+    f.guarded([&] { ratio = involute(); });
   };
   InvolutePair pair{kNotGiven, kNotGiven, kNotGiven, kNotGiven, kNotGiven, 0};
   if (f.group("gears", [&](Fields& g) {

@@ -5,6 +5,7 @@
 
 #include "app/model_file/element_table.hpp"
 #include "app/model_file/field_reader.hpp"
+#include "app/model_file/key_finder.hpp"
 #include "app/model_file/node_fields.hpp"
 #include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
@@ -168,14 +169,14 @@ class SceneReader {
       return refuse(table.at, where, "must be a table, { type = ... }, not " + kind_name(table));
     const std::vector<std::string> nodes = nodes_of(table, where, part);
     const Entry* named = table.find("type");
-    if (named == nullptr) return refuse(table.at, where, "lacks type: " + one_of(element_type_names()));
+    if (named == nullptr) return refuse(table.at, where, "lacks type: " + list_of(element_type_names()));
     const ElementType* type =
         named->value.is(Value::Kind::text) ? find_element_type(named->value.text) : nullptr;
     if (type == nullptr) {
       const std::string hint = did_you_mean(named->value.text, element_type_names());
       return refuse(named->value.at, where + ".type",
                     "is " + kind_name(named->value) + ", which is no element" +
-                        (hint.empty() ? "; there are " + one_of(element_type_names()) : hint));
+                        (hint.empty() ? "; there are " + list_of(element_type_names()) : hint));
     }
     bool right = false;
     try {
@@ -189,12 +190,6 @@ class SceneReader {
       for (const Finding& finding : error.findings())
         context_.findings.push_back(placed(finding, part, where));
     }
-  }
-
-  static std::string one_of(const std::vector<std::string>& words) {
-    std::string all;
-    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-    return all;
   }
 
   /// Names of an element's nodes, which are looked up; sets the kind of the part.
