@@ -99,9 +99,9 @@ Json history_object(const ReportHistory& history) {
 
 }  // namespace
 
-double report_interval(const RunRequest& request, const Method& method) {
+double report_interval(const RunRequest& request) {
   if (request.report_every) return *request.report_every;
-  if (!(method.tolerance > 0.0)) return 0.0;
+  if (!(request.method.tolerance > 0.0)) return 0.0;
   const double duration = request.model.scene.duration, about = duration / kSamples;
   const double cycle = cycle_of(request.model);
   if (!(cycle > 2.0 * about) || cycle > duration) return about;
@@ -129,8 +129,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
     data["campbell"] = campbell_object(m.scene.model, m.system, *result.modes, m.scene.duration);
     if (result.modes->count() > 0) highest = kAboveModes * result.modes->frequency_Hz.back();
   }
-  if (m.system.reference() && m.system.reference()->at)
-    highest = std::max(highest, kAboveSpeed * std::abs(m.system.reference()->at(0.0).rate) / kTwoPi);
+  highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
   data["history"] = history_object(history);
   data["spectra"] =
       spectra_object(history, cycle_of(m), highest > 0.0 ? highest : HUGE_VAL);

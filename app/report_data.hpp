@@ -8,7 +8,7 @@
 namespace drev::app {
 
 /// Interval of what is recorded for the report [s], fine enough for its spectra; 0: every step.
-double report_interval(const RunRequest& request, const Method& method);
+double report_interval(const RunRequest& request);
 
 Json report_data(const RunRequest& request, const RunResult& result, const ReportHistory& history);
 

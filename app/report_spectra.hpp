@@ -6,9 +6,10 @@
 
 namespace drev::app {
 
-/// cycle: s, 0: none. highest: the highest frequency of interest [Hz]. {from, to, samples, line_Hz, channels:
-/// [{name, unit, amplitude (base64, float), peaks: [{frequency_Hz, amplitude}]}]}; amplitude k is the largest
-/// of the lines in (k line_Hz, (k + 1) line_Hz). Null for a run of fewer than 64 samples.
+/// cycle: s, 0: none. highest: the highest frequency of interest [Hz]. {from, to, samples, resolution_Hz,
+/// line_Hz, pooled, channels: [{name, unit, amplitude (base64, float), peaks: [{frequency_Hz, amplitude}]}]};
+/// line_Hz = pooled resolution_Hz, amplitude k is the largest of the lines in (k line_Hz, (k + 1) line_Hz].
+/// Null for a run of fewer than 64 samples, or 16 in the part looked at.
 Json spectra_object(const ReportHistory& history, double cycle, double highest);
 
 /// Little-endian numbers as text.

@@ -54,7 +54,7 @@ class RunFiles {
     if (request.report) report_.emplace(*request.report);
     if (request.out || request.report)
       shown_.emplace(request.model.system, report_channels(request),
-                     report_interval(request, request.method));
+                     report_interval(request));
   }
 
   HistoryFile* history() { return history_ ? &*history_ : nullptr; }

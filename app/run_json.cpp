@@ -28,9 +28,8 @@ Json distribution_object(const Distribution& d) {
   return object;
 }
 
-Json flanks_object(const Distribution& front, const Distribution& back, const std::string& unit) {
-  Distribution both = front;
-  both.add(back);
+Json flanks_object(const Distribution& front, const Distribution& back, const Distribution& both,
+                   const std::string& unit) {
   return {{"unit", unit},
           {"front", distribution_object(front)},
           {"back", distribution_object(back)},
@@ -47,8 +46,10 @@ Json contact_object(const Contacts& c, double duration) {
           {"max_force_N", newton ? number(c.record.largest_force) : Json()},
           {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
           {"max_at_time_s", number(c.record.largest_force_time)},
-          {"impact_speed", flanks_object(c.record.front_speed, c.record.back_speed, c.speed_unit())},
-          {"impact_force", flanks_object(c.record.front_force, c.record.back_force, c.force_unit)},
+          {"impact_speed", flanks_object(c.record.front_speed, c.record.back_speed,
+                                         c.record.speed(), c.speed_unit())},
+          {"impact_force", flanks_object(c.record.front_force, c.record.back_force,
+                                         c.record.force(), c.force_unit)},
           {"impact_energy_J", number(c.record.impact_energy)},
           {"rattle_index_W", number(c.record.rattle_index(duration))}};
 }

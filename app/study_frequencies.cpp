@@ -13,7 +13,6 @@ namespace drev::app {
 namespace {
 
 constexpr int kModes = 5, kShapes = 4;
-constexpr double kModeError = 5e-12;  // relative, the worst measured (solvers/modes.hpp)
 
 struct Differences {
   double squares = 0.0, worst = 0.0;

@@ -183,9 +183,7 @@ StudyGroup study_held() {
                        {.count = 1})
         .frequency_Hz[0];
   };
-  const auto shown = [](double f) {
-    return to_hz(2.0 / published::kStep * std::atan(0.5 * hz(f) * published::kStep));
-  };
+  const auto shown = [](double f) { return shown_at_step(f, published::kStep); };
   const double first = first_mode(8), first_6 = first_mode(6), turn = published::kEngineRpm / 120.0;
   const double order_16 = 16.0 * turn;
   bool worst_everywhere = true;

@@ -16,13 +16,9 @@ namespace drev::app {
 namespace {
 
 constexpr int kModes = 3;
-constexpr double kModeError = 5e-12;  // relative
-constexpr double kStart = 1e-3;       // rad, of the free end
+constexpr double kStart = 1e-3;  // rad, of the free end
 
-/// What average acceleration shows of a frequency: tan(w' h/2) = w h/2.
-double shown(double frequency_Hz, double h) {
-  return to_hz(2.0 / h * std::atan(0.5 * hz(frequency_Hz) * h));
-}
+/// The inverse of shown_at_step().
 double true_one(double shown_Hz, double h) {
   return to_hz(2.0 / h * std::tan(0.5 * hz(shown_Hz) * h));
 }
@@ -83,7 +79,7 @@ StudyGroup study_held_frequencies() {
     const ModeSet modes = solve_modes(system, {.count = kModes});
     std::vector<double> by_step, by_sampling;
     for (const double f : modes.frequency_Hz) {
-      by_step.push_back(shown(f, h));
+      by_step.push_back(shown_at_step(f, h));
       by_sampling.push_back(folded(f, h));
     }
     const std::vector<double> stepped = decay_frequencies(system, source_method(), by_step);

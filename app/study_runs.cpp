@@ -109,7 +109,7 @@ CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, 
   const bool inside = method.exact();
   Peaks deflection(find_channels(system, {scene.deflection}), inside);
   Peaks torque(find_channels(system, scene.torques), inside);
-  const double revolution = scene.static_turn / std::abs(system.reference()->at(0.0).rate);
+  const double revolution = scene.static_turn / system.reference_speed();
   WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled,
                                  revolution);
   WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
@@ -196,6 +196,10 @@ Known mean_of(const std::vector<double>& values) {
 
 Known from_two(double coarse, double fine, double tolerance) {
   return {fine, 2.0 * std::abs(fine - coarse) + std::max(tolerance, 1e-14) * std::abs(fine)};
+}
+
+double shown_at_step(double frequency_Hz, double h) {
+  return to_hz(2.0 / h * std::atan(0.5 * hz(frequency_Hz) * h));
 }
 
 std::string cell(double value) { return digits(value, 5); }

@@ -89,6 +89,11 @@ Known mean_of(const std::vector<double>& values);
 /// fine, with twice its difference from coarse, and rounding.
 Known from_two(double coarse, double fine, double tolerance);
 
+/// Relative, of solve_modes(): the worst measured (solvers/modes.hpp).
+inline constexpr double kModeError = 5e-12;
+/// What average acceleration at step h [s] shows of a frequency, w' of w: tan(w' h/2) = w h/2.
+double shown_at_step(double frequency_Hz, double h);
+
 /// value with 5 digits, for a column of a table.
 std::string cell(double value);
 /// A published value with the digits it was printed with.

@@ -111,8 +111,8 @@ function showFigures() {
     if (run.result.note) section.append(make("p", { class: "note" }, prefixed(run, run.result.note)));
 }
 
+/// "Run A: " where there are two.
 const prefixed = (run, text) => (run.name ? `Run ${run.name}: ${text}` : text);
-/// "A: " where there are two.
 const headed = (run, text) => (run.name ? `${text} of run ${run.name}` : text);
 
 function showContactTable(section) {

@@ -118,10 +118,8 @@ function showHistories() {
         ]),
       ),
     );
-    const drawn = [];
     for (const c of meshes) {
       const chart = timeChart(contacts, c);
-      drawn.push(chart);
       for (const run of runs)
         for (const band of run.history.bands.filter((b) => b.element === channelName(c.name).place))
           new Band(contacts, histories, run, band, chart);
