@@ -23,6 +23,12 @@ inline drev::System backlash_oscillator(double damping, double gap) {
   return m.build();
 }
 
+/// Case 7, damping 50, gap pi/4 (Modelica Standard Library): t [s], angle [rad], speed [rad/s].
+inline constexpr double kCase7[4][3] = {{0.1, 0.2498358550, 52.8937186},
+                                        {0.25, 0.5808155699, 30.0804578},
+                                        {0.5, -0.3099580355, -17.2284257},
+                                        {1.0, -0.1555814136, -7.0229373}};
+
 /// Times at which the speed of the first unknown changes sign, placed linearly in the step.
 class Reversals final : public drev::Observer {
  public:

@@ -18,11 +18,7 @@ TEST_CASE("Exact propagation, case 7: a damper limited to the spring's force") {
   INFO(run.brief_report());
   CHECK(run.ok());
   CHECK(run.contact_changes > 20);
-  const double exact[4][3] = {{0.1, 0.2498358550, 52.8937186},
-                              {0.25, 0.5808155699, 30.0804578},
-                              {0.5, -0.3099580355, -17.2284257},
-                              {1.0, -0.1555814136, -7.0229373}};
-  for (const auto& e : exact) {
+  for (const auto& e : kCase7) {
     const auto i = static_cast<std::size_t>(std::lround(e[0] / 0.05));
     CHECK(recorder.samples(0)[i] == Approx(e[1]).margin(1e-9 * kPi / 2));
     CHECK(recorder.samples(1)[i] == Approx(e[2]).margin(1e-9 * 66.196495));

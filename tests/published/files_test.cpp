@@ -10,6 +10,7 @@
 #include "solvers/modes.hpp"
 #include "solvers/recorder.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/backlash_oscillator.hpp"
 
 using namespace drev;
 
@@ -71,11 +72,7 @@ TEST_CASE("Files of cases 1 to 6 and 12: modes") {
 TEST_CASE("File of case 7: backlash with a damper that never pulls") {
   const Scene scene = scene_of("07_backlash_limited_damper");
   const auto samples = recorded(scene, 0.05, scene.duration);
-  const double exact[4][3] = {{0.1, 0.2498358550, 52.8937186},
-                              {0.25, 0.5808155699, 30.0804578},
-                              {0.5, -0.3099580355, -17.2284257},
-                              {1.0, -0.1555814136, -7.0229373}};
-  for (const auto& e : exact) {
+  for (const auto& e : kCase7) {
     const auto i = static_cast<std::size_t>(std::lround(e[0] / 0.05));
     CHECK(samples[0][i] == Approx(e[1]).margin(2e-10));
     CHECK(samples[1][i] == Approx(e[2]).margin(1e-7));

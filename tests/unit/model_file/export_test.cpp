@@ -32,11 +32,12 @@ std::vector<std::string> every_channel(const System& system) {
 /// Every channel over a while, by the method that the model itself chooses.
 std::vector<std::vector<double>> histories(const Scene& scene, double t_end) {
   const System system = scene.model.build();
-  Recorder recorder(system, every_channel(system), t_end / 50);
+  const std::vector<std::string> channels = every_channel(system);
+  Recorder recorder(system, channels, t_end / 50);
   const Method method = choose_method(system, scene.duration, scene.default_step).method;
   CHECK(run_method(system, method, {.t_end = t_end}, {&recorder}).ok());
   std::vector<std::vector<double>> all;
-  for (std::size_t c = 0; c < every_channel(system).size(); ++c) all.push_back(recorder.samples(c));
+  for (std::size_t c = 0; c < channels.size(); ++c) all.push_back(recorder.samples(c));
   return all;
 }
 
