@@ -6,17 +6,6 @@
 
 namespace drev::app {
 
-namespace {
-
-void write(const std::string& directory, const std::string& name, const std::string& extension,
-           const std::string& text) {
-  OutputFile file(directory, name, extension);
-  file.write(text);
-  file.commit();
-}
-
-}  // namespace
-
 int chart_command(const CommandLine& line) {
   const ChartRequest request = request_chart(line);
   if (request.out) create_directory(*request.out);
@@ -24,9 +13,9 @@ int chart_command(const CommandLine& line) {
   const ChartResult result = compute_chart(request);
   if (result.data.interrupted) return kInterrupted;
   if (request.out) {
-    write(*request.out, "chart", "csv", chart_as_csv(result));
-    write(*request.out, "error_over_time", "svg", chart_as_svg(request, result, ChartAxis::time));
-    write(*request.out, "error_over_work", "svg", chart_as_svg(request, result, ChartAxis::work));
+    write_file(*request.out, "chart", "csv", chart_as_csv(result));
+    write_file(*request.out, "error_over_time", "svg", chart_as_svg(request, result, ChartAxis::time));
+    write_file(*request.out, "error_over_work", "svg", chart_as_svg(request, result, ChartAxis::work));
   }
   print(line.json ? chart_as_json(request, result) : chart_as_text(request, result));
   return kSuccess;

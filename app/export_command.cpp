@@ -18,13 +18,11 @@ int export_command(const CommandLine& line) {
     return kSuccess;
   }
   const std::filesystem::path path(*out);
-  const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  const std::string folder = folder_of(*out);
   if (!path.has_filename() || path.extension() != ".toml")
     throw ModelError({{"command line", "--out", *out, "", "must be the name of a file that ends in .toml"}});
   create_directory(folder);
-  OutputFile file(folder, path.stem().string(), "toml");
-  file.write(text);
-  file.commit();
+  write_file(folder, path.stem().string(), "toml", text);
   return kSuccess;
 }
 

@@ -72,6 +72,18 @@ void create_directory(const std::string& directory) {
   if (error) throw OutputError(message(directory, error.message()));
 }
 
+std::string folder_of(const std::string& path) {
+  const std::filesystem::path file(path);
+  return file.has_parent_path() ? file.parent_path().string() : ".";
+}
+
+void write_file(const std::string& directory, const std::string& name, const std::string& extension,
+                const std::string& text) {
+  OutputFile file(directory, name, extension);
+  file.write(text);
+  file.commit();
+}
+
 OutputFile::OutputFile(const std::string& directory, const std::string& name,
                        const std::string& extension)
     : path_(directory + "/" + name + "." + extension),

@@ -14,6 +14,11 @@ class OutputError : public std::runtime_error {
 
 /// Creates the directory, with those above it. Throws OutputError.
 void create_directory(const std::string& directory);
+/// The directory of a file; "." where its path names none.
+std::string folder_of(const std::string& path);
+/// A file as a whole: DIR/NAME.EXT. Throws OutputError.
+void write_file(const std::string& directory, const std::string& name, const std::string& extension,
+                const std::string& text);
 
 /// A file that grows.
 class OutputFile {

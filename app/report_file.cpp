@@ -9,14 +9,6 @@
 
 namespace drev::app {
 
-namespace {
-
-std::string folder_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path().string() : ".";
-}
-
-}  // namespace
-
 std::optional<std::string> why_no_report(const std::string& path) {
   const std::filesystem::path file(path);
   const bool pdf = file.extension() == ".pdf";

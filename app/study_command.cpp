@@ -6,6 +6,7 @@
 #include "app/output_file.hpp"
 #include "app/progress.hpp"
 #include "app/study.hpp"
+#include "app/text_layout.hpp"
 
 namespace drev::app {
 
@@ -32,13 +33,6 @@ const std::vector<StudyEntry>& studies() {
   return all;
 }
 
-void write(const std::string& directory, const std::string& name, const std::string& extension,
-           const std::string& text) {
-  OutputFile file(directory, name, extension);
-  file.write(text);
-  file.commit();
-}
-
 /// The groups asked for, in the order of the report.
 std::vector<StudyEntry> chosen(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
@@ -46,12 +40,9 @@ std::vector<StudyEntry> chosen(const CommandLine& line) {
   for (const StudyEntry& entry : studies()) names.push_back(entry.name);
   const std::vector<std::string> only = line.list("--only").value_or(names);
   for (const std::string& name : only)
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      std::string known;
-      for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    if (std::find(names.begin(), names.end(), name) == names.end())
       findings.push_back({"command line", "--only", name, "",
-                          "is no study; they are " + known + did_you_mean(name, names)});
-    }
+                          "is no study; they are " + join(names) + did_you_mean(name, names)});
   if (line.json)
     findings.push_back(
         {"command line", "--json", "", "", "is not for drev study; --out writes study.md"});
@@ -83,8 +74,8 @@ int study_command(const CommandLine& line) {
   if (out) {
     for (const StudyGroup& group : groups)
       for (const StudyPicture& picture : group.pictures)
-        write(*out + "/" + kPictures, "study_" + picture.name, "svg", picture.svg);
-    write(*out, "study", "md", study_as_markdown(groups, kPictures));
+        write_file(*out + "/" + kPictures, "study_" + picture.name, "svg", picture.svg);
+    write_file(*out, "study", "md", study_as_markdown(groups, kPictures));
   }
   print(study_as_text(groups));
   return kSuccess;
