@@ -9,6 +9,7 @@
 
 #include "app/exit_codes.hpp"
 #include "app/help_texts.hpp"
+#include "app/model_list.hpp"
 #include "app/text_layout.hpp"
 #include "models/scene.hpp"
 
@@ -88,8 +89,7 @@ void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
 
 bool names_model(const std::string& word) {
   std::error_code error;
-  return std::filesystem::exists(word, error) ||
-         std::any_of(scenes().begin(), scenes().end(), [&](const SceneEntry& e) { return e.name == word; });
+  return is_built_in(word) || std::filesystem::exists(word, error);
 }
 
 /// --set a=1 MODEL: models came to stand among the settings.

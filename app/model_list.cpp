@@ -80,12 +80,12 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
         {kPlace, "MODEL", directory, "", "is a directory without a model file, *.toml"});
 }
 
+}  // namespace
+
 bool is_built_in(const std::string& word) {
   return std::any_of(scenes().begin(), scenes().end(),
                      [&](const SceneEntry& e) { return e.name == word; });
 }
-
-}  // namespace
 
 bool is_model_directory(const std::string& word) {
   std::error_code error;

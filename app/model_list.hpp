@@ -23,6 +23,7 @@ struct ModelList {
   std::vector<SkippedFile> skipped;
 };
 
+bool is_built_in(const std::string& model);
 /// Whether a word of the command line means a directory of models, and no built-in one.
 bool is_model_directory(const std::string& word);
 /// Names are unique; what is not goes to findings, as do directories without a model.

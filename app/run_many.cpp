@@ -55,7 +55,7 @@ void take_result(const ChildProcess& process, OneOfMany& run) {
 
 class Batch {
  public:
-  /// Opens runs.json and runs.csv.
+  /// Opens runs.json.
   Batch(ManyRuns many, const CommandLine& line)
       : many_(std::move(many)), line_(line), running_(many_.runs.size()) {
     create_directory(many_.folder);
