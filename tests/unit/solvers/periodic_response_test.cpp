@@ -1,6 +1,7 @@
 // Periodic steady state against closed forms and against the last turn of long runs.
 #include "solvers/periodic_response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -301,7 +302,9 @@ TEST_CASE("Sweep over speeds: the worst speed of a damped oscillator is sqrt(k/J
   Driven p{.harmonics = {{1.0, 5.0, 0.0}}, .mean = 0.0};
   std::vector<double> speeds;
   for (double w = 5.0; w < 41.0; w += 2.5) speeds.push_back(w);
-  const auto at_speed = [&p](double w) {
+  std::vector<double> solved;
+  const auto at_speed = [&](double w) {
+    solved.push_back(w);
     p.speed = w;
     return p.model().build();
   };
@@ -318,6 +321,8 @@ TEST_CASE("Sweep over speeds: the worst speed of a damped oscillator is sqrt(k/J
   CHECK(sweep.worst[0].amplitude == Approx(5.0 / (p.damping * std::sqrt(square - d * d))).epsilon(1e-6));
   CHECK(sweep.worst[1].speed == Approx(std::sqrt(square)).epsilon(1e-3));  // of the rate
   CHECK(sweep.worst[1].amplitude == Approx(5.0 / p.damping).epsilon(1e-6));
+  std::sort(solved.begin(), solved.end());
+  CHECK(std::unique(solved.begin(), solved.end()) == solved.end());  // once for both channels
   CHECK_THROWS_AS(sweep_speeds(at_speed, {}, {.channels = {"disc.angle_rad"}}), ModelError);
   CHECK_THROWS_AS(sweep_speeds(at_speed, speeds, {}), ModelError);
 }
