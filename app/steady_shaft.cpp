@@ -82,16 +82,17 @@ SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
 }
 
 SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega,
-                                        const RayleighCase& damping) const {
-  Spectrum x(outputs_.rows(), kHarmonics + 1);
+                                        const RayleighCase& damping, Eigen::Index count) const {
+  const Eigen::MatrixXcd outputs = outputs_.topRows(count).cast<Complex>();
+  Spectrum x(count, kHarmonics + 1);
   for (int h = 0; h <= kHarmonics; ++h) {
     const double w = h * omega;
     const Eigen::ArrayXcd dynamic =
         (lambda_.array() - w * w).cast<Complex>() +
         kI * w * (damping.a + damping.b * lambda_.array()).cast<Complex>();
-    x.col(h) = outputs_.cast<Complex>() * (force.col(h).array() / dynamic).matrix();
+    x.col(h) = outputs * (force.col(h).array() / dynamic).matrix();
   }
-  Waves waves(kSamples, outputs_.rows());
+  Waves waves(kSamples, count);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::Unscaled);
   std::vector<Complex> lines(kSamples), samples;
@@ -111,12 +112,12 @@ SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega,
 std::vector<SteadyShaft::Waves> SteadyShaft::cylinder_waves(double omega,
                                                             const RayleighCase& damping) const {
   std::vector<Waves> waves;
-  for (const Spectrum& force : force_) waves.push_back(respond(force, omega, damping));
+  for (const Spectrum& force : force_) waves.push_back(respond(force, omega, damping, outputs_.rows()));
   return waves;
 }
 
-SteadyShaft::Waves SteadyShaft::waves(double omega, const RayleighCase& damping) const {
-  return respond(all_, omega, damping);
+Eigen::VectorXd SteadyShaft::deflection(double omega, const RayleighCase& damping) const {
+  return respond(all_, omega, damping, 1).col(0);
 }
 
 SteadyShaft::Waves in_order(const std::vector<SteadyShaft::Waves>& cylinder_waves,
@@ -132,6 +133,19 @@ SteadyShaft::Waves in_order(const std::vector<SteadyShaft::Waves>& cylinder_wave
     sum.topRows(shift) += wave.block(samples - shift, first, shift, count);
   }
   return sum;
+}
+
+std::vector<std::pair<double, int>> largest_orders(const Eigen::VectorXd& wave) {
+  std::vector<std::pair<double, int>> orders;
+  const auto samples = static_cast<double>(wave.size());
+  for (int n = 1; n <= 200; ++n) {
+    Complex sum;
+    for (Eigen::Index i = 0; i < wave.size(); ++i)
+      sum += wave[i] * std::polar(1.0, -kTwoPi * n * static_cast<double>(i) / samples);
+    orders.emplace_back(2.0 * std::abs(sum) / samples, n);
+  }
+  std::sort(orders.rbegin(), orders.rend());
+  return orders;
 }
 
 double peak_of(const Eigen::Ref<const Eigen::VectorXd>& wave) {

@@ -13,6 +13,7 @@
 /// cylinder 1 may fire first: (N - 1)! orders are left. And the part of x that repeats N times a
 /// revolution (n = 0, N, 2N, ...) is the same in all of them.
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "models/camshaft/camshaft_data.hpp"
@@ -32,14 +33,16 @@ class SteadyShaft {
   /// Waves w_k of the cylinders, each firing in place 0. omega: speed of the camshaft [rad/s]. Undamped at a
   /// resonance they are not finite.
   std::vector<Waves> cylinder_waves(double omega, const RayleighCase& damping) const;
-  /// Waves of the whole shaft in the source's firing order.
-  Waves waves(double omega, const RayleighCase& damping) const;
+  /// Deflection of the whole shaft in the source's firing order [rad].
+  Eigen::VectorXd deflection(double omega, const RayleighCase& damping) const;
 
   int cylinders() const { return cylinders_; }
 
  private:
   using Spectrum = Eigen::MatrixXcd;  // row: mode, column: harmonic
-  Waves respond(const Spectrum& force, double omega, const RayleighCase& damping) const;
+  /// The first `count` waves.
+  Waves respond(const Spectrum& force, double omega, const RayleighCase& damping,
+                Eigen::Index count) const;
 
   int cylinders_;
   Eigen::VectorXd lambda_;       // w_m^2
@@ -51,6 +54,9 @@ class SteadyShaft {
 /// The shaft's waves from the cylinders' in a firing order: x(t) above. Only columns [first, first + count).
 SteadyShaft::Waves in_order(const std::vector<SteadyShaft::Waves>& cylinder_waves,
                             const std::vector<int>& order, Eigen::Index first, Eigen::Index count);
+
+/// Amplitudes of the orders 1 to 200 of a revolution's samples, and the orders: the largest first.
+std::vector<std::pair<double, int>> largest_orders(const Eigen::VectorXd& wave);
 
 /// Largest |value| of a periodic wave, by a parabola through the largest sample and its neighbours.
 double peak_of(const Eigen::Ref<const Eigen::VectorXd>& wave);

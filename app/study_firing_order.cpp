@@ -15,6 +15,7 @@ namespace drev::app {
 namespace {
 
 constexpr const char* kDamping = "case_3";  // see how()
+constexpr double kLowEffect = 2.0;          // times the best order's deflection
 
 using Waves = SteadyShaft::Waves;
 using Order = std::vector<int>;
@@ -82,8 +83,7 @@ double worst_reversal(const std::vector<Steady>& all) {
 
 struct Search {
   StudyTable table;
-  std::string verdict, symmetry;
-  double range = 0.0;  ///< deflection of the worst order over that of the best
+  std::string verdict, symmetry, effect;
 };
 
 template <std::size_t N>
@@ -104,18 +104,19 @@ Search search_orders(int cylinders, const std::string& source,
     shown.push_back({p.order, printed(p.deflection), printed(p.torque), ""});
   shown.push_back({order_text(all[0].order), "-", "-", "least steady deflection of all; "});
   shown.push_back({order_text(lightest.order), "-", "-", "least steady torque of all; "});
+  const std::string default_order = order_text(default_firing_order(cylinders));
   std::vector<SettingList> cases;
   for (const Shown& s : shown)
     cases.push_back({{"cylinders", std::to_string(cylinders)},
                      {"drive", "held"},
                      {"damping", kDamping},
-                     {"firing_order", s.order}});
+                     {"firing_order", s.order == default_order ? "default" : s.order}});
   const std::vector<CamshaftCase> runs = run_cases(cases, 2);
 
   Search result{{std::to_string(cylinders) + " cylinders"},
                 {},
                 {},
-                all.back().deflection / all[0].deflection};
+                {}};
   std::vector<Steady> exact;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto at = std::find_if(all.begin(), all.end(), [&](const Steady& s) {
@@ -140,6 +141,19 @@ Search search_orders(int cylinders, const std::string& source,
                    " deg. The least torque, " + digits(exact[N + 1].torque, 4) + " N m, has " +
                    shown[N + 1].order + "; the source's order has " + digits(exact[0].torque, 4) +
                    " N m.";
+  const double range = all.back().deflection / all[0].deflection;
+  const int strongest =
+      largest_orders(in_order(waves, default_firing_order(cylinders), 0, 1).col(0))[0].second;
+  result.effect =
+      "With " + n + " cylinders the worst order has " + digits(range, 2) +
+      " times the deflection of the best: **it " + stands(range < kLowEffect) + "**" +
+      (range < kLowEffect && strongest % cylinders == 0 ? ", but for another reason" : "") +
+      "; the largest part of the deflection has the frequency of order " +
+      std::to_string(strongest) +
+      (strongest % cylinders == 0 ? ", a multiple of " + n +
+                                        " and therefore the same in every firing order, which "
+                                        "cannot detune it."
+                                  : ", no multiple of " + n + ": the firing order sets its size.");
   result.symmetry = n + " cylinders: " + std::to_string(all.size()) +
                     " orders; reversing an order changes the deflection by up to " +
                     digits(100.0 * worst_reversal(all), 2) +
@@ -172,15 +186,8 @@ StudyGroup study_firing_order() {
           six.symmetry + ". " + eight.symmetry + ".",
       six.verdict + " " + eight.verdict,
       "\"The effect of firing orders is lower than expected, because the pumps' short impulses "
-      "dominate\": the worst "
-      "order has " +
-          digits(six.range, 2) + " times the deflection of the best with 6 cylinders, " +
-          digits(eight.range, 2) +
-          " times with 8. **It does not stand for 6 cylinders**, whose shaft resonates with the "
-          "21st order, no multiple of 6. **For 8 it does, but for another reason:** the 16th "
-          "order, at which that shaft resonates, is twice the number of cylinders and therefore "
-          "the same in every "
-          "firing order, which cannot detune it."};
+      "dominate\". " +
+          six.effect + " " + eight.effect};
   return group;
 }
 

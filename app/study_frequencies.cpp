@@ -104,8 +104,8 @@ StudyGroup study_frequencies() {
       "The reconstruction has the multibody frequencies to " + to_mbs.text() +
           ", the finite-element ones to " + to_fem.text() +
           ". Frequencies fall with the number of cylinders, from " + digits(first.front(), 4) +
-          " to " + digits(first.back(), 4) + " Hz: **that conclusion stands**" +
-          (std::is_sorted(first.rbegin(), first.rend()) ? "" : ", but not everywhere") + ".",
+          " to " + digits(first.back(), 4) + " Hz: **that conclusion " +
+          stands(std::is_sorted(first.rbegin(), first.rend())) + "**.",
       std::string("Figures 5.5 to 5.8 and A.1 to A.8: mode m changes its sign ") +
           (shapes_right ? "m times along the shaft, for 6 to 10 cylinders, as a shaft's modes must."
                         : "otherwise than m times for some shaft.")};

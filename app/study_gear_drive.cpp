@@ -79,9 +79,8 @@ GearStudy run_gear_study() {
   for (const auto& p : published::kBacklash) rattling.push_back(gears("case_1", p.gap));
   const std::vector<CamshaftCase> rattle = run_cases(rattling, kRuns);
   const auto held = [](const char* damping, int cylinders) {
-    SettingList settings = gears(damping, 0.0, "mean", cylinders);
-    settings.push_back({"drive", "held"});
-    return settings;
+    return SettingList{
+        {"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
   };
   const std::vector<CamshaftCase> smooth =
       run_cases({held("case_1", 9), held("undamped", 9), gears("case_1", 0.0),

@@ -4,7 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <limits>
+#include <future>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -25,6 +26,12 @@ constexpr double kNudge = 1e-9;                  // rad
 constexpr double kCoarse = 1e-7, kFine = 1e-11;  // tolerances of exact propagation
 constexpr int kStaticAngles = 1440;
 constexpr std::size_t kStepRuns = 8;
+
+Settings values_of(const SceneEntry& entry, const SettingList& settings) {
+  Settings values(entry.name, entry.settings);
+  for (const auto& [name, value] : settings) values.set(name, value);
+  return values;
+}
 
 }  // namespace
 
@@ -53,9 +60,7 @@ void for_all(std::size_t count, const std::function<void(std::size_t)>& task) {
 
 Scene build_scene(const std::string& model, const SettingList& settings) {
   const SceneEntry& entry = find_scene(model);
-  Settings values(entry.name, entry.settings);
-  for (const auto& [name, value] : settings) values.set(name, value);
-  return entry.build(values);
+  return entry.build(values_of(entry, settings));
 }
 
 Method source_method() { return {.name = "average_acceleration", .step = published::kStep}; }
@@ -75,52 +80,47 @@ RunSummary run_watched(const System& system, const Method& method, double t_end,
 WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start,
                          double length)
     : peaks_(std::move(channels), inside_steps),
-      inside_steps_(inside_steps),
       start_(start),
-      length_(length) {}
+      length_(length),
+      window_(start > 0.0 ? -1 : 0) {}
 
 void WindowPeaks::start(const Assembler& assembler, const StepPoint& point) {
   peaks_.start(assembler, point);
 }
 
-double WindowPeaks::next_stop(double t) const {
-  if (t < start_) return start_;
-  return edge(static_cast<long>(std::floor((t - start_) / length_ * (1.0 + 1e-12) + 1e-9)) + 1);
-}
-
 void WindowPeaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
-  const double slack = 1e-9 * length_;
-  if (to.state.t <= start_ + slack) {
-    if (to.state.t >= start_ - slack) peaks_.start(assembler, to);
-    return;
-  }
   peaks_.step(assembler, from, to);
-  if (to.state.t < edge(window_ + 1) - slack) return;
-  amplitudes_.push_back(peaks_.peaks()[peaks_.largest()].amplitude());
-  peaks_ = Peaks(peaks_.channels(), inside_steps_);
+  if (to.state.t < edge(window_ + 1) - 1e-9 * length_) return;
+  largest_ = std::max(largest_, amplitude());
+  if (window_ >= 0) amplitudes_.push_back(amplitude());
   peaks_.start(assembler, to);
   ++window_;
 }
 
-CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge) {
+namespace {
+
+CamshaftFigures make_run(const SettingList& settings, const Method& method, double nudge) {
   Scene scene = build_scene("camshaft", settings);
   if (nudge != 0.0) scene.model.set_initial("end", nudge, 0.0);
   const System system = scene.model.build();
   const bool inside = method.exact();
-  Peaks deflection(find_channels(system, {scene.deflection}), inside);
-  Peaks torque(find_channels(system, scene.torques), inside);
+  Peaks deflection(find_channels(system, {scene.deflection}));
+  Peaks torque(find_channels(system, scene.torques));
   const double revolution = scene.static_turn / system.reference_speed();
   WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled,
                                  revolution);
   WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
   ContactStatistics contacts(system, inside);
-  std::vector<Observer*> observers{&deflection, &torque, &contacts};
+  std::vector<Observer*> observers{&contacts};
   // Constant steps would be cut at the windows' ends, and a run that rattles be another.
-  if (method.exact()) observers.insert(observers.end(), {&settled_deflection, &settled_torque});
+  if (method.exact())
+    observers.insert(observers.end(), {&settled_deflection, &settled_torque});
+  else
+    observers.insert(observers.end(), {&deflection, &torque});
   CamshaftFigures figures;
   figures.summary = run_watched(system, method, scene.duration, observers);
-  figures.deflection = to_deg(deflection.peaks()[0].amplitude());
-  figures.torque = torque.peaks()[torque.largest()].amplitude();
+  figures.deflection = to_deg(inside ? settled_deflection.largest() : deflection.peaks()[0].amplitude());
+  figures.torque = inside ? settled_torque.largest() : torque.peaks()[torque.largest()].amplitude();
   figures.settled_deflection = to_deg(mean_of(settled_deflection.amplitudes()).value);
   figures.settled_torque = mean_of(settled_torque.amplitudes()).value;
   for (const ContactRecord& record : contacts.records()) {
@@ -128,6 +128,33 @@ CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, 
     figures.back += static_cast<double>(record.back_impacts);
   }
   return figures;
+}
+
+}  // namespace
+
+CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge) {
+  static std::mutex mutex;
+  static std::map<std::string, std::shared_future<CamshaftFigures>> runs;
+  const std::string name = join(values_of(find_scene("camshaft"), settings).values()) + ", " +
+                           to_text(method) + ", " + short_digits(nudge, 17);
+  std::promise<CamshaftFigures> promise;
+  std::unique_lock lock(mutex);
+  const auto [entry, is_new] = runs.try_emplace(name);
+  if (!is_new) {
+    const std::shared_future<CamshaftFigures> made = entry->second;
+    lock.unlock();
+    return made.get();
+  }
+  entry->second = promise.get_future().share();
+  lock.unlock();
+  try {
+    const CamshaftFigures figures = make_run(settings, method, nudge);
+    promise.set_value(figures);
+    return figures;
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+    throw;
+  }
 }
 
 Known CamshaftCase::known(Member member) const {
@@ -201,6 +228,8 @@ Known from_two(double coarse, double fine, double tolerance) {
 double shown_at_step(double frequency_Hz, double h) {
   return to_hz(2.0 / h * std::atan(0.5 * hz(frequency_Hz) * h));
 }
+
+std::string stands(bool it_does) { return it_does ? "stands" : "does not stand"; }
 
 std::string cell(double value) { return digits(value, 5); }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// Runs of the camshaft for the studies, side by side on all processors.
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <utility>
@@ -36,16 +37,19 @@ class WindowPeaks final : public Observer {
   WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start, double length);
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
-  double next_stop(double t) const override;
+  double next_stop(double /*t*/) const override { return edge(window_ + 1); }
+  bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
   /// Of the windows that are over.
   const std::vector<double>& amplitudes() const { return amplitudes_; }
+  /// Of the whole run, what is before `start` with it.
+  double largest() const { return std::max(largest_, amplitude()); }
 
  private:
   double edge(long k) const { return start_ + static_cast<double>(k) * length_; }
+  double amplitude() const { return peaks_.peaks()[peaks_.largest()].amplitude(); }
   Peaks peaks_;
-  bool inside_steps_;
-  double start_, length_;
-  long window_ = 0;
+  double start_, length_, largest_ = 0.0;
+  long window_;  // -1: before the first
   std::vector<double> amplitudes_;
 };
 
@@ -59,7 +63,7 @@ struct CamshaftFigures {
   RunSummary summary;
 };
 
-/// nudge: of the free end at the start [rad].
+/// nudge: of the free end at the start [rad]. A run that another study has made is not made again.
 CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge = 0.0);
 
 /// A case at the source's step and by exact runs.
@@ -94,6 +98,8 @@ inline constexpr double kModeError = 5e-12;
 /// What average acceleration at step h [s] shows of a frequency, w' of w: tan(w' h/2) = w h/2.
 double shown_at_step(double frequency_Hz, double h);
 
+/// "stands" or "does not stand".
+std::string stands(bool it_does);
 /// value with 5 digits, for a column of a table.
 std::string cell(double value);
 /// A published value with the digits it was printed with.

@@ -229,6 +229,10 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
   return y;
 }
 
+bool Channel::value_needs_acceleration() const {
+  return kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
+}
+
 double Channel::evaluate(const Assembler& assembler, const State& state) const {
   if (direct_) {
     double y = 0.0;

@@ -30,6 +30,10 @@ class Channel {
   /// x'', at constant phase and time); none for others.
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
+  /// Whether evaluate() reads the state's accelerations, or rate() does.
+  bool value_needs_acceleration() const;
+  bool rate_needs_acceleration() const { return kind_ == Kind::force || !v_.empty(); }
+
   /// For a value that is sum z_row z + sum v_row v and nothing else.
   bool is_linear() const { return direct_; }
   const std::vector<Entry>& z_row() const { return z_; }

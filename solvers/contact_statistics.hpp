@@ -55,6 +55,7 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
 /// left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
+  bool needs_acceleration() const override { return false; }
   /// inside_steps: as in Peaks, for forces.
   explicit ContactStatistics(const System& system, bool inside_steps = false);
   void start(const Assembler& assembler, const StepPoint& point) override;

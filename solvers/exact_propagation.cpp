@@ -184,6 +184,8 @@ class ExactRun {
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     const double parts = std::ceil(fastest_ * length / kWatchedAngle);
+    const bool forces = std::any_of(observers_.begin(), observers_.end(),
+                                    [](const Observer* o) { return o->needs_acceleration(); });
     for (double i = 1.0;;) {
       double t = i < parts ? t_0 + length * (i / parts) : t_new;
       const double part = t;
@@ -197,7 +199,10 @@ class ExactRun {
       point.state.t = t;
       point.state.history = now_.state.history;
       series_.evaluate(s * ((t - t_0) / length), point.state.z, point.state.v);
-      evaluate(point, t);
+      if (forces)
+        evaluate(point, t);
+      else
+        evaluate_laws(point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
@@ -279,21 +284,30 @@ class ExactRun {
                         " changes its piece to and fro without the motion going on");
   }
 
-  void evaluate(StepPoint& point, double t) {
+  /// Motion and laws only.
+  void evaluate_laws(StepPoint& point, double t) {
     const State& s = point.state;
     assembler_.set_time(t);
     point.inputs.resize(system_.scalars().size());
     point.responses.resize(system_.scalars().size());
-    assembler_.external(s.z, s.v, point.p);
-    assembler_.multiply_stiffness(s.z, point.kz);
-    assembler_.multiply_damping(s.v, point.cv);
-    point.total = point.kz + point.cv - point.p;
     for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
       const ScalarTerm& term = system_.scalars()[j];
       point.inputs[j] = assembler_.input(term, s.z, s.v);
       point.responses[j] = term.force->evaluate(point.inputs[j]);
-      for (const Entry& e : term.z) point.total[e.index] += e.coeff * point.responses[j].y;
     }
+    point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void evaluate(StepPoint& point, double t) {
+    const State& s = point.state;
+    evaluate_laws(point, t);
+    assembler_.external(s.z, s.v, point.p);
+    assembler_.multiply_stiffness(s.z, point.kz);
+    assembler_.multiply_damping(s.v, point.cv);
+    point.total = point.kz + point.cv - point.p;
+    for (std::size_t j = 0; j < system_.scalars().size(); ++j)
+      for (const Entry& e : system_.scalars()[j].z)
+        point.total[e.index] += e.coeff * point.responses[j].y;
     rhs_ = -point.total;
     series_.solve_mass(rhs_, point.state.a);
   }

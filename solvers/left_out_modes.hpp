@@ -44,6 +44,7 @@ class LeftOutModes final : public Observer {
 
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  bool needs_acceleration() const override { return false; }  // modal_shares() refuses what does
 
   std::vector<ReductionErrorEstimate> estimates() const;
 

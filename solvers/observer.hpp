@@ -19,6 +19,9 @@ class Observer {
   virtual double next_stop(double /*t*/) const {
     return std::numeric_limits<double>::infinity();
   }
+  /// Whether it reads accelerations, or loads and forces of the whole system (p, kz, cv, total). Where no
+  /// observer does, points inside a step of exact propagation have none: a is not a number there.
+  virtual bool needs_acceleration() const { return true; }
 };
 
 }  // namespace drev

@@ -24,14 +24,11 @@ class Peaks final : public Observer {
   /// known (deviations, shaft torques, laws) is taken as the cubic through both values and rates, so that a
   /// peak inside a step is found to the fourth order of its length; for methods whose steps are long beside
   /// their accuracy. Laws: a change of mesh phase or time inside the step is left out of the rate.
-  explicit Peaks(std::vector<Channel> channels, bool inside_steps = false)
-      : channels_(std::move(channels)),
-        peaks_(channels_.size()),
-        last_(channels_.size()),
-        inside_steps_(inside_steps) {}
+  explicit Peaks(std::vector<Channel> channels, bool inside_steps = false);
 
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  bool needs_acceleration() const override;
 
   const std::vector<Channel>& channels() const { return channels_; }
   const std::vector<Peak>& peaks() const { return peaks_; }
@@ -42,9 +39,21 @@ class Peaks final : public Observer {
   void look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from,
                    const StepPoint& to);
 
+  /// What a step needs of a channel, close together: there are many steps and few new peaks.
+  struct Watched {
+    bool two_entries = false;  ///< its value is the sum over z, its rate that over v
+    Entry first{0, 0.0}, second{0, 0.0};
+    double sum(const Vector& x) const {
+      return first.coeff * x[first.index] + second.coeff * x[second.index];
+    }
+    double last = 0.0;
+    double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
+  };
+  void set_bounds(std::size_t c);
+
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
-  std::vector<double> last_;
+  std::vector<Watched> watched_;
   bool inside_steps_ = false;
 };
 

@@ -1,5 +1,7 @@
 #include "solvers/recorder.hpp"
 
+#include <algorithm>
+
 namespace drev {
 
 namespace {
@@ -29,6 +31,11 @@ void Recorder::step(const Assembler& assembler, const StepPoint& /*from*/, const
 
 double Recorder::next_stop(double /*t*/) const {
   return start_ + static_cast<double>(next_) * every_;
+}
+
+bool Recorder::needs_acceleration() const {
+  return std::any_of(channels_.begin(), channels_.end(),
+                     [](const Channel& c) { return c.value_needs_acceleration(); });
 }
 
 void Recorder::record(const Assembler& assembler, const StepPoint& point) {

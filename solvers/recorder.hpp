@@ -23,6 +23,7 @@ class Recorder final : public Observer {
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
   double next_stop(double t) const override;
+  bool needs_acceleration() const override;
 
   const std::vector<Channel>& channels() const { return channels_; }
   const std::vector<double>& times() const { return times_; }
