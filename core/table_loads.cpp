@@ -26,48 +26,50 @@ void TableLoads::add(const LoadTable& table, int unknown, double coeff, double r
       knots.push_back({table.arguments[i] - table.arguments[0] + turn, table.values[i], table.slopes[before],
                        table.slopes[i]});
     }
-    const auto same = std::find_if(turns_.begin(), turns_.end(), [&](const Turn& t) {
-      return t.count == static_cast<int>(n) &&
-             std::equal(knots.begin(), knots.end(), knots_.begin() + t.begin);
-    });
-    if (same != turns_.end())
-      place->second = same->begin;
+    std::size_t same = 0;
+    while (same < begin_.size() &&
+           !(count_[same] == static_cast<int>(n) &&
+             std::equal(knots.begin(), knots.end(), knots_.begin() + begin_[same])))
+      ++same;
+    if (same < begin_.size())
+      place->second = begin_[same];
     else
       knots_.insert(knots_.end(), knots.begin(), knots.end());
   }
   unknown_.push_back(unknown);
+  coeff_.push_back(coeff);
   ratio_.push_back(ratio);
   gain_.push_back(gain);
   offset_.push_back(table.phase - table.arguments[0]);
-  const double count = static_cast<double>(n);
-  inverse_spacing_.push_back(count / table.period);
-  turns_.push_back({coeff, offset_.back(), table.period, 1.0 / table.period, count / table.period,
-                    place->second, static_cast<int>(n)});
+  period_.push_back(table.period);
+  inverse_period_.push_back(1.0 / table.period);
+  inverse_spacing_.push_back(static_cast<double>(n) / table.period);
+  begin_.push_back(place->second);
+  count_.push_back(static_cast<int>(n));
 }
 
 void TableLoads::set_nominal(double phi, Values& values) const {
   for (std::size_t e = 0; e < ratio_.size(); ++e) values.nominal[e] = ratio_[e] * phi + offset_[e];
 }
 
-/// Angles here are arguments: less the offset.
-[[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(std::size_t e,
-                                                                        double argument) const {
+/// Angles here are arguments: less the offset. Without branches: look_up() makes vectors of it.
+[[gnu::always_inline]] inline TableLoads::Nearest TableLoads::find_knot(int e, double argument) const {
   constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to whole numbers
-  const Turn& t = turns_[e];
-  double turns = argument * t.inverse_period + kRound;
+  const double period = period_.data()[e], coeff = coeff_.data()[e];
+  double turns = argument * inverse_period_.data()[e] + kRound;
   turns -= kRound;
-  if (turns * t.period > argument) turns -= 1.0;
-  double place = (argument - t.period * turns) * t.inverse_spacing + 0.5;
+  turns -= turns * period > argument ? 1.0 : 0.0;
+  double place = (argument - period * turns) * inverse_spacing_.data()[e] + 0.5;
   place = place > 0.0 ? place : 0.0;  // NaN too
-  const Knot& k = knots_[static_cast<std::size_t>(t.begin) +
-                         static_cast<std::size_t>(std::min(place, static_cast<double>(t.count)))];
-  return {k.argument + t.period * turns, t.coeff * k.value, t.coeff * k.left, t.coeff * k.right};
+  const double last = count_.data()[e];
+  place = place < last ? place : last;
+  const Knot& k = knots_.data()[begin_.data()[e] + static_cast<int>(place)];
+  return {k.argument + period * turns, coeff * k.value, coeff * k.left, coeff * k.right};
 }
 
 TableLoads::Nearest TableLoads::nearest(int e, double angle) const {
-  const auto i = static_cast<std::size_t>(e);
-  const double offset = turns_[i].offset;
-  Nearest found = find_knot(i, angle + offset);
+  const double offset = offset_[static_cast<std::size_t>(e)];
+  Nearest found = find_knot(e, angle + offset);
   found.angle -= offset;
   return found;
 }
@@ -77,27 +79,25 @@ void TableLoads::look_up(const double* z, Values& values) const {
   const int n = size();
   const double *gain = gain_.data(), *density = inverse_spacing_.data();
   const int* unknown = unknown_.data();
-  const double *nominal = values.nominal.data(), *origin = values.origin.data(),
-               *value = values.value.data(), *left = values.left.data(), *right = values.right.data();
+  const double* nominal = values.nominal.data();
+  double *__restrict origin = values.origin.data(), *__restrict value = values.value.data(),
+         *__restrict left = values.left.data(), *__restrict right = values.right.data();
   double* __restrict from_knot = values.from_knot.data();
   double* __restrict torque = values.torque.data();
-  int left_behind = 0;
+  std::int64_t left_behind = 0;
   for (int e = 0; e < n; ++e) {
     const double d = nominal[e] + gain[e] * z[unknown[e]] - origin[e];
     from_knot[e] = d;
-    const double places = d * density[e];
-    left_behind |= !(places <= 0.5 && places >= -0.5);
+    left_behind |= !(std::abs(d * density[e]) <= 0.5);
   }
   if (left_behind)
+#pragma GCC ivdep
     for (int e = 0; e < n; ++e) {
-      const double places = from_knot[e] * density[e];
-      if (places <= 0.5 && places >= -0.5) continue;
-      const auto i = static_cast<std::size_t>(e);
       const double argument = nominal[e] + gain[e] * z[unknown[e]];
-      const Nearest found = find_knot(i, argument);
-      values.origin[i] = found.angle;
-      values.from_knot[i] = argument - found.angle;
-      values.value[i] = found.value, values.left[i] = found.left, values.right[i] = found.right;
+      const Nearest found = find_knot(e, argument);
+      origin[e] = found.angle;
+      from_knot[e] = argument - found.angle;
+      value[e] = found.value, left[e] = found.left, right[e] = found.right;
     }
   Lanes most{};
   int e = 0;

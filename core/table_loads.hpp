@@ -52,17 +52,12 @@ class TableLoads {
     double value, left, right;  // slopes on both sides
     bool operator==(const Knot&) const = default;
   };
-  /// What a look-up needs of an entry, together; begin: of its table in knots_.
-  struct Turn {
-    double coeff, offset, period, inverse_period, inverse_spacing;
-    int begin, count;
-  };
-  Nearest find_knot(std::size_t e, double argument) const;
+  Nearest find_knot(int e, double argument) const;
   std::vector<Knot> knots_;
   std::map<const double*, int> begin_of_;  // of a table in knots_, by its values' array
-  std::vector<Turn> turns_;
-  std::vector<double> ratio_, gain_, offset_, inverse_spacing_;
-  std::vector<int> unknown_;
+  // Of the entries; begin: of its table in knots_.
+  std::vector<double> coeff_, ratio_, gain_, offset_, period_, inverse_period_, inverse_spacing_;
+  std::vector<int> unknown_, begin_, count_;
 };
 
 }  // namespace drev
