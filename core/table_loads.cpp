@@ -74,6 +74,10 @@ TableLoads::Nearest TableLoads::nearest(int e, double angle) const {
   return found;
 }
 
+namespace {
+constexpr int kFew = 4;  // entries that left their knots: more are found all at once, in vectors
+}
+
 DREV_WIDEST
 void TableLoads::look_up(const double* z, Values& values) const {
   const int n = size();
@@ -88,9 +92,9 @@ void TableLoads::look_up(const double* z, Values& values) const {
   for (int e = 0; e < n; ++e) {
     const double d = nominal[e] + gain[e] * z[unknown[e]] - origin[e];
     from_knot[e] = d;
-    left_behind |= !(std::abs(d * density[e]) <= 0.5);
+    left_behind += !(std::abs(d * density[e]) <= 0.5);
   }
-  if (left_behind)
+  if (left_behind > kFew) {
 #pragma GCC ivdep
     for (int e = 0; e < n; ++e) {
       const double argument = nominal[e] + gain[e] * z[unknown[e]];
@@ -99,6 +103,16 @@ void TableLoads::look_up(const double* z, Values& values) const {
       from_knot[e] = argument - found.angle;
       value[e] = found.value, left[e] = found.left, right[e] = found.right;
     }
+  } else if (left_behind > 0) {
+    for (int e = 0; e < n; ++e) {
+      if (std::abs(from_knot[e] * density[e]) <= 0.5) continue;
+      const double argument = nominal[e] + gain[e] * z[unknown[e]];
+      const Nearest found = find_knot(e, argument);
+      origin[e] = found.angle;
+      from_knot[e] = argument - found.angle;
+      value[e] = found.value, left[e] = found.left, right[e] = found.right;
+    }
+  }
   Lanes most{};
   int e = 0;
   for (; e + kLanes <= n; e += kLanes) {

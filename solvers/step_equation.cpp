@@ -178,17 +178,13 @@ void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& t
     for (const Entry& e : system_.scalars()[j].z) to.kz[e.index] -= e.coeff * to.responses[j].y;
 }
 
-void StepEquation::correct(const Problem& problem, StepPoint& to) const {
+double StepEquation::correct(const Problem& problem, StepPoint& to) const {
   const int n = system_.size();
   to.state.z.resize(n);
   to.state.v.resize(n);
-  correct_motion(n, scheme_.beta * problem.h * problem.h, scheme_.gamma * problem.h, problem.z_0.data(),
-                 problem.v_0.data(), to.state.a.data(), to.state.z.data(), to.state.v.data());
-}
-
-void StepEquation::evaluate_loads(StepPoint& to) {
-  z_loaded_ = to.state.z;
-  assembler_.external(to.state.z, to.state.v, to.p);
+  return correct_motion(n, scheme_.beta * problem.h * problem.h, scheme_.gamma * problem.h,
+                        problem.z_0.data(), problem.v_0.data(), to.state.a.data(),
+                        to.state.z.data(), to.state.v.data());
 }
 
 NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
@@ -205,7 +201,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   to.state.a = *problem.a_start;
   correct(problem, to);
   clock_.enter(Phase::loads);
-  evaluate_loads(to);
+  assembler_.external(to.state.z, to.state.v, to.p);
   to.inputs.resize(m);
   to.responses.resize(m);
   std::vector<ScalarInput>& phase = to.inputs;
@@ -225,11 +221,12 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     still_[j] = assembler_.input(system_.scalars()[j], problem.z_0, problem.v_0);
 
   NewtonResult result;
+  double change = 0.0;  // of z since the loads were evaluated
   for (int pass = 1;; ++pass) {
     ++load_passes_;
     clock_.enter(Phase::linear);
-    rhs_ = problem.known;
-    add_multiple(n, phi, to.p.data(), rhs_.data());
+    rhs_.resize(n);
+    sum_with(n, problem.known.data(), phi, to.p.data(), rhs_.data());
     solve(f, rhs_, to.state.a);
     const double scale = force_scale_ > 0.0 ? force_scale_ : largest_size(n, to.p.data());
     if (m > 0) {
@@ -256,18 +253,17 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     } else {
       ++result.iterations;
     }
-    correct(problem, to);
+    change = correct(problem, to);
     const bool phases_left = pass < phase_passes;
     // A motion that is not finite ends the passes too.
     if (!phases_left &&
         (!system_.loads_depend_on_motion() ||
-         !(assembler_.load_steepness() * largest_difference(n, to.state.z.data(), z_loaded_.data()) >
-           options_.load_tolerance * scale)))
+         !(assembler_.load_steepness() * change > options_.load_tolerance * scale)))
       break;
     clock_.enter(Phase::loads);
     const bool known_steepness = std::isfinite(assembler_.load_steepness());
     if (!known_steepness) p_last_ = to.p;
-    evaluate_loads(to);
+    assembler_.external(to.state.z, to.state.v, to.p);
     if (phases_left) {
       take_phase();
       continue;
@@ -280,7 +276,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
       return result;
     }
   }
-  if (!std::isfinite(largest_size(n, to.state.a.data()))) {
+  if (!std::isfinite(change)) {
     result.status = NewtonStatus::not_finite;
     return result;
   }

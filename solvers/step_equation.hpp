@@ -92,14 +92,14 @@ class StepEquation {
     long used = 0;
     std::vector<double> inverse;  // columns of S^-1, padded to whole lanes
   };
-  void evaluate_loads(StepPoint& to);
   void invert(Factor& f);
   void solve(Factor& f, const Vector& b, Vector& x);
   Factor& factor(double h);
   void evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new);
   NewtonResult solve_dense(Problem& problem, StepPoint& to);
   NewtonResult solve_sparse(const Problem& problem, StepPoint& to);
-  void correct(const Problem& problem, StepPoint& to) const;
+  /// Returns the largest change of z.
+  double correct(const Problem& problem, StepPoint& to) const;
 
   const System& system_;
   Assembler assembler_;
@@ -110,7 +110,7 @@ class StepEquation {
   SparseCholesky mass_;
   MatrixProduct mass_product_, damping_, stiffness_;
   std::unique_ptr<SparseNewton> sparse_;
-  Vector rhs_, scratch_, history_, p_last_, z_loaded_, lambda_, lambda_start_, values_;
+  Vector rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
   std::vector<ScalarInput> still_, free_;  // what the laws would see without acceleration, without forces
   double force_scale_ = 0.0;
   PhaseClock clock_;

@@ -10,32 +10,53 @@ namespace {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
 
-/// Largest of size_i = |value(i)| in lanes; infinities and NaN are carried by 0 value.
+/// body(i) for every kLanes entries from i, n >= kLanes; the last begin at n - kLanes and may be taken twice.
+template <class Body>
+[[gnu::always_inline]] inline void for_blocks(int n, const Body& body) {
+  int i = 0;
+  for (; i + kLanes < n; i += kLanes) body(i);
+  body(n - kLanes);
+}
+
+/// The largest size of entries; infinities and NaN are carried by 0 x, since comparisons drop a NaN.
+struct Largest {
+  Lanes most{}, bad{};
+  [[gnu::always_inline]] void note(const Lanes& x) {
+    larger(most, x);
+    bad += 0.0 * x;
+  }
+  [[gnu::always_inline]] double result() const {
+    double largest = most[0];
+    for (int l = 1; l < kLanes; ++l) largest = most[l] > largest ? most[l] : largest;
+    return largest + sum_of(bad);
+  }
+};
+
+/// Largest |value|; fewer than kLanes values one by one.
 template <class Value>
 [[gnu::always_inline]] inline double largest_of(int n, const Value& value) {
-  Lanes most{}, bad{}, x;
-  int i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
+  if (n < kLanes) {
+    double most = 0.0, bad = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const double x = value.at_one(i), size = x < 0.0 ? -x : x;
+      most = size > most ? size : most;
+      bad += 0.0 * x;
+    }
+    return most + bad;
+  }
+  Largest largest;
+  for_blocks(n, [&](int i) __attribute__((always_inline)) {
+    Lanes x;
     value(i, x);
-    larger(most, x);
-    bad += 0.0 * x;  // comparisons drop a NaN
-  }
-  for (; i < n; ++i) {
-    Lanes one{};
-    value.at_one(i, one);
-    const double size = one[0] < 0.0 ? -one[0] : one[0];
-    most[0] = size > most[0] ? size : most[0];
-    bad[0] += 0.0 * one[0];
-  }
-  double result = most[0];
-  for (int l = 1; l < kLanes; ++l) result = most[l] > result ? most[l] : result;
-  return result + sum_of(bad);
+    largest.note(x);
+  });
+  return largest.result();
 }
 
 struct Itself {
   const double* x;
   [[gnu::always_inline]] void operator()(int i, Lanes& out) const { load(x + i, out); }
-  [[gnu::always_inline]] void at_one(int i, Lanes& out) const { out[0] = x[i]; }
+  [[gnu::always_inline]] double at_one(int i) const { return x[i]; }
 };
 struct Difference {
   const double *x, *y;
@@ -45,7 +66,7 @@ struct Difference {
     load(y + i, b);
     out -= b;
   }
-  [[gnu::always_inline]] void at_one(int i, Lanes& out) const { out[0] = x[i] - y[i]; }
+  [[gnu::always_inline]] double at_one(int i) const { return x[i] - y[i]; }
 };
 
 /// The sums of a product stay in registers.
@@ -76,13 +97,39 @@ void predict_motion(int n, double h, double c_z, double c_v, const double* __res
 }
 
 DREV_WIDEST
-void correct_motion(int n, double c_z, double c_v, const double* __restrict z_0,
-                    const double* __restrict v_0, const double* __restrict a, double* __restrict z,
-                    double* __restrict v) {
-  for (int i = 0; i < n; ++i) {
-    z[i] = z_0[i] + c_z * a[i];
-    v[i] = v_0[i] + c_v * a[i];
+double correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0,
+                      const double* a, double* z, double* v) {
+  if (n < kLanes) {
+    double most = 0.0, bad = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const double z_new = z_0[i] + c_z * a[i], x = z_new - z[i], size = x < 0.0 ? -x : x;
+      most = size > most ? size : most;
+      bad += 0.0 * x;
+      z[i] = z_new;
+      v[i] = v_0[i] + c_v * a[i];
+    }
+    return most + bad;
   }
+  Largest change;
+  for_blocks(n, [&](int i) __attribute__((always_inline)) {
+    Lanes rate, start, old;
+    load(a + i, rate);
+    load(z_0 + i, start);
+    start += c_z * rate;
+    load(z + i, old);
+    change.note(start - old);
+    store(start, z + i);
+    load(v_0 + i, start);
+    start += c_v * rate;
+    store(start, v + i);
+  });
+  return change.result();
+}
+
+DREV_WIDEST
+void sum_with(int n, const double* __restrict y, double factor, const double* __restrict x,
+              double* __restrict out) {
+  for (int i = 0; i < n; ++i) out[i] = y[i] + factor * x[i];
 }
 
 DREV_WIDEST

@@ -5,9 +5,11 @@ namespace drev {
 /// z_0 = z + h v + c_z a, v_0 = v + c_v a.
 void predict_motion(int n, double h, double c_z, double c_v, const double* z, const double* v,
                     const double* a, double* z_0, double* v_0);
-/// z = z_0 + c_z a, v = v_0 + c_v a.
-void correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0, const double* a,
-                    double* z, double* v);
+/// z = z_0 + c_z a, v = v_0 + c_v a; returns the largest change of z, NaN if z is or was not finite.
+double correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0,
+                      const double* a, double* z, double* v);
+/// out = y + factor x.
+void sum_with(int n, const double* y, double factor, const double* x, double* out);
 /// out_i += factor d_i x_i.
 void add_scaled(int n, double factor, const double* d, const double* x, double* out);
 /// out_i += factor x_i.
