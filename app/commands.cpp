@@ -18,6 +18,8 @@ const std::vector<CommandEntry>& commands() {
                     "Relative: of exact, default 1e-10; of any other method, whose steps it controls"},
                    {"--accuracy", "A",
                     "Finds the figures to the relative error A and states the error of each"},
+                   {"--reduce", "ERROR",
+                    "Fewer coordinates where that pays and adds at most ERROR to any channel: 1%, or off"},
                    {"--out", "DIR", "Creates DIR with history.csv, summary.json and report.html"},
                    {"--report", "FILE",
                     "Writes the report, a page for any browser, to FILE.html, or printed to FILE.pdf"},

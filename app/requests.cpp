@@ -17,6 +17,7 @@ constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
 constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;  // of exact propagation
 constexpr double kLeastOfSteps = 1e-13, kLargestOfSteps = 0.1;       // of controlled steps
 constexpr double kLeastAccuracy = 1e-12, kLargestAccuracy = 0.5;
+constexpr double kLeastReduce = 1e-6, kLargestReduce = 0.5, kPartOfTolerance = 0.1;
 
 void take_findings(const ModelError& error, std::vector<Finding>& findings) {
   findings.insert(findings.end(), error.findings().begin(), error.findings().end());
@@ -192,6 +193,34 @@ std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding
   return value;
 }
 
+/// A part of one, as 0.01 or 1%.
+double read_part(const char* option, const std::string& text, double low, double high,
+                 const std::string& range, std::vector<Finding>& findings) {
+  const bool percent = text.ends_with('%');
+  double value = 0.0;
+  const bool number = read_number(percent ? text.substr(0, text.size() - 1) : text, value);
+  if (percent) value /= 100.0;
+  if (!number || !(value >= low && value <= high)) findings.push_back({kPlace, option, text, "", range});
+  return value;
+}
+
+/// What error a reduction may add: as asked for; else a tenth of the tolerance of controlled steps that no
+/// one asked for, which are what large models are run with.
+std::optional<double> read_reduce(const CommandLine& line, const Method& method, bool any_method,
+                                  std::vector<Finding>& findings) {
+  const auto text = line.option("--reduce");
+  if (!text) {
+    if (!any_method || !method.controlled()) return {};
+    return kPartOfTolerance * method.tolerance;
+  }
+  if (*text == "off") return {};
+  if (line.option("--accuracy"))
+    findings.push_back({kPlace, "--reduce", *text, "",
+                        "cannot be given with --accuracy, whose figures are the whole model's"});
+  return read_part("--reduce", *text, kLeastReduce, kLargestReduce,
+                   "must be off, or from 0.0001% to 50%, or 1e-6 to 0.5", findings);
+}
+
 /// A stepping method: with a tolerance, steps controlled by it; else constant ones. With --accuracy, methods
 /// of an order above 2, which constant steps over contact changes would take from them, are controlled.
 Method stepping(const std::string& name, const CommandLine& line, double step,
@@ -292,6 +321,9 @@ RunRequest request_run(const CommandLine& given) {
   if (line.option("--step") && !chosen.exact())
     chosen.step = read_time("--step", *line.option("--step"), duration / kMostSteps, high, limit, findings);
   const std::optional<double> accuracy = read_accuracy(line, findings);
+  const bool any_method =
+      !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
+  const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), duration / kMostRows, high, limit, findings);
@@ -317,7 +349,7 @@ RunRequest request_run(const CommandLine& given) {
   blame_file(line, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
-  return {std::move(*model), chosen, accuracy, method.reason, line.option("--out"),
+  return {std::move(*model), chosen, accuracy, method.reason, any_method, reduce, line.option("--out"),
           std::move(record), every, hdf5, line.option("--report"),
           line.option("--every") ? std::optional(every) : std::nullopt,
           line.model + (line.option("--run") ? " --run " + *line.option("--run") : "")};
@@ -372,15 +404,8 @@ AdviseRequest request_advise(const CommandLine& line) {
   std::optional<ModelRequest> model = build_model(line, findings);
   AdviseOptions options;
   options.figure = line.option("--for").value_or(options.figure);
-  if (const std::optional<std::string> text = line.option("--within")) {
-    const bool percent = text->ends_with('%');
-    double value = 0.0;
-    if (!read_number(percent ? text->substr(0, text->size() - 1) : *text, value) ||
-        !(value >= (percent ? 0.01 : 1e-4) && value <= (percent ? 50.0 : 0.5)))
-      findings.push_back({kPlace, "--within", *text, "", "must be from 0.01% to 50%, or 1e-4 to 0.5"});
-    else
-      options.within = percent ? value / 100.0 : value;
-  }
+  if (const std::optional<std::string> text = line.option("--within"))
+    options.within = read_part("--within", *text, 1e-4, 0.5, "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
   if (model) try {
       figure_options(model->scene, model->system, options);
     } catch (const ModelError& error) {

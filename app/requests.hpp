@@ -30,6 +30,8 @@ struct RunRequest {
   Method method;
   std::optional<double> accuracy;   ///< relative, of every figure; the method's step or tolerance follows
   std::string method_reason;        ///< why this one; a sentence without full stop
+  bool any_method = false;          ///< none was asked for
+  std::optional<double> reduce;     ///< relative error that a reduction may add; none: no reduction
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv and of the report
   double every = 0.0;               ///< s

@@ -52,9 +52,12 @@ class RunFiles {
       summary_->replace(running_as_json(request));
     }
     if (request.report) report_.emplace(*request.report);
-    if (request.out || request.report)
-      shown_.emplace(request.model.system, report_channels(request),
-                     report_interval(request));
+  }
+
+  /// What the report keeps of the run of a system.
+  void watch(const System& system) {
+    if (request_.out || request_.report)
+      shown_.emplace(system, report_channels(request_), report_interval(request_));
   }
 
   HistoryFile* history() { return history_ ? &*history_ : nullptr; }
@@ -139,7 +142,9 @@ int run_command(const CommandLine& line) {
   const RunRequest request = request_run(line);
   watch_signals();
   RunFiles files(request);
-  const RunResult result = compute_run(request, files.history(), files.shown());
+  const RunPlan plan = plan_run(request);
+  files.watch(system_of(request, plan));
+  const RunResult result = compute_run(request, plan, files.history(), files.shown());
   if (!result.ok()) say(warning_of(result));
   const bool written = files.close(result);
   if (line.json) {

@@ -9,6 +9,7 @@
 #include "solvers/modes.hpp"
 #include "solvers/peaks.hpp"
 #include "solvers/recorder.hpp"
+#include "solvers/reduction_trial.hpp"
 #include "solvers/statics.hpp"
 
 namespace drev::app {
@@ -111,7 +112,56 @@ bool find_accuracy(const RunRequest& request, RunResult& result) {
   return result.ok();
 }
 
+/// What is shown of the run: a reduction keeps the error of each of them.
+std::vector<std::string> shown_channels(const RunRequest& request) {
+  const Scene& scene = request.model.scene;
+  std::vector<std::string> names = scene.torques;
+  if (!scene.deflection.empty()) names.push_back(scene.deflection);
+  for (const Channel& c : mesh_channels(request.model.system)) names.push_back(c.name());
+  if (request.out || request.report)
+    names.insert(names.end(), request.record.begin(), request.record.end());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 }  // namespace
+
+RunPlan plan_run(const RunRequest& request) {
+  const System& system = request.model.system;
+  RunPlan plan{.method = request.method, .method_reason = request.method_reason};
+  plan.note.of = plan.note.coordinates = system.size();
+  if (!request.reduce) {
+    plan.note.reason = "not reduced: no error was allowed for it, see --reduce";
+    return plan;
+  }
+  const std::vector<std::string> channels = shown_channels(request);
+  if (channels.empty()) {
+    plan.note.reason = "not reduced: the model has no channel whose error could be told";
+    return plan;
+  }
+  const Timer timer;
+  ReductionTrial trial = try_reduction(system, {.within = *request.reduce,
+                                                .channels = channels,
+                                                .duration = request.model.scene.duration,
+                                                .method = request.method,
+                                                .any_method = request.any_method,
+                                                .progress = [](double) { return !interrupted(); }});
+  plan.note.error = trial.error;
+  plan.note.channel = trial.channel;
+  plan.note.reason = trial.reason;
+  if (trial.reduction) {
+    plan.note.used = true;
+    plan.note.coordinates = trial.reduction->system.size();
+    plan.note.modes = trial.reduction->modes;
+    plan.note.static_shapes = trial.reduction->static_shapes;
+    plan.method = trial.method;
+    if (request.any_method) plan.method_reason = "what suits the reduced model";
+    plan.reduction = std::move(trial.reduction);
+  }
+  plan.time = timer.seconds();
+  return plan;
+}
 
 std::vector<Channel> mesh_channels(const System& system) {
   std::vector<Channel> found;
@@ -133,19 +183,24 @@ double cycle_of(const ModelRequest& model) {
   return model.scene.static_turn / std::abs(speed);
 }
 
-RunResult compute_run(const RunRequest& request, HistoryFile* history, ReportHistory* report) {
-  const System& system = request.model.system;
+RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFile* history,
+                      ReportHistory* report) {
+  const System &full = request.model.system, &system = system_of(request, plan);
   const Scene& scene = request.model.scene;
   RunResult result;
-  add_modes(system, result);
+  result.method = plan.method;
+  result.method_reason = plan.method_reason;
+  result.reduction = plan.note;
+  result.reduction_time = plan.time;
+  add_modes(full, result);
+  add_static_force(request.model, find_channels(full, scene.torques), result);
+
   const std::vector<Channel> torques = find_channels(system, scene.torques);
-  add_static_force(request.model, torques, result);
 
   std::vector<Channel> deflections;
   if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
   // Exact propagation and controlled steps take long ones: their peaks may lie inside.
-  const bool inside = request.method.tolerance > 0.0;
-  result.method = request.method;
+  const bool inside = plan.method.tolerance > 0.0;
   Peaks torque_peaks(torques, inside), deflection_peaks(deflections, inside);
   Peaks mesh_peaks(mesh_channels(system), inside);
   ContactStatistics contacts(system, inside);

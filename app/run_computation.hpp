@@ -6,11 +6,27 @@
 #include "app/history_file.hpp"
 #include "app/report_history.hpp"
 #include "app/run_result.hpp"
+#include "solvers/reduction.hpp"
 
 namespace drev::app {
 
-/// history: where the recorded channels go; report: what the report keeps of them. Both may be null.
-RunResult compute_run(const RunRequest& request, HistoryFile* history, ReportHistory* report);
+/// What is run: the model, or a reduction of it.
+struct RunPlan {
+  std::optional<Reduction> reduction = {};
+  Method method = {};
+  std::string method_reason = {};
+  ReductionNote note = {};
+  double time = 0.0;  ///< s, to find it
+};
+RunPlan plan_run(const RunRequest& request);
+inline const System& system_of(const RunRequest& request, const RunPlan& plan) {
+  return plan.reduction ? plan.reduction->system : request.model.system;
+}
+
+/// history: where the recorded channels go; report: what the report keeps of them, a watch of
+/// system_of(request, plan). Both may be null.
+RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFile* history,
+                      ReportHistory* report);
 
 /// Forces [N] of meshes, backlash or not, and of whatever else has a gap.
 std::vector<Channel> mesh_channels(const System& system);

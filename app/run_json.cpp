@@ -134,6 +134,18 @@ Json accuracy_object(double asked, const AccuracyResult& a) {
           {"figures", std::move(figures)}};
 }
 
+Json reduction_object(const std::optional<double>& within, const ReductionNote& r) {
+  return {{"within", number(within)},
+          {"used", r.used},
+          {"coordinates", r.coordinates},
+          {"unknowns", r.of},
+          {"modes", r.used ? Json(r.modes) : Json()},
+          {"static_shapes", r.used ? Json(r.static_shapes) : Json()},
+          {"error", number(r.error)},
+          {"error_of", text_or_null(r.channel)},
+          {"reason", r.reason}};
+}
+
 /// What every run has, ended or not.
 Json head_object(const RunRequest& request, const std::string& scheme, const Method& method,
                  const std::string& status, const std::string& reason) {
@@ -159,6 +171,8 @@ Json run_object(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const bool exact = r.method.exact(), controlled = r.method.controlled();
   Json object = head_object(request, s.scheme, r.method, r.status, r.reason);
+  object["method_reason"] = r.method_reason;
+  object["reduction"] = reduction_object(request.reduce, r.reduction);
   object["results"] = results_object(r);
   object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
   object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
@@ -176,6 +190,7 @@ Json run_object(const RunRequest& request, const RunResult& r) {
   object["run_time_s"] = number(r.run_time);
   object["phases"] = {{"modes_s", number(r.modes_time)},
                       {"static_s", number(r.static_time)},
+                      {"reduction_s", number(r.reduction_time)},
                       {"accuracy_s", number(r.accuracy_time)},
                       {"simulation_s", number(r.run_time)}};
   object["note"] = text_or_null(request.model.scene.note);

@@ -27,12 +27,24 @@ struct Contacts {
   std::string speed_unit() const { return force_unit == "N" ? "m/s" : "rad/s"; }
 };
 
+/// Of a run in fewer coordinates, or why it is not.
+struct ReductionNote {
+  bool used = false;
+  int coordinates = 0, of = 0;   ///< of the run; unknowns of the model
+  int modes = 0, static_shapes = 0;
+  std::optional<double> error = {};  ///< estimated, relative to the peak of `channel`, the largest of all
+  std::string channel = {};
+  std::string reason = {};  ///< a sentence without full stop
+};
+
 struct RunResult {
   /// success, energy_error, unstable, no_convergence, not_finite, interrupted; failed: ended by an error;
   /// output_error: ended because an output could not be written.
   std::string status = "success";
   std::string reason;
   Method method;  ///< with the step or tolerance that an accuracy asked for led to
+  std::string method_reason;
+  ReductionNote reduction;
   RunSummary summary;
   std::optional<AccuracyResult> accuracy;
   std::optional<ModeSet> modes;
@@ -41,7 +53,8 @@ struct RunResult {
   std::optional<Largest> mesh_force;  ///< over meshes and whatever else has a gap [N]
   std::string static_reason;          ///< why there is no static force
   std::vector<Contacts> contacts;
-  double modes_time = 0.0, static_time = 0.0, accuracy_time = 0.0, run_time = 0.0;  ///< s of wall time
+  double modes_time = 0.0, static_time = 0.0, reduction_time = 0.0, accuracy_time = 0.0,
+         run_time = 0.0;  ///< s of wall time
 
   bool ok() const { return status == "success"; }
   /// Largest force over largest static force.

@@ -237,7 +237,8 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
     text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
   text += row("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
-  text += row("Why this method", request.method_reason);
+  text += row("Why this method", r.method_reason);
+  text += row("Reduction", r.reduction.reason);
   text += row("Effort", effort_text(r));
   if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
   if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
