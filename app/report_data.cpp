@@ -31,16 +31,18 @@ std::string now() {
 }
 
 /// The command that gives this run again.
-std::string command_of(const RunRequest& request) {
+std::string command_of(const RunRequest& request, const RunResult& result) {
+  const Method& method = result.method;
   const Settings& settings = request.model.settings;
   std::string text = "drev run " + request.words;
   for (std::size_t i = 0; i < settings.known().size(); ++i)
     if (settings.values()[i] != settings.known()[i].default_text)
       text += " --set " + settings.known()[i].name + "=" + settings.values()[i];
-  text += " --method " + request.method.name;
+  text += " --method " + method.name;
   if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
-  if (request.method.step > 0.0) text += " --step " + to_text(request.method.step);
-  if (request.method.tolerance > 0.0) text += " --tolerance " + to_text(request.method.tolerance);
+  if (method.step > 0.0) text += " --step " + to_text(method.step);
+  if (method.tolerance > 0.0) text += " --tolerance " + to_text(method.tolerance);
+  if (result.reduction.used) text += " --reduce " + to_text(*request.reduce);
   return text;
 }
 
@@ -99,9 +101,9 @@ Json history_object(const ReportHistory& history) {
 
 }  // namespace
 
-double report_interval(const RunRequest& request) {
+double report_interval(const RunRequest& request, const Method& method) {
   if (request.report_every) return *request.report_every;
-  if (!(request.method.tolerance > 0.0)) return 0.0;
+  if (!(method.tolerance > 0.0)) return 0.0;
   const double duration = request.model.scene.duration, about = duration / kSamples;
   const double cycle = cycle_of(request.model);
   if (!(cycle > 2.0 * about) || cycle > duration) return about;
@@ -115,7 +117,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   data["format"] = 1;
   data["version"] = DREV_VERSION;
   data["made"] = now();
-  data["command"] = command_of(request);
+  data["command"] = command_of(request, result);
   data["about"] = m.entry->summary;
   data["warning"] = warning_of(result);
   data["inputs"] = inputs_array(m.settings);

@@ -200,7 +200,8 @@ double read_part(const char* option, const std::string& text, double low, double
   double value = 0.0;
   const bool number = read_number(percent ? text.substr(0, text.size() - 1) : text, value);
   if (percent) value /= 100.0;
-  if (!number || !(value >= low && value <= high)) findings.push_back({kPlace, option, text, "", range});
+  if (!number || !(value >= low && value <= high))
+    findings.push_back({kPlace, option, text, "", range});
   return value;
 }
 
@@ -405,7 +406,8 @@ AdviseRequest request_advise(const CommandLine& line) {
   AdviseOptions options;
   options.figure = line.option("--for").value_or(options.figure);
   if (const std::optional<std::string> text = line.option("--within"))
-    options.within = read_part("--within", *text, 1e-4, 0.5, "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
+    options.within = read_part("--within", *text, 1e-4, 0.5,
+                               "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
   if (model) try {
       figure_options(model->scene, model->system, options);
     } catch (const ModelError& error) {

@@ -54,10 +54,11 @@ class RunFiles {
     if (request.report) report_.emplace(*request.report);
   }
 
-  /// What the report keeps of the run of a system.
-  void watch(const System& system) {
+  /// Prepares what the report keeps of the run.
+  void watch(const RunPlan& plan) {
     if (request_.out || request_.report)
-      shown_.emplace(system, report_channels(request_), report_interval(request_));
+      shown_.emplace(system_of(request_, plan), report_channels(request_),
+                     report_interval(request_, plan.method));
   }
 
   HistoryFile* history() { return history_ ? &*history_ : nullptr; }
@@ -143,7 +144,7 @@ int run_command(const CommandLine& line) {
   watch_signals();
   RunFiles files(request);
   const RunPlan plan = plan_run(request);
-  files.watch(system_of(request, plan));
+  files.watch(plan);
   const RunResult result = compute_run(request, plan, files.history(), files.shown());
   if (!result.ok()) say(warning_of(result));
   const bool written = files.close(result);

@@ -11,6 +11,7 @@ namespace drev {
 namespace {
 
 constexpr int kGrowthPieces = 100;
+constexpr double kLeastTarget = 1e-6;  // of choose_reduction()
 
 std::string percent_text(double part) {
   std::ostringstream text;
@@ -26,9 +27,8 @@ const Channel* first_without_estimate(const std::vector<Channel>& channels) {
   return nullptr;
 }
 
-}  // namespace
-
-ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
+/// What choose_reduction() chooses for `target`, tried.
+ReductionTrial try_choice(const System& system, const TrialOptions& o, double target) {
   ReductionTrial trial{.method = o.method};
   const auto refuse = [&](std::string reason) {
     trial.reason = "not reduced: " + std::move(reason);
@@ -39,7 +39,7 @@ ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
     return refuse("the error of " + unknown->name() + " cannot be estimated");
   ReductionChoice choice;
   try {
-    choice = choose_reduction(system, o.within, o.channels, o.duration);
+    choice = choose_reduction(system, target, o.channels, o.duration);
   } catch (const SolverError& error) {
     return refuse(error.what());
   }
@@ -54,7 +54,8 @@ ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
     LeftOutModes left_out(system, *choice.reduction, o.channels);
     const RunSummary run =
         run_method(reduced, method, {.t_end = o.duration, .progress = o.progress}, {&left_out});
-    if (!run.ok()) return refuse(std::string("its trial ended with ") + to_text(run.status) + ": " + run.reason);
+    if (!run.ok())
+      return refuse(std::string("its trial ended with ") + to_text(run.status) + ": " + run.reason);
     trial.error = 0.0;
     for (const ReductionErrorEstimate& e : left_out.estimates())
       if (e.relative() >= *trial.error) trial.error = e.relative(), trial.channel = e.channel;
@@ -84,6 +85,17 @@ ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
   trial.method = method;
   trial.reduction = std::move(choice.reduction);
   return trial;
+}
+
+}  // namespace
+
+ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
+  ReductionTrial first = try_choice(system, o, o.within);
+  if (first.reduction || !first.error) return first;
+  const double stricter = 0.5 * o.within * o.within / *first.error;
+  if (!(stricter >= kLeastTarget)) return first;
+  ReductionTrial second = try_choice(system, o, stricter);
+  return second.reduction ? second : first;
 }
 
 }  // namespace drev

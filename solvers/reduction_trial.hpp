@@ -2,8 +2,9 @@
 /// Whether a run may be made in fewer coordinates: choose_reduction() before it, and then a trial.
 ///
 /// Trial: the reduced system is run with LeftOutModes, which gives the error of every channel. Where contacts
-/// change, that error is multiplied by what a small difference grows to in the reduced motion (growth.hpp). A
-/// reduction whose error is above what is allowed is given up.
+/// change, that error is multiplied by what a small difference grows to in the reduced motion (growth.hpp).
+/// Where the error is above what is allowed, more modes are tried once: as many as the spectrum asks for an
+/// error smaller by what it was out, and by a half. Then the reduction is given up.
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,7 +27,7 @@ struct TrialOptions {
 struct ReductionTrial {
   std::optional<Reduction> reduction = {};  ///< only where the error is within
   Method method = {};                       ///< to run it with
-  std::optional<double> error = {};         ///< estimated, relative, the largest of the channels'; none: no trial
+  std::optional<double> error = {};  ///< estimated, relative, the largest of the channels'; none: no trial
   std::string channel = {};                 ///< whose it is
   std::string reason = {};                  ///< one sentence without full stop
 };

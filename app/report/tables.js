@@ -287,7 +287,7 @@ function showMethod() {
   const rows = [
     ["Method", (r) => r.method],
     ["Why", (r) => r.method_reason],
-    ["Reduction", (r) => r.reduction.reason],
+    ["Reduction", (r) => r.reduction?.reason ?? "–"],
     ["Tolerance", (r) => (r.tolerance ? sig(r.tolerance, 3) : "–")],
     ["Step", (r) => (r.step_s ? quantity(r.step_s, "s") : "found by the method")],
     ["Simulated", (r) => `${sig(r.t_end_s, 6)} s`],

@@ -58,6 +58,16 @@ with open("trains/at_rest.toml", "w") as file:
                'J = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n')
 
 short = "duration_s=0.05"
+with open("long.toml", "w") as file:
+    file.write('format = 1\n[nodes]\na = {}\nb = {}\n[elements]\n'
+               'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 5 }\n'
+               'Jb = { type = "inertia", node = "b", inertia_kg_m2 = 5 }\n'
+               's = { type = "distributed_shaft", nodes = ["a", "b"], shear_modulus_GPa = 80, segments = 40,'
+               ' density_kg_per_m3 = 7850, outer_diameter_mm = 100, length_m = 5 }\n'
+               'drive = { type = "applied_torque", node = "a",'
+               ' harmonics = { frequency_Hz = [10], amplitude_Nm = [2000], phase_deg = [-90] } }\n'
+               '[run]\nduration_s = 0.2\n')
+
 results = {
     "exact": printed("run", "camshaft", "--set", short),
     "held": printed("run", "camshaft", "--set", "drive=held", short),
@@ -66,6 +76,7 @@ results = {
     "controlled": printed("run", "gear_drive", "--set", short, "--method", "sdirk4", "--tolerance", "1e-4"),
     "accuracy": printed("run", "two_mass_backlash", "--accuracy", "1e-4"),
     "statistics": printed("run", "gear_drive", "--accuracy", "1e-2"),
+    "reduced": printed("run", "long.toml", "--reduce", "5%"),
     "file": printed("run", "trains/at_rest.toml"),
     "modes": printed("modes", "camshaft"),
     "open": printed("modes", "gear_drive", "--contact", "open"),
@@ -81,6 +92,7 @@ results = {
 results["summary.json"] = read("many/two_inertia/summary.json")
 results["runs.json"] = read("many/runs.json")
 statuses = {name: result.get("status") for name, result in results.items()}
+assert results["reduced"]["reduction"]["used"] and not results["exact"]["reduction"]["used"]
 assert (statuses["unstable"], statuses["interrupted"], statuses["killed"]) == ("unstable", "interrupted", "running")
 
 for name, result in results.items():
@@ -130,6 +142,7 @@ refused("exact", lambda r: r["results"]["contacts"][0]["impact_speed"]["both"].p
 refused("exact", lambda r: r.update(status="running"))  # which has no figures
 refused("killed", lambda r: r.update(status="success"))  # which has them
 refused("accuracy", lambda r: r["accuracy"]["figures"][0].pop("error"))
+refused("reduced", lambda r: r["reduction"].pop("reason"))
 refused("modes", lambda r: r["frequencies_Hz"].append("fast"))
 refused("many", lambda r: r["runs"][0]["summary"].pop("results"))
 refused("many", lambda r: r["runs"][1].pop("reason"))

@@ -91,6 +91,9 @@ const std::vector<Fault>& faults() {
       {{"run", "camshaft", "--set", "firing_order=1-1-3"}, {"1-1-3", "once"}},
       {{"modes", "two_inertia", "--set", "inertia_1_kg_m2=0"}, {"inertia_1_kg_m2 = 0 kg m^2"}},
       {{"list", "two_inertia", "--set", "stiffnes_Nm_per_rad=1"}, {"'stiffness_Nm_per_rad'"}},
+      {{"run", "camshaft", "--reduce", "60%"}, {"--reduce = 60%", "to 50%"}},
+      {{"run", "camshaft", "--reduce", "some"}, {"--reduce = some", "must be off"}},
+      {{"run", "camshaft", "--reduce", "1%", "--accuracy", "0.01"}, {"--reduce", "--accuracy"}},
       // channels
       {{"run", "camshaft", "--record", "end.angle_rad"}, {"--record", "needs --out DIR"}},
       {{"run", "camshaft", "--out", "no_folder", "--record", "end.angle"},
