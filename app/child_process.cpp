@@ -14,13 +14,6 @@ namespace drev::app {
 
 namespace {
 
-int kept_in_memory() {
-  const int descriptor = ::memfd_create("drev", MFD_CLOEXEC);
-  if (descriptor < 0)
-    throw std::system_error(errno, std::generic_category(), "cannot keep a run's output");
-  return descriptor;
-}
-
 std::string text_of(int descriptor) {
   std::string text;
   char part[4096];
@@ -33,15 +26,21 @@ std::string text_of(int descriptor) {
 
 }  // namespace
 
+ChildProcess::InMemory::InMemory() : descriptor(::memfd_create("drev", MFD_CLOEXEC)) {
+  if (descriptor < 0)
+    throw std::system_error(errno, std::generic_category(), "cannot keep a run's output");
+}
+
+ChildProcess::InMemory::~InMemory() { ::close(descriptor); }
+
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
   std::vector<std::string> words{"drev"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  out_ = kept_in_memory();
-  err_ = kept_in_memory();
   const pid_t parent = ::getpid();
+  std::signal(SIGCHLD, SIG_DFL);  // ignored by whoever started drev, its end would not be told
   id_ = ::fork();
   if (id_ < 0) throw std::system_error(errno, std::generic_category(), "cannot start a run");
   if (id_ > 0) return;
@@ -49,8 +48,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
   if (::getppid() != parent) ::_exit(127);  // it died before
   ::setpgid(0, 0);
   const int nothing = ::open("/dev/null", O_RDONLY);
-  if (nothing >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(out_, STDOUT_FILENO) >= 0 &&
-      ::dup2(err_, STDERR_FILENO) >= 0)
+  if (nothing >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(out_.descriptor, STDOUT_FILENO) >= 0 &&
+      ::dup2(err_.descriptor, STDERR_FILENO) >= 0)
     ::execv("/proc/self/exe", argv.data());
   ::_exit(127);
 }
@@ -61,8 +60,6 @@ ChildProcess::~ChildProcess() {
     while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
     }
   }
-  ::close(out_);
-  ::close(err_);
 }
 
 bool ChildProcess::ended() {
@@ -74,7 +71,7 @@ void ChildProcess::stop() const { ::kill(id_, SIGTERM); }
 
 int ChildProcess::exit_code() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : -1; }
 int ChildProcess::signal() const { return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0; }
-std::string ChildProcess::out() const { return text_of(out_); }
-std::string ChildProcess::err() const { return text_of(err_); }
+std::string ChildProcess::out() const { return text_of(out_.descriptor); }
+std::string ChildProcess::err() const { return text_of(err_.descriptor); }
 
 }  // namespace drev::app

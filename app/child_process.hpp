@@ -29,9 +29,18 @@ class ChildProcess {
   std::string err() const;
 
  private:
+  /// A file without a name.
+  struct InMemory {
+    InMemory();
+    ~InMemory();
+    InMemory(const InMemory&) = delete;
+    InMemory& operator=(const InMemory&) = delete;
+    const int descriptor;
+  };
   pid_t id_ = -1;
   bool ended_ = false;
-  int status_ = 0, out_ = -1, err_ = -1;
+  int status_ = 0;
+  InMemory out_, err_;
 };
 
 }  // namespace drev::app

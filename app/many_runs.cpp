@@ -28,6 +28,14 @@ std::string shown(const OneOfMany& run,
   return {};
 }
 
+/// In quotes where it has commas (a name of several settings), quotes or line ends (RFC 4180).
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
 Json varied_object(const OneOfMany& run) {
   Json object = Json::object();
   for (const auto& [name, text] : run.varied) {
@@ -71,11 +79,8 @@ std::string many_as_csv(const ManyRuns& many) {
   for (const char* key : kFigures) text += std::string(",") + key;
   text += "\n";
   for (const OneOfMany& run : many.runs) {
-    // A name of several settings has commas.
-    text += (run.model.name.find(',') == std::string::npos ? run.model.name
-                                                           : '"' + run.model.name + '"') +
-            "," + run.status;
-    for (const auto& [name, value] : run.varied) text += "," + value;
+    text += csv_field(run.model.name) + "," + run.status;
+    for (const auto& [name, value] : run.varied) text += "," + csv_field(value);
     for (const char* key : kFigures) {
       const Json value = figure(run, key);
       text += "," + (value.is_null() ? "" : value.dump());

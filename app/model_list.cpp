@@ -65,9 +65,20 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
     for (const std::string& part : included_by(*root, file))
       if (part != normal) part_of.emplace(part, file);
   }
+  // Files that include each other are parts of nothing: their runs say what is wrong.
+  const auto in_a_loop = [&](const std::string& start) {
+    std::string file = start;
+    for (std::size_t i = 0; i <= part_of.size(); ++i) {
+      const auto whole = part_of.find(file);
+      if (whole == part_of.end()) return false;
+      file = fs::path(whole->second).lexically_normal().string();
+    }
+    return true;
+  };
   const std::size_t models = list.models.size();
   for (const std::string& file : files) {
-    const auto whole = part_of.find(fs::path(file).lexically_normal().string());
+    const std::string normal = fs::path(file).lexically_normal().string();
+    const auto whole = in_a_loop(normal) ? part_of.end() : part_of.find(normal);
     if (std::count(without_format.begin(), without_format.end(), file) > 0)
       list.skipped.push_back({file, "it has no 'format' at its top, so it is no model file"});
     else if (whole != part_of.end())
@@ -100,6 +111,10 @@ ModelList list_models(const std::vector<std::string>& words, std::vector<Finding
     else
       list.models.push_back({is_built_in(word) ? word : fs::path(word).stem().string(), word});
   std::map<std::string, std::string> named;
+  for (const NamedModel& model : list.models)
+    if (model.name == "." || model.name == ".." || model.name.starts_with("runs."))
+      findings.push_back({kPlace, "MODEL", model.model, "",
+                          "has the name '" + model.name + "', which no folder of results can have"});
   for (const NamedModel& model : list.models)
     if (const auto [same, added] = named.emplace(model.name, model.model); !added)
       findings.push_back(

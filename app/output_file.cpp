@@ -105,8 +105,13 @@ void OutputFile::write(const std::string& text) {
 
 void OutputFile::flush() {
   const int error = write_all(descriptor_, buffer_);
+  if (error == 0) written_ += static_cast<off_t>(buffer_.size());
   buffer_.clear();
-  if (error != 0) fail(partial_, error);
+  if (error == 0) return;
+  // What a full disk took of it is no whole row.
+  const int cut = ::ftruncate(descriptor_, written_);
+  static_cast<void>(cut);
+  fail(partial_, error);
 }
 
 void OutputFile::commit() {

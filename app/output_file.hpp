@@ -1,6 +1,8 @@
 #pragma once
 /// Files that are never half written under their own name: DIR/NAME.partial.EXT becomes DIR/NAME.EXT when it
 /// is complete. Every write is checked, and a file has one writer.
+#include <sys/types.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -42,6 +44,7 @@ class OutputFile {
  private:
   std::string path_, partial_, buffer_;
   int descriptor_ = -1;
+  off_t written_ = 0;
 };
 
 /// A small file that is replaced as a whole: once written, DIR/NAME.partial.EXT always holds the latest text

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/report_file.hpp"
 #include "app/text_layout.hpp"
@@ -336,9 +337,15 @@ RunRequest request_run(const CommandLine& given) {
     findings.push_back({kPlace, "--jobs", *jobs, "", "is for several runs"});
   if (line.option("--format") && line.option("--report") && !line.option("--out"))
     findings.push_back({kPlace, "--format", "", "", "needs --out DIR"});
-  if (const auto report = line.option("--report"))
+  if (const auto report = line.option("--report")) {
+    namespace fs = std::filesystem;
+    const auto out = line.option("--out");
     if (const auto why = why_no_report(*report))
       findings.push_back({kPlace, "--report", *report, "", *why});
+    else if (out && fs::path(*report).lexically_normal() ==
+                        (fs::path(*out) / "report.html").lexically_normal())
+      findings.push_back({kPlace, "--report", *report, "", "is written by --out already"});
+  }
   bool hdf5 = false;
   for (const std::string& format : line.list("--format").value_or(std::vector<std::string>{})) {
     hdf5 = hdf5 || format == "hdf5";

@@ -203,7 +203,7 @@ std::string run_as_json(const RunRequest& request, const RunResult& result) {
 
 std::string running_as_json(const RunRequest& request) {
   Json object = head_object(request, request.method.name, request.method, "running",
-                            "the run has not ended: it still goes on, or its process was killed");
+                            "the run has not ended: it still goes on, its process was killed, or the disk was full");
   object["process"] = ::getpid();
   object["duration_s"] = number(request.model.scene.duration);
   object["record"] = request.record;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <system_error>
 #include <thread>
 
 #include "app/child_process.hpp"
@@ -25,7 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kPlace = "command line";
-constexpr double kMostJobs = 1000;
+constexpr double kMostJobs = 400;  // two descriptors each
 
 std::string without_prefix(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
@@ -39,7 +41,7 @@ void take_result(const ChildProcess& process, OneOfMany& run) {
   if (printed.is_object()) run.summary = printed;
   const std::string said = without_prefix(process.err());
   if (process.signal() != 0) {
-    run.status = interrupted() ? "interrupted" : "killed";
+    run.status = interrupted() && process.signal() == SIGTERM ? "interrupted" : "killed";
     run.reason = std::string("its process was ended by a signal: ") + ::strsignal(process.signal());
   } else if (run.code == kNotWritten) {
     run.status = "output_error";
@@ -78,13 +80,23 @@ class Batch {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       for (std::size_t i = 0; i < running_.size(); ++i)
         if (running_[i].process && running_[i].process->ended()) end(i);
+      write_state();
       progress_.show(progress_text());
     }
     progress_.clear();
     many_.status = interrupted()                            ? "interrupted"
                    : many_.count(true) == many_.runs.size() ? "success"
                                                             : "failed";
-    write_results();
+  }
+
+  /// runs.csv and runs.json. Throws OutputError.
+  void write_results() {
+    OutputFile csv(many_.folder, "runs", "csv");
+    csv.write(many_as_csv(many_));
+    json_->replace(many_as_json(many_));
+    if (many_.status == "interrupted") return csv.flush();
+    csv.commit();
+    json_->commit();
   }
 
   const ManyRuns& result() const { return many_; }
@@ -121,9 +133,16 @@ class Batch {
     for (const auto& [name, values] : line_.options)
       if (name != "MODEL" && name != "--out" && name != "--jobs" && name != "--vary")
         arguments.push_back(name + "=" + join(values, ","));
-    running_[i] = {std::make_unique<ChildProcess>(arguments), Clock::now()};
-    run.status = "running";
-    write_state();
+    changed_ = true;
+    try {
+      running_[i] = {std::make_unique<ChildProcess>(arguments), Clock::now()};
+      run.status = "running";
+    } catch (const std::system_error& error) {
+      run.status = "failed";
+      run.reason = error.what();
+      run.code = kNotTrusted;
+      tell_failure(run);
+    }
   }
 
   void end(std::size_t i) {
@@ -131,28 +150,25 @@ class Batch {
     take_result(*running_[i].process, run);
     run.wall_time = std::chrono::duration<double>(Clock::now() - running_[i].started).count();
     running_[i].process.reset();
-    if (!run.ok()) {
-      progress_.clear();
-      std::fprintf(stderr, "drev: %s: %s: %s\n", run.model.name.c_str(), run.status.c_str(),
-                   run.reason.c_str());
-    }
-    write_state();
+    changed_ = true;
+    if (!run.ok()) tell_failure(run);
+  }
+
+  void tell_failure(const OneOfMany& run) {
+    progress_.clear();
+    std::fprintf(stderr, "drev: %s: %s: %s\n", run.model.name.c_str(), run.status.c_str(),
+                 run.reason.c_str());
   }
 
   /// Not more often than every second.
   void write_state() {
-    if (Clock::now() - written_ < std::chrono::seconds(1)) return;
-    json_->replace(many_as_json(many_));
+    if (!changed_ || Clock::now() - written_ < std::chrono::seconds(1)) return;
     written_ = Clock::now();
-  }
-
-  void write_results() {
-    OutputFile csv(many_.folder, "runs", "csv");
-    csv.write(many_as_csv(many_));
-    json_->replace(many_as_json(many_));
-    if (many_.status == "interrupted") return csv.flush();
-    csv.commit();
-    json_->commit();
+    try {
+      json_->replace(many_as_json(many_));
+      changed_ = false;
+    } catch (const OutputError&) {  // what can still be written at the end, is
+    }
   }
 
   std::string progress_text() const {
@@ -171,6 +187,7 @@ class Batch {
   std::vector<Running> running_;  ///< one each of many_.runs
   std::optional<ReplacedFile> json_;
   Progress progress_;
+  bool changed_ = false;  ///< since it was written
   Clock::time_point written_ = {};
 };
 
@@ -204,6 +221,11 @@ int run_many(const CommandLine& line) {
   ModelList list = list_models(line.list("MODEL").value_or(std::vector<std::string>{}), findings);
   const std::vector<Variant> variants =
       read_variants(line.list("--vary").value_or(std::vector<std::string>{}), findings);
+  if (!variants.empty())
+    for (const auto& [name, value] : variants.front().settings)
+      if (std::any_of(line.settings.begin(), line.settings.end(),
+                      [&name = name](const auto& setting) { return setting.first == name; }))
+        findings.push_back({kPlace, "--vary", name, "", "is set by --set already"});
   if (!line.option("--out"))
     findings.push_back(
         {kPlace, "--out", "", "", "is needed for several runs: each has its folder there"});
@@ -214,7 +236,7 @@ int run_many(const CommandLine& line) {
   if (const auto jobs = line.option("--jobs"))
     if (!read_number(*jobs, at_once) || at_once != std::floor(at_once) ||
         !(at_once >= 1 && at_once <= kMostJobs))
-      findings.push_back({kPlace, "--jobs", *jobs, "", "must be a whole number from 1 to 1000"});
+      findings.push_back({kPlace, "--jobs", *jobs, "", "must be a whole number from 1 to 400"});
   if (!findings.empty()) throw ModelError(std::move(findings));
   if (line.list("--vary") && list.models.size() <= 1) {
     // What is wrong with all variants is said once.
@@ -233,7 +255,14 @@ int run_many(const CommandLine& line) {
                .folder = folder},
               line);
   batch.run(static_cast<std::size_t>(at_once));
+  std::optional<OutputError> unwritten;
+  try {
+    batch.write_results();
+  } catch (const OutputError& error) {  // what became of the runs is told all the same
+    unwritten = error;
+  }
   print(line.json ? many_as_json(batch.result()) : many_as_text(batch.result()));
+  if (unwritten) throw *unwritten;
   return batch.exit_code();
 }
 

@@ -44,7 +44,10 @@ std::string read_values(const std::string& text, std::vector<std::string>& value
   if (steps >= kMostVariants) return "has more values than " + short_digits(kMostVariants, 5);
   for (double i = 0.0; i <= steps; ++i) {
     const double value = first + i * step;
-    values.push_back(short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12));
+    const std::string text =
+        short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12);
+    if (!values.empty() && values.back() == text) return "has a STEP too small for 12 digits";
+    values.push_back(text);
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "core/dense_eigen.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 
 namespace drev {
 
@@ -23,11 +24,15 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 
 GeneralEigen general_eigen(const Eigen::MatrixXd& a) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(a);
-  return {solver.eigenvalues(), solver.eigenvectors(), solver.info() == Eigen::Success};
+  GeneralEigen found{solver.eigenvalues(), {}, solver.info() == Eigen::Success};
+  if (found.converged) found.vectors = solver.eigenvectors();
+  return found;
 }
 
 double spectral_radius(const Eigen::MatrixXd& a) {
-  return general_eigen(a).values.cwiseAbs().maxCoeff();
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(a, false);
+  if (solver.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace drev

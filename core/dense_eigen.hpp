@@ -20,14 +20,14 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 
 struct GeneralEigen {
   Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors;  ///< a column each, of length 1
+  Eigen::MatrixXcd vectors;  ///< a column each, of length 1; none where it did not converge
   bool converged = false;
 };
 
 /// A x = lambda x, A square.
 GeneralEigen general_eigen(const Eigen::MatrixXd& a);
 
-/// Largest |lambda| of A x = lambda x, A square.
+/// Largest |lambda| of A x = lambda x, A square; NaN where the eigensolver did not converge.
 double spectral_radius(const Eigen::MatrixXd& a);
 
 }  // namespace drev

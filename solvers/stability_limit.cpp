@@ -85,6 +85,7 @@ std::vector<Complex> arnoldi(const std::function<void(const Vector&, Vector&)>& 
   }
   if (m == size) h(m, m - 1) = 0.0;
   const GeneralEigen eigen = general_eigen(h.topLeftCorner(m, m));
+  if (!eigen.converged) throw SolverError("stability limit: the dense eigensolver did not converge");
   std::vector<Complex> values(static_cast<std::size_t>(m));
   Eigen::Index largest = 0;
   for (Eigen::Index i = 0; i < m; ++i) {

@@ -214,7 +214,7 @@ TEST_CASE("Two reports are compared in one") {
   const auto none = drev_command({"report", (folder / "a/history.csv").string(), (folder / "no").string()});
   CHECK(none.exit_code == 2);
   CHECK(contains(none.err, "is no report of drev run"));
-  CHECK(contains(none.err, "cannot be read"));
+  CHECK(contains(none.err, "is no file that can be read"));
   CHECK(contains(none.err, "--out"));
 }
 

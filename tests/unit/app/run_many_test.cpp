@@ -233,6 +233,41 @@ TEST_CASE("Settings varied: every combination, with one table of figures") {
   CHECK(std::filesystem::exists(folder / "r/inertia_1_kg_m2=0.03,stiffness_Nm_per_rad=9000.5/history.csv"));
 }
 
+TEST_CASE("Names of runs: in quotes where CSV needs it, refused where no folder can have them") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "trains");
+  write_train(folder / "trains/a \"1\", new.toml", "0.01");
+  write_train(folder / "trains/b.toml", "0.01");
+  const std::string trains = (folder / "trains").string(), out = (folder / "r").string();
+  REQUIRE(drev_command({"run", trains, "--out", out}).exit_code == 0);
+  CHECK(contains(read_file(out + "/runs.csv"), "\n\"a \"\"1\"\", new\",success,"));
+
+  // Files that include each other are no parts: each says what is wrong.
+  std::ofstream(folder / "trains/x.toml") << "format = 1\ninclude = \"y.toml\"\n";
+  std::ofstream(folder / "trains/y.toml") << "format = 1\ninclude = \"x.toml\"\n";
+  const auto run = drev_command({"run", trains, "--out", out});
+  CHECK(run.exit_code == 2);
+  CHECK(contains(run.err, "x: bad_input: "));
+  CHECK(contains(run.out, "2 of 4 succeeded"));
+
+  for (const char* name : {"...toml", "runs.csv.toml"}) {
+    write_train(folder / name, "0.01");
+    const auto refused = drev_command({"run", (folder / name).string(), "two_inertia", "--out", out});
+    CHECK(refused.exit_code == 2);
+    CHECK(contains(refused.err, "which no folder of results can have"));
+  }
+}
+
+TEST_CASE("Table of several runs that cannot be written: what became of them is told all the same") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  std::filesystem::create_directories(folder / "r/runs.csv/x");
+  const auto run = drev_command({"run", "two_inertia", "--vary", "duration_s=0.01,0.02", "--out", out});
+  CHECK(run.exit_code == 3);
+  CHECK(contains(run.out, "2 of 2 succeeded"));
+  CHECK(contains(run.err, "runs.csv"));
+}
+
 TEST_CASE("What is wrong with --vary is said once, before anything is run") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
@@ -245,6 +280,8 @@ TEST_CASE("What is wrong with --vary is said once, before anything is run") {
       {{"two_inertia", "--vary", "duration_s=1:-1:2"}, "does not lead from FIRST to LAST"},
       {{"two_inertia", "--vary", "duration_s=1:1e-9:2"}, "more values than 10000"},
       {{"two_inertia", "--vary", "duration_s=1,1"}, "has 1 twice"},
+      {{"two_inertia", "--vary", "duration_s=1000000:1e-7:1000000.000001"}, "STEP too small for 12 digits"},
+      {{"two_inertia", "--set", "duration_s=1", "--vary", "duration_s=2"}, "is set by --set already"},
       {{"two_inertia", "--vary", "duration_s=1", "--vary", "duration_s=2"}, "duration_s is varied already"},
       {{"--vary", "duration_s=1,2"}, "MODEL"}};
   for (const auto& [words, said] : faults) {
