@@ -6,6 +6,7 @@
 #include "elements/catalogue.hpp"
 #include "solvers/accuracy.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/chaotic_oscillator.hpp"
 
 using namespace drev;
 
@@ -86,4 +87,39 @@ TEST_CASE("Accuracy: the stated error covers the true one on 80 random models") 
   CHECK(reached > 200);
   INFO(missed << " of " << figures);
   CHECK(missed <= figures / 100);
+}
+
+TEST_CASE("Accuracy: past the horizon the chaotic oscillator is given by its statistics") {
+  const AccuracyResult r = run_to_accuracy(chaotic_oscillator(), {.accuracy = 1e-4,
+                                                                  .t_end = 2000 * kTwoPi,
+                                                                  .deflection = "x-hub.twist_rad",
+                                                                  .torques = {"stop.torque_Nm"},
+                                                                  .cycle = kTwoPi,
+                                                                  .method = {.name = "exact"}});
+  CHECK(r.summary.ok());
+  CHECK_FALSE(r.reached);
+  // 1e-14 or so grows to 1e-4 within ln(1e10)/0.10947 = 210, about.
+  CHECK(r.horizon > 120.0);
+  CHECK(r.horizon < 350.0);
+  CHECK(r.growth.rate == Approx(0.10947).margin(std::max(0.003, 1.5 * r.growth.rate_error)));
+  // Published intervals (5000 periods) and these, 3 sigma of both together.
+  const auto agrees = [&](const std::string& name, double truth, double interval) {
+    const Figure* f = r.find(name);
+    INFO(name);
+    REQUIRE(f != nullptr);
+    INFO(f->value << " +- " << f->error);
+    CHECK(f->kind == Figure::Kind::interval);
+    CHECK(std::abs(f->value - truth) < 1.5 * std::hypot(f->error, interval));
+    CHECK(f->error < 10 * interval);
+  };
+  agrees("mean of x-hub", 0.3926, 0.0039);
+  agrees("rms of x-hub", std::hypot(0.3926, 0.9676), 0.0042);
+  agrees("stop: share of time apart", 0.5816, 0.0036);
+  agrees("1 % quantile", -1.849, 0.009);
+  agrees("99 % quantile", 1.996, 0.005);
+  CHECK(r.find("peak deflection, mean of 8 runs") != nullptr);
+  const Figure* last = r.find("last comparable contact change");
+  REQUIRE(last != nullptr);
+  CHECK(last->keeps(1e-4));
+  CHECK(last->value < r.horizon);
 }
