@@ -8,6 +8,7 @@
 #include "solvers/recorder.hpp"
 #include "solvers/reduction_choice.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/long_shafts.hpp"
 #include "tests/stability/random_model.hpp"
 
 using namespace drev;
@@ -88,30 +89,7 @@ TEST_CASE("Estimate of a reduced run's error: above the true one, and of its siz
 TEST_CASE("A reduction is chosen where it pays, with the accuracy asked for") {
   // Two shafts in 50 segments each: the fastest of 102 unknowns at 10 kHz, loads below 100 Hz.
   for (const bool mesh : {false, true}) {
-    Model m("long shafts");
-    for (const char* node : {"a", "b", "c", "d"}) m.add_node(node);
-    const DistributedShaft::Params shaft{.shear_modulus = 8e10,
-                                         .density = 7850,
-                                         .outer_diameter = 0.1,
-                                         .length = 5.0,
-                                         .segments = 50,
-                                         .mass = SegmentMass::lumped};
-    m.add<Inertia>("Ja", {"a"}, {.inertia = 5.0});
-    m.add<Inertia>("Jb", {"b"}, {.inertia = 1.0});
-    m.add<Inertia>("Jc", {"c"}, {.inertia = 1.0});
-    m.add<Inertia>("Jd", {"d"}, {.inertia = 5.0});
-    m.add<DistributedShaft>("s1", {"a", "b"}, shaft);
-    m.add<DistributedShaft>("s2", {"c", "d"}, shaft);
-    if (mesh)
-      m.add<GearMesh>("mesh", {"b", "c"}, {.base_radius_1 = 0.1,
-                                           .base_radius_2 = 0.1,
-                                           .stiffness = 1e8,
-                                           .normal_backlash = 1e-4});
-    else
-      m.add<ShaftSpring>("mesh", {"b", "c"}, {.stiffness = 1e6});
-    m.add<AppliedTorque>("drive", {"a"}, {.torque = [](double t) { return 2000 * std::sin(200 * t); }});
-    m.add<AppliedTorque>("load", {"d"}, {.torque = [](double t) { return 500 * std::sin(90 * t); }});
-    const System full = m.build();
+    const System full = problems::long_shafts(50, mesh, 200.0);
     const std::vector<std::string> channels{mesh ? "mesh.force_N" : "mesh.torque_Nm", "s1_20.torque_Nm"};
     const double end = 0.1, within = 0.02;
     const ReductionChoice choice = choose_reduction(full, within, channels, end);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elements/catalogue.hpp"
 #include "solvers/recorder.hpp"
 #include "solvers/reduction_trial.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/long_shafts.hpp"
 
 using namespace drev;
 
@@ -14,35 +14,7 @@ namespace {
 
 constexpr double kEnd = 0.1;  // s
 
-/// Two shafts of 40 segments between heavy flywheels, with a coupling or a mesh between them; driven with
-/// omega [rad/s].
-System train(bool mesh, double omega) {
-  Model m("train");
-  for (const char* name : {"a", "b", "c", "d"}) m.add_node(name);
-  const DistributedShaft::Params shaft{.shear_modulus = 8e10,
-                                       .density = 7850,
-                                       .outer_diameter = 0.1,
-                                       .length = 5.0,
-                                       .segments = 40,
-                                       .mass = SegmentMass::lumped};
-  m.add<Inertia>("Ja", {"a"}, {.inertia = 5.0});
-  m.add<Inertia>("Jb", {"b"}, {.inertia = 1.0});
-  m.add<Inertia>("Jc", {"c"}, {.inertia = 1.0});
-  m.add<Inertia>("Jd", {"d"}, {.inertia = 5.0});
-  m.add<DistributedShaft>("s1", {"a", "b"}, shaft);
-  m.add<DistributedShaft>("s2", {"c", "d"}, shaft);
-  if (mesh)
-    m.add<GearMesh>("mesh", {"b", "c"}, {.base_radius_1 = 0.1,
-                                         .base_radius_2 = 0.1,
-                                         .stiffness = 1e8,
-                                         .normal_backlash = 1e-4});
-  else
-    m.add<ShaftSpring>("mesh", {"b", "c"}, {.stiffness = 1e6});
-  m.add<AppliedTorque>("drive", {"a"},
-                       {.torque = [omega](double t) { return 2000 * std::sin(omega * t); }});
-  m.add<AppliedTorque>("load", {"d"}, {.torque = [](double t) { return 500 * std::sin(90 * t); }});
-  return m.build();
-}
+System train(bool mesh, double omega) { return problems::long_shafts(40, mesh, omega); }
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
