@@ -9,13 +9,11 @@ class ChannelFinder {
  public:
   explicit ChannelFinder(const System& system) : system_(system) {
     for (int i = 0; i < system.node_count(); ++i) add_node(i);
-    for (std::size_t i = 0; i < system.outputs().size(); ++i) {
-      const OutputTerm& o = system.outputs()[i];
+    for (const OutputTerm& o : system.outputs()) {
       const auto& row = o.stiffness.empty() ? o.damping : o.stiffness;
       const bool turns = row.empty() || rotational(row.front().index);
       const std::string suffix = o.suffix.empty() ? "" : "_" + o.suffix;
-      add(element(o.element) + suffix + force_name(turns), force_unit(turns),
-          Channel::Kind::output, static_cast<int>(i));
+      add(element(o.element) + suffix + force_name(turns), force_unit(turns), Channel::Kind::output, 0, &o);
     }
     for (std::size_t j = 0; j < system.scalars().size(); ++j) {
       const ScalarTerm& s = system.scalars()[j];
@@ -66,22 +64,31 @@ class ChannelFinder {
   }
 
  private:
-  void add(std::string name, std::string unit, Channel::Kind kind, int index) {
+  void add(std::string name, std::string unit, Channel::Kind kind, int index,
+           const OutputTerm* output = nullptr) {
     Channel c;
     c.name_ = std::move(name);
     c.unit_ = std::move(unit);
     c.kind_ = kind;
     c.index_ = index;
-    make_direct(c);
+    make_direct(c, output);
     channels.push_back(std::move(c));
   }
-  void make_direct(Channel& c) const {
+  void make_direct(Channel& c, const OutputTerm* output = nullptr) const {
     using Kind = Channel::Kind;
     c.direct_ = true;
     const auto add_node = [&](std::vector<Entry>& row, int node, double coeff) {
       for (const Entry& e : system_.row_of(node)) row.push_back({e.index, coeff * e.coeff});
       const int known = system_.node_map(node).prescribed;
       if (known >= 0 && system_.prescribed()[at(known)].at) c.direct_ = false;  // it moves by itself
+    };
+    const auto add_row = [&](const std::vector<Entry>& nodes, std::vector<Entry>& row,
+                             std::vector<Entry>& known) {
+      for (const Entry& e : nodes) {
+        add_node(row, e.index, e.coeff);
+        const NodeMap& map = system_.node_map(e.index);
+        if (map.prescribed >= 0) known.push_back({map.prescribed, e.coeff * map.coeff});
+      }
     };
     if (c.kind_ == Kind::value) {
       add_node(c.z_, c.index_, 1.0);
@@ -90,10 +97,9 @@ class ChannelFinder {
     } else if (c.kind_ == Kind::difference) {
       add_node(c.z_, c.index_, 1.0);
       add_node(c.z_, c.second_, -1.0);
-    } else if (c.kind_ == Kind::output) {
-      const OutputTerm& o = system_.outputs()[at(c.index_)];
-      for (const Entry& e : o.stiffness) add_node(c.z_, e.index, e.coeff);
-      for (const Entry& e : o.damping) add_node(c.v_, e.index, e.coeff);
+    } else if (output) {
+      add_row(output->stiffness, c.z_, c.u_);
+      add_row(output->damping, c.v_, c.u_rate_);
     } else {
       c.direct_ = false;
     }
@@ -233,13 +239,15 @@ bool Channel::value_needs_acceleration() const {
   return kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
 }
 
+double Channel::over_unknowns(const State& state) const {
+  double y = 0.0;
+  for (const Entry& e : z_) y += e.coeff * state.z[e.index];
+  for (const Entry& e : v_) y += e.coeff * state.v[e.index];
+  return y;
+}
+
 double Channel::evaluate(const Assembler& assembler, const State& state) const {
-  if (direct_) {
-    double y = 0.0;
-    for (const Entry& e : z_) y += e.coeff * state.z[e.index];
-    for (const Entry& e : v_) y += e.coeff * state.v[e.index];
-    return y;
-  }
+  if (direct_) return over_unknowns(state);
   const System& system = assembler.system();
   switch (kind_) {
     case Kind::value: return assembler.node_motion(index_, state).value;
@@ -250,10 +258,9 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
              assembler.node_motion(second_, state).value;
     case Kind::reaction: return reaction(assembler, state, index_);
     case Kind::output: {
-      const OutputTerm& o = system.outputs()[at(index_)];
-      double y = 0.0;
-      for (const Entry& e : o.stiffness) y += e.coeff * assembler.node_motion(e.index, state).value;
-      for (const Entry& e : o.damping) y += e.coeff * assembler.node_motion(e.index, state).rate;
+      double y = over_unknowns(state);
+      for (const Entry& e : u_) y += e.coeff * assembler.prescribed(e.index).value;
+      for (const Entry& e : u_rate_) y += e.coeff * assembler.prescribed(e.index).rate;
       return y;
     }
     case Kind::force: return assembler.respond(system.scalars()[at(index_)], state.z, state.v).y;

@@ -44,6 +44,7 @@ class Channel {
 
  private:
   friend class ChannelFinder;
+  double over_unknowns(const State& state) const;
   enum class Kind { value, rate, acceleration, difference, reaction, output, force, deflection, load,
                     ideal_ratio };
   std::string name_, unit_;
@@ -52,6 +53,7 @@ class Channel {
   /// Where the value is linear in the unknowns: its rows over z and v, so that no node is looked up.
   bool direct_ = false;
   std::vector<Entry> z_, v_;
+  std::vector<Entry> u_, u_rate_;  ///< of an output, over known motions
 };
 
 /// Every channel of a system, in the order of its nodes and elements (differences left out).

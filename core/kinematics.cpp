@@ -90,13 +90,7 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
   k.component = connected_components(nodes, closures, true);
-  const int components =
-      nodes == 0 ? 0 : 1 + *std::max_element(k.component.begin(), k.component.end());
-  k.tied_to_ground.assign(at(components), false);
   k.ratio.assign(at(nodes), 0.0);
-
-  for (const Closure& row : closures)
-    if (row.second < 0) k.tied_to_ground[at(k.component[at(row.first)])] = true;
   const Edges edges = edges_of(nodes, closures);
 
   Walk walk{std::vector<double>(at(nodes), 0.0), std::vector<int>(at(nodes), -1),

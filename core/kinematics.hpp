@@ -19,9 +19,8 @@ struct Closure {
 
 /// What ties the nodes together.
 struct Kinematics {
-  std::vector<double> ratio;        ///< n_i; 0 for what the reference does not reach
-  std::vector<int> component;       ///< of the closed model, per node
-  std::vector<bool> tied_to_ground; ///< per component: it holds a closure with one node
+  std::vector<double> ratio;   ///< n_i; 0 for what the reference does not reach
+  std::vector<int> component;  ///< of the closed model, per node
 };
 
 /// Finds the ratios; reports contradicting loops and reference motion of grounded parts.

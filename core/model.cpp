@@ -1,5 +1,7 @@
 #include "core/model.hpp"
 
+#include <algorithm>
+
 #include "core/system_builder.hpp"
 
 namespace drev {
@@ -10,13 +12,35 @@ NodeId Model::add_node(std::string name, NodeKind kind) {
   return NodeId{static_cast<int>(node_names_->size()) - 1};
 }
 
-ElementId Model::add(std::string name, std::vector<NodeRef> nodes,
-                     std::shared_ptr<const Element> element) {
-  Placement placement{std::move(name), std::move(element), std::move(nodes), {}};
-  const int internal = placement.element ? placement.element->internal_nodes() : 0;
-  for (int i = 1; i <= internal; ++i)
-    placement.internal.push_back(add_node(placement.name + "_" + std::to_string(i)));
-  own(placements_).push_back(std::move(placement));
+NodeList::NodeList(std::span<const NodeRef> nodes) {
+  const auto is_id = [](const NodeRef& ref) { return ref.id && index(*ref.id) >= 0; };
+  if (nodes.size() > ids_.size() || !std::all_of(nodes.begin(), nodes.end(), is_id))
+    given_ = std::make_unique<const std::vector<NodeRef>>(nodes.begin(), nodes.end());
+  else
+    for (std::size_t i = 0; i < nodes.size(); ++i) ids_[i] = index(*nodes[i].id);
+}
+
+NodeList::NodeList(const NodeList& other)
+    : ids_(other.ids_),
+      given_(other.given_ ? std::make_unique<const std::vector<NodeRef>>(*other.given_) : nullptr) {}
+
+NodeList& NodeList::operator=(NodeList other) noexcept {
+  ids_ = other.ids_;
+  given_ = std::move(other.given_);
+  return *this;
+}
+
+NodeList::operator std::vector<NodeRef>() const {
+  std::vector<NodeRef> nodes;
+  for (const NodeRef& node : *this) nodes.push_back(node);
+  return nodes;
+}
+
+ElementId Model::place(std::string name, NodeList nodes, std::shared_ptr<const Element> element) {
+  const NodeRange internal{static_cast<int>(node_names_->size()),
+                           element ? std::max(0, element->internal_nodes()) : 0};
+  for (int i = 1; i <= internal.count; ++i) add_node(name + "_" + std::to_string(i));
+  own(placements_).push_back({std::move(name), std::move(element), std::move(nodes), internal});
   return ElementId{static_cast<int>(placements_->size()) - 1};
 }
 

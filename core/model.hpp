@@ -1,8 +1,10 @@
 #pragma once
 /// Model: the description of a drivetrain, in names. build() validates it and returns a System.
+#include <array>
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,12 +32,50 @@ struct NodeRef {
   std::string name;
 };
 
+/// What list[i] gives, from position to position.
+template <class List>
+struct ByPosition {
+  const List* list;
+  int position;
+  auto operator*() const { return (*list)[position]; }
+  ByPosition& operator++() { return ++position, *this; }
+  bool operator==(const ByPosition&) const = default;
+};
+
+/// Nodes as they were given; one or two ids, which is what most elements have, take no memory of their own.
+class NodeList {
+ public:
+  explicit NodeList(std::span<const NodeRef> nodes);
+  NodeList(const NodeList& other);
+  NodeList(NodeList&&) noexcept = default;
+  NodeList& operator=(NodeList other) noexcept;
+
+  int size() const { return given_ ? static_cast<int>(given_->size()) : (ids_[0] >= 0) + (ids_[1] >= 0); }
+  NodeRef operator[](int i) const { return given_ ? (*given_)[at(i)] : NodeRef(NodeId{ids_[at(i)]}); }
+  NodeRef front() const { return (*this)[0]; }
+  ByPosition<NodeList> begin() const { return {this, 0}; }
+  ByPosition<NodeList> end() const { return {this, size()}; }
+  operator std::vector<NodeRef>() const;
+
+ private:
+  std::array<int, 2> ids_{-1, -1};  // -1: none; not used where given_ is there
+  std::unique_ptr<const std::vector<NodeRef>> given_;
+};
+
+/// Nodes that follow each other in their model.
+struct NodeRange {
+  int first = 0, count = 0;
+  NodeId operator[](int i) const { return NodeId{first + i}; }
+  ByPosition<NodeRange> begin() const { return {this, 0}; }
+  ByPosition<NodeRange> end() const { return {this, count}; }
+};
+
 /// One element in its place.
 struct Placement {
   std::string name;
   std::shared_ptr<const Element> element;
-  std::vector<NodeRef> nodes;
-  std::vector<NodeId> internal;  ///< nodes that the element brought along
+  NodeList nodes;
+  NodeRange internal;  ///< nodes that the element brought along
 };
 
 class Model {
@@ -51,10 +91,12 @@ class Model {
   template <class E>
   ElementId add(std::string name, std::initializer_list<NodeRef> nodes,
                 typename E::Params params) {
-    return add(std::move(name), nodes, std::make_shared<const E>(std::move(params)));
+    return place(std::move(name), NodeList(nodes), std::make_shared<const E>(std::move(params)));
   }
-  ElementId add(std::string name, std::vector<NodeRef> nodes,
-                std::shared_ptr<const Element> element);
+  ElementId add(std::string name, const std::vector<NodeRef>& nodes,
+                std::shared_ptr<const Element> element) {
+    return place(std::move(name), NodeList(nodes), std::move(element));
+  }
 
   /// The node follows its nominal motion exactly (stands still where there is none): q = 0.
   void hold(NodeRef node);
@@ -94,6 +136,7 @@ class Model {
 
  private:
   friend class SystemBuilder;
+  ElementId place(std::string name, NodeList nodes, std::shared_ptr<const Element> element);
   /// To write to; a copy first where a System or another Model has it too.
   template <class T>
   static T& own(std::shared_ptr<T>& shared) {

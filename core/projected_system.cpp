@@ -153,16 +153,17 @@ class SystemProjector {
     // The slope of a load on a row couples all.
     for (const LoadTerm& l : system_.loads_)
       if (l.load->depends_on_motion() && system_.node_map(l.node).row >= 0) used.setOnes();
-    system_.pattern_ = used.sparseView(0.0, 0.0);
-    system_.pattern_.makeCompressed();
+    const auto pattern = std::make_shared<SparseMatrix>(used.sparseView(0.0, 0.0));
+    pattern->makeCompressed();
     Vector* const values[3] = {&system_.mass_, &system_.damping_, &system_.stiffness_};
     for (int which = 0; which < 3; ++which) {
-      values[which]->resize(system_.pattern_.nonZeros());
+      values[which]->resize(pattern->nonZeros());
       for (int j = 0, s = 0; j < count(); ++j)
-        for (; s < system_.pattern_.outerIndexPtr()[j + 1]; ++s)
-          (*values[which])[s] = matrices[which](system_.pattern_.innerIndexPtr()[s], j);
+        for (; s < pattern->outerIndexPtr()[j + 1]; ++s)
+          (*values[which])[s] = matrices[which](pattern->innerIndexPtr()[s], j);
     }
-    std::fill_n(system_.pattern_.valuePtr(), system_.pattern_.nonZeros(), 0.0);
+    std::fill_n(pattern->valuePtr(), pattern->nonZeros(), 0.0);
+    system_.pattern_ = pattern;
     system_.find_slots();
     system_.zu_ = {couplings(full_.zu_.mass, basis_), couplings(full_.zu_.damping, basis_),
                    couplings(full_.zu_.stiffness, basis_)};

@@ -39,17 +39,17 @@ void System::map_load(int number) {
 }
 
 int System::slot(int row, int col) const {
-  const int* begin = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col];
-  const int* end = pattern_.innerIndexPtr() + pattern_.outerIndexPtr()[col + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - pattern_.innerIndexPtr());
+  const int *outer = pattern_->outerIndexPtr(), *inner = pattern_->innerIndexPtr();
+  return static_cast<int>(std::lower_bound(inner + outer[col], inner + outer[col + 1], row) - inner);
 }
 
 void System::find_slots() {
-  diagonal_slots_.clear();
-  for (int k = 0; k < size(); ++k) diagonal_slots_.push_back(slot(k, k));
-  const auto only_diagonal = [this](Vector matrix) {
-    for (const int s : diagonal_slots_) matrix[s] = 0.0;
-    return matrix.isZero(0.0);
+  diagonal_slots_.resize(at(size()));
+  for (int k = 0; k < size(); ++k) diagonal_slots_[at(k)] = slot(k, k);
+  const auto only_diagonal = [this](const Vector& matrix) {
+    const auto on_diagonal = std::count_if(diagonal_slots_.begin(), diagonal_slots_.end(),
+                                           [&](int s) { return matrix[s] != 0.0; });
+    return (matrix.array() != 0.0).count() == on_diagonal;
   };
   mass_is_diagonal_ = only_diagonal(mass_);
   damping_is_diagonal_ = only_diagonal(damping_);
@@ -73,26 +73,9 @@ void System::find_slots() {
 }
 
 std::vector<std::string> System::floating_parts(Contact contact) const {
-  const std::vector<int> component =
-      connected_components(node_count(), closures_, contact == Contact::closed);
-  const int count =
-      component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());
-  std::vector<bool> tied(at(count), false);
-  for (const Closure& row : closures_)
-    if (row.second < 0 && (contact == Contact::closed || !row.only_in_contact))
-      tied[at(component[at(row.first)])] = true;
-  for (int i = 0; i < node_count(); ++i)
-    if (node_map_[at(i)].prescribed >= 0) tied[at(component[at(i)])] = true;
-  std::vector<std::string> floating;
-  std::vector<bool> named(at(count), false);
-  for (int i = 0; i < node_count(); ++i) {
-    const int c = component[at(i)];
-    if (!tied[at(c)] && !named[at(c)]) {
-      named[at(c)] = true;
-      floating.push_back(node_names()[at(i)]);
-    }
-  }
-  return floating;
+  std::vector<std::string> names;
+  for (const int node : floating(contact)) names.push_back(node_names()[at(node)]);
+  return names;
 }
 
 State State::initial(const System& system, double t) {

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "core/kinematics.hpp"
 #include "core/model.hpp"
 #include "core/table_loads.hpp"
 
@@ -93,7 +92,7 @@ enum class Contact {
 class System {
  public:
   const std::string& name() const { return name_; }
-  int size() const { return static_cast<int>(pattern_.rows()); }  ///< number of unknowns
+  int size() const { return static_cast<int>(unknown_node_.size()); }  ///< number of unknowns
   int node_count() const { return static_cast<int>(node_names_->size()); }
   int prescribed_count() const { return static_cast<int>(prescribed_.size()); }
   int history_size() const { return history_size_; }
@@ -111,11 +110,13 @@ class System {
   /// Place of a node that is not prescribed among the unknowns and, behind them, rows().
   int place(const NodeMap& map) const { return map.unknown >= 0 ? map.unknown : size() + map.row; }
   const std::vector<Placement>& placements() const { return *placements_; }
+  /// What the elements report, in their order; asked of them anew.
+  std::vector<OutputTerm> outputs() const;
   /// A node that stands for unknown z[k], for messages.
   const std::string& unknown_name(int k) const { return (*node_names_)[at(unknown_node_[at(k)])]; }
 
   /// n_i: nominal ratio of the node to the reference shaft.
-  double ratio(int node) const { return kinematics_.ratio[at(node)]; }
+  double ratio(int node) const { return ratio_[at(node)]; }
   const std::optional<Motion>& reference() const { return reference_; }
   /// |phi'| at t = 0 [rad/s]; 0 without a reference shaft.
   double reference_speed() const;
@@ -125,7 +126,7 @@ class System {
   bool any_prescribed_moves() const { return any_prescribed_moves_; }
 
   /// Union of all element cliques, structurally symmetric; its values are not used.
-  const SparseMatrix& pattern() const { return pattern_; }
+  const SparseMatrix& pattern() const { return *pattern_; }
   /// Values of M, C, K on the pattern.
   const Vector& mass_values() const { return mass_; }
   const Vector& damping_values() const { return damping_; }
@@ -152,7 +153,6 @@ class System {
   const std::vector<int>& moving_loads() const { return moving_loads_; }
   const std::vector<int>& known_loads() const { return known_loads_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
-  const std::vector<OutputTerm>& outputs() const { return outputs_; }
   const std::vector<IdealRatio>& ideal_ratios() const { return ideal_ratios_; }
   bool loads_depend_on_motion() const { return loads_depend_on_motion_; }
   bool symmetric_tangent() const { return symmetric_tangent_; }
@@ -167,9 +167,7 @@ class System {
   /// Number of rigid-body motions, from the graph: parts tied neither to ground nor to a prescribed
   /// node. Names of one node each, for messages.
   std::vector<std::string> floating_parts(Contact contact) const;
-  int rigid_mode_count(Contact contact) const {
-    return static_cast<int>(floating_parts(contact).size());
-  }
+  int rigid_mode_count(Contact contact) const { return static_cast<int>(floating(contact).size()); }
   /// The other modes, contacts closed.
   int elastic_mode_count() const { return size() - rigid_mode_count(Contact::closed); }
 
@@ -179,6 +177,9 @@ class System {
   System() = default;
   /// Puts load `number` with those that external() evaluates alike.
   void map_load(int number);
+  const std::vector<int>& floating(Contact contact) const {
+    return contact == Contact::closed ? floating_closed_ : floating_open_;
+  }
   int slot(int row, int col) const;  // in pattern_
   /// Slots of the diagonal and of all terms in pattern_.
   void find_slots();
@@ -191,11 +192,11 @@ class System {
   RowMatrix rows_;
   int loaded_rows_ = 0;
   std::vector<int> unknown_node_, prescribed_node_;
-  Kinematics kinematics_;
-  std::vector<Closure> closures_;
+  std::vector<double> ratio_;
+  std::vector<int> floating_closed_, floating_open_;  // a node of each floating part
   std::optional<Motion> reference_;
   std::vector<Motion> prescribed_;
-  SparseMatrix pattern_;
+  std::shared_ptr<const SparseMatrix> pattern_;  // a SparseMatrix cannot be moved
   Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, node_drag_,
       initial_z_, initial_v_, nominal_direction_;
   MatrixSet zu_, uu_;
@@ -205,7 +206,6 @@ class System {
   TableLoads table_loads_;
   std::vector<int> moving_loads_, known_loads_;
   std::vector<GeneralTerm> generals_;
-  std::vector<OutputTerm> outputs_;
   std::vector<IdealRatio> ideal_ratios_;
   std::vector<double> breakpoints_;
   std::vector<int> diagonal_slots_;

@@ -118,8 +118,13 @@ void SystemBuilder::resolve_motions() {
 }
 
 void SystemBuilder::find_nominal_motion() {
-  system_.kinematics_ = find_ratios(model_.name(), model_.node_names(), model_.placements(),
-                                    system_.closures_, reference_node_, findings_);
+  Kinematics kinematics = find_ratios(model_.name(), model_.node_names(), model_.placements(), closures_,
+                                      reference_node_, findings_);
+  system_.ratio_ = std::move(kinematics.ratio);
+  system_.floating_closed_ = floating_parts(kinematics.component, Contact::closed);
+  system_.floating_open_ = floating_parts(
+      connected_components(system_.node_count(), closures_, false), Contact::open);
+  std::vector<Closure>().swap(closures_);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
     const int node = resolved_prescriptions_[i];
@@ -129,7 +134,7 @@ void SystemBuilder::find_nominal_motion() {
     const std::vector<double>& breaks = system_.reference_->breakpoints;
     times.insert(times.end(), breaks.begin(), breaks.end());
     for (const double t : times) {
-      const double nominal = system_.kinematics_.ratio[at(node)] * system_.reference_->at(t).rate;
+      const double nominal = system_.ratio(node) * system_.reference_->at(t).rate;
       if (std::abs(nominal - *p.omega) <= kSpeedTolerance * std::abs(*p.omega)) continue;
       findings_.push_back({place(node_name(node)), "omega", to_text(*p.omega),
                            "rad/s",
@@ -138,6 +143,22 @@ void SystemBuilder::find_nominal_motion() {
       break;
     }
   }
+}
+
+std::vector<int> SystemBuilder::floating_parts(const std::vector<int>& component, Contact contact) const {
+  std::vector<bool> counted(component.size(), false);  // as tied or floating, by component
+  for (const Closure& row : closures_)
+    if (row.second < 0 && (contact == Contact::closed || !row.only_in_contact))
+      counted[at(component[at(row.first)])] = true;
+  for (const int node : resolved_prescriptions_)
+    if (node >= 0) counted[at(component[at(node)])] = true;
+  std::vector<int> floating;
+  for (int i = 0; i < static_cast<int>(component.size()); ++i) {
+    if (counted[at(component[at(i)])]) continue;
+    counted[at(component[at(i)])] = true;
+    floating.push_back(i);
+  }
+  return floating;
 }
 
 void SystemBuilder::check_inertias() {
@@ -150,15 +171,15 @@ void SystemBuilder::check_inertias() {
   std::vector<bool> in_doubt(at(unknowns), false);
   for (const int node : faulty_nodes_)
     if (const int k = system_.node_map_[at(node)].unknown; k >= 0) in_doubt[at(k)] = true;
-  for (const NodeEntry& e : mass_) {
-    const NodeMap &a = system_.node_map_[at(e.i)], &b = system_.node_map_[at(e.j)];
-    if (a.unknown >= 0 && a.unknown == b.unknown)
-      inertia[at(a.unknown)] += (e.i == e.j ? 1.0 : 2.0) * e.value * a.coeff * b.coeff;
-  }
+  for (const NodeMatrix& mass : mass_)
+    mass.for_each(1.0, [&](int i, int j, double value) {
+      const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
+      if (a.unknown >= 0 && a.unknown == b.unknown) inertia[at(a.unknown)] += value * a.coeff * b.coeff;
+    });
   for (int k = 0; k < unknowns; ++k) {
     const int node = system_.unknown_node_[at(k)];
-    const bool name_used_twice = node_by_name_.find(node_name(node)) != node;
-    if (inertia[at(k)] > 0.0 || in_doubt[at(k)] || name_used_twice) continue;
+    if (inertia[at(k)] > 0.0 || in_doubt[at(k)]) continue;
+    if (node_by_name_.find(node_name(node)) != node) continue;  // its name is used twice
     const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
     findings_.push_back(
         {place(node_name(node)), turns ? "inertia" : "mass",

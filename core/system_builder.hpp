@@ -1,9 +1,9 @@
 #pragma once
 /// Turns a Model into a System, step by step; collects findings and throws them together.
 /// Internal to core: users call Model::build().
-#include <deque>
-
+#include "core/kinematics.hpp"
 #include "core/name_index.hpp"
+#include "core/node_matrix.hpp"
 #include "core/system.hpp"
 
 namespace drev {
@@ -26,6 +26,7 @@ class SystemBuilder {
   // Nominal motion, elimination, and what must hold of the whole. These pass over faulty elements, so
   // that all findings come at once.
   void find_nominal_motion();
+  std::vector<int> floating_parts(const std::vector<int>& component, Contact contact) const;
   void eliminate();
   void check_inertias();
   void set_initial();
@@ -38,19 +39,10 @@ class SystemBuilder {
 
   std::string place(const std::string& part) const { return model_.name() + "/" + part; }
 
-  /// An entry that an element adds to a matrix over nodes, and the same at (j, i).
-  struct NodeEntry {
-    int i, j;
-    double value;
-    bool rayleigh;  ///< takes part in C = a M + b K
-  };
-  /// In pieces: a list that grows moves nothing and leaves no room unused.
-  using NodeEntries = std::deque<NodeEntry>;
   void keep(int element, const std::vector<int>& nodes, const Terms& terms);
-  void keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix, bool rayleigh,
-                    NodeEntries& entries);
+  static void keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix, NodeMatrix& sum);
   const std::string& node_name(int node) const { return model_.node_names()[at(node)]; }
-  SparseMatrix pattern() const;
+  std::shared_ptr<const SparseMatrix> pattern() const;
   /// Calls visit(i, j, value) for every entry of M, C, K (0, 1, 2), Rayleigh damping included.
   template <class Visit>
   void for_each_entry(int matrix, const Visit& visit) const;
@@ -60,7 +52,8 @@ class SystemBuilder {
   System system_;
   std::vector<Finding> findings_;
   NameIndex node_by_name_;
-  NodeEntries mass_, damping_, stiffness_;
+  NodeMatrix mass_[2], damping_, stiffness_[2];  // the second ones take part in C = a M + b K
+  std::vector<Closure> closures_;
   std::vector<int> faulty_nodes_;  // of elements whose terms are not known
   std::vector<int> resolved_prescriptions_;  // -1: unknown or already prescribed
   bool inertia_in_doubt_ = false;  // a fault hides which node some inertia or tie belongs to

@@ -1,4 +1,4 @@
-// The first part of SystemBuilder: the elements, each by itself.
+// The first part of SystemBuilder: the elements, each by itself. And what they report.
 #include <algorithm>
 #include <iterator>
 
@@ -6,10 +6,21 @@
 
 namespace drev {
 
+namespace {
+
+std::vector<Entry> over_nodes(const LocalRow& row, const std::vector<int>& nodes) {
+  std::vector<Entry> entries;
+  for (Eigen::Index i = 0; i < row.size(); ++i)
+    if (row[i] != 0.0) entries.push_back({nodes[static_cast<std::size_t>(i)], row[i]});
+  return entries;
+}
+
+}  // namespace
+
 std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) {
   const std::string where = place(p.name);
   std::vector<int> nodes;
-  for (std::size_t i = 0; i < p.nodes.size(); ++i) {
+  for (int i = 0; i < p.nodes.size(); ++i) {
     nodes.push_back(resolve(p.nodes[i], where, "node " + std::to_string(i + 1)));
     usable = usable && nodes.back() >= 0;
     if (nodes.back() >= 0 && std::count(nodes.begin(), nodes.end(), nodes.back()) > 1) {
@@ -40,7 +51,7 @@ void SystemBuilder::describe_elements() {
       faulty();
       continue;
     }
-    const int given = static_cast<int>(p.nodes.size());
+    const int given = p.nodes.size();
     const int low = p.element->min_nodes(), high = p.element->max_nodes();
     const bool count_fits = given >= low && given <= high;
     if (!count_fits)
@@ -73,27 +84,20 @@ void SystemBuilder::describe_elements() {
 }
 
 void SystemBuilder::keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix,
-                                 bool rayleigh, NodeEntries& entries) {
+                                 NodeMatrix& sum) {
   for (Eigen::Index j = 0; j < matrix.cols(); ++j)
     for (Eigen::Index i = 0; i <= j; ++i)
       if (matrix(i, j) != 0.0)
-        entries.push_back({nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)],
-                           matrix(i, j), rayleigh});
+        sum.add(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], matrix(i, j));
 }
 
 void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms& terms) {
   const ElementId id{element};
-  keep_entries(nodes, terms.mass, terms.rayleigh, mass_);
-  keep_entries(nodes, terms.damping, false, damping_);
-  keep_entries(nodes, terms.stiffness, terms.rayleigh, stiffness_);
+  keep_entries(nodes, terms.mass, mass_[terms.rayleigh]);
+  keep_entries(nodes, terms.damping, damping_);
+  keep_entries(nodes, terms.stiffness, stiffness_[terms.rayleigh]);
   rayleigh_a_ += terms.rayleigh_a;
   rayleigh_b_ += terms.rayleigh_b;
-  const auto over_nodes = [&](const LocalRow& row) {
-    std::vector<Entry> entries;
-    for (Eigen::Index i = 0; i < row.size(); ++i)
-      if (row[i] != 0.0) entries.push_back({nodes[static_cast<std::size_t>(i)], row[i]});
-    return entries;
-  };
   const auto add_closure = [&](const std::vector<Entry>& b, bool only_in_contact) {
     if (b.empty()) return;
     Closure row;
@@ -101,11 +105,11 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     row.only_in_contact = only_in_contact;
     row.first = b[0].index, row.b_first = b[0].coeff;
     if (b.size() > 1) row.second = b[1].index, row.b_second = b[1].coeff;
-    system_.closures_.push_back(row);
+    closures_.push_back(row);
   };
-  for (const ClosureSpec& c : terms.closures) add_closure(over_nodes(c.b), c.only_in_contact);
+  for (const ClosureSpec& c : terms.closures) add_closure(over_nodes(c.b, nodes), c.only_in_contact);
   for (const LocalRow& row : terms.constraints) {
-    const std::vector<Entry> b = over_nodes(row);
+    const std::vector<Entry> b = over_nodes(row, nodes);
     add_closure(b, false);
     system_.ideal_ratios_.push_back({id, b[0].index, b[1].index, b[0].coeff, b[1].coeff});
   }
@@ -113,7 +117,7 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     ScalarTerm term;
     term.element = id;
     term.force = s.force;
-    term.nodes = over_nodes(s.b);
+    term.nodes = over_nodes(s.b, nodes);
     term.phase_node = s.phase_node < 0 ? -1 : nodes[at(s.phase_node)];
     term.along_line_of_action = s.along_line_of_action;
     system_.scalars_.push_back(std::move(term));
@@ -125,8 +129,24 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     system_.history_size_ += g->history_size();
     system_.symmetric_tangent_ &= g->symmetric_tangent();
   }
-  for (const OutputSpec& o : terms.outputs)
-    system_.outputs_.push_back({id, o.suffix, over_nodes(o.stiffness), over_nodes(o.damping)});
+}
+
+std::vector<OutputTerm> System::outputs() const {
+  NameIndex by_name(node_names().size(), [this](int i) -> const std::string& { return node_names()[at(i)]; });
+  for (int i = 0; i < node_count(); ++i) by_name.insert(i);
+  std::vector<OutputTerm> outputs;
+  for (std::size_t e = 0; e < placements().size(); ++e) {
+    const Placement& p = placements()[e];
+    std::vector<int> nodes;
+    for (const NodeRef& ref : p.nodes) nodes.push_back(ref.id ? index(*ref.id) : by_name.find(ref.name));
+    for (const NodeId id : p.internal) nodes.push_back(index(id));
+    Terms terms(static_cast<int>(nodes.size()));
+    p.element->describe(static_cast<int>(nodes.size()), terms);
+    for (OutputSpec& o : terms.outputs)
+      outputs.push_back({ElementId{static_cast<int>(e)}, std::move(o.suffix), over_nodes(o.stiffness, nodes),
+                         over_nodes(o.damping, nodes)});
+  }
+  return outputs;
 }
 
 bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes,

@@ -107,21 +107,16 @@ void SystemBuilder::map_terms() {
 
 template <class Visit>
 void SystemBuilder::for_each_entry(int matrix, const Visit& visit) const {
-  const auto visit_all = [&](const NodeEntries& entries, double factor, bool only_rayleigh) {
-    if (factor == 0.0) return;
-    for (const NodeEntry& e : entries) {
-      if (only_rayleigh && !e.rayleigh) continue;
-      visit(e.i, e.j, factor * e.value);
-      if (e.i != e.j) visit(e.j, e.i, factor * e.value);
-    }
-  };
-  visit_all(matrix == 0 ? mass_ : matrix == 1 ? damping_ : stiffness_, 1.0, false);
-  if (matrix != 1) return;
-  visit_all(mass_, rayleigh_a_, true);
-  visit_all(stiffness_, rayleigh_b_, true);
+  if (matrix == 1) {
+    damping_.for_each(1.0, visit);
+    mass_[1].for_each(rayleigh_a_, visit);
+    stiffness_[1].for_each(rayleigh_b_, visit);
+  } else {
+    for (const NodeMatrix& part : matrix == 0 ? mass_ : stiffness_) part.for_each(1.0, visit);
+  }
 }
 
-SparseMatrix SystemBuilder::pattern() const {
+std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
   const int n = static_cast<int>(system_.unknown_node_.size());
   const auto unknown = [this](int node) { return system_.node_map_[at(node)].unknown; };
   const auto for_each = [&](const auto& visit) {
@@ -147,25 +142,25 @@ SparseMatrix SystemBuilder::pattern() const {
   std::vector<int> rows(at(begin.back()));
   std::vector<int> next(begin.begin(), begin.end() - 1);
   for_each([&](int row, int column) { rows[at(next[at(column)]++)] = row; });
-  SparseMatrix p(n, n);
+  const auto p = std::make_shared<SparseMatrix>(n, n);
   int entries = 0;
   for (int j = 0; j < n; ++j) {
     const auto first = rows.begin() + begin[at(j)];
     std::sort(first, rows.begin() + begin[at(j + 1)]);
     const auto last = std::unique(first, rows.begin() + begin[at(j + 1)]);
     std::copy(first, last, rows.begin() + entries);
-    p.outerIndexPtr()[j] = entries;
+    p->outerIndexPtr()[j] = entries;
     entries += static_cast<int>(last - first);
   }
-  p.outerIndexPtr()[n] = entries;
-  p.resizeNonZeros(entries);
-  std::copy_n(rows.begin(), entries, p.innerIndexPtr());
-  std::fill_n(p.valuePtr(), entries, 0.0);
+  p->outerIndexPtr()[n] = entries;
+  p->resizeNonZeros(entries);
+  std::copy_n(rows.begin(), entries, p->innerIndexPtr());
+  std::fill_n(p->valuePtr(), entries, 0.0);
   return p;
 }
 
 Vector SystemBuilder::values_on_pattern(int matrix) const {
-  Vector v = Vector::Zero(system_.pattern_.nonZeros());
+  Vector v = Vector::Zero(system_.pattern_->nonZeros());
   for_each_entry(matrix, [&](int i, int j, double value) {
     const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
     if (a.unknown >= 0 && b.unknown >= 0)
@@ -192,25 +187,25 @@ void SystemBuilder::assemble_matrices() {
   system_.nominal_inertia_ = Vector::Zero(nz + nu);
   system_.nominal_drag_ = Vector::Zero(nz + nu);
   if (keep_nodes) system_.node_drag_ = Vector::Zero(system_.node_count());
-  const auto add_nominal = [&](const NodeEntries& entries, Vector& rows, Vector* nodes) {
-    const auto add = [&](int i, int j, double value) {
+  const auto add_nominal = [&](const NodeMatrix& matrix, Vector& rows, Vector* nodes) {
+    matrix.for_each(1.0, [&](int i, int j, double value) {
       const NodeMap& map = system_.node_map_[at(i)];
-      const double force = value * system_.kinematics_.ratio[at(j)];
+      const double force = value * system_.ratio(j);
       rows[map.unknown >= 0 ? map.unknown : nz + map.prescribed] += map.coeff * force;
       if (nodes) (*nodes)[i] += force;
-    };
-    for (const NodeEntry& e : entries) {
-      add(e.i, e.j, e.value);
-      if (e.i != e.j) add(e.j, e.i, e.value);
-    }
+    });
   };
-  add_nominal(mass_, system_.nominal_inertia_, nullptr);
+  for (const NodeMatrix& mass : mass_) add_nominal(mass, system_.nominal_inertia_, nullptr);
   add_nominal(damping_, system_.nominal_drag_, keep_nodes ? &system_.node_drag_ : nullptr);
 
   system_.pattern_ = pattern();
-  system_.mass_ = values_on_pattern(0);
+  // Entries go as soon as their values stand: a large model's memory is at its highest here.
   system_.damping_ = values_on_pattern(1);
+  damping_.clear();
   system_.stiffness_ = values_on_pattern(2);
+  for (NodeMatrix& part : stiffness_) part.clear();
+  system_.mass_ = values_on_pattern(0);
+  for (NodeMatrix& part : mass_) part.clear();
   system_.find_slots();
   system_.zu_ = {from_triplets(nz, nu, zu[0]), from_triplets(nz, nu, zu[1]),
                  from_triplets(nz, nu, zu[2])};
