@@ -175,11 +175,14 @@ bool LowFillPattern::same(const SparseMatrix& pattern) const {
 std::shared_ptr<const LowFillPattern> analyse_low_fill(const SparseMatrix& pattern) {
   std::vector<int> order = from_leaves(pattern);
   if (!order.empty()) return finish(pattern, std::move(order), Ordering::from_leaves);
-  CholmodFactor cholmod(true);
-  if (cholmod.analyse(pattern) != FactorStatus::success) return nullptr;
-  const Ordering ordering =
-      cholmod.factor().ordering == CHOLMOD_NATURAL ? Ordering::natural : Ordering::amd;
-  return finish(pattern, by_height(pattern, cholmod.order()), ordering);
+  Ordering ordering = Ordering::natural;
+  {
+    CholmodFactor cholmod(true);  // gone before finish(): it holds several times what is asked of it
+    if (cholmod.analyse(pattern) != FactorStatus::success) return nullptr;
+    if (cholmod.factor().ordering != CHOLMOD_NATURAL) ordering = Ordering::amd;
+    order = cholmod.order();
+  }
+  return finish(pattern, by_height(pattern, order), ordering);
 }
 
 namespace {

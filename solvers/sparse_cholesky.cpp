@@ -32,6 +32,7 @@ const char* to_text(FactorStatus status) {
 }
 
 struct SparseCholesky::Impl {
+  std::vector<double> inverse_diagonal;  // of a diagonal matrix, which is not analysed
   std::optional<LowFillFactor> flat;
   std::unique_ptr<CholmodFactor> cholmod;  // where L fills too much for flat arrays
   FactorStatus status = FactorStatus::not_computed;
@@ -40,7 +41,13 @@ struct SparseCholesky::Impl {
 
   FactorStatus analyse(const SparseMatrix& pattern);
   FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
-  int size() const { return flat ? flat->pattern().size : cholmod->size(); }
+  /// False where A is not diagonal, or has a pivot that is not sound.
+  bool factorize_diagonal(const SparseMatrix& pattern, const Vector& values);
+  bool is_diagonal() const { return !inverse_diagonal.empty(); }
+  int size() const {
+    if (is_diagonal()) return static_cast<int>(inverse_diagonal.size());
+    return flat ? flat->pattern().size : cholmod->size();
+  }
   void check_pivots(const SparseMatrix& pattern, const Vector& values);
   void judge_pivots(int worst);
 };
@@ -69,6 +76,8 @@ FactorStatus SparseCholesky::Impl::analyse(const SparseMatrix& pattern) {
 FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const Vector& values) {
   failed_column = -1;
   if (!flat && !cholmod) {
+    if (factorize_diagonal(pattern, values)) return FactorStatus::success;
+    inverse_diagonal.clear();
     const FactorStatus analysed = analyse(pattern);
     if (analysed != FactorStatus::success) return analysed;
   }
@@ -86,7 +95,28 @@ FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const 
                                           : FactorStatus::not_positive_definite;
 }
 
+bool SparseCholesky::Impl::factorize_diagonal(const SparseMatrix& pattern, const Vector& values) {
+  if (pattern.rows() != pattern.cols() || !pattern.isCompressed() || values.size() != pattern.nonZeros())
+    return false;
+  inverse_diagonal.assign(static_cast<std::size_t>(pattern.rows()), 0.0);
+  for (int j = 0; j < pattern.cols(); ++j) {
+    double& inverse = inverse_diagonal[at(j)];
+    for (int s = pattern.outerIndexPtr()[j]; s < pattern.outerIndexPtr()[j + 1]; ++s) {
+      if (pattern.innerIndexPtr()[s] == j)
+        inverse = 1.0 / values[s];
+      else if (values[s] != 0.0)
+        return false;
+    }
+    if (!(inverse > 0.0) || !std::isfinite(inverse)) return false;
+  }
+  return true;
+}
+
 void SparseCholesky::Impl::check_pivots(const SparseMatrix& pattern, const Vector& values) {
+  if (is_diagonal()) {
+    pivot_ratio = 1.0;
+    return;
+  }
   if (flat) {
     pivot_ratio = flat->pivot_ratio();
     return judge_pivots(flat->worst_place() < 0 ? -1 : flat->pattern().order[at(flat->worst_place())]);
@@ -134,6 +164,10 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
   if (b.size() != s.size())
     throw SolverError("Cholesky: right-hand side has " + std::to_string(b.size()) +
                       " entries, the matrix " + std::to_string(s.size()) + " rows");
+  if (s.is_diagonal()) {
+    x = b.cwiseProduct(Eigen::Map<const Vector>(s.inverse_diagonal.data(), b.size()));
+    return;
+  }
   if (s.flat) return s.flat->solve(b, x);
   if (!s.cholmod->solve(b, x)) throw SolverError("Cholesky: CHOLMOD could not solve: no memory");
 }
@@ -141,7 +175,7 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
 double SparseCholesky::reciprocal_condition() const {
   if (!ok()) return 0.0;
   if (impl_->cholmod) return cholmod_rcond(&impl_->cholmod->factor(), &impl_->cholmod->common());
-  const std::vector<double>& pivots = impl_->flat->pivots();
+  const std::vector<double>& pivots = impl_->is_diagonal() ? impl_->inverse_diagonal : impl_->flat->pivots();
   const auto [least, largest] = std::minmax_element(pivots.begin(), pivots.end());
   return *least / *largest;
 }
@@ -159,6 +193,7 @@ std::shared_ptr<const LowFillPattern> SparseCholesky::low_fill() const {
 
 int SparseCholesky::factor_entries() const {
   if (!ok()) return 0;
+  if (impl_->is_diagonal()) return impl_->size();
   if (impl_->cholmod) return static_cast<int>(impl_->cholmod->factor().nzmax);
   return impl_->flat->pattern().size + static_cast<int>(impl_->flat->entries().size());
 }

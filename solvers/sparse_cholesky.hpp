@@ -7,7 +7,8 @@
 /// P eliminates a tree from its leaves inwards, without fill, so that the arms of a chain are two
 /// recurrences that run side by side. With loops P is the identity where that fills no more than AMD's
 /// ordering does, else AMD's. What hardly fills, as drivetrains do, is factored and solved in flat
-/// arrays (low_fill_factor.hpp: as L D L', all D > 0 asked for), the rest by CHOLMOD's simplicial LL'.
+/// arrays (low_fill_factor.hpp: as L D L', all D > 0 asked for), the rest by CHOLMOD's simplicial LL'. A
+/// matrix that is diagonal in the first call needs its diagonal alone, whatever its pattern.
 ///
 /// Bare LDL' accepts diag(1, -1) and singular matrices as success; here every pivot is judged.
 ///
@@ -46,7 +47,7 @@ class SparseCholesky {
 
   /// Factors A. pattern: compressed, structurally symmetric, both triangles there; values: of A on
   /// that pattern, numerically symmetric (one triangle is read). The first call analyses the
-  /// pattern; later calls must bring the same one. Prints nothing, throws nothing.
+  /// pattern, where A is not diagonal; later calls must bring the same one. Prints nothing, throws nothing.
   FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
   FactorStatus status() const;
   bool ok() const { return status() == FactorStatus::success; }
