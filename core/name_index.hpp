@@ -1,6 +1,8 @@
 #pragma once
-/// Positions of names in a list, by name: an open hash table of 8 to 16 bytes a name, which keeps no copy of
-/// the names. Internal to SystemBuilder.
+/// Positions of names in a list, by name: an open hash table of 16 to 32 bytes a name, which keeps no copy of
+/// the names. Internal to core.
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,32 +13,54 @@ namespace drev {
 
 class NameIndex {
  public:
-  /// name_of(i): the name at position i < count; must stay as it is.
-  NameIndex(std::size_t count, std::function<const std::string&(int)> name_of)
+  /// Enters all positions, in order. name_of(i): the name at position i < count; must stay as it is.
+  /// entered(i, first), if given, hears of each whether its name was not there yet.
+  NameIndex(int count, std::function<const std::string&(int)> name_of,
+            const std::function<void(int, bool)>& entered = {})
       : name_of_(std::move(name_of)) {
     std::size_t size = 4;
-    while (size < 2 * count) size *= 2;
-    table_.assign(size, -1);
+    while (size < 2 * at(count)) size *= 2;
+    table_.resize(size);
+    // The table lies outside the caches: its places are called for some names ahead.
+    constexpr int kAhead = 16;
+    std::array<std::uint32_t, kAhead> hashes{};
+    for (int i = -kAhead; i < count; ++i) {
+      std::uint32_t& hash = hashes[at(i + kAhead) % kAhead];
+      if (i >= 0) {
+        const bool first = insert(i, hash);
+        if (entered) entered(i, first);
+      }
+      if (i + kAhead >= count) continue;
+      hash = hash_of(name_of_(i + kAhead));
+      __builtin_prefetch(&table_[hash & (size - 1)]);
+    }
   }
-  /// Enters position i; false where the same name is there already.
-  bool insert(int i) {
-    int& place = table_[slot(name_of_(i))];
-    if (place >= 0) return false;
-    place = i;
-    return true;
-  }
-  /// Position of the first such name entered; -1: none.
-  int find(const std::string& name) const { return table_[slot(name)]; }
+  /// Position of the first such name; -1: none.
+  int find(const std::string& name) const { return table_[slot(name, hash_of(name))].position; }
 
  private:
-  std::size_t slot(const std::string& name) const {
-    std::size_t s = std::hash<std::string>{}(name) & (table_.size() - 1);
-    while (table_[s] >= 0 && name_of_(table_[s]) != name) s = (s + 1) & (table_.size() - 1);
+  struct Slot {
+    int position = -1;
+    std::uint32_t hash = 0;
+  };
+  static std::uint32_t hash_of(const std::string& name) {
+    return static_cast<std::uint32_t>(std::hash<std::string>{}(name));
+  }
+  bool insert(int i, std::uint32_t hash) {
+    Slot& place = table_[slot(name_of_(i), hash)];
+    if (place.position >= 0) return false;
+    place = {i, hash};
+    return true;
+  }
+  std::size_t slot(const std::string& name, std::uint32_t hash) const {
+    std::size_t s = hash & (table_.size() - 1);
+    while (table_[s].position >= 0 && (table_[s].hash != hash || name_of_(table_[s].position) != name))
+      s = (s + 1) & (table_.size() - 1);
     return s;
   }
 
   std::function<const std::string&(int)> name_of_;
-  std::vector<int> table_;
+  std::vector<Slot> table_;
 };
 
 }  // namespace drev

@@ -16,11 +16,6 @@ bool usable_name(const std::string& name) {
 
 }  // namespace
 
-SystemBuilder::SystemBuilder(const Model& model)
-    : model_(model),
-      node_by_name_(model.node_names().size(),
-                    [&model](int i) -> const std::string& { return model.node_names()[at(i)]; }) {}
-
 System SystemBuilder::build() {
   check_names();
   resolve_motions();
@@ -30,6 +25,7 @@ System SystemBuilder::build() {
   check_inertias();
   set_initial();
   throw_if_findings();
+  node_by_name_ = NameIndex(0, {});
   map_terms();
   assemble_matrices();
   check_values();
@@ -47,40 +43,39 @@ void SystemBuilder::check_names() {
   system_.node_names_ = model_.node_names_;
   system_.node_kinds_ = model_.node_kinds();
   system_.placements_ = model_.placements_;
-  const char* rule = "must be non-empty, without '.', ',', quotes and line ends";
   if (model_.node_names().empty())
     findings_.push_back({model_.name(), "nodes", "0", "", "the model is empty; add nodes"});
-  for (int i = 0; i < static_cast<int>(model_.node_names().size()); ++i) {
-    if (!usable_name(node_name(i)))
-      findings_.push_back({model_.name(), "node name", node_name(i), "", rule});
-    if (!node_by_name_.insert(i))
-      findings_.push_back({model_.name(), "node name", node_name(i), "", "is used twice"});
-  }
+  const auto check = [this](const char* what, const std::string& name, bool first) {
+    if (!usable_name(name))
+      findings_.push_back({model_.name(), what, name, "",
+                           "must be non-empty, without '.', ',', quotes and line ends"});
+    if (!first) findings_.push_back({model_.name(), what, name, "", "is used twice"});
+  };
+  const auto name_of_node = [this](int i) -> const std::string& { return node_name(i); };
+  node_by_name_ = NameIndex(system_.node_count(), name_of_node,
+                            [&](int i, bool first) { check("node name", node_name(i), first); });
   const std::vector<Placement>& placements = model_.placements();
-  NameIndex names(placements.size(),
-                  [&](int i) -> const std::string& { return placements[at(i)].name; });
-  for (int e = 0; e < static_cast<int>(placements.size()); ++e) {
-    const std::string& name = placements[at(e)].name;
-    if (!usable_name(name)) findings_.push_back({model_.name(), "element name", name, "", rule});
-    if (!names.insert(e))
-      findings_.push_back({model_.name(), "element name", name, "", "is used twice"});
-  }
+  const auto name_of = [&](int e) -> const std::string& { return placements[at(e)].name; };
+  NameIndex(static_cast<int>(placements.size()), name_of,
+            [&](int e, bool first) { check("element name", name_of(e), first); });
+}
+
+int SystemBuilder::find(const NodeRef& ref) const {
+  if (!ref.id) return node_by_name_.find(ref.name);
+  const int i = index(*ref.id);
+  return i >= 0 && i < system_.node_count() ? i : -1;
 }
 
 int SystemBuilder::resolve(const NodeRef& ref, const std::string& where,
                            const std::string& parameter) {
-  const int count = system_.node_count();
-  if (ref.id) {
-    const int i = index(*ref.id);
-    if (i >= 0 && i < count) return i;
-    findings_.push_back({where, parameter, std::to_string(i), "",
-                         "is no node of this model (it has " + std::to_string(count) + ")"});
-    return -1;
-  }
-  const int found = node_by_name_.find(ref.name);
+  const int found = find(ref);
   if (found >= 0) return found;
-  findings_.push_back({where, parameter, ref.name, "",
-                       "is no node of this model" + did_you_mean(ref.name, model_.node_names())});
+  if (ref.id)
+    findings_.push_back({where, parameter, std::to_string(index(*ref.id)), "",
+                         "is no node of this model (it has " + std::to_string(system_.node_count()) + ")"});
+  else
+    findings_.push_back({where, parameter, ref.name, "",
+                         "is no node of this model" + did_you_mean(ref.name, model_.node_names())});
   return -1;
 }
 

@@ -10,18 +10,19 @@ namespace drev {
 
 class SystemBuilder {
  public:
-  explicit SystemBuilder(const Model& model);
+  explicit SystemBuilder(const Model& model) : model_(model) {}
   System build();
 
  private:
   // Names, known motions, elements: what can be found wrong with each by itself.
   void check_names();
+  int find(const NodeRef& ref) const;  // -1: no node of this model
   int resolve(const NodeRef& ref, const std::string& place, const std::string& parameter);
   void resolve_motions();
   void check_motion(const Motion& motion, const std::string& place, const std::string& parameter);
   void describe_elements();
   std::vector<int> resolve_nodes(const Placement& p, bool& usable);
-  bool check_terms(const Terms& terms, const std::vector<int>& nodes, const std::string& place);
+  bool check_terms(const Terms& terms, const std::vector<int>& nodes, const Placement& p);
   bool check_kinds(const Placement& p, const std::vector<int>& nodes);
   // Nominal motion, elimination, and what must hold of the whole. These pass over faulty elements, so
   // that all findings come at once.
@@ -51,7 +52,7 @@ class SystemBuilder {
   const Model& model_;
   System system_;
   std::vector<Finding> findings_;
-  NameIndex node_by_name_;
+  NameIndex node_by_name_{0, {}};
   NodeMatrix mass_[2], damping_, stiffness_[2];  // the second ones take part in C = a M + b K
   std::vector<Closure> closures_;
   std::vector<int> faulty_nodes_;  // of elements whose terms are not known

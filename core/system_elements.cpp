@@ -18,26 +18,29 @@ std::vector<Entry> over_nodes(const LocalRow& row, const std::vector<int>& nodes
 }  // namespace
 
 std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) {
-  const std::string where = place(p.name);
   std::vector<int> nodes;
   for (int i = 0; i < p.nodes.size(); ++i) {
-    nodes.push_back(resolve(p.nodes[i], where, "node " + std::to_string(i + 1)));
-    usable = usable && nodes.back() >= 0;
-    if (nodes.back() >= 0 && std::count(nodes.begin(), nodes.end(), nodes.back()) > 1) {
-      findings_.push_back({where, "node " + std::to_string(i + 1),
-                           node_name(nodes.back()), "",
+    const NodeRef ref = p.nodes[i];
+    const int node = find(ref);
+    const bool twice = node >= 0 && std::count(nodes.begin(), nodes.end(), node) > 0;
+    nodes.push_back(node);
+    if (node >= 0 && !twice) continue;
+    usable = false;
+    const std::string parameter = "node " + std::to_string(i + 1);
+    if (twice)
+      findings_.push_back({place(p.name), parameter, node_name(node), "",
                            "is given twice; the ends must differ"});
-      usable = false;
-    }
+    else
+      resolve(ref, place(p.name), parameter);
   }
   for (const NodeId id : p.internal) nodes.push_back(index(id));
   return nodes;
 }
 
 void SystemBuilder::describe_elements() {
+  Terms zero(0), terms(0);  // kept, so that elements of one size allocate their matrices once
   for (int e = 0; e < static_cast<int>(model_.placements().size()); ++e) {
     const Placement& p = model_.placements()[at(e)];
-    const std::string where = place(p.name);
     bool usable = true;
     const std::vector<int> nodes = resolve_nodes(p, usable);
     const bool resolved = std::count(nodes.begin(), nodes.end(), -1) == 0;
@@ -46,7 +49,7 @@ void SystemBuilder::describe_elements() {
                    [](int node) { return node >= 0; });
     };
     if (!p.element) {
-      findings_.push_back({where, "element", "", "", "is missing (a null pointer)"});
+      findings_.push_back({place(p.name), "element", "", "", "is missing (a null pointer)"});
       inertia_in_doubt_ |= !resolved;
       faulty();
       continue;
@@ -55,12 +58,12 @@ void SystemBuilder::describe_elements() {
     const int low = p.element->min_nodes(), high = p.element->max_nodes();
     const bool count_fits = given >= low && given <= high;
     if (!count_fits)
-      findings_.push_back({where, "nodes", std::to_string(given), "",
+      findings_.push_back({place(p.name), "nodes", std::to_string(given), "",
                            "a " + std::string(p.element->type()) + " takes " +
                                std::to_string(low) +
                                (high > low ? " or " + std::to_string(high) : std::string())});
     const std::size_t before = findings_.size();
-    ParameterCheck check(where, findings_);
+    ParameterCheck check(place(p.name), findings_);
     p.element->check(check);
     const bool sound = count_fits && findings_.size() == before;
     if (!sound) {
@@ -68,9 +71,11 @@ void SystemBuilder::describe_elements() {
       faulty();
       continue;
     }
-    Terms terms(static_cast<int>(nodes.size()));
+    if (zero.mass.rows() != static_cast<Eigen::Index>(nodes.size()))
+      zero = Terms(static_cast<int>(nodes.size()));
+    terms = zero;
     p.element->describe(static_cast<int>(nodes.size()), terms);
-    if (!check_terms(terms, nodes, where)) {
+    if (!check_terms(terms, nodes, p)) {
       inertia_in_doubt_ |= !resolved;
       faulty();
       continue;
@@ -132,8 +137,7 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
 }
 
 std::vector<OutputTerm> System::outputs() const {
-  NameIndex by_name(node_names().size(), [this](int i) -> const std::string& { return node_names()[at(i)]; });
-  for (int i = 0; i < node_count(); ++i) by_name.insert(i);
+  const NameIndex by_name(node_count(), [this](int i) -> const std::string& { return node_names()[at(i)]; });
   std::vector<OutputTerm> outputs;
   for (std::size_t e = 0; e < placements().size(); ++e) {
     const Placement& p = placements()[e];
@@ -150,11 +154,11 @@ std::vector<OutputTerm> System::outputs() const {
 }
 
 bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes,
-                                const std::string& where) {
+                                const Placement& p) {
   const std::size_t before = findings_.size();
   const auto n = static_cast<Eigen::Index>(nodes.size());
   const auto fail = [&](const std::string& what, std::string value, std::string range) {
-    findings_.push_back({where, "describe(): " + what, std::move(value), "", std::move(range)});
+    findings_.push_back({place(p.name), "describe(): " + what, std::move(value), "", std::move(range)});
   };
   const auto matrix = [&](const char* name, const Eigen::MatrixXd& m) {
     if (m.rows() != n || m.cols() != n)
@@ -162,7 +166,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
            "must be n x n for n = " + std::to_string(n) + " nodes");
     else if (!m.allFinite())
       fail(name, "not finite", "must be finite");
-    else if (!m.isApprox(m.transpose(), 1e-12) && !m.isZero(0.0))
+    else if (!m.isZero(0.0) && !m.isApprox(m.transpose(), 1e-12))
       fail(name, "not symmetric", "must be symmetric; a general force may be otherwise");
   };
   // Number of entries that are not zero; -1 after a finding.
@@ -190,7 +194,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       for (Eigen::Index i = 0; i < n; ++i) {
         const int node = nodes[static_cast<std::size_t>(i)];
         if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[at(node)] != NodeKind::rotational)
-          findings_.push_back({where, "node " + std::to_string(i + 1), node_name(node),
+          findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node),
                                "", "is translational; a gear needs a rotational node"});
       }
   }
@@ -200,7 +204,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
     if (!l.load)
       fail("load", "", "is missing (a null pointer)");
     else
-      ParameterCheck(where, findings_).all_finite("breakpoints", l.load->breakpoints(), "s");
+      ParameterCheck(place(p.name), findings_).all_finite("breakpoints", l.load->breakpoints(), "s");
   }
   for (const GeneralForce* g : terms.generals) {
     if (!g) fail("general force", "", "is missing (a null pointer)");
@@ -221,9 +225,11 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
     row("output stiffness", o.stiffness, true);
     row("output damping", o.damping, true);
   }
-  ParameterCheck check(where, findings_);
-  check.non_negative("describe(): rayleigh_a", terms.rayleigh_a, "1/s");
-  check.non_negative("describe(): rayleigh_b", terms.rayleigh_b, "s");
+  if (terms.rayleigh_a != 0.0 || terms.rayleigh_b != 0.0) {
+    ParameterCheck check(place(p.name), findings_);
+    check.non_negative("describe(): rayleigh_a", terms.rayleigh_a, "1/s");
+    check.non_negative("describe(): rayleigh_b", terms.rayleigh_b, "s");
+  }
   return findings_.size() == before;
 }
 
