@@ -1,13 +1,16 @@
 #include "core/channel.hpp"
 
 #include <algorithm>
+#include <set>
 #include <unordered_map>
 
 namespace drev {
 
 class ChannelFinder {
  public:
-  explicit ChannelFinder(const System& system) : system_(system) {
+  /// Makes every channel, or those wanted alone: all those of a large model take several times its memory.
+  explicit ChannelFinder(const System& system, const std::set<std::string>* wanted = nullptr)
+      : system_(system), wanted_(wanted) {
     for (int i = 0; i < system.node_count(); ++i) add_node(i);
     for (const OutputTerm& o : system.outputs()) {
       const auto& row = o.stiffness.empty() ? o.damping : o.stiffness;
@@ -66,6 +69,7 @@ class ChannelFinder {
  private:
   void add(std::string name, std::string unit, Channel::Kind kind, int index,
            const OutputTerm* output = nullptr) {
+    if (wanted_ && !wanted_->contains(name)) return;
     Channel c;
     c.name_ = std::move(name);
     c.unit_ = std::move(unit);
@@ -129,6 +133,7 @@ class ChannelFinder {
   }
 
   const System& system_;
+  const std::set<std::string>* wanted_;
 };
 
 namespace {
@@ -275,13 +280,17 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
 std::vector<Channel> all_channels(const System& system) { return ChannelFinder(system).channels; }
 
 std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names) {
-  const ChannelFinder finder(system);
-  std::vector<std::string> known;
+  const std::set<std::string> wanted(names.begin(), names.end());
+  const ChannelFinder finder(system, &wanted);
   std::unordered_map<std::string, std::vector<std::size_t>> by_name;
-  for (const Channel& c : finder.channels) {
-    by_name[c.name()].push_back(known.size());
-    known.push_back(c.name());
-  }
+  for (std::size_t i = 0; i < finder.channels.size(); ++i)
+    by_name[finder.channels[i].name()].push_back(i);
+  std::vector<std::string> known;  // for the error alone
+  const auto hint = [&](const std::string& name) {
+    if (known.empty())
+      for (const Channel& c : all_channels(system)) known.push_back(c.name());
+    return did_you_mean(name, known);
+  };
   std::vector<Channel> found;
   std::vector<Finding> findings;
   for (const std::string& name : names) {
@@ -301,7 +310,7 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
                               " pairs of nodes; rename one of them"});
     else
       findings.push_back({system.name(), "channel", name, "",
-                          "is no channel of this model" + did_you_mean(name, known)});
+                          "is no channel of this model" + hint(name)});
   }
   if (!findings.empty()) throw ModelError(findings);
   return found;
