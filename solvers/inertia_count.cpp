@@ -56,7 +56,7 @@ void InertiaCounter::Impl::count_flat(double s, InertiaCount& count) {
   const LowFillPattern& p = flat->pattern();
   row_sum.setZero(p.size);
   for (int j = 0; j < p.size; ++j) {
-    const double d = flat->pivots()[at(j)];
+    const double d = 1.0 / flat->inverse_pivots()[at(j)];
     if (d < 0.0) ++count.below;
     row_sum[j] += std::abs(d);
     for (int e = p.begin[at(j)]; e < p.begin[at(j + 1)]; ++e)

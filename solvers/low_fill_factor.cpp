@@ -190,18 +190,18 @@ namespace {
 /// The arrays, bare.
 struct View {
   const int *order, *begin, *rows, *target;
-  double *d, *inverse, *l, *y;
+  double *d, *l, *y;
 };
 
-/// d and l hold A; the first column that fails, or -1. On a chain only D's recurrence is waited for:
-/// subtract, divide, multiply.
+/// d and l hold A; after it 1/D and L. The first column that fails, whose pivot stays in d, or -1. On a chain
+/// only D's recurrence is waited for: subtract, divide, multiply.
 DREV_WIDEST int eliminate(const View& v, const Run& run, bool definite) {
   const auto fails = [definite](double d) { return definite ? !(d > 0.0) : !(d < 0.0 || d > 0.0); };
   if (run.stride == 0) {
     const int* target = v.target + run.first_target;
     for (int j = run.begin; j < run.end; ++j) {
       if (fails(v.d[j])) return j;
-      const double inverse = v.inverse[j] = 1.0 / v.d[j];
+      const double inverse = v.d[j] = 1.0 / v.d[j];
       for (int a = v.begin[j]; a < v.begin[j + 1]; ++a) {
         const double whole = v.l[a], part = whole * inverse;
         v.d[v.rows[a]] -= part * whole;
@@ -218,7 +218,7 @@ DREV_WIDEST int eliminate(const View& v, const Run& run, bool definite) {
     for (int j = run.begin; j < run.end; ++j) {
       const double d = v.d[j] -= passed;
       if (fails(d)) return j;
-      const double inverse = v.inverse[j] = 1.0 / d;
+      const double inverse = v.d[j] = 1.0 / d;
       passed = l[j] * l[j] * inverse;
       l[j] *= inverse;
     }
@@ -231,14 +231,14 @@ DREV_WIDEST int eliminate(const View& v, const Run& run, bool definite) {
     for (int arm = 0; arm < 2; ++arm) {
       const double d = v.d[j + arm] -= passed[arm];
       if (fails(d)) return j + arm;
-      const double inverse = v.inverse[j + arm] = 1.0 / d;
+      const double inverse = v.d[j + arm] = 1.0 / d;
       passed[arm] = l[j + arm] * l[j + arm] * inverse;
       l[j + arm] *= inverse;
     }
   if (j < run.end) {
     const double d = v.d[j] -= passed[0];
     if (fails(d)) return j;
-    const double inverse = v.inverse[j] = 1.0 / d;
+    const double inverse = v.d[j] = 1.0 / d;
     const double last = l[j] * l[j] * inverse;
     l[j] *= inverse;
     v.d[j + 1] -= passed[1];
@@ -275,7 +275,7 @@ DREV_WIDEST void solve_down(const View& v, const Run& run) {
 DREV_WIDEST void solve_up(const View& v, const Run& run, double* x) {
   if (run.stride == 0) {
     for (int j = run.end - 1; j >= run.begin; --j) {
-      double sum = v.y[j] * v.inverse[j];
+      double sum = v.y[j] * v.d[j];
       for (int e = v.begin[j]; e < v.begin[j + 1]; ++e) sum -= v.l[e] * v.y[v.rows[e]];
       v.y[j] = x[v.order[j]] = sum;
     }
@@ -286,16 +286,16 @@ DREV_WIDEST void solve_up(const View& v, const Run& run, double* x) {
   if (run.stride == 1) {
     double last = y[run.end];
     for (int j = run.end - 1; j >= run.begin; --j)
-      y[j] = x[v.order[j]] = last = y[j] * v.inverse[j] - l[j] * last;
+      y[j] = x[v.order[j]] = last = y[j] * v.d[j] - l[j] * last;
     return;
   }
   double a = y[run.end + 1], b = y[run.end];
   int j = run.end - 1;
   for (; j > run.begin; j -= 2) {
-    y[j] = x[v.order[j]] = a = y[j] * v.inverse[j] - l[j] * a;
-    y[j - 1] = x[v.order[j - 1]] = b = y[j - 1] * v.inverse[j - 1] - l[j - 1] * b;
+    y[j] = x[v.order[j]] = a = y[j] * v.d[j] - l[j] * a;
+    y[j - 1] = x[v.order[j - 1]] = b = y[j - 1] * v.d[j - 1] - l[j - 1] * b;
   }
-  if (j == run.begin) y[j] = x[v.order[j]] = y[j] * v.inverse[j] - l[j] * a;
+  if (j == run.begin) y[j] = x[v.order[j]] = y[j] * v.d[j] - l[j] * a;
 }
 
 DREV_WIDEST void gather(const double* from, const int* index, std::size_t count, double* to) {
@@ -307,7 +307,6 @@ DREV_WIDEST void gather(const double* from, const int* index, std::size_t count,
 LowFillFactor::LowFillFactor(std::shared_ptr<const LowFillPattern> pattern)
     : pattern_(std::move(pattern)),
       d_(at(pattern_->size)),
-      inverse_(at(pattern_->size)),
       l_(pattern_->rows.size()),
       y_(at(pattern_->size)) {}
 
@@ -316,16 +315,17 @@ bool LowFillFactor::factorize(const Vector& values, bool definite) {
   gather(values.data(), s.diagonal.data(), s.diagonal.size(), d_.data());
   for (std::size_t e = 0; e < l_.size(); ++e) l_[e] = s.slot[e] < 0 ? 0.0 : values[s.slot[e]];
   const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
-               d_.data(),      inverse_.data(), l_.data(),    y_.data()};
+               d_.data(),      l_.data(),      y_.data()};
   failed_ = -1;
   for (const Run& run : s.runs)
     if (failed_ = eliminate(v, run, definite); failed_ >= 0) return false;
   if (!definite) return true;
   ratio_ = 1.0;
   worst_ = -1;
-  for (int j = 0; j < s.size; ++j)
-    if (!(d_[at(j)] >= ratio_ * values[s.diagonal[at(j)]]))
-      ratio_ = d_[at(j)] / values[s.diagonal[at(j)]], worst_ = j;
+  for (int j = 0; j < s.size; ++j) {
+    const double lost = d_[at(j)] * values[s.diagonal[at(j)]];  // A_jj / D_jj
+    if (!(ratio_ * lost <= 1.0)) ratio_ = 1.0 / lost, worst_ = j;
+  }
   return true;
 }
 
@@ -333,7 +333,7 @@ void LowFillFactor::solve(const Vector& b, Vector& x) {
   const LowFillPattern& s = *pattern_;
   x.resize(s.size);
   const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
-               d_.data(),      inverse_.data(), l_.data(),    y_.data()};
+               d_.data(),      l_.data(),      y_.data()};
   gather(b.data(), s.order.data(), s.order.size(), y_.data());
   for (const Run& run : s.runs) solve_down(v, run);
   for (auto run = s.runs.rbegin(); run != s.runs.rend(); ++run) solve_up(v, *run, x.data());

@@ -59,12 +59,12 @@ class LowFillFactor {
   /// b and x may be the same.
   void solve(const Vector& b, Vector& x);
 
-  const std::vector<double>& pivots() const { return d_; }
+  const std::vector<double>& inverse_pivots() const { return d_; }
   const std::vector<double>& entries() const { return l_; }
 
  private:
   std::shared_ptr<const LowFillPattern> pattern_;
-  std::vector<double> d_, inverse_, l_, y_;
+  std::vector<double> d_, l_, y_;  // d_: 1/D, and D where it failed
   double ratio_ = 0.0;
   int worst_ = -1, failed_ = -1;
 };

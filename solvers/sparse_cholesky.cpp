@@ -175,8 +175,9 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
 double SparseCholesky::reciprocal_condition() const {
   if (!ok()) return 0.0;
   if (impl_->cholmod) return cholmod_rcond(&impl_->cholmod->factor(), &impl_->cholmod->common());
-  const std::vector<double>& pivots = impl_->is_diagonal() ? impl_->inverse_diagonal : impl_->flat->pivots();
-  const auto [least, largest] = std::minmax_element(pivots.begin(), pivots.end());
+  const std::vector<double>& inverse =
+      impl_->is_diagonal() ? impl_->inverse_diagonal : impl_->flat->inverse_pivots();
+  const auto [least, largest] = std::minmax_element(inverse.begin(), inverse.end());
   return *least / *largest;
 }
 
