@@ -89,6 +89,12 @@ void ContactNewton::find_direction() {
     a[j * m + j] += 1.0;
     x[j] = residual_.data()[j];
   }
+  if (m == 2) {  // most often: two stages of gears
+    const double determinant = a[0] * a[3] - a[1] * a[2], x_0 = x[0];
+    x[0] = (x_0 * a[3] - a[1] * x[1]) / determinant;
+    x[1] = (a[0] * x[1] - x_0 * a[2]) / determinant;
+    return;
+  }
   for (std::size_t k = 0; k < m; ++k) {
     std::size_t pivot = k;
     for (std::size_t j = k + 1; j < m; ++j)

@@ -7,31 +7,30 @@
 namespace drev {
 
 EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
-    : assembler_(assembler), mass_(assembler.system().pattern(), assembler.system().mass_values()) {
-  balance_.kinetic = kinetic(start.state);
+    : assembler_(assembler),
+      mass_(assembler.system().pattern(), assembler.system().mass_values()),
+      damped_((assembler.system().damping_values().array() != 0.0).any()) {
+  balance_.kinetic = 0.5 * mass_.energy(start.state.v);
   balance_.stored = stored(start);
   start_energy_ = balance_.kinetic + balance_.stored;
   balance_.given = balance_.scale = start_energy_;
 }
 
-double EnergyMonitor::kinetic(const State& state) {
-  mv_.setZero(state.v.size());
-  mass_.add(1.0, state.v, mv_);
-  return 0.5 * dot(static_cast<int>(mv_.size()), state.v.data(), mv_.data());
+double EnergyMonitor::stored(const StepPoint& point) const {
+  return stored(point, 0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()));
 }
 
-double EnergyMonitor::stored(const StepPoint& point) const {
-  double sum = 0.5 * dot(static_cast<int>(point.kz.size()), point.state.z.data(), point.kz.data()) +
-               point.general_energy;
+double EnergyMonitor::stored(const StepPoint& point, double by_stiffness) const {
+  double sum = by_stiffness + point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }
 
 void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
   const System& system = assembler_.system();
-  auto [input, dissipated] =
+  auto [input, dissipated, by_stiffness] =
       step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
-                from.cv.data(), to.cv.data());
+                damped_ ? from.cv.data() : nullptr, to.cv.data(), to.kz.data());
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
@@ -53,14 +52,18 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
     }
   }
   dissipated += 0.5 * h * (from.general_power + to.general_power);
-  step(to, input, dissipated);
+  enter(to, input, dissipated, stored(to, by_stiffness));
 }
 
 void EnergyMonitor::step(const StepPoint& to, double input, double dissipated) {
+  enter(to, input, dissipated, stored(to));
+}
+
+void EnergyMonitor::enter(const StepPoint& to, double input, double dissipated, double stored) {
   balance_.input += input;
   balance_.dissipated += dissipated;
-  balance_.kinetic = kinetic(to.state);
-  balance_.stored = stored(to);
+  balance_.kinetic = 0.5 * mass_.energy(to.state.v);
+  balance_.stored = stored;
   note(to.state.t);
 }
 

@@ -43,14 +43,15 @@ class EnergyMonitor {
   void restore(const EnergyBalance& balance) { balance_ = balance; }
 
  private:
-  double kinetic(const State& state);
   double stored(const StepPoint& point) const;
+  double stored(const StepPoint& point, double by_stiffness) const;
+  void enter(const StepPoint& to, double input, double dissipated, double stored);
   void note(double t);
 
   const Assembler& assembler_;
   MatrixProduct mass_;
+  bool damped_ = false;  // by constant dampers
   double start_energy_ = 0.0;
-  Vector mv_;
   EnergyBalance balance_;
 };
 

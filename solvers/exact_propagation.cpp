@@ -202,7 +202,7 @@ class ExactRun {
       if (forces)
         evaluate(point, t);
       else
-        evaluate_laws(point, t);
+        evaluate_motion(point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
@@ -285,29 +285,21 @@ class ExactRun {
   }
 
   /// Motion and laws only.
-  void evaluate_laws(StepPoint& point, double t) {
-    const State& s = point.state;
+  void evaluate_motion(StepPoint& point, double t) {
     assembler_.set_time(t);
-    point.inputs.resize(system_.scalars().size());
-    point.responses.resize(system_.scalars().size());
-    for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
-      const ScalarTerm& term = system_.scalars()[j];
-      point.inputs[j] = assembler_.input(term, s.z, s.v);
-      point.responses[j] = term.force->evaluate(point.inputs[j]);
-    }
+    evaluate_laws(assembler_, point);
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
   void evaluate(StepPoint& point, double t) {
     const State& s = point.state;
-    evaluate_laws(point, t);
+    assembler_.set_time(t);
+    evaluate_laws(assembler_, point);
     assembler_.external(s.z, s.v, point.p);
     assembler_.multiply_stiffness(s.z, point.kz);
     assembler_.multiply_damping(s.v, point.cv);
     point.total = point.kz + point.cv - point.p;
-    for (std::size_t j = 0; j < system_.scalars().size(); ++j)
-      for (const Entry& e : system_.scalars()[j].z)
-        point.total[e.index] += e.coeff * point.responses[j].y;
+    add_law_forces(system_, point, 1.0, point.total);
     rhs_ = -point.total;
     series_.solve_mass(rhs_, point.state.a);
   }

@@ -1,10 +1,6 @@
 #include "solvers/matrix_product.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-
-#include "solvers/step_kernels.hpp"
+#include <set>
 
 namespace drev {
 
@@ -16,42 +12,46 @@ MatrixProduct::MatrixProduct(const SparseMatrix& pattern, const Vector& values)
     : pattern_(pattern), values_(values) {
   const int n = static_cast<int>(pattern.rows());
   const int *outer = pattern.outerIndexPtr(), *inner = pattern.innerIndexPtr();
-  std::map<int, std::size_t> place;
+  std::set<int> offsets;
   const auto most = static_cast<std::size_t>(
       kDiagonalFill * (1.0 + static_cast<double>((values.array() != 0.0).count()) / n));
   for (int row = 0; row < n; ++row)
     for (int s = outer[row]; s < outer[row + 1]; ++s)
-      if (values[s] != 0.0 && place.try_emplace(inner[s] - row, place.size()).second &&
-          place.size() > most) {
+      if (values[s] != 0.0 && inner[s] >= row && offsets.insert(inner[s] - row).second &&
+          2 * offsets.size() > most + 1) {
         by_rows_ = true;
         return;
       }
-  diagonals_.resize(place.size());
-  for (const auto& [offset, k] : place)
-    diagonals_[k] = {offset, std::vector<double>(at(n - std::abs(offset)), 0.0)};
+  for (const int offset : offsets) bands_.push_back({offset, std::vector<double>(at(n - offset), 0.0)});
   for (int row = 0; row < n; ++row)
     for (int s = outer[row]; s < outer[row + 1]; ++s)
-      if (values[s] != 0.0) {
-        const int offset = inner[s] - row;
-        diagonals_[place.at(offset)].values[at(row + std::min(offset, 0))] = values[s];
-      }
+      if (values[s] != 0.0)
+        for (Band& band : bands_)
+          if (band.offset == inner[s] - row) band.values[at(row)] = values[s];
 }
 
-void MatrixProduct::add(double factor, const Vector& x, Vector& out) const {
-  if (by_rows_) {
-    const int *outer = pattern_.outerIndexPtr(), *inner = pattern_.innerIndexPtr();
-    for (int row = 0; row < pattern_.rows(); ++row) {
-      double sum = 0.0;
-      for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values_[s] * x[inner[s]];
-      out[row] += factor * sum;
-    }
-    return;
-  }
-  for (const Diagonal& d : diagonals_) {
-    const int first_row = std::max(-d.offset, 0), first_column = std::max(d.offset, 0);
-    add_scaled(static_cast<int>(d.values.size()), factor, d.values.data(), x.data() + first_column,
-               out.data() + first_row);
-  }
+double MatrixProduct::row(const Vector& x, int i) const {
+  const int *outer = pattern_.outerIndexPtr(), *inner = pattern_.innerIndexPtr();
+  double sum = 0.0;
+  for (int s = outer[i]; s < outer[i + 1]; ++s) sum += values_[s] * x[inner[s]];
+  return sum;
+}
+
+void MatrixProduct::apply(double factor, const Vector& x, const double* y, Vector& out) const {
+  const int n = static_cast<int>(x.size());
+  out.resize(n);
+  if (by_rows_)
+    for (int i = 0; i < n; ++i) out[i] = (y ? y[i] : 0.0) + factor * row(x, i);
+  else
+    band_product(n, bands_, factor, x.data(), y, out.data());
+}
+
+double MatrixProduct::energy(const Vector& x) const {
+  const int n = static_cast<int>(x.size());
+  if (!by_rows_) return band_energy(n, bands_, x.data());
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) sum += x[i] * row(x, i);
+  return sum;
 }
 
 }  // namespace drev

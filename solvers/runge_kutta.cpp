@@ -46,7 +46,6 @@ NewtonResult RungeKutta::step(const StepPoint& from, double h, double t_new, dou
     }
     combine(from, h, row, stride, i, problem_.z_0, problem_.v_0);
     problem_.z_0 += (g * h) * problem_.v_0;
-    problem_.known.setZero(from.state.z.size());
     problem_.h = h;
     problem_.a_start = i == 0 ? &from.state.a : &acceleration_[at(i - 1)];
     problem_.history = &from.state.history;

@@ -23,6 +23,9 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
       options_(options),
       dense_(system.generals().empty() &&
              static_cast<int>(system.scalars().size()) <= options.max_dense_contacts),
+      phases_(std::any_of(system.scalars().begin(), system.scalars().end(),
+                          [](const ScalarTerm& term) { return term.phase_node >= 0; })),
+      moves_(phases_ || system.table_loads().size() > 0 || system.loads_depend_on_motion()),
       mass_product_(system.pattern(), system.mass_values()),
       damping_(system.pattern(), system.damping_values()),
       stiffness_(system.pattern(), system.stiffness_values()),
@@ -97,12 +100,7 @@ void StepEquation::solve(Factor& f, const Vector& b, Vector& x) {
 }
 
 void StepEquation::evaluate(const Vector& history, StepPoint& point, Vector* history_new) {
-  point.inputs.resize(system_.scalars().size());
-  point.responses.resize(system_.scalars().size());
-  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
-    point.inputs[j] = assembler_.input(system_.scalars()[j], point.state.z, point.state.v);
-    point.responses[j] = system_.scalars()[j].force->evaluate(point.inputs[j]);
-  }
+  evaluate_laws(assembler_, point);
   assembler_.external(point.state.z, point.state.v, point.p);
   evaluate_totals(history, point, history_new);
 }
@@ -112,9 +110,7 @@ void StepEquation::evaluate_totals(const Vector& history, StepPoint& point, Vect
   assembler_.multiply_stiffness(s.z, point.kz);
   assembler_.multiply_damping(s.v, point.cv);
   point.total = point.kz + point.cv - point.p;
-  for (std::size_t j = 0; j < system_.scalars().size(); ++j)
-    for (const Entry& e : system_.scalars()[j].z)
-      point.total[e.index] += e.coeff * point.responses[j].y;
+  add_law_forces(system_, point, 1.0, point.total);
   if (!system_.generals().empty()) {
     history_.resize(system_.history_size());
     assembler_.add_general_forces(s.z, s.v, history, point.total, history_);
@@ -167,20 +163,27 @@ NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {
 void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
   if (!dense_) return evaluate_totals(from.state.history, to, nullptr);
   const StepScheme& c = scheme_;
-  to.total.setZero(to.p.size());
-  mass_product_.add(-(1.0 - c.alpha_m) / (1.0 - c.alpha_f), to.state.a, to.total);
-  if (c.alpha_m != 0.0) mass_product_.add(-c.alpha_m / (1.0 - c.alpha_f), a_0, to.total);
+  const double* cv = nullptr;
+  mass_product_.multiply(-(1.0 - c.alpha_m) / (1.0 - c.alpha_f), to.state.a, to.total);
+  if (c.alpha_m != 0.0) {
+    mass_product_.multiply_add(-c.alpha_m / (1.0 - c.alpha_f), a_0, to.total, scratch_);
+    to.total.swap(scratch_);
+  }
   if (c.alpha_f != 0.0) to.total -= (c.alpha_f / (1.0 - c.alpha_f)) * from.total;
-  to.cv.setZero(to.p.size());
-  damping_.add(1.0, to.state.v, to.cv);
-  to.kz = to.total + to.p - to.cv;
-  for (std::size_t j = 0; j < system_.scalars().size(); ++j)
-    for (const Entry& e : system_.scalars()[j].z) to.kz[e.index] -= e.coeff * to.responses[j].y;
+  if (!damping_.zero()) {
+    damping_.multiply(1.0, to.state.v, to.cv);
+    cv = to.cv.data();
+  } else if (to.cv.size() != to.p.size()) {
+    to.cv.setZero(to.p.size());
+  }
+  to.kz.resize(to.p.size());
+  elastic_forces(system_.size(), to.total.data(), to.p.data(), cv, to.kz.data());
+  add_law_forces(system_, to, -1.0, to.kz);
 }
 
 double StepEquation::correct(const Problem& problem, StepPoint& to) const {
   const int n = system_.size();
-  to.state.z.resize(n);
+  if (to.state.z.size() != n) to.state.z.setZero(n);  // its change is taken
   to.state.v.resize(n);
   return correct_motion(n, scheme_.beta * problem.h * problem.h, scheme_.gamma * problem.h,
                         problem.z_0.data(), problem.v_0.data(), to.state.a.data(),
@@ -192,14 +195,20 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   const double phi = 1.0 - scheme_.alpha_f;
   const int n = system_.size();
   const std::size_t m = system_.scalars().size();
-  stiffness_.add(-phi, problem.z_0, problem.known);
-  damping_.add(-phi, problem.v_0, problem.known);
+  stiffness_.multiply(-phi, problem.z_0, linear_);
+  if (!damping_.zero()) {
+    damping_.multiply_add(-phi, problem.v_0, linear_, scratch_);
+    linear_.swap(scratch_);
+  }
+  if (problem.known) linear_ += *problem.known;
 
   // Loads start at the state that the old acceleration predicts. The mesh phase is taken there too: it is
   // off by O(h^3), and a stepped stiffness cannot flip to and fro inside the iteration. Methods of higher
   // order take it anew in the first passes.
-  to.state.a = *problem.a_start;
-  correct(problem, to);
+  if (moves_) {
+    to.state.a = *problem.a_start;
+    correct(problem, to);
+  }
   clock_.enter(Phase::loads);
   assembler_.external(to.state.z, to.state.v, to.p);
   to.inputs.resize(m);
@@ -211,10 +220,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
         phase[j].angle = assembler_.node_angle(system_.scalars()[j].phase_node, to.state.z);
   };
   take_phase();
-  int phase_passes = 1;
-  if (scheme_.order() > 2)
-    for (const ScalarTerm& term : system_.scalars())
-      if (term.phase_node >= 0) phase_passes = kPhasePasses;
+  const int phase_passes = phases_ && scheme_.order() > 2 ? kPhasePasses : 1;
   lambda_start_ = lambda_;
   const double kappa_z = scheme_.beta * problem.h * problem.h, kappa_v = scheme_.gamma * problem.h;
   for (std::size_t j = 0; j < m; ++j)
@@ -226,7 +232,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     ++load_passes_;
     clock_.enter(Phase::linear);
     rhs_.resize(n);
-    sum_with(n, problem.known.data(), phi, to.p.data(), rhs_.data());
+    sum_with(n, linear_.data(), phi, to.p.data(), rhs_.data());
     solve(f, rhs_, to.state.a);
     const double scale = force_scale_ > 0.0 ? force_scale_ : largest_size(n, to.p.data());
     if (m > 0) {
@@ -292,7 +298,10 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
 
 NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
   const double phi = 1.0 - scheme_.alpha_f, h = problem.h;
-  scratch_ = -problem.known;
+  if (problem.known)
+    scratch_ = -*problem.known;
+  else
+    scratch_.setZero(system_.size());
   const SparseNewtonProblem sparse{.mu = 1.0 - scheme_.alpha_m,
                                    .phi = phi,
                                    .kappa_z = scheme_.beta * h * h,
@@ -306,12 +315,7 @@ NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
   solves_ += result.iterations;
   if (result.status != NewtonStatus::converged) return result;
   correct(problem, to);
-  to.inputs.resize(system_.scalars().size());
-  to.responses.resize(system_.scalars().size());
-  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
-    to.inputs[j] = assembler_.input(system_.scalars()[j], to.state.z, to.state.v);
-    to.responses[j] = system_.scalars()[j].force->evaluate(to.inputs[j]);
-  }
+  evaluate_laws(assembler_, to);
   assembler_.external(to.state.z, to.state.v, to.p);
   return result;
 }

@@ -45,7 +45,7 @@ class StepEquation {
   struct Problem {
     double h = 0.0;                      ///< s
     Vector z_0, v_0;                     ///< motion with a = 0
-    Vector known;                        ///< right side; used up
+    const Vector* known = nullptr;       ///< right side; null: 0
     const Vector* a_start = nullptr;     ///< where loads, phase and Newton start
     const Vector* history = nullptr;     ///< of the general elements before the step
     /// A force that jumps and leaves no root: take the value inside the jump at which the law stands on
@@ -106,11 +106,13 @@ class StepEquation {
   StepScheme scheme_;
   StepOptions options_;
   bool dense_ = true;
+  bool phases_ = false;  // a law follows the angle of a node
+  bool moves_ = false;   // loads or phases look at the motion
   std::vector<std::unique_ptr<Factor>> factors_;  // used last, last
   SparseCholesky mass_;
   MatrixProduct mass_product_, damping_, stiffness_;
   std::unique_ptr<SparseNewton> sparse_;
-  Vector rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
+  Vector linear_, rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
   std::vector<ScalarInput> still_, free_;  // what the laws would see without acceleration, without forces
   double force_scale_ = 0.0;
   PhaseClock clock_;

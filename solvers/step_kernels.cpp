@@ -84,6 +84,97 @@ template <int kBlocks>
   for (int l = 0; l < rest; ++l) out[(kBlocks - 1) * kLanes + l] = sum[kBlocks - 1][l];
 }
 
+/// Rows that stay in the nearest cache while band after band is added.
+constexpr int kBlock = 512;
+
+[[gnu::always_inline]] inline void diagonal_product(int n, const double* __restrict d, double factor,
+                                                    const double* __restrict x, const double* __restrict y,
+                                                    double* __restrict out) {
+  if (y)
+    for (int i = 0; i < n; ++i) out[i] = y[i] + factor * d[i] * x[i];
+  else
+    for (int i = 0; i < n; ++i) out[i] = factor * d[i] * x[i];
+}
+
+/// The main diagonal and one band, in one pass.
+template <bool kAdds>
+[[gnu::always_inline]] inline void two_bands(int n, const Band* bands, double factor, const double* x,
+                                             const double* y, double* out) {
+  const int k = bands[1].offset;
+  const double *d = bands[0].values.data(), *e = bands[1].values.data();
+  const auto one = [&](int i, bool has_before, bool has_after) __attribute__((always_inline)) {
+    double sum = d[i] * x[i];
+    if (has_after) sum += e[i] * x[i + k];
+    if (has_before) sum += e[i - k] * x[i - k];
+    out[i] = (kAdds ? y[i] : 0.0) + factor * sum;
+  };
+  const int low = k < n ? k : n, high = n - k > low ? n - k : low;
+  for (int i = 0; i < low; ++i) one(i, false, i + k < n);
+  for (int i = high; i < n; ++i) one(i, true, false);
+  if (high - low < kLanes) {
+    for (int i = low; i < high; ++i) one(i, true, true);
+    return;
+  }
+  for_blocks(high - low, [&](int j) __attribute__((always_inline)) {
+    const int i = low + j;
+    Lanes sum, a, b;
+    load(d + i, a);
+    load(x + i, b);
+    sum = a * b;
+    load(e + i, a);
+    load(x + i + k, b);
+    sum += a * b;
+    load(e + i - k, a);
+    load(x + i - k, b);
+    sum += a * b;
+    sum *= factor;
+    if (kAdds) {
+      load(y + i, a);
+      sum += a;
+    }
+    store(sum, out + i);
+  });
+}
+
+[[gnu::always_inline]] inline void add_band(int first, int last, double factor, const double* __restrict d,
+                                            const double* __restrict x, double* __restrict out) {
+  for (int i = first; i < last; ++i) out[i] += factor * d[i] * x[i];
+}
+
+template <bool kDamped>
+[[gnu::always_inline]] inline StepWork work_of(int n, const double* z_0, const double* z_1,
+                                               const double* p_0, const double* p_1, const double* cv_0,
+                                               const double* cv_1, const double* kz_1) {
+  Lanes input{}, dissipated{}, stored{}, a, b, dz;
+  int i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    load(z_1 + i, dz);
+    load(kz_1 + i, a);
+    stored += dz * a;
+    load(z_0 + i, a);
+    dz -= a;
+    load(p_0 + i, a);
+    load(p_1 + i, b);
+    input += dz * (a + b);
+    if (kDamped) {
+      load(cv_0 + i, a);
+      load(cv_1 + i, b);
+      dissipated += dz * (a + b);
+    }
+  }
+  StepWork work{sum_of(input), sum_of(dissipated), sum_of(stored)};
+  for (; i < n; ++i) {
+    const double d = z_1[i] - z_0[i];
+    work.stored += z_1[i] * kz_1[i];
+    work.input += d * (p_0[i] + p_1[i]);
+    if (kDamped) work.dissipated += d * (cv_0[i] + cv_1[i]);
+  }
+  work.input *= 0.5;
+  work.dissipated *= 0.5;
+  work.stored *= 0.5;
+  return work;
+}
+
 }  // namespace
 
 DREV_WIDEST
@@ -133,9 +224,12 @@ void sum_with(int n, const double* __restrict y, double factor, const double* __
 }
 
 DREV_WIDEST
-void add_scaled(int n, double factor, const double* __restrict d, const double* __restrict x,
-                double* __restrict out) {
-  for (int i = 0; i < n; ++i) out[i] += factor * d[i] * x[i];
+void elastic_forces(int n, const double* __restrict total, const double* __restrict p,
+                    const double* __restrict cv, double* __restrict out) {
+  if (cv)
+    for (int i = 0; i < n; ++i) out[i] = total[i] + p[i] - cv[i];
+  else
+    for (int i = 0; i < n; ++i) out[i] = total[i] + p[i];
 }
 
 DREV_WIDEST
@@ -167,30 +261,51 @@ void dense_product(int n, int stride, const double* columns, const double* x, do
 }
 
 DREV_WIDEST
+void band_product(int n, const std::vector<Band>& bands, double factor, const double* x, const double* y,
+                  double* out) {
+  if (bands.size() == 1 && bands[0].offset == 0)
+    return diagonal_product(n, bands[0].values.data(), factor, x, y, out);
+  if (bands.size() == 2 && bands[0].offset == 0)
+    return y ? two_bands<true>(n, bands.data(), factor, x, y, out)
+             : two_bands<false>(n, bands.data(), factor, x, y, out);
+  for (int first = 0; first < n; first += kBlock) {
+    const int last = first + kBlock < n ? first + kBlock : n;
+    for (int i = first; i < last; ++i) out[i] = y ? y[i] : 0.0;
+    for (const Band& band : bands) {
+      const int k = band.offset, end = last < n - k ? last : n - k;
+      const double* d = band.values.data();
+      add_band(first, end, factor, d, x + k, out);
+      if (k > 0) add_band(first > k ? first : k, last, factor, d - k, x - k, out);
+    }
+  }
+}
+
+DREV_WIDEST
+double band_energy(int n, const std::vector<Band>& bands, const double* x) {
+  double energy = 0.0;
+  for (const Band& band : bands) {
+    const int k = band.offset, m = n - k;
+    const double *d = band.values.data(), *other = x + k;
+    Lanes sum{}, a, b, c;
+    int i = 0;
+    for (; i + kLanes <= m; i += kLanes) {
+      load(d + i, a);
+      load(x + i, b);
+      load(other + i, c);
+      sum += a * b * c;
+    }
+    double part = sum_of(sum);
+    for (; i < m; ++i) part += d[i] * x[i] * other[i];
+    energy += k > 0 ? 2.0 * part : part;
+  }
+  return energy;
+}
+
+DREV_WIDEST
 StepWork step_work(int n, const double* z_0, const double* z_1, const double* p_0, const double* p_1,
-                   const double* cv_0, const double* cv_1) {
-  Lanes input{}, dissipated{}, a, b, dz;
-  int i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    load(z_1 + i, dz);
-    load(z_0 + i, a);
-    dz -= a;
-    load(p_0 + i, a);
-    load(p_1 + i, b);
-    input += dz * (a + b);
-    load(cv_0 + i, a);
-    load(cv_1 + i, b);
-    dissipated += dz * (a + b);
-  }
-  StepWork work{sum_of(input), sum_of(dissipated)};
-  for (; i < n; ++i) {
-    const double d = z_1[i] - z_0[i];
-    work.input += d * (p_0[i] + p_1[i]);
-    work.dissipated += d * (cv_0[i] + cv_1[i]);
-  }
-  work.input *= 0.5;
-  work.dissipated *= 0.5;
-  return work;
+                   const double* cv_0, const double* cv_1, const double* kz_1) {
+  return cv_0 ? work_of<true>(n, z_0, z_1, p_0, p_1, cv_0, cv_1, kz_1)
+              : work_of<false>(n, z_0, z_1, p_0, p_1, cv_0, cv_1, kz_1);
 }
 
 DREV_WIDEST

@@ -20,4 +20,9 @@ struct StepPoint {
   double general_power = 0.0;             ///< W, dissipated there
 };
 
+/// Inputs and responses of all laws at the point's motion and the assembler's time.
+void evaluate_laws(const Assembler& assembler, StepPoint& point);
+/// f += factor B y with the point's responses.
+void add_law_forces(const System& system, const StepPoint& point, double factor, Vector& f);
+
 }  // namespace drev

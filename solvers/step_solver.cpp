@@ -44,12 +44,15 @@ NewtonResult StepSolver::step_from(const Vector& a, const StepPoint& from, doubl
   predict_motion(static_cast<int>(s.z.size()), h, h * h * (0.5 - c.beta), h * (1.0 - c.gamma), s.z.data(),
                  s.v.data(), a.data(), problem_.z_0.data(), problem_.v_0.data());
   // What of the residual is known: alpha_m M a0 + alpha_f F0.
-  problem_.known.setZero(s.z.size());
-  if (c.alpha_m != 0.0) {
-    equation_.assembler().multiply_mass(a, scratch_);
-    problem_.known -= c.alpha_m * scratch_;
+  problem_.known = nullptr;
+  if (c.alpha_m != 0.0 || c.alpha_f != 0.0) {
+    known_ = -c.alpha_f * from.total;
+    if (c.alpha_m != 0.0) {
+      equation_.assembler().multiply_mass(a, scratch_);
+      known_ -= c.alpha_m * scratch_;
+    }
+    problem_.known = &known_;
   }
-  if (c.alpha_f != 0.0) problem_.known -= c.alpha_f * from.total;
   problem_.h = h;
   problem_.a_start = &s.a;
   problem_.history = &s.history;

@@ -24,7 +24,7 @@ class StepSolver final : public Stepper {
                          bool accept_jump);
 
   StepEquation::Problem problem_;
-  Vector scratch_, a_0_, a_1_, a_shifted_;
+  Vector known_, scratch_, a_0_, a_1_, a_shifted_;
 };
 
 }  // namespace drev
