@@ -164,14 +164,12 @@ RunPlan plan_run(const RunRequest& request) {
 }
 
 std::vector<Channel> mesh_channels(const System& system) {
-  std::vector<Channel> found;
-  for (const Channel& channel : all_channels(system))
-    for (const ScalarTerm& term : system.scalars()) {
-      const std::string& element = system.placements()[static_cast<std::size_t>(term.element)].name;
-      if (channel.name() == element + ".force_N" &&
-          (term.along_line_of_action || term.force->gap()))
-        found.push_back(channel);
-    }
+  std::vector<Channel> found = all_channels(system);
+  std::erase_if(found, [&](const Channel& channel) {
+    const int law = channel.force_of();
+    const bool gapped = law >= 0 && system.scalars()[static_cast<std::size_t>(law)].force->gap();
+    return !channel.along_line_of_action() && !gapped;
+  });
   return found;
 }
 

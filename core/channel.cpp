@@ -14,19 +14,20 @@ class ChannelFinder {
     for (int i = 0; i < system.node_count(); ++i) add_node(i);
     for (const OutputTerm& o : system.outputs()) {
       const auto& row = o.stiffness.empty() ? o.damping : o.stiffness;
-      const bool turns = row.empty() || rotational(row.front().index);
-      const std::string suffix = o.suffix.empty() ? "" : "_" + o.suffix;
-      add(element(o.element) + suffix + force_name(turns), force_unit(turns), Channel::Kind::output, 0, &o);
+      const bool turns = !o.along_line_of_action && (row.empty() || rotational(row.front().index));
+      const std::string name = element(o.element) + (o.suffix.empty() ? "" : "_" + o.suffix);
+      add(name + (o.deflection ? deflection_name(turns) : force_name(turns)),
+          o.deflection ? deflection_unit(turns) : force_unit(turns), Channel::Kind::output, 0,
+          o.along_line_of_action && !o.deflection, &o);
     }
     for (std::size_t j = 0; j < system.scalars().size(); ++j) {
       const ScalarTerm& s = system.scalars()[j];
       const Placement& p = system.placements()[at(index(s.element))];
-      const bool line = s.along_line_of_action;
-      const bool turns = !line && rotational(s.nodes.front().index);
-      add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force,
+      const bool turns = !s.along_line_of_action && rotational(s.nodes.front().index);
+      add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force, static_cast<int>(j),
+          s.along_line_of_action);
+      add(p.name + deflection_name(turns), deflection_unit(turns), Channel::Kind::deflection,
           static_cast<int>(j));
-      add(p.name + (turns ? ".deflection_rad" : ".deflection_m"), turns ? "rad" : "m",
-          Channel::Kind::deflection, static_cast<int>(j));
     }
     for (std::size_t l = 0; l < system.loads().size(); ++l) {
       const bool turns = rotational(system.loads()[l].node);
@@ -68,13 +69,14 @@ class ChannelFinder {
 
  private:
   void add(std::string name, std::string unit, Channel::Kind kind, int index,
-           const OutputTerm* output = nullptr) {
+           bool along_line_of_action = false, const OutputTerm* output = nullptr) {
     if (wanted_ && !wanted_->contains(name)) return;
     Channel c;
     c.name_ = std::move(name);
     c.unit_ = std::move(unit);
     c.kind_ = kind;
     c.index_ = index;
+    c.along_line_of_action_ = along_line_of_action;
     make_direct(c, output);
     channels.push_back(std::move(c));
   }
@@ -124,6 +126,8 @@ class ChannelFinder {
   }
   static std::string force_name(bool turns) { return turns ? ".torque_Nm" : ".force_N"; }
   static std::string force_unit(bool turns) { return turns ? "N m" : "N"; }
+  static std::string deflection_name(bool turns) { return turns ? ".deflection_rad" : ".deflection_m"; }
+  static std::string deflection_unit(bool turns) { return turns ? "rad" : "m"; }
   bool rotational(int node) const { return system_.node_kind(node) == NodeKind::rotational; }
   std::string element(ElementId id) const { return system_.placements()[at(index(id))].name; }
   int node(const std::string& name) const {

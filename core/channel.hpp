@@ -38,6 +38,8 @@ class Channel {
   bool is_linear() const { return direct_; }
   const std::vector<Entry>& z_row() const { return z_; }
   const std::vector<Entry>& v_row() const { return v_; }
+  /// The force between two flanks.
+  bool along_line_of_action() const { return along_line_of_action_; }
   /// The scalar term whose force, or deflection, it is; else -1.
   int force_of() const { return kind_ == Kind::force ? index_ : -1; }
   int deflection_of() const { return kind_ == Kind::deflection ? index_ : -1; }
@@ -50,6 +52,7 @@ class Channel {
   std::string name_, unit_;
   Kind kind_ = Kind::value;
   int index_ = 0, second_ = 0;
+  bool along_line_of_action_ = false;
   /// Where the value is linear in the unknowns: its rows over z and v, so that no node is looked up.
   bool direct_ = false;
   std::vector<Entry> z_, v_;

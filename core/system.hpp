@@ -64,11 +64,13 @@ struct GeneralTerm {
   std::vector<int> slots;  ///< -1 where a node is prescribed
 };
 
-/// A force or torque to report, over nodes.
+/// A force or torque to report, or the deflection of a law that is a straight line, over nodes.
 struct OutputTerm {
   ElementId element{};
   std::string suffix;
   std::vector<Entry> stiffness, damping;
+  bool along_line_of_action = false;
+  bool deflection = false;
 };
 
 /// b_first q_first + b_second q_second = 0, exactly.
@@ -145,6 +147,7 @@ class System {
   const Vector& nominal_inertia() const { return nominal_inertia_; }
   const Vector& nominal_drag() const { return nominal_drag_; }
 
+  /// The scalar terms whose laws are no straight lines; those that are stand in the matrices.
   const std::vector<ScalarTerm>& scalars() const { return scalars_; }
   const std::vector<LoadTerm>& loads() const { return loads_; }
   /// Those of the loads on unknowns that are tables of even spacing.

@@ -96,6 +96,19 @@ void SystemBuilder::keep_entries(const std::vector<int>& nodes, const Eigen::Mat
         sum.add(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], matrix(i, j));
 }
 
+namespace {
+
+/// The piece k x + c x' of a law that is nothing else; null for other laws.
+const LawPiece* straight_line(const ScalarSpec& s) {
+  const std::span<const LawPiece> pieces = s.force->pieces();
+  if (s.phase_node >= 0 || pieces.size() != 1) return nullptr;
+  const LawPiece& p = pieces.front();
+  const bool straight = p.bounds.empty() && p.y_0 == 0.0 && p.elastic_0 == 0.0 && p.elastic_k == p.k;
+  return straight ? &p : nullptr;
+}
+
+}  // namespace
+
 void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms& terms) {
   const ElementId id{element};
   keep_entries(nodes, terms.mass, mass_[terms.rayleigh]);
@@ -119,6 +132,12 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     system_.ideal_ratios_.push_back({id, b[0].index, b[1].index, b[0].coeff, b[1].coeff});
   }
   for (const ScalarSpec& s : terms.scalars) {
+    if (const LawPiece* line = straight_line(s)) {
+      const Eigen::MatrixXd square = s.b * s.b.transpose();
+      keep_entries(nodes, line->c * square, damping_);
+      keep_entries(nodes, line->k * square, stiffness_[false]);
+      continue;
+    }
     ScalarTerm term;
     term.element = id;
     term.force = s.force;
@@ -146,9 +165,16 @@ std::vector<OutputTerm> System::outputs() const {
     for (const NodeId id : p.internal) nodes.push_back(index(id));
     Terms terms(static_cast<int>(nodes.size()));
     p.element->describe(static_cast<int>(nodes.size()), terms);
+    const ElementId id{static_cast<int>(e)};
     for (OutputSpec& o : terms.outputs)
-      outputs.push_back({ElementId{static_cast<int>(e)}, std::move(o.suffix), over_nodes(o.stiffness, nodes),
-                         over_nodes(o.damping, nodes)});
+      outputs.push_back(
+          {id, std::move(o.suffix), over_nodes(o.stiffness, nodes), over_nodes(o.damping, nodes)});
+    for (const ScalarSpec& s : terms.scalars)
+      if (const LawPiece* line = straight_line(s)) {
+        const bool along = s.along_line_of_action;
+        outputs.push_back({id, "", over_nodes(line->k * s.b, nodes), over_nodes(line->c * s.b, nodes), along});
+        outputs.push_back({id, "", over_nodes(s.b, nodes), {}, along, true});
+      }
   }
   return outputs;
 }
