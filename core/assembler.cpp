@@ -77,7 +77,7 @@ void Assembler::find_known() const {
     add_torque(system_.node_map(term.node),
                load(term, system_.initial_deviation(), system_.initial_rate()).torque, known_);
   }
-  system_.table_loads().set_nominal(nominal_.value, tables_);
+  if (system_.table_loads().size() > 0) system_.table_loads().set_nominal(nominal_.value, tables_);
   known_found_ = true;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "solvers/line_search.hpp"
 
@@ -32,6 +33,7 @@ ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, d
       responses_(system.scalars().size()),
       tangent_(system.scalars().size() * system.scalars().size()),
       x_start_(system.scalars().size()),
+      last_free_(system.scalars().size()),
       residual_(compliance_.rows()),
       direction_(compliance_.rows()),
       g_direction_(compliance_.rows()),
@@ -39,7 +41,7 @@ ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, d
   for (const ScalarTerm& term : system.scalars()) laws_.push_back(term.force);
 }
 
-double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vector& lambda) {
+double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vector& lambda, double limit) {
   const std::size_t m = laws_.size();
   const double* force = lambda.data();
   double size = 0.0;
@@ -49,11 +51,13 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
     for (std::size_t i = 0; i < m; ++i) shift += row[i] * force[i];
     const ScalarInput& in_0 = free[j];
     ScalarInput& in = inputs_[j];
-    in = in_0;
-    in.x -= kappa_x_ * shift;
-    in.x_dot -= kappa_v_ * shift;
-    const ScalarResponse& r = responses_[j] = laws_[j]->evaluate(in);
+    in.x = in_0.x - kappa_x_ * shift;
+    in.x_dot = in_0.x_dot - kappa_v_ * shift;
+    in.t = in_0.t;
+    in.angle = in_0.angle;
+    const ScalarResponse& r = *std::construct_at(&responses_[j], laws_[j]->evaluate(in));  // without a copy
     const double residual = residual_.data()[j] = r.y - force[j];
+    if (std::abs(residual) <= limit) continue;
     // What rounding of x and x' alone does to the force of a stiff contact is no error of Newton's.
     const double rounding =
         kRounding * (std::abs(r.dy_dx) * (std::abs(in.x) + std::abs(in_0.x)) +
@@ -67,33 +71,36 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
 void ContactNewton::expect(const std::vector<ScalarInput>& free, Vector& lambda) {
   const std::size_t m = laws_.size();
   for (std::size_t j = 0; j < m; ++j) {
-    double shift = 0.0;
-    for (std::size_t i = 0; i < m; ++i) shift += compliance_.data()[j * m + i] * lambda.data()[i];
     const ScalarResponse& r = responses_[j];
-    residual_.data()[j] = r.y + r.dy_dx * (free[j].x - kappa_x_ * shift - inputs_[j].x) +
-                          r.dy_dx_dot * (free[j].x_dot - kappa_v_ * shift - inputs_[j].x_dot) -
-                          lambda.data()[j];
+    lambda.data()[j] = r.y - residual_.data()[j];  // where they were evaluated
+    residual_.data()[j] += r.dy_dx * (free[j].x - last_free_[j].x) +
+                           r.dy_dx_dot * (free[j].x_dot - last_free_[j].x_dot);
   }
   find_direction();
   for (std::size_t j = 0; j < m; ++j) lambda.data()[j] += direction_.data()[j];
 }
 
 void ContactNewton::find_direction() {
-  // Gauss' elimination with partial pivoting: for a handful of rows a library's call costs several times
-  // its arithmetic.
   const std::size_t m = laws_.size();
   double *a = tangent_.data(), *x = direction_.data();
-  for (std::size_t j = 0; j < m; ++j) {
-    const double slope = kappa_x_ * responses_[j].dy_dx + kappa_v_ * responses_[j].dy_dx_dot;
-    for (std::size_t i = 0; i < m; ++i) a[j * m + i] = slope * compliance_.data()[j * m + i];
-    a[j * m + j] += 1.0;
-    x[j] = residual_.data()[j];
-  }
+  const double *g = compliance_.data(), *r = residual_.data();
+  const auto slope = [this](std::size_t j) {
+    return kappa_x_ * responses_[j].dy_dx + kappa_v_ * responses_[j].dy_dx_dot;
+  };
   if (m == 2) {  // most often: two stages of gears
-    const double determinant = a[0] * a[3] - a[1] * a[2], x_0 = x[0];
-    x[0] = (x_0 * a[3] - a[1] * x[1]) / determinant;
-    x[1] = (a[0] * x[1] - x_0 * a[2]) / determinant;
+    const double d_0 = slope(0), d_1 = slope(1), a_00 = 1.0 + d_0 * g[0], a_01 = d_0 * g[1],
+                 a_10 = d_1 * g[1], a_11 = 1.0 + d_1 * g[3], over = 1.0 / (a_00 * a_11 - a_01 * a_10);
+    x[0] = over * (a_11 * r[0] - a_01 * r[1]);
+    x[1] = over * (a_00 * r[1] - a_10 * r[0]);
     return;
+  }
+  // Gauss' elimination with partial pivoting: for a handful of rows a library's call costs several times
+  // its arithmetic.
+  for (std::size_t j = 0; j < m; ++j) {
+    const double d = slope(j);
+    for (std::size_t i = 0; i < m; ++i) a[j * m + i] = d * g[j * m + i];
+    a[j * m + j] += 1.0;
+    x[j] = r[j];
   }
   for (std::size_t k = 0; k < m; ++k) {
     std::size_t pivot = k;
@@ -124,7 +131,8 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
     expect(free, lambda);
     ++result.iterations;
   }
-  double size = evaluate(free, lambda);
+  for (std::size_t j = 0; j < laws_.size(); ++j) last_free_[j] = {free[j].x, free[j].x_dot};
+  double size = evaluate(free, lambda, limit);
   evaluated_ = std::isfinite(size);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     if (!std::isfinite(size)) {
@@ -141,14 +149,14 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
     const double g_0 = options.line_search ? descent() : 0.0;
     for (std::size_t j = 0; j < laws_.size(); ++j)
       trial_.data()[j] = lambda.data()[j] + direction_.data()[j];
-    size = evaluate(free, trial_);
+    size = evaluate(free, trial_, limit);
     if (size <= limit || !(g_0 < 0.0)) {
       lambda.swap(trial_);
       continue;
     }
     result.status = search_line(free, force_scale, g_0, lambda);
     if (result.status != NewtonStatus::converged) return result;
-    size = evaluate(free, lambda);
+    size = evaluate(free, lambda, limit);
   }
   result.status = NewtonStatus::too_many_steps;
   return result;
@@ -178,7 +186,7 @@ NewtonStatus ContactNewton::search_line(const std::vector<ScalarInput>& free, do
   }
   const auto slope = [&](double alpha) {
     trial_ = lambda + alpha * direction_;
-    evaluate(free, trial_);
+    evaluate(free, trial_, 0.0);
     return -g_direction_.dot(residual_);
   };
   direction_ *= exact_line_search(slope, g_0, kinks_);

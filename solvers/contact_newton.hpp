@@ -52,9 +52,10 @@ class ContactNewton {
   const std::vector<ScalarResponse>& responses() const { return responses_; }
 
  private:
-  /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding.
-  double evaluate(const std::vector<ScalarInput>& free, const Vector& lambda);
-  /// Newton's step from lambda by the slopes of the solve() before.
+  /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding; what is
+  /// not above the limit is not looked at.
+  double evaluate(const std::vector<ScalarInput>& free, const Vector& lambda, double limit);
+  /// Newton's step from the last lambda of the solve() before, by its slopes, to what is free now.
   void expect(const std::vector<ScalarInput>& free, Vector& lambda);
   /// direction_ = (I + D G)^-1 residual_, D = kappa_x dy/dx + kappa_v dy/dx'.
   void find_direction();
@@ -67,10 +68,14 @@ class ContactNewton {
   std::vector<const ScalarForce*> laws_;
   Eigen::MatrixXd compliance_;  // G, symmetric
   double kappa_x_ = 0.0, kappa_v_ = 0.0;
-  bool evaluated_ = false;  // inputs_ and responses_ are of a solve() before
+  bool evaluated_ = false;  // responses_, residual_ and last_free_ are of a solve() before
   std::vector<ScalarInput> inputs_;
   std::vector<ScalarResponse> responses_;
   std::vector<double> tangent_, x_start_, kinks_;
+  struct Free {
+    double x, x_dot;
+  };
+  std::vector<Free> last_free_;  // of the solve() before
   Vector residual_, direction_, g_direction_, trial_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/lanes.hpp"
 #include "solvers/step_kernels.hpp"
 
 namespace drev {
@@ -37,8 +36,10 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
 }
 
 StepEquation::Factor& StepEquation::factor(double h) {
+  const auto fits = [h](const auto& f) { return std::abs(f->h - h) <= kSameStep * h; };
+  if (!factors_.empty() && fits(factors_.back())) return *factors_.back();
   for (auto f = factors_.rbegin(); f != factors_.rend(); ++f)
-    if (std::abs((*f)->h - h) <= kSameStep * h) {
+    if (fits(*f)) {
       std::rotate(f.base() - 1, f.base(), factors_.end());
       return *factors_.back();
     }
@@ -156,8 +157,9 @@ double largest_force(const StepPoint& point) {
 }
 
 NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {
+  if (dense_) return solve_dense(problem, to);
   to.state.history = *problem.history;
-  return dense_ ? solve_dense(problem, to) : solve_sparse(problem, to);
+  return solve_sparse(problem, to);
 }
 
 void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
@@ -215,6 +217,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   to.responses.resize(m);
   std::vector<ScalarInput>& phase = to.inputs;
   const auto take_phase = [&] {
+    if (!phases_) return;
     for (std::size_t j = 0; j < m; ++j)
       if (system_.scalars()[j].phase_node >= 0)
         phase[j].angle = assembler_.node_angle(system_.scalars()[j].phase_node, to.state.z);

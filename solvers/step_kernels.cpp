@@ -32,18 +32,8 @@ struct Largest {
   }
 };
 
-/// Largest |value|; fewer than kLanes values one by one.
 template <class Value>
 [[gnu::always_inline]] inline double largest_of(int n, const Value& value) {
-  if (n < kLanes) {
-    double most = 0.0, bad = 0.0;
-    for (int i = 0; i < n; ++i) {
-      const double x = value.at_one(i), size = x < 0.0 ? -x : x;
-      most = size > most ? size : most;
-      bad += 0.0 * x;
-    }
-    return most + bad;
-  }
   Largest largest;
   for_blocks(n, [&](int i) __attribute__((always_inline)) {
     Lanes x;
@@ -56,7 +46,6 @@ template <class Value>
 struct Itself {
   const double* x;
   [[gnu::always_inline]] void operator()(int i, Lanes& out) const { load(x + i, out); }
-  [[gnu::always_inline]] double at_one(int i) const { return x[i]; }
 };
 struct Difference {
   const double *x, *y;
@@ -66,7 +55,6 @@ struct Difference {
     load(y + i, b);
     out -= b;
   }
-  [[gnu::always_inline]] double at_one(int i) const { return x[i] - y[i]; }
 };
 
 /// The sums of a product stay in registers.
@@ -177,6 +165,8 @@ template <bool kDamped>
 
 }  // namespace
 
+namespace wide {
+
 DREV_WIDEST
 void predict_motion(int n, double h, double c_z, double c_v, const double* __restrict z,
                     const double* __restrict v, const double* __restrict a, double* __restrict z_0,
@@ -190,17 +180,6 @@ void predict_motion(int n, double h, double c_z, double c_v, const double* __res
 DREV_WIDEST
 double correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0,
                       const double* a, double* z, double* v) {
-  if (n < kLanes) {
-    double most = 0.0, bad = 0.0;
-    for (int i = 0; i < n; ++i) {
-      const double z_new = z_0[i] + c_z * a[i], x = z_new - z[i], size = x < 0.0 ? -x : x;
-      most = size > most ? size : most;
-      bad += 0.0 * x;
-      z[i] = z_new;
-      v[i] = v_0[i] + c_v * a[i];
-    }
-    return most + bad;
-  }
   Largest change;
   for_blocks(n, [&](int i) __attribute__((always_inline)) {
     Lanes rate, start, old;
@@ -321,5 +300,7 @@ double dot(int n, const double* x, const double* y) {
   for (; i < n; ++i) result += x[i] * y[i];
   return result;
 }
+
+}  // namespace wide
 
 }  // namespace drev

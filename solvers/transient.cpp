@@ -36,8 +36,8 @@ class Run {
         stepper_(make_stepper(system, options.scheme, step_options(options))),
         equation_(stepper_->equation()),
         located_(system, *stepper_) {
-    now_.state = std::move(state);
-    now_.state.t = options.t_start;
+    now_->state = std::move(state);
+    now_->state.t = options.t_start;
     summary_.scheme = options.scheme.name;
     summary_.step = options.step;
     summary_.tolerance = options.tolerance;
@@ -47,14 +47,14 @@ class Run {
   }
 
   RunSummary run() {
-    stepper_->start(now_);
-    EnergyMonitor energy(equation_.assembler(), now_);
+    stepper_->start(*now_);
+    EnergyMonitor energy(equation_.assembler(), *now_);
     energy_ = &energy;
-    for (Observer* o : observers_) o->start(equation_.assembler(), now_);
-    if (control_) control_->look_at(now_.state);
-    if (!now_.state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
-    while (running() && now_.state.t < options_.t_end) run_to_next_stop();
-    summary_.t_end = now_.state.t;
+    for (Observer* o : observers_) o->start(equation_.assembler(), *now_);
+    if (control_) control_->look_at(now_->state);
+    if (!now_->state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
+    while (running() && now_->state.t < options_.t_end) run_to_next_stop();
+    summary_.t_end = now_->state.t;
     summary_.load_passes = equation_.load_passes();
     summary_.factorizations += equation_.factorizations();
     summary_.newton_on_contacts = equation_.dense_contacts();
@@ -73,7 +73,7 @@ class Run {
     return summary_;
   }
 
-  State take_state() { return std::move(now_.state); }
+  State take_state() { return std::move(now_->state); }
 
   static StepOptions step_options(const TransientOptions& o) {
     StepOptions options = o.newton;
@@ -114,7 +114,7 @@ class Run {
      private:
       StepControl& control_;
     } coarse(*control_);
-    State state = now_.state;
+    State state = now_->state;
     const RunSummary run = simulate(system_,
                                     {.scheme = bathe(),
                                      .step = duration() / kCoarseSteps,
@@ -128,7 +128,7 @@ class Run {
   }
 
   void run_to_next_stop() {
-    const double t = now_.state.t;
+    const double t = now_->state.t;
     const auto& breaks = system_.breakpoints();
     const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
     double stop = options_.t_end;
@@ -143,13 +143,13 @@ class Run {
     const bool at_break = next_break != breaks.end() && *next_break - stop <= same_;
     if (at_break) stop = *next_break;
     if (control_ || locates_)
-      while (running() && now_.state.t < stop) free_step(stop, at_break);
+      while (running() && now_->state.t < stop) free_step(stop, at_break);
     else
       constant_steps(stop, at_break);
-    if (at_break && running() && now_.state.t < options_.t_end) {
-      next_ = now_;
-      stepper_->start(now_);
-      energy_->restart(next_, now_);
+    if (at_break && running() && now_->state.t < options_.t_end) {
+      *next_ = *now_;
+      stepper_->start(*now_);
+      energy_->restart(*next_, *now_);
     }
   }
 
@@ -159,7 +159,7 @@ class Run {
   }
 
   void constant_steps(double stop, bool at_break) {
-    const double t = now_.state.t;
+    const double t = now_->state.t;
     const double count = std::max(1.0, std::ceil((stop - t) / options_.step - 1e-6));
     const double h = (stop - t) / count;
     for (double i = 1.0; i <= count && running(); i += 1.0) {
@@ -170,12 +170,12 @@ class Run {
   }
 
   void advance(double h, double t_new, double t_evaluate, int depth) {
-    const NewtonResult result = stepper_->step(now_, h, t_new, t_evaluate, next_);
+    const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_);
     summary_.iterations += result.iterations;
     if (result.status == NewtonStatus::converged) return accept(h, t_evaluate);
     if (depth == options_.max_halvings) return last_resort(result.status, h, t_new, t_evaluate);
     ++summary_.halved;
-    const double middle = now_.state.t + 0.5 * h;
+    const double middle = now_->state.t + 0.5 * h;
     advance(0.5 * h, middle, middle, depth + 1);
     if (running()) advance(0.5 * h, t_new, t_evaluate, depth + 1);
   }
@@ -183,7 +183,7 @@ class Run {
   /// A step that no shortening makes solvable: a force that jumps is taken inside its jump; else the end.
   void last_resort(NewtonStatus status, double h, double t_new, double t_evaluate) {
     if (status == NewtonStatus::no_root) {
-      const NewtonResult result = stepper_->step(now_, h, t_new, t_evaluate, next_, true);
+      const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_, true);
       summary_.iterations += result.iterations;
       if (result.status == NewtonStatus::converged) {
         summary_.fallbacks += result.inside_jump;
@@ -198,24 +198,24 @@ class Run {
 
   /// A controlled step, or one that ends at a contact change, or both.
   void free_step(double stop, bool at_break) {
-    const double remaining = stop - now_.state.t;
+    const double remaining = stop - now_->state.t;
     double h = control_ ? control_->next(remaining)
                         : remaining / std::max(1.0, std::ceil(remaining / options_.step - 1e-6));
     for (int i = 0; !control_ && i < failures_; ++i) h *= 0.5;
     const bool whole = h == remaining;
-    const double t_new = whole ? stop : now_.state.t + h;
+    const double t_new = whole ? stop : now_->state.t + h;
     const double t_evaluate = evaluation_time(t_new, whole && at_break);
     LocatedStep::Result made;
     const bool standing = changes_here_ > 20 + 20 * static_cast<int>(system_.scalars().size());
     if (locates_ && !standing) {
-      made = located_.step(now_, h, t_new, t_evaluate, next_);
+      made = located_.step(*now_, h, t_new, t_evaluate, *next_);
     } else {
-      made.newton = stepper_->step(now_, h, t_new, t_evaluate, next_);
+      made.newton = stepper_->step(*now_, h, t_new, t_evaluate, *next_);
       made.h = h;
     }
     summary_.iterations += made.newton.iterations;
     if (made.newton.status != NewtonStatus::converged) {
-      equation_.start_from(now_);
+      equation_.start_from(*now_);
       if (failures_ == options_.max_halvings) {
         failures_ = 0;
         return last_resort(made.newton.status, h, t_new, t_evaluate);
@@ -227,7 +227,7 @@ class Run {
     }
     if (made.h > 0.0) {
       const bool cut = made.h != h;
-      const double t_end = cut ? next_.state.t : t_evaluate;
+      const double t_end = cut ? next_->state.t : t_evaluate;
       if (control_ && !passes(made.h, !cut && !whole)) return;
       failures_ = 0;
       if (made.h > kStanding * h) changes_here_ = 0;
@@ -238,8 +238,8 @@ class Run {
 
   /// Error and energy of a controlled step; rejects it if it does not pass.
   bool passes(double h, bool as_planned) {
-    stepper_->estimate(now_, next_, h, e_z_, e_v_);
-    const double error = control_->error(next_.state, e_z_, e_v_, h);
+    stepper_->estimate(*now_, *next_, h, e_z_, e_v_);
+    const double error = control_->error(next_->state, e_z_, e_v_, h);
     // At a jump inside no step is short enough: the least one bounds what it adds.
     const bool forced = !(error <= 1.0) && h <= kLeastStep * duration() && std::isfinite(error);
     bool good = error <= 1.0 || forced;
@@ -258,12 +258,12 @@ class Run {
     if (good) {
       energy_tries_ = 0;
       summary_.forced += forced;
-      control_->look_at(next_.state);
+      control_->look_at(next_->state);
       control_->accepted(h, error, as_planned);
       return true;
     }
     ++summary_.rejected;
-    equation_.start_from(now_);
+    equation_.start_from(*now_);
     if (h <= kLeastStep * duration() && !std::isfinite(error))
       fail(RunStatus::not_finite, "the estimated error");
     return false;
@@ -272,11 +272,11 @@ class Run {
   /// Over a contact change.
   void pass(const ContactLocator::Crossing& crossing, double tau, double stop) {
     ++changes_here_;
-    if (!(now_.state.t + 2.0 * tau < stop)) return pass_at_stop();
-    const double h = located_.hop(crossing, tau, now_, next_);
+    if (!(now_->state.t + 2.0 * tau < stop)) return pass_at_stop();
+    const double h = located_.hop(crossing, tau, *now_, *next_);
     ++summary_.located;
-    energy_->step(now_, next_, h);
-    observe(h, next_.state.t);
+    energy_->step(*now_, *next_, h);
+    observe(h, next_->state.t);
     std::swap(now_, next_);
   }
 
@@ -287,34 +287,35 @@ class Run {
   void account(double h) {
     equation_.clock().enter(Phase::balance);
     if (options_.scheme.tableau) {
-      const auto [input, dissipated] = step_energy_.over(equation_, now_, next_, h);
-      energy_->step(next_, input, dissipated);
+      const auto [input, dissipated] = step_energy_.over(equation_, *now_, *next_, h);
+      energy_->step(*next_, input, dissipated);
     } else {
-      energy_->step(now_, next_, h);
+      energy_->step(*now_, *next_, h);
     }
   }
 
   /// Shows the step to the observers, controlled ones with the times wanted inside it.
   void observe(double h, double t_evaluate) {
     equation_.clock().enter(Phase::observers);
+    if (observers_.empty()) return;
     Assembler& assembler = equation_.assembler();
-    const StepPoint* last = &now_;
+    const StepPoint* last = now_;
     while (control_) {
       double wanted = std::numeric_limits<double>::infinity();
       for (const Observer* o : observers_)
         if (const double t = o->next_stop(last->state.t); t > last->state.t) wanted = std::min(wanted, t);
-      if (!(wanted < next_.state.t)) break;
+      if (!(wanted < next_->state.t)) break;
       StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      StepPolynomial(now_.state, next_.state, h, options_.scheme.order())
-          .at((wanted - now_.state.t) / h, point.state);
+      StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
+          .at((wanted - now_->state.t) / h, point.state);
       point.state.t = wanted;
       assembler.set_time(wanted);
-      equation_.evaluate(now_.state.history, point);
+      equation_.evaluate(now_->state.history, point);
       for (Observer* o : observers_) o->step(assembler, *last, point);
       last = &point;
     }
     assembler.set_time(t_evaluate);
-    for (Observer* o : observers_) o->step(assembler, *last, next_);
+    for (Observer* o : observers_) o->step(assembler, *last, *next_);
   }
 
   void accept(double h, double t_evaluate) {
@@ -324,21 +325,21 @@ class Run {
     observe(h, t_evaluate);
     std::swap(now_, next_);
     if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-        !options_.progress((now_.state.t - options_.t_start) / duration()))
+        !options_.progress((now_->state.t - options_.t_start) / duration()))
       return fail(RunStatus::interrupted, "interrupted");
-    check_growth(summary_, system_.name(), now_.state.t, energy_->balance(), options_.energy_growth_limit);
+    check_growth(summary_, system_.name(), now_->state.t, energy_->balance(), options_.energy_growth_limit);
   }
 
   /// A motion that is not finite has no energy.
   void not_finite() {
     for (int k = 0; k < system_.size(); ++k)
-      if (!std::isfinite(next_.state.z[k]) || !std::isfinite(next_.state.v[k]))
+      if (!std::isfinite(next_->state.z[k]) || !std::isfinite(next_->state.v[k]))
         return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
     fail(RunStatus::not_finite, "the energy");
   }
 
   void fail(RunStatus status, const std::string& what) {
-    end_run(summary_, system_.name(), now_.state.t, status, what);
+    end_run(summary_, system_.name(), now_->state.t, status, what);
   }
 
   const System& system_;
@@ -349,7 +350,8 @@ class Run {
   LocatedStep located_;
   std::optional<StepControl> control_;
   StepEnergy step_energy_;
-  StepPoint now_, next_, inside_[2];
+  StepPoint points_[2], inside_[2];
+  StepPoint *now_ = &points_[0], *next_ = &points_[1];
   Vector e_z_, e_v_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
