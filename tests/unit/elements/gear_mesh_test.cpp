@@ -1,9 +1,11 @@
 // Gear mesh, its varying stiffness, its transmission error, involute geometry.
 #include <cmath>
 
+#include "core/channel.hpp"
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
+#include "solvers/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 
@@ -93,6 +95,37 @@ TEST_CASE("gear mesh signs by hand") {
   CHECK(r.scalars[0].b[1] == -0.075);
   CHECK_FALSE(r.closures[0].only_in_contact);
   CHECK_FALSE(GearMesh(ring).gap());
+}
+
+TEST_CASE("a mesh without backlash is a spring and a damper in the matrices") {
+  auto p = plain();
+  p.normal_backlash = 0.0;
+  p.damping = 300.0;
+  const auto pair = [](const GearMesh::Params& mesh) {
+    Model m("pair");
+    m.add_node("a");
+    m.add_node("b");
+    m.add<Inertia>("J_a", {"a"}, {.inertia = 2e-3});
+    m.add<Inertia>("J_b", {"b"}, {.inertia = 5e-2});
+    m.add<GearMesh>("mesh", {"a", "b"}, mesh);
+    return m.build();
+  };
+  const System system = pair(p);
+  CHECK(system.scalars().empty());
+  const double flexibility = 0.030 * 0.030 / 2e-3 + 0.075 * 0.075 / 5e-2;
+  CHECK(solve_modes(system, {}).frequency_Hz.back() == Approx(to_hz(std::sqrt(2e8 * flexibility))).epsilon(1e-9));
+  State state = State::initial(system);
+  state.z << 1e-3, -2e-4;
+  state.v << 0.5, 0.1;
+  const Assembler assembler(system);
+  const double x = 0.030 * 1e-3 - 0.075 * 2e-4, rate = 0.030 * 0.5 + 0.075 * 0.1;
+  CHECK(find_channel(system, "mesh.deflection_m").evaluate(assembler, state) == Approx(x).epsilon(1e-12));
+  CHECK(find_channel(system, "mesh.force_N").evaluate(assembler, state) ==
+        Approx(2e8 * x + 300.0 * rate).epsilon(1e-12));
+  // One that varies is no straight line.
+  p.teeth_1 = 20;
+  p.stiffness = MeshStiffness::step(1e8, 3e8, 1.25);
+  CHECK(pair(p).scalars().size() == 1);
 }
 
 TEST_CASE("mesh phase: one tooth on is the same, half a tooth on the other contact") {
