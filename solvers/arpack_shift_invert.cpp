@@ -46,33 +46,34 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
   }
   const int ncv = std::min(n, std::max(problem.basis, std::max(2 * k + 1, 20)));
   const int lworkl = ncv * (ncv + 8);
-  Vector residual = shift_invert_start(n, problem.start), in(n), out(n);
+  Vector residual = shift_invert_start(n, problem.start), mass_times(n);
   Eigen::MatrixXd basis(n, ncv);
   std::vector<double> workd(at(3 * n)), workl(at(lworkl));
   a_int iparam[11] = {1, 0, problem.max_iterations, 1, 0, 0, 3, 0, 0, 0, 0};
   a_int ipntr[11] = {};
   a_int ido = 0, info = 1;  // info = 1: residual holds the start vector
-  const auto segment = [&](a_int pointer) {
-    return Eigen::Map<Vector>(workd.data() + pointer - 1, n);
+  const auto mass = [&](const double* x, double* y) {
+    if (problem.mass)
+      problem.mass(x, y);
+    else
+      std::copy_n(x, n, y);
   };
   for (;;) {
     dsaupd_c(&ido, "G", n, "LM", k, 0.0, residual.data(), ncv, basis.data(), n, iparam, ipntr,
              workd.data(), workl.data(), lworkl, &info);
     if (ido == 99) break;
+    const double* in = workd.data() + ipntr[0] - 1;
+    double* out = workd.data() + ipntr[1] - 1;
     if (ido == 2) {
-      in = segment(ipntr[0]);
-      problem.mass(in, out);
-    } else {  // 1: M x is there already; -1: it is not
-      if (ido == 1) {
-        in = segment(ipntr[2]);
-      } else {
-        out = segment(ipntr[0]);
-        problem.mass(out, in);
-      }
-      problem.solve(in, out);
+      mass(in, out);
+    } else if (ido == 1) {  // M x is there already
+      problem.solve(workd.data() + ipntr[2] - 1, out);
+      ++result.solves;
+    } else {
+      mass(in, mass_times.data());
+      problem.solve(mass_times.data(), out);
       ++result.solves;
     }
-    segment(ipntr[1]) = out;
   }
   if (info != 0) {
     result.status = info == 1 || info == 3 ? ArpackStatus::not_converged : ArpackStatus::failed;

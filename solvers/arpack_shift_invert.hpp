@@ -30,8 +30,8 @@ struct ShiftInvertProblem {
   int size = 0;                                           ///< number of unknowns
   int count = 0;                                          ///< eigenpairs wanted, 1 <= count < size
   double sigma = 0.0;                                     ///< (rad/s)^2
-  std::function<void(const Vector& b, Vector& x)> solve;  ///< x = (K - sigma M)^-1 b
-  std::function<void(const Vector& x, Vector& y)> mass;   ///< y = M x
+  std::function<void(const double* b, double* x)> solve;  ///< x = (K - sigma M)^-1 b
+  std::function<void(const double* x, double* y)> mass;   ///< y = M x; empty: M = I
   int basis = 0;             ///< Lanczos vectors kept; 0: max(2 count + 1, 20); at most size
   int start = 0;             ///< another number: another start vector
   int max_iterations = 300;  ///< restarts

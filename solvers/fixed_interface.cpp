@@ -105,9 +105,16 @@ void FixedInterface::find_modes(int count) {
     ShiftInvertProblem problem;
     problem.size = n;
     problem.count = count;
-    problem.solve = [&](const Vector& f, Vector& x) { factor_.solve(f, x); };
-    problem.mass = [&](const Vector& x, Vector& y) { y = mass_ * x; };
-    ShiftInvertResult found = lanczos_shift_invert(problem, count, kLanczosTolerance);
+    Vector in(n), out(n);
+    problem.solve = [&](const double* f, double* x) {
+      std::copy_n(f, n, in.data());
+      factor_.solve(in, out);
+      std::copy_n(out.data(), n, x);
+    };
+    problem.mass = [&](const double* x, double* y) {
+      Eigen::Map<Vector>(y, n) = mass_ * Eigen::Map<const Vector>(x, n);
+    };
+    ShiftInvertResult found = ShiftInvertLanczos(problem).pairs(count, kLanczosTolerance);
     if (found.status == ArpackStatus::success) {
       // No copy of a frequency is missing where the Sturm count agrees.
       const double point = found.lambda[count - 1] * (1.0 - 1e-6);

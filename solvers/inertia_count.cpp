@@ -56,11 +56,11 @@ void InertiaCounter::Impl::count_flat(double s, InertiaCount& count) {
   const LowFillPattern& p = flat->pattern();
   row_sum.setZero(p.size);
   for (int j = 0; j < p.size; ++j) {
-    const double d = 1.0 / flat->inverse_pivots()[at(j)];
+    const double d = 1.0 / flat->inverse_pivots()[j];
     if (d < 0.0) ++count.below;
     row_sum[j] += std::abs(d);
     for (int e = p.begin[at(j)]; e < p.begin[at(j + 1)]; ++e)
-      row_sum[p.rows[at(e)]] += flat->entries()[at(e)] * flat->entries()[at(e)] * std::abs(d);
+      row_sum[p.rows[at(e)]] += flat->entries()[e] * flat->entries()[e] * std::abs(d);
   }
   for (int j = 0; j < p.size; ++j) note(p.order[at(j)], s, row_sum[j], count);
 }

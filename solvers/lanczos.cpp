@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <vector>
 
+#include "core/huge_pages.hpp"
 #include "core/lanes.hpp"
 
 namespace drev {
@@ -18,6 +18,7 @@ constexpr int kBetweenChecks = 3;
 constexpr double kApart = 1e-5;  // of the largest: eigenvalues of T whose vectors come out orthogonal
 // Rows of a strip: two vectors that stay in the cache while the basis streams by, or all of the basis.
 constexpr int kLongStrip = 4096, kShortStrip = 512;
+constexpr Eigen::Index kKept = 1 << 22;  // doubles: no more than malloc keeps for the next call
 
 /// Eigenvalues of the tridiagonal matrix (d, e), into d, by implicit QL; the columns of z, one a row of the
 /// matrix, are rotated along. e is used up. False where it does not converge.
@@ -92,53 +93,70 @@ double twisted_vector(const Vector& d, const Vector& e, double theta, double tin
   return least / norm;
 }
 
-/// h = Q' [a b] over the first count columns.
+/// h = Q' [a b] over the first count columns, two at a time.
 DREV_WIDEST void project(const double* q, int n, int count, const double* a, const double* b, double* h) {
   for (int i = 0; i < 2 * count; ++i) h[i] = 0.0;
   for (int start = 0; start < n; start += kLongStrip) {
     const int rows = std::min(kLongStrip, n - start);
-    for (int i = 0; i < count; ++i) {
-      const double* column = q + static_cast<std::ptrdiff_t>(i) * n + start;
-      Lanes sum_a{}, sum_b{}, x, y, z;
+    for (int i = 0; i < count; i += 2) {
+      const double* p = q + static_cast<std::ptrdiff_t>(i) * n + start;
+      const double* r = i + 1 < count ? p + n : p;
+      Lanes p_a{}, p_b{}, r_a{}, r_b{}, x, y, u, v;
       int k = 0;
       for (; k + kLanes <= rows; k += kLanes) {
-        load(column + k, x);
-        load(a + start + k, y);
-        load(b + start + k, z);
-        sum_a += x * y;
-        sum_b += x * z;
+        load(p + k, x);
+        load(r + k, y);
+        load(a + start + k, u);
+        load(b + start + k, v);
+        p_a += x * u;
+        p_b += x * v;
+        r_a += y * u;
+        r_b += y * v;
       }
-      for (int lane = 0; lane < kLanes; ++lane) h[2 * i] += sum_a[lane], h[2 * i + 1] += sum_b[lane];
+      double sums[4] = {};
+      for (int lane = 0; lane < kLanes; ++lane)
+        sums[0] += p_a[lane], sums[1] += p_b[lane], sums[2] += r_a[lane], sums[3] += r_b[lane];
       for (; k < rows; ++k) {
-        h[2 * i] += column[k] * a[start + k];
-        h[2 * i + 1] += column[k] * b[start + k];
+        sums[0] += p[k] * a[start + k];
+        sums[1] += p[k] * b[start + k];
+        sums[2] += r[k] * a[start + k];
+        sums[3] += r[k] * b[start + k];
       }
+      for (int s = 0; s < (i + 1 < count ? 4 : 2); ++s) h[2 * i + s] += sums[s];
     }
   }
 }
 
-/// [a b] -= Q h. a may be a column of Q beyond count.
+/// [a b] -= Q h. a may be a column of Q beyond count. Backwards: what project() read last is in the cache yet.
 DREV_WIDEST void subtract(const double* q, int n, int count, const double* h, double* a, double* b) {
-  for (int start = 0; start < n; start += kLongStrip) {
+  const std::ptrdiff_t next = n;
+  for (int start = (n - 1) / kLongStrip * kLongStrip; start >= 0; start -= kLongStrip) {
     const int rows = std::min(kLongStrip, n - start);
-    for (int i = 0; i < count; ++i) {
-      const double* column = q + static_cast<std::ptrdiff_t>(i) * n + start;
-      const double h_a = h[2 * i], h_b = h[2 * i + 1];
+    int i = 0;
+    for (; i + 3 < count; i += 4) {
+      const double *c = q + i * next + start, *f = h + 2 * i;
       for (int k = 0; k < rows; ++k) {
-        a[start + k] -= h_a * column[k];
-        b[start + k] -= h_b * column[k];
+        const double c0 = c[k], c1 = c[k + next], c2 = c[k + 2 * next], c3 = c[k + 3 * next];
+        a[start + k] -= f[0] * c0 + f[2] * c1 + f[4] * c2 + f[6] * c3;
+        b[start + k] -= f[1] * c0 + f[3] * c1 + f[5] * c2 + f[7] * c3;
       }
     }
+    for (; i < count; ++i)
+      for (int k = 0; k < rows; ++k) {
+        a[start + k] -= h[2 * i] * q[i * next + start + k];
+        b[start + k] -= h[2 * i + 1] * q[i * next + start + k];
+      }
   }
 }
 
-/// out = Q S, strip by strip: Q is read from memory once. S: count x outs.
-DREV_WIDEST void combine(const double* q, int n, int count, const double* s, int outs, double* out) {
+/// The first columns of Q become those of Q S, strip by strip: Q is read from memory once. S: count x outs.
+DREV_WIDEST void combine(double* q, int n, int count, const double* s, int outs) {
   const std::ptrdiff_t next = n;
+  std::vector<double> strip(at(outs) * at(kShortStrip));
   for (int start = 0; start < n; start += kShortStrip) {
     const int rows = std::min(kShortStrip, n - start);
     for (int o = 0; o < outs; ++o) {
-      double* to = out + o * next + start;
+      double* to = strip.data() + o * kShortStrip;
       const double* f = s + o * count;
       for (int k = 0; k < rows; ++k) to[k] = 0.0;
       int i = 0;
@@ -151,10 +169,26 @@ DREV_WIDEST void combine(const double* q, int n, int count, const double* s, int
       for (; i < count; ++i)
         for (int k = 0; k < rows; ++k) to[k] += f[i] * q[i * next + start + k];
     }
+    for (int o = 0; o < outs; ++o)
+      std::copy_n(strip.data() + o * kShortStrip, rows, q + o * next + start);
   }
 }
 
-/// w -= factor q; returns w' m.
+DREV_WIDEST double dot(const double* a, const double* b, int n) {
+  Lanes sum{}, x, y;
+  int k = 0;
+  for (; k + kLanes <= n; k += kLanes) {
+    load(a + k, x);
+    load(b + k, y);
+    sum += x * y;
+  }
+  double rest = 0.0;
+  for (int lane = 0; lane < kLanes; ++lane) rest += sum[lane];
+  for (; k < n; ++k) rest += a[k] * b[k];
+  return rest;
+}
+
+/// w -= factor q; returns w' m. m may be w.
 DREV_WIDEST double subtract_and_project(double factor, const double* q, const double* m, int n, double* w) {
   Lanes sum{}, x, y;
   int k = 0;
@@ -175,84 +209,115 @@ DREV_WIDEST double subtract_and_project(double factor, const double* q, const do
   return rest;
 }
 
-class Lanczos {
- public:
-  Lanczos(const ShiftInvertProblem& problem, int sharp, double tolerance)
-      : problem_(problem),
+DREV_WIDEST void scale(double factor, int n, double* x) {
+  for (int k = 0; k < n; ++k) x[k] *= factor;
+}
+
+}  // namespace
+
+struct ShiftInvertLanczos::Impl {
+  explicit Impl(ShiftInvertProblem given)
+      : problem(std::move(given)),
         n_(problem.size),
-        sharp_(sharp),
-        tolerance_(tolerance),
         most_(std::min(n_, problem.basis > 0 ? problem.basis : 3 * problem.count + 40)),
-        q_(std::make_unique_for_overwrite<double[]>(at(n_) * at(most_))),
-        w_(shift_invert_start(n_, problem.start)),
+        q_(n_, most_ + 1),
         h_(at(2 * most_)),
         omega_(at(most_ + 1), kEpsilon),
-        omega_old_(at(most_ + 1), kEpsilon) {}
-
-  ShiftInvertResult run() {
-    problem_.mass(w_, mw_);
-    accept(std::sqrt(w_.dot(mw_)));
-    for (;;) {
-      step();
-      const bool last = columns_ == most_;
-      const int beyond = columns_ - 2 * problem_.count;  // in small systems steps cost less than checks
-      const bool due = n_ > 4 * problem_.count && beyond >= 0 && beyond % kBetweenChecks == 0;
-      if (columns_ == n_ || ((last || due) && converged())) break;
-      if (last) {
-        result_.status = ArpackStatus::not_converged;
-        result_.reason = std::to_string(most_) + " Lanczos vectors did not suffice";
-        return std::move(result_);
-      }
-      accept(next_norm_);
-    }
-    finish();
-    return std::move(result_);
+        omega_old_(at(most_ + 1), kEpsilon) {
+    prefer_huge_pages(q_);
+    if (problem.mass) mq_.resize(n_), mw_.resize(n_);
+    q_.col(0) = shift_invert_start(n_, problem.start);
+    next_norm_ = norm();
   }
 
- private:
-  Eigen::Map<Vector> column(int j) { return {q_.get() + static_cast<std::ptrdiff_t>(j) * n_, n_}; }
+  /// Steps until the first `count` pairs have converged, or all that can be made.
+  ShiftInvertResult go_on(int count, int sharp, double tolerance) {
+    ShiftInvertResult result;
+    bool enough = columns_ == n_;
+    while (!enough && columns_ < most_) {
+      accept(next_norm_);
+      step();
+      ++result.solves;
+      const int beyond = columns_ - 2 * count;  // in small systems steps cost less than checks
+      const bool due = n_ > 4 * count && beyond >= 0 && beyond % kBetweenChecks == 0;
+      enough = columns_ == n_ || ((columns_ == most_ || due) && converged(count, sharp, tolerance));
+    }
+    Eigen::MatrixXd none(0, columns_);
+    if (!enough) {
+      result.status = ArpackStatus::not_converged;
+      result.reason = std::to_string(most_) + " Lanczos vectors did not suffice";
+    } else if (!tridiagonal(none)) {
+      result.status = ArpackStatus::failed;
+      result.reason = "the tridiagonal eigenproblem did not converge";
+    } else {
+      result.status = ArpackStatus::success;
+      result.lambda = problem.sigma + theta_.head(count).cwiseInverse().array();
+    }
+    return result;
+  }
+
+  /// The basis becomes the vectors; false where T's are not found.
+  bool combine_into(int count, Eigen::MatrixXd& vectors) {
+    Eigen::MatrixXd s;
+    if (!vectors_of_t(count, s)) return false;
+    combine(q_.data(), n_, columns_, s.data(), count);
+    if (q_.size() > kKept) {
+      q_.conservativeResize(n_, count);  // gives the rest back to the system without copying
+      vectors = std::move(q_);
+    } else {
+      vectors = q_.leftCols(count);
+    }
+    return true;
+  }
+
+  double* column(int j) { return q_.data() + static_cast<std::ptrdiff_t>(j) * n_; }
+  /// The new vector, behind those of the basis.
+  double* w() { return column(columns_); }
+  /// M times the last of the basis, and the new one as norm() leaves it.
+  double* mq() { return problem.mass ? mq_.data() : column(columns_ - 1); }
+  double* mw() { return problem.mass ? mw_.data() : w(); }
+
+  double norm() {
+    if (problem.mass) problem.mass(w(), mw());
+    return std::sqrt(std::max(0.0, dot(w(), mw(), n_)));
+  }
 
   /// w / norm becomes the next vector of the basis.
   void accept(double norm) {
-    column(columns_++) = (1.0 / norm) * w_;
+    scale(1.0 / norm, n_, w());
+    ++columns_;
+    if (!problem.mass) return;
     std::swap(mq_, mw_);
-    mq_ *= 1.0 / norm;
+    scale(1.0 / norm, n_, mq());
   }
 
   /// w = what A q adds to the basis; alpha, beta.
   void step() {
     const int j = columns_ - 1;
-    problem_.solve(mq_, w_);
-    ++result_.solves;
-    if (j > 0)
-      alpha_.push_back(subtract_and_project(beta_.back(), column(j - 1).data(), mq_.data(), n_, w_.data()));
-    else
-      alpha_.push_back(w_.dot(mq_));
-    w_ -= alpha_.back() * column(j);
-    problem_.mass(w_, mw_);
-    double beta = std::sqrt(std::max(0.0, w_.dot(mw_)));
+    problem.solve(mq(), w());
+    alpha_.push_back(j > 0 ? subtract_and_project(beta_.back(), column(j - 1), mq(), n_, w())
+                           : dot(w(), mq(), n_));
+    const double square = subtract_and_project(alpha_.back(), column(j), w(), n_, w());
+    double beta = problem.mass ? norm() : std::sqrt(square);
     largest_ = std::max({largest_, std::abs(alpha_.back()), beta});
     bool again = estimate(j, beta);
     for (int pass = 0; again && pass < 3; ++pass) {
-      const double before = beta;
+      const double whole = beta;
       reorthogonalise(j);
-      problem_.mass(w_, mw_);
-      beta = std::sqrt(std::max(0.0, w_.dot(mw_)));
-      again = beta < 0.5 * before;  // much was taken away: what rounding left of it shows
+      beta = norm();
+      again = beta < 0.5 * whole;  // much was taken away: what rounding left of it shows
     }
     beta_.push_back(beta);
     next_norm_ = beta;
     if (beta > std::max(n_, 100) * kEpsilon * largest_ || columns_ == most_) return;
     beta_.back() = 0.0;  // the space is used up: another start
-    w_ = shift_invert_start(n_, problem_.start + columns_);
+    q_.col(columns_) = shift_invert_start(n_, problem.start + columns_);
     for (int pass = 0; pass < 2; ++pass) {
-      problem_.mass(w_, mw_);
-      project(q_.get(), n_, columns_, mw_.data(), mw_.data(), h_.data());
-      rest_ = w_;
-      subtract(q_.get(), n_, columns_, h_.data(), rest_.data(), w_.data());
+      norm();
+      project(q_.data(), n_, columns_, mw(), mw(), h_.data());
+      for (int i = 0; i < columns_; ++i) subtract_and_project(h_[at(2 * i)], column(i), w(), n_, w());
     }
-    problem_.mass(w_, mw_);
-    next_norm_ = std::sqrt(w_.dot(mw_));
+    next_norm_ = norm();
     std::fill_n(omega_.begin(), columns_, kEpsilon);
   }
 
@@ -277,11 +342,11 @@ class Lanczos {
 
   /// The new vector against all, and q_j against those before it (the recurrence carries both on).
   void reorthogonalise(int j) {
-    project(q_.get(), n_, j, mq_.data(), mw_.data(), h_.data());
-    subtract(q_.get(), n_, j, h_.data(), column(j).data(), w_.data());
-    rest_ = column(j);
-    problem_.mass(rest_, mq_);
-    w_ -= w_.dot(mq_) * rest_;
+    double* q = column(j);
+    project(q_.data(), n_, j, mq(), mw(), h_.data());
+    subtract(q_.data(), n_, j, h_.data(), q, w());
+    if (problem.mass) problem.mass(q, mq());
+    subtract_and_project(dot(w(), mq(), n_), q, w(), n_, w());
     std::fill_n(omega_.begin(), j, kEpsilon);
     std::fill_n(omega_old_.begin(), j, kEpsilon);
   }
@@ -302,20 +367,19 @@ class Lanczos {
     return true;
   }
 
-  bool converged() {
+  bool converged(int count, int sharp, double tolerance) {
     Eigen::MatrixXd last = Eigen::MatrixXd::Zero(1, columns_);
     last(0, columns_ - 1) = 1.0;
     if (!tridiagonal(last)) return false;
-    for (int i = 0; i < problem_.count; ++i) {
-      const double limit = i < sharp_ ? tolerance_ : std::sqrt(tolerance_);
+    for (int i = 0; i < count; ++i) {
+      const double limit = i < sharp ? tolerance : std::sqrt(tolerance);
       if (!(std::abs(beta_.back() * last(0, i)) <= limit * theta_[i])) return false;
     }
     return true;
   }
 
   /// The first eigenvectors of T; one by one where they are well apart, else all by QL.
-  bool vectors_of_t(Eigen::MatrixXd& s) {
-    const int count = problem_.count;
+  bool vectors_of_t(int count, Eigen::MatrixXd& s) {
     Eigen::MatrixXd z(0, columns_);
     if (!tridiagonal(z)) return false;
     bool apart = true;
@@ -335,36 +399,32 @@ class Lanczos {
     return true;
   }
 
-  void finish() {
-    const int count = problem_.count;
-    Eigen::MatrixXd s;
-    if (!vectors_of_t(s)) {
-      result_.status = ArpackStatus::failed;
-      result_.reason = "the tridiagonal eigenproblem did not converge";
-      return;
-    }
-    result_.lambda = problem_.sigma + theta_.head(count).cwiseInverse().array();
-    result_.vectors.resize(n_, count);
-    combine(q_.get(), n_, columns_, s.data(), count, result_.vectors.data());
-    result_.status = ArpackStatus::success;
-  }
-
-  const ShiftInvertProblem& problem_;
-  const int n_, sharp_;
-  const double tolerance_;
-  const int most_;
-  std::unique_ptr<double[]> q_;  // columns; untouched until used
-  Vector w_, mw_, mq_, rest_, d_, e_, theta_;
+  const ShiftInvertProblem problem;
+  const int n_, most_;
+  Eigen::MatrixXd q_;  // a column is untouched until used
+  Vector mw_, mq_, d_, e_, theta_;
   std::vector<double> alpha_, beta_, h_, omega_, omega_old_;
   double largest_ = 0.0, next_norm_ = 0.0;
   int columns_ = 0;
-  ShiftInvertResult result_;
 };
 
-}  // namespace
+ShiftInvertLanczos::ShiftInvertLanczos(ShiftInvertProblem problem)
+    : impl_(std::make_unique<Impl>(std::move(problem))) {}
+ShiftInvertLanczos::~ShiftInvertLanczos() = default;
+int ShiftInvertLanczos::count() const { return impl_->problem.count; }
 
-ShiftInvertResult lanczos_shift_invert(const ShiftInvertProblem& problem, int sharp, double tolerance) {
-  return Lanczos(problem, sharp, tolerance).run();
+ShiftInvertResult ShiftInvertLanczos::values(int count, double tolerance) {
+  return impl_->go_on(count, count, tolerance);
+}
+
+ShiftInvertResult ShiftInvertLanczos::pairs(int sharp, double tolerance) {
+  const int count = impl_->problem.count;
+  ShiftInvertResult result = impl_->go_on(count, sharp, tolerance);
+  if (result.status == ArpackStatus::success && !impl_->combine_into(count, result.vectors)) {
+    result.status = ArpackStatus::failed;
+    result.reason = "the tridiagonal eigenproblem did not converge";
+  }
+  return result;
 }
 
 }  // namespace drev

@@ -10,13 +10,29 @@
 ///
 /// Source: H. D. Simon, The Lanczos algorithm with partial reorthogonalization, Math. Comp. 42, 1984,
 /// doi:10.1090/S0025-5718-1984-0725988-X.
+#include <memory>
+
 #include "solvers/arpack_shift_invert.hpp"
 
 namespace drev {
 
-/// Converged: |r| <= tolerance mu for `sharp` pairs, and sqrt(tolerance) mu for the rest of problem.count
-/// (whose eigenvalues are then good to tolerance too). problem.basis: most vectors to keep; 0:
-/// 3 count + 40. not_converged where these do not suffice. Throws what solve and mass throw.
-ShiftInvertResult lanczos_shift_invert(const ShiftInvertProblem& problem, int sharp, double tolerance);
+/// Converged: |r| <= tolerance mu; not_converged where the most vectors that may be kept do not suffice
+/// (problem.basis; 0: 3 count + 40). Throws what solve and mass throw.
+class ShiftInvertLanczos {
+ public:
+  explicit ShiftInvertLanczos(ShiftInvertProblem problem);
+  ~ShiftInvertLanczos();
+  int count() const;
+
+  /// The lowest eigenvalues alone, fewer than problem.count; may be called again, and goes on from there.
+  ShiftInvertResult values(int count, double tolerance);
+  /// problem.count pairs, which end it: those behind the first `sharp` to sqrt(tolerance), which makes their
+  /// eigenvalues good to tolerance too.
+  ShiftInvertResult pairs(int sharp, double tolerance);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace drev

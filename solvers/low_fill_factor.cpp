@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solvers/cholmod_factor.hpp"
+#include "core/huge_pages.hpp"
 #include "core/lanes.hpp"
 
 namespace drev {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr long kProducts = 32;   // a column of L on average, above which CHOLMOD is left to it
 constexpr long kSmall = 1000;    // products that are always accepted
-constexpr int kShortestRun = 8;
+constexpr int kShortestRun = 8, kLongestRun = 4096;
 
 using Run = LowFillPattern::Run;
 
@@ -108,18 +109,22 @@ void find_runs(LowFillPattern& s) {
   int target = 0;
   const auto append = [&](int begin, int end, int step) {
     if (step > 0 && end - begin < kShortestRun) step = 0;
-    if (!s.runs.empty() && s.runs.back().stride == 0 && step == 0)
+    if (!s.runs.empty() && s.runs.back().stride == 0 && step == 0 &&
+        end - s.runs.back().begin <= kLongestRun)
       s.runs.back().end = end;
     else
-      s.runs.push_back({begin, end, step, target});
+      s.runs.push_back({begin, end, step, target, end});
+    int& reach = s.runs.back().reach;
     for (int j = begin; j < end; ++j) {
       const int count = s.begin[at(j + 1)] - s.begin[at(j)];
       target += count * (count - 1) / 2;
+      if (count > 0) reach = std::max(reach, s.rows[at(s.begin[at(j + 1)] - 1)] + 1);
     }
+    reach = std::max(reach, end);
   };
   for (int j = 0; j < s.size;) {
     int end = j + 1;
-    while (end < s.size && stride(end) == stride(j)) ++end;
+    while (end < s.size && end < j + kLongestRun && stride(end) == stride(j)) ++end;
     append(j, end, stride(j));
     j = end;
   }
@@ -272,30 +277,36 @@ DREV_WIDEST void solve_down(const View& v, const Run& run) {
   if (j < run.end) y[j + 2] -= l[j] * a;
 }
 
+/// x: null, or where the result goes in the order of the matrix.
 DREV_WIDEST void solve_up(const View& v, const Run& run, double* x) {
-  if (run.stride == 0) {
-    for (int j = run.end - 1; j >= run.begin; --j) {
-      double sum = v.y[j] * v.d[j];
-      for (int e = v.begin[j]; e < v.begin[j + 1]; ++e) sum -= v.l[e] * v.y[v.rows[e]];
-      v.y[j] = x[v.order[j]] = sum;
-    }
-    return;
-  }
   const double* l = v.l + v.begin[run.begin] - run.begin;
   double* y = v.y;
-  if (run.stride == 1) {
-    double last = y[run.end];
-    for (int j = run.end - 1; j >= run.begin; --j)
-      y[j] = x[v.order[j]] = last = y[j] * v.d[j] - l[j] * last;
-    return;
-  }
-  double a = y[run.end + 1], b = y[run.end];
-  int j = run.end - 1;
-  for (; j > run.begin; j -= 2) {
-    y[j] = x[v.order[j]] = a = y[j] * v.d[j] - l[j] * a;
-    y[j - 1] = x[v.order[j - 1]] = b = y[j - 1] * v.d[j - 1] - l[j - 1] * b;
-  }
-  if (j == run.begin) y[j] = x[v.order[j]] = y[j] * v.d[j] - l[j] * a;
+  const auto sweep = [&](auto&& put) {
+    if (run.stride == 0) {
+      for (int j = run.end - 1; j >= run.begin; --j) {
+        double sum = y[j] * v.d[j];
+        for (int e = v.begin[j]; e < v.begin[j + 1]; ++e) sum -= v.l[e] * y[v.rows[e]];
+        put(j, sum);
+      }
+      return;
+    }
+    if (run.stride == 1) {
+      double last = y[run.end];
+      for (int j = run.end - 1; j >= run.begin; --j) put(j, last = y[j] * v.d[j] - l[j] * last);
+      return;
+    }
+    double a = y[run.end + 1], b = y[run.end];
+    int j = run.end - 1;
+    for (; j > run.begin; j -= 2) {
+      put(j, a = y[j] * v.d[j] - l[j] * a);
+      put(j - 1, b = y[j - 1] * v.d[j - 1] - l[j - 1] * b);
+    }
+    if (j == run.begin) put(j, y[j] * v.d[j] - l[j] * a);
+  };
+  if (x)
+    sweep([&](int j, double value) { y[j] = x[v.order[j]] = value; });
+  else
+    sweep([&](int j, double value) { y[j] = value; });
 }
 
 DREV_WIDEST void gather(const double* from, const int* index, std::size_t count, double* to) {
@@ -306,14 +317,16 @@ DREV_WIDEST void gather(const double* from, const int* index, std::size_t count,
 
 LowFillFactor::LowFillFactor(std::shared_ptr<const LowFillPattern> pattern)
     : pattern_(std::move(pattern)),
-      d_(at(pattern_->size)),
-      l_(pattern_->rows.size()),
-      y_(at(pattern_->size)) {}
+      d_(pattern_->size),
+      l_(static_cast<Eigen::Index>(pattern_->rows.size())) {
+  prefer_huge_pages(d_);
+  prefer_huge_pages(l_);
+}
 
 bool LowFillFactor::factorize(const Vector& values, bool definite) {
   const LowFillPattern& s = *pattern_;
   gather(values.data(), s.diagonal.data(), s.diagonal.size(), d_.data());
-  for (std::size_t e = 0; e < l_.size(); ++e) l_[e] = s.slot[e] < 0 ? 0.0 : values[s.slot[e]];
+  for (std::size_t e = 0; e < s.slot.size(); ++e) l_.data()[e] = s.slot[e] < 0 ? 0.0 : values[s.slot[e]];
   const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
                d_.data(),      l_.data(),      y_.data()};
   failed_ = -1;
@@ -323,7 +336,7 @@ bool LowFillFactor::factorize(const Vector& values, bool definite) {
   ratio_ = 1.0;
   worst_ = -1;
   for (int j = 0; j < s.size; ++j) {
-    const double lost = d_[at(j)] * values[s.diagonal[at(j)]];  // A_jj / D_jj
+    const double lost = d_[j] * values[s.diagonal[at(j)]];  // A_jj / D_jj
     if (!(ratio_ * lost <= 1.0)) ratio_ = 1.0 / lost, worst_ = j;
   }
   return true;
@@ -332,11 +345,39 @@ bool LowFillFactor::factorize(const Vector& values, bool definite) {
 void LowFillFactor::solve(const Vector& b, Vector& x) {
   const LowFillPattern& s = *pattern_;
   x.resize(s.size);
+  y_.resize(s.size);
   const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
                d_.data(),      l_.data(),      y_.data()};
-  gather(b.data(), s.order.data(), s.order.size(), y_.data());
-  for (const Run& run : s.runs) solve_down(v, run);
+  int taken = 0;  // not further ahead than needed: it is still in the cache then
+  for (const Run& run : s.runs) {
+    if (run.reach > taken)
+      gather(b.data(), s.order.data() + taken, at(run.reach - taken), y_.data() + taken);
+    taken = std::max(taken, run.reach);
+    solve_down(v, run);
+  }
   for (auto run = s.runs.rbegin(); run != s.runs.rend(); ++run) solve_up(v, *run, x.data());
+}
+
+void LowFillFactor::solve_in_order(const double* b, double* x) {
+  const LowFillPattern& s = *pattern_;
+  const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
+               d_.data(),      l_.data(),      x};
+  int taken = b == x ? s.size : 0;
+  for (const Run& run : s.runs) {
+    if (run.reach > taken) std::copy(b + taken, b + run.reach, x + taken);
+    taken = std::max(taken, run.reach);
+    solve_down(v, run);
+  }
+  for (auto run = s.runs.rbegin(); run != s.runs.rend(); ++run) solve_up(v, *run, nullptr);
+}
+
+void LowFillFactor::weigh(const Vector& weight) {
+  const LowFillPattern& s = *pattern_;
+  for (int j = 0; j < s.size; ++j) {
+    const double w = weight[j];
+    d_[j] /= w * w;
+    for (int e = s.begin[at(j)]; e < s.begin[at(j + 1)]; ++e) l_[e] *= weight[s.rows[at(e)]] / w;
+  }
 }
 
 }  // namespace drev

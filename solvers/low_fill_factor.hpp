@@ -19,11 +19,12 @@ namespace drev {
 
 /// Where everything stands, found once for a pattern. "Place": position in the order of elimination.
 struct LowFillPattern {
-  /// Columns of L from `begin` to `end`. Stride 1, 2: each has one entry, that many places on, so that
-  /// what it passes on stays in a register; 0: anything.
+  /// Columns of L from `begin` to `end`, not more than stay in the nearest caches. Stride 1, 2: each has one
+  /// entry, that many places on, so that what it passes on stays in a register; 0: anything.
   struct Run {
     int begin, end, stride;
     int first_target;  ///< of its first column's products
+    int reach;         ///< one beyond the last row that its columns have
   };
   int size = 0;
   Ordering ordering = Ordering::from_leaves;
@@ -52,19 +53,23 @@ class LowFillFactor {
   /// then at failed_place().
   bool factorize(const Vector& values, bool definite);
   int failed_place() const { return failed_; }
-  double failed_pivot() const { return d_[static_cast<std::size_t>(failed_)]; }
+  double failed_pivot() const { return d_[failed_]; }
   /// min_j D_jj / A_jj of a definite matrix and the place of it.
   double pivot_ratio() const { return ratio_; }
   int worst_place() const { return worst_; }
   /// b and x may be the same.
   void solve(const Vector& b, Vector& x);
+  /// The same with P A P', or what weigh() made of it.
+  void solve_in_order(const double* b, double* x);
+  /// Makes the factor that of W P A P' W, W = diag(weight) > 0, until the next factorize().
+  void weigh(const Vector& weight);
 
-  const std::vector<double>& inverse_pivots() const { return d_; }
-  const std::vector<double>& entries() const { return l_; }
+  const Vector& inverse_pivots() const { return d_; }
+  const Vector& entries() const { return l_; }
 
  private:
   std::shared_ptr<const LowFillPattern> pattern_;
-  std::vector<double> d_, l_, y_;  // d_: 1/D, and D where it failed
+  Vector d_, l_, y_;  // d_: 1/D, and D where it failed
   double ratio_ = 0.0;
   int worst_ = -1, failed_ = -1;
 };

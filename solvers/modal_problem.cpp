@@ -4,13 +4,17 @@
 #include <cmath>
 
 #include "core/dense_eigen.hpp"
+#include "core/huge_pages.hpp"
+#include "core/lanes.hpp"
 #include "solvers/lanczos.hpp"
+#include "solvers/low_fill_factor.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr int kStrip = 2048;  // rows whose matrix entries stay in the cache for all vectors
+constexpr int kStrip = 2048;      // rows whose matrix entries stay in the cache for all vectors
+constexpr int kShortStrip = 512;  // of which all vectors do
 
 Vector stiffness_values(const Assembler& assembler, Contact contact) {
   if (!assembler.system().symmetric_tangent())
@@ -43,6 +47,58 @@ Eigen::MatrixXd to_dense(const SparseMatrix& pattern, const Vector& values) {
   return a;
 }
 
+/// The upper triangle of X' Y.
+DREV_WIDEST void products(const double* x, const double* y, int n, int count, double* g) {
+  const std::ptrdiff_t next = n;
+  for (int start = 0; start < n; start += kShortStrip) {
+    const int rows = std::min(kShortStrip, n - start);
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i <= j; ++i) {
+        const double *a = x + i * next + start, *b = y + j * next + start;
+        Lanes sum{}, u, v;
+        int k = 0;
+        for (; k + kLanes <= rows; k += kLanes) {
+          load(a + k, u);
+          load(b + k, v);
+          sum += u * v;
+        }
+        double& whole = g[i + j * count];
+        for (int lane = 0; lane < kLanes; ++lane) whole += sum[lane];
+        for (; k < rows; ++k) whole += a[k] * b[k];
+      }
+  }
+}
+
+/// out = W X C, rows of X taken from their places, C upper triangular. Null places and weights: out may be X.
+DREV_WIDEST void arrange(const double* x, int n, int count, const double* c, const int* place,
+                         const double* weight, double* out) {
+  const std::ptrdiff_t next = n;
+  std::vector<double> strip(at(count + 1) * at(kShortStrip));
+  double* w = strip.data() + count * kShortStrip;
+  for (int start = 0; start < n; start += kShortStrip) {
+    const int rows = std::min(kShortStrip, n - start);
+    const auto take = [&](const double* from, double* to) {
+      for (int k = 0; k < rows; ++k) to[k] = from[place ? place[start + k] : start + k];
+    };
+    for (int j = 0; j < count; ++j) take(x + j * next, strip.data() + j * kShortStrip);
+    if (weight)
+      take(weight, w);
+    else
+      std::fill_n(w, rows, 1.0);
+    for (int j = 0; j < count; ++j) {
+      double* to = out + j * next + start;
+      const double *column = strip.data() + j * kShortStrip, own = c[j + j * count];
+      for (int k = 0; k < rows; ++k) to[k] = own * column[k];
+      for (int i = 0; i < j; ++i) {
+        const double share = c[i + j * count];
+        column = strip.data() + i * kShortStrip;
+        for (int k = 0; k < rows; ++k) to[k] += share * column[k];
+      }
+      for (int k = 0; k < rows; ++k) to[k] *= w[k];
+    }
+  }
+}
+
 }  // namespace
 
 ModalProblem::ModalProblem(const System& system, Contact contact, ModesSummary& summary)
@@ -54,9 +110,14 @@ ModalProblem::ModalProblem(const System& system, Contact contact, ModesSummary& 
       summary_(summary),
       shifted_(system.pattern()),
       sturm_(system.pattern(), stiffness_, mass_, shifted_.low_fill()) {
-  if (!system.mass_is_diagonal()) return;
-  mass_diagonal_.resize(system.size());
-  for (int k = 0; k < system.size(); ++k) mass_diagonal_[k] = mass_[system.diagonal_slots()[at(k)]];
+  const auto low_fill = shifted_.low_fill();
+  if (!low_fill || !system.mass_is_diagonal()) return;
+  weight_.resize(system.size());
+  place_.resize(at(system.size()));
+  for (int j = 0; j < system.size(); ++j) {
+    place_[at(low_fill->order[at(j)])] = j;
+    weight_[j] = 1.0 / std::sqrt(mass_[low_fill->diagonal[at(j)]]);
+  }
 }
 
 void ModalProblem::factor(double sigma) {
@@ -66,6 +127,8 @@ void ModalProblem::factor(double sigma) {
     if (shifted_.factorize(system_.pattern(), stiffness_ - sigma * mass_) ==
         FactorStatus::success) {
       summary_.shift = sigma;
+      lanczos_.reset();
+      if (weight_.size() > 0) shifted_.low_fill_factor()->weigh(weight_);
       return;
     }
   }
@@ -76,13 +139,13 @@ void ModalProblem::factor(double sigma) {
                     " even with a shift far below zero: the mass matrix is not positive definite");
 }
 
-void ModalProblem::find_shift(int rigid_modes, bool prefer_dense) {
+void ModalProblem::find_shift(int rigid_modes, int most, bool prefer_dense) {
   const double n = system_.size();
   double sigma = lambda_max_ > 0.0 ? -lambda_max_ / (n * n) : -1.0;
   for (int round = 0; round < 6; ++round) {
     factor(sigma);
     if (rigid_modes >= system_.size()) return;
-    const double first = std::abs(first_elastic(rigid_modes, prefer_dense));
+    const double first = std::abs(first_elastic(rigid_modes, most, prefer_dense));
     const double ratio = -summary_.shift / first;
     if ((ratio <= 10.0 && ratio >= 0.01) || summary_.shift != sigma) return;
     // Rounding hides what is far below |sigma|: approach it in steps.
@@ -111,23 +174,30 @@ ShiftInvertProblem ModalProblem::shift_invert(int count, int start) {
   problem.count = count;
   problem.sigma = summary_.shift;
   problem.start = start;
-  problem.solve = [this](const Vector& b, Vector& x) { shifted_.solve(b, x); };
-  problem.mass = [this](const Vector& x, Vector& y) { multiply_mass(x, y); };
+  const int n = problem.size;
+  if (weight_.size() > 0) {
+    problem.solve = [this](const double* b, double* x) { shifted_.low_fill_factor()->solve_in_order(b, x); };
+    return problem;
+  }
+  problem.solve = [this, n, in = Vector(n), out = Vector(n)](const double* b, double* x) mutable {
+    std::copy_n(b, n, in.data());
+    shifted_.solve(in, out);
+    std::copy_n(out.data(), n, x);
+  };
+  problem.mass = [this, n, in = Vector(n), out = Vector(n)](const double* x, double* y) mutable {
+    std::copy_n(x, n, in.data());
+    assembler_.multiply(mass_, in, out);
+    std::copy_n(out.data(), n, y);
+  };
   return problem;
 }
 
-void ModalProblem::multiply_mass(const Vector& x, Vector& y) const {
-  if (mass_diagonal_.size() > 0)
-    y = mass_diagonal_.cwiseProduct(x);
-  else
-    assembler_.multiply(mass_, x, y);
-}
-
-double ModalProblem::first_elastic(int rigid_modes, bool prefer_dense) {
+double ModalProblem::first_elastic(int rigid_modes, int most, bool prefer_dense) {
   constexpr double kRoughly = 1e-2;
   const int count = rigid_modes + 1;
   if (!all_at_once(count, prefer_dense)) {
-    const ShiftInvertResult rough = lanczos_shift_invert(shift_invert(count, 0), count, kRoughly);
+    lanczos_ = std::make_unique<ShiftInvertLanczos>(shift_invert(std::max(count, most), 0));
+    const ShiftInvertResult rough = lanczos_->values(count, kRoughly);
     summary_.solves += rough.solves;
     if (rough.status == ArpackStatus::success) return rough.lambda[rigid_modes];
   }
@@ -139,12 +209,16 @@ ModalPairs ModalProblem::lanczos(int count, int round) {
   ShiftInvertProblem problem = shift_invert(count, round);
   ShiftInvertResult result;
   if (round == 0) {  // the last pair is only asked where the next frequency lies
-    result = lanczos_shift_invert(problem, std::max(1, count - 1), kTolerance);
+    if (!lanczos_ || lanczos_->count() != count) lanczos_ = std::make_unique<ShiftInvertLanczos>(problem);
+    result = lanczos_->pairs(std::max(1, count - 1), kTolerance);
+    lanczos_.reset();
     summary_.solves += result.solves;
-    if (result.status == ArpackStatus::success) polish(result);
+    if (result.status == ArpackStatus::success) polish(problem, result);
   }
   for (int attempt = 0; attempt < 3 && result.status != ArpackStatus::success; ++attempt) {
     result = arpack_shift_invert(problem);
+    if (result.status == ArpackStatus::success)
+      result.vectors = over_unknowns(std::move(result.vectors), Eigen::MatrixXd::Identity(count, count));
     summary_.solves += result.solves;
     problem.basis = 2 * std::max(20, std::max(2 * count + 1, problem.basis));
     problem.start += 17;
@@ -158,19 +232,37 @@ ModalPairs ModalProblem::lanczos(int count, int round) {
   return pairs;
 }
 
-void ModalProblem::polish(ShiftInvertResult& pairs) {
-  Vector x, mx, shares;
-  for (Eigen::Index j = 0; j < pairs.vectors.cols(); ++j) {
-    const auto lower = pairs.vectors.leftCols(j);
-    x = pairs.vectors.col(j);
-    multiply_mass(x, mx);
-    shares.noalias() = lower.transpose() * mx;
-    x.noalias() -= lower * shares;
-    multiply_mass(x, mx);
-    shifted_.solve(mx, x);
-    pairs.vectors.col(j) = (pairs.lambda[j] - summary_.shift) * x;
+void ModalProblem::polish(const ShiftInvertProblem& problem, ShiftInvertResult& pairs) {
+  Eigen::MatrixXd& x = pairs.vectors;
+  const auto count = static_cast<int>(x.cols());
+  Eigen::MatrixXd mx(problem.mass ? x.rows() : 0, problem.mass ? count : 0);
+  for (int j = 0; j < count; ++j) {
+    double* column = x.col(j).data();
+    if (problem.mass) problem.mass(column, mx.col(j).data());
+    problem.solve(problem.mass ? mx.col(j).data() : column, column);
+    if (problem.mass) problem.mass(column, mx.col(j).data());
     ++summary_.solves;
   }
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(count, count);
+  products(x.data(), problem.mass ? mx.data() : x.data(), problem.size, count, g.data());
+  const Eigen::VectorXd size = g.diagonal().cwiseSqrt().cwiseInverse();
+  g = size.asDiagonal() * g * size.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> root(g);
+  Eigen::MatrixXd c = Eigen::MatrixXd::Identity(count, count);
+  if (root.info() == Eigen::Success) root.matrixU().solveInPlace(c);
+  x = over_unknowns(std::move(x), size.asDiagonal() * c);
+}
+
+Eigen::MatrixXd ModalProblem::over_unknowns(Eigen::MatrixXd vectors, const Eigen::MatrixXd& c) const {
+  const auto n = static_cast<int>(vectors.rows()), count = static_cast<int>(vectors.cols());
+  if (weight_.size() == 0) {
+    arrange(vectors.data(), n, count, c.data(), nullptr, nullptr, vectors.data());
+    return vectors;
+  }
+  Eigen::MatrixXd out(n, count);
+  prefer_huge_pages(out);
+  arrange(vectors.data(), n, count, c.data(), place_.data(), weight_.data(), out.data());
+  return out;
 }
 
 bool ModalProblem::all_at_once(int count, bool prefer_dense) const {
@@ -185,7 +277,7 @@ ModalPairs ModalProblem::lowest(int count, int round, bool prefer_dense) {
 }
 
 void ModalProblem::refine(ModalPairs& pairs) const {
-  constexpr double kRounding = 1e-13;
+  constexpr double kRounding = 1e-13, kNormalised = 1e-13;
   const int n = pairs.count();
   const SparseMatrix& p = system_.pattern();
   const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
@@ -215,7 +307,7 @@ void ModalProblem::refine(ModalPairs& pairs) const {
   pairs.rigid.resize(at(n));
   for (int j = 0; j < n; ++j) {
     const auto& [xmx, xkx, size] = sums[at(j)];
-    pairs.vectors.col(j) /= std::sqrt(xmx);
+    if (!(std::abs(xmx - 1.0) < kNormalised)) pairs.vectors.col(j) /= std::sqrt(xmx);
     pairs.rigid[at(j)] = std::abs(xkx) <= kRounding * size;
     const double distance = pairs.lambda[j] - summary_.shift;
     if (distance * distance > -summary_.shift * lambda_max_) pairs.lambda[j] = xkx / xmx;

@@ -7,8 +7,8 @@
 /// that of the Rayleigh quotient x' K x / x' M x about eps lambda_max; the smaller of the two is
 /// taken.
 #include "core/assembler.hpp"
-#include "solvers/arpack_shift_invert.hpp"
 #include "solvers/inertia_count.hpp"
+#include "solvers/lanczos.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/sparse_cholesky.hpp"
 
@@ -30,7 +30,8 @@ class ModalProblem {
   /// Chooses sigma about -lambda of the first elastic mode: starts at -lambda_max / n^2, the scale
   /// of a uniform chain, and starts again where that turns out to be more than 10 times or less
   /// than a hundredth. Throws SolverError where no shift makes K - sigma M positive definite.
-  void find_shift(int rigid_modes, bool dense);
+  /// most: pairs that will be asked for then.
+  void find_shift(int rigid_modes, int most, bool dense);
   /// The lowest pairs, at least count, by the method preferred; summary says which it was. Round 0 is
   /// Lanczos without restarts, which is fast and may miss copies of a frequency; later rounds, and what
   /// did not converge, are ARPACK's, each with another start vector. Where that does not converge either
@@ -48,23 +49,30 @@ class ModalProblem {
  private:
   bool all_at_once(int count, bool prefer_dense) const;
   ModalPairs lanczos(int count, int round);
-  double first_elastic(int rigid_modes, bool prefer_dense);  // lambda, roughly
+  double first_elastic(int rigid_modes, int most, bool prefer_dense);  // lambda, roughly
+  /// Of K - sigma M, or of W P (K - sigma M) P' W and the unit matrix with weight_.
   ShiftInvertProblem shift_invert(int count, int start);
   const ModalPairs& dense();  // all pairs, computed once for each shift
   void factor(double sigma);
-  void multiply_mass(const Vector& x, Vector& y) const;
   /// One more inverse iteration takes out the rounding that Lanczos leaves in the fast modes; shares in
-  /// slower modes, which it would magnify, are taken out first.
-  void polish(ShiftInvertResult& pairs);
+  /// slower modes, which it magnifies, are taken out after it. x' M x = 1.
+  void polish(const ShiftInvertProblem& problem, ShiftInvertResult& pairs);
+  /// Vectors as shift_invert()'s problem has them, times the upper triangular c: over the unknowns.
+  Eigen::MatrixXd over_unknowns(Eigen::MatrixXd vectors, const Eigen::MatrixXd& c) const;
   void refine(ModalPairs& pairs) const;
 
   const System& system_;
   Assembler assembler_;
-  Vector stiffness_, mass_;
-  Vector mass_diagonal_;  // empty where M is not diagonal
+  Vector stiffness_;
+  const Vector& mass_;
+  // Where M is diagonal and L hardly fills, vectors are iterated in the order of elimination, scaled so that
+  // M = I: 1 / sqrt(M_ii) in that order, else empty.
+  Vector weight_;
+  std::vector<int> place_;  // of each unknown in that order
   double lambda_max_ = 0.0;  // scale, from row sums
   ModesSummary& summary_;
   SparseCholesky shifted_;
+  std::unique_ptr<ShiftInvertLanczos> lanczos_;  // begun with the shift, which it is to go on with
   InertiaCounter sturm_;
   ModalPairs dense_pairs_;
   double dense_shift_ = 0.0;  // that dense_pairs_ belong to

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/huge_pages.hpp"
 #include "core/units.hpp"
 #include "solvers/modal_problem.hpp"
 
@@ -79,11 +80,15 @@ std::optional<int> sturm_surplus(ModalProblem& problem, const Vector& lambda, in
   return std::nullopt;
 }
 
-void fill(const System& system, const ModalProblem& problem, const ModalPairs& pairs, int first,
-          int count, ModeSet& modes) {
-  modes.vectors = pairs.vectors.middleCols(first, count);
+void fill(const System& system, const ModalProblem& problem, ModalPairs& pairs, int first, int count,
+          ModeSet& modes) {
+  modes.summary.largest_residual = problem.largest_residual(pairs, first, count);
   modes.rigid_vectors = pairs.vectors.leftCols(first);
+  modes.vectors = std::move(pairs.vectors);
+  for (int j = 0; first > 0 && j < count; ++j) modes.vectors.col(j) = modes.vectors.col(first + j);
+  modes.vectors.conservativeResize(Eigen::NoChange, count);
   modes.shapes.resize(system.node_count(), count);
+  prefer_huge_pages(modes.shapes);
   for (int j = 0; j < count; ++j) {
     auto vector = modes.vectors.col(j);
     auto shape = modes.shapes.col(j);
@@ -101,7 +106,6 @@ void fill(const System& system, const ModalProblem& problem, const ModalPairs& p
     if (shape[decides] < 0.0) shape *= -1.0, vector *= -1.0;
     modes.frequency_Hz.push_back(to_hz(std::sqrt(pairs.lambda[first + j])));
   }
-  modes.summary.largest_residual = problem.largest_residual(pairs, first, count);
 }
 
 }  // namespace
@@ -136,11 +140,11 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
 
   ModalProblem problem(system, options.contact, summary);
   const bool prefer_dense = n <= options.dense_limit;
-  problem.find_shift(modes.rigid_modes, prefer_dense);
   constexpr int kRounds = 12;
   int ask = std::min(n, total + 1);
+  problem.find_shift(modes.rigid_modes, ask, prefer_dense);
   for (int round = 0; round < kRounds; ++round) {
-    const ModalPairs pairs = problem.lowest(ask, round, prefer_dense);
+    ModalPairs pairs = problem.lowest(ask, round, prefer_dense);
     check_rigid(system, options.contact, problem, pairs);
     const int next = next_distinct(pairs.lambda, total);
     int cut = next, surplus = 0;

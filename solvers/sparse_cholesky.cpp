@@ -32,7 +32,7 @@ const char* to_text(FactorStatus status) {
 }
 
 struct SparseCholesky::Impl {
-  std::vector<double> inverse_diagonal;  // of a diagonal matrix, which is not analysed
+  Vector inverse_diagonal;  // of a diagonal matrix, which is not analysed
   std::optional<LowFillFactor> flat;
   std::unique_ptr<CholmodFactor> cholmod;  // where L fills too much for flat arrays
   FactorStatus status = FactorStatus::not_computed;
@@ -43,7 +43,7 @@ struct SparseCholesky::Impl {
   FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
   /// False where A is not diagonal, or has a pivot that is not sound.
   bool factorize_diagonal(const SparseMatrix& pattern, const Vector& values);
-  bool is_diagonal() const { return !inverse_diagonal.empty(); }
+  bool is_diagonal() const { return inverse_diagonal.size() > 0; }
   int size() const {
     if (is_diagonal()) return static_cast<int>(inverse_diagonal.size());
     return flat ? flat->pattern().size : cholmod->size();
@@ -77,7 +77,7 @@ FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const 
   failed_column = -1;
   if (!flat && !cholmod) {
     if (factorize_diagonal(pattern, values)) return FactorStatus::success;
-    inverse_diagonal.clear();
+    inverse_diagonal.resize(0);
     const FactorStatus analysed = analyse(pattern);
     if (analysed != FactorStatus::success) return analysed;
   }
@@ -98,9 +98,9 @@ FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const 
 bool SparseCholesky::Impl::factorize_diagonal(const SparseMatrix& pattern, const Vector& values) {
   if (pattern.rows() != pattern.cols() || !pattern.isCompressed() || values.size() != pattern.nonZeros())
     return false;
-  inverse_diagonal.assign(static_cast<std::size_t>(pattern.rows()), 0.0);
+  inverse_diagonal.setZero(pattern.rows());
   for (int j = 0; j < pattern.cols(); ++j) {
-    double& inverse = inverse_diagonal[at(j)];
+    double& inverse = inverse_diagonal[j];
     for (int s = pattern.outerIndexPtr()[j]; s < pattern.outerIndexPtr()[j + 1]; ++s) {
       if (pattern.innerIndexPtr()[s] == j)
         inverse = 1.0 / values[s];
@@ -165,7 +165,7 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
     throw SolverError("Cholesky: right-hand side has " + std::to_string(b.size()) +
                       " entries, the matrix " + std::to_string(s.size()) + " rows");
   if (s.is_diagonal()) {
-    x = b.cwiseProduct(Eigen::Map<const Vector>(s.inverse_diagonal.data(), b.size()));
+    x = b.cwiseProduct(s.inverse_diagonal);
     return;
   }
   if (s.flat) return s.flat->solve(b, x);
@@ -175,8 +175,7 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
 double SparseCholesky::reciprocal_condition() const {
   if (!ok()) return 0.0;
   if (impl_->cholmod) return cholmod_rcond(&impl_->cholmod->factor(), &impl_->cholmod->common());
-  const std::vector<double>& inverse =
-      impl_->is_diagonal() ? impl_->inverse_diagonal : impl_->flat->inverse_pivots();
+  const Vector& inverse = impl_->is_diagonal() ? impl_->inverse_diagonal : impl_->flat->inverse_pivots();
   const auto [least, largest] = std::minmax_element(inverse.begin(), inverse.end());
   return *least / *largest;
 }
@@ -191,6 +190,8 @@ Ordering SparseCholesky::ordering() const {
 std::shared_ptr<const LowFillPattern> SparseCholesky::low_fill() const {
   return impl_->flat ? impl_->flat->shared_pattern() : nullptr;
 }
+
+LowFillFactor* SparseCholesky::low_fill_factor() { return impl_->flat ? &*impl_->flat : nullptr; }
 
 int SparseCholesky::factor_entries() const {
   if (!ok()) return 0;

@@ -32,6 +32,7 @@ enum class FactorStatus {
 const char* to_text(FactorStatus status);
 
 struct LowFillPattern;
+class LowFillFactor;
 
 /// Order of elimination.
 enum class Ordering { natural, from_leaves, amd };
@@ -69,6 +70,8 @@ class SparseCholesky {
   Ordering ordering() const;
   /// What was found of a pattern that hardly fills; null before, or where CHOLMOD factors it.
   std::shared_ptr<const LowFillPattern> low_fill() const;
+  /// The factor itself, likewise, for who goes on in its order of elimination.
+  LowFillFactor* low_fill_factor();
   /// Number of entries of L; 0 before the first factorisation.
   int factor_entries() const;
 
