@@ -108,24 +108,25 @@ void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
   }
 }
 
-ScalarInput Assembler::input(const ScalarTerm& term, const Vector& z, const Vector& v) const {
-  ScalarInput in;
-  in.t = t_;
-  for (const Entry& e : term.z) {
-    in.x += e.coeff * z[e.index];
-    in.x_dot += e.coeff * v[e.index];
-  }
+void Assembler::add_given(const ScalarTerm& term, ScalarInput& in) const {
   for (const Entry& e : term.u) {
     in.x += e.coeff * u_[at(e.index)].value;
     in.x_dot += e.coeff * u_[at(e.index)].rate;
   }
-  if (term.phase_node >= 0) {
-    const double n = system_.ratio(term.phase_node);
-    const Offset offset = term.force->offset(n * nominal_.value);
-    in.x -= offset.e;
-    in.x_dot -= offset.de_dangle * n * nominal_.rate;
-    in.angle = node_angle(term.phase_node, z);
+  if (term.phase_node < 0) return;
+  const double n = system_.ratio(term.phase_node);
+  const Offset offset = term.force->offset(n * nominal_.value);
+  in.x -= offset.e;
+  in.x_dot -= offset.de_dangle * n * nominal_.rate;
+}
+
+ScalarInput Assembler::input(const ScalarTerm& term, const Vector& z, const Vector& v) const {
+  ScalarInput in = given_input(term);
+  for (const Entry& e : term.z) {
+    in.x += e.coeff * z[e.index];
+    in.x_dot += e.coeff * v[e.index];
   }
+  if (term.phase_node >= 0) in.angle = node_angle(term.phase_node, z);
   return in;
 }
 

@@ -54,6 +54,13 @@ class Assembler {
 
   /// What the law of a scalar term sees.
   ScalarInput input(const ScalarTerm& term, const Vector& z, const Vector& v) const;
+  /// What of it no unknown has a part in: time, prescribed motions, transmission error.
+  ScalarInput given_input(const ScalarTerm& term) const {
+    ScalarInput in;
+    in.t = t_;
+    if (!term.u.empty() || term.phase_node >= 0) add_given(term, in);
+    return in;
+  }
   ScalarResponse respond(const ScalarTerm& term, const Vector& z, const Vector& v) const {
     return term.force->evaluate(input(term, z, v));
   }
@@ -89,6 +96,7 @@ class Assembler {
   }
 
  private:
+  void add_given(const ScalarTerm& term, ScalarInput& in) const;
   /// coeff times this is the node's deviation, or its rate with v for z.
   double over_coeff(const NodeMap& map, const Vector& z, double MotionPoint::*known) const {
     if (map.unknown >= 0) return z[map.unknown];

@@ -46,6 +46,7 @@ struct ScalarTerm {
   std::vector<Entry> nodes;  ///< b over nodes, before elimination
   int phase_node = -1;
   bool along_line_of_action = false;
+  bool varies = false;     ///< as its law says
   std::vector<int> slots;  ///< of (z_a, z_b), row by row, in the pattern's values
 };
 

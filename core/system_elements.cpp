@@ -144,6 +144,7 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     term.nodes = over_nodes(s.b, nodes);
     term.phase_node = s.phase_node < 0 ? -1 : nodes[at(s.phase_node)];
     term.along_line_of_action = s.along_line_of_action;
+    term.varies = s.force->varies();
     system_.scalars_.push_back(std::move(term));
   }
   for (const LoadSpec& l : terms.loads)

@@ -43,7 +43,7 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
     if (!term.u.empty() || term.phase_node >= 0)
       input += 0.5 * (r0.y + r1.y) * (in1.x - in0.x - by_unknowns);
     // A law that varies: its energy changes at constant x too; mean over both orders of changing.
-    if (term.force->varies()) {
+    if (term.varies) {
       const double v01 =
           term.force->evaluate({in0.x, in0.x_dot, in1.t, in1.angle}).stored_energy;
       const double v10 =

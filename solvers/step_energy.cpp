@@ -35,7 +35,7 @@ std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoi
         for (const Entry& e : term.z) known_rate -= e.coeff * v[e.index];
         power += r.y * known_rate;
       }
-      if (term.force->varies()) power -= r.y * in.x_dot - r.dissipated_power;
+      if (term.varies) power -= r.y * in.x_dot - r.dissipated_power;
     }
     if (!system.generals().empty())
       loss += assembler.general_energy(inside_.state, from.state.history).second;
@@ -43,7 +43,7 @@ std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoi
     dissipated += h * node.weight * loss;
   }
   for (std::size_t j = 0; j < system.scalars().size(); ++j)
-    if (system.scalars()[j].force->varies())
+    if (system.scalars()[j].varies)
       input += to.responses[j].stored_energy - from.responses[j].stored_energy;
   return {input, dissipated};
 }

@@ -29,7 +29,7 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
       damping_(system.pattern(), system.damping_values()),
       stiffness_(system.pattern(), system.stiffness_values()),
       lambda_(Vector::Zero(static_cast<Eigen::Index>(system.scalars().size()))),
-      still_(system.scalars().size()),
+      given_(system.scalars().size()),
       free_(system.scalars().size()),
       clock_(options.time_phases) {
   if (!dense_) sparse_ = std::make_unique<SparseNewton>(system);
@@ -150,8 +150,7 @@ void StepEquation::start_from(const StepPoint& point) {
 
 double largest_force(const StepPoint& point) {
   const int n = static_cast<int>(point.p.size());
-  double largest = std::max(0.0, largest_size(n, point.p.data()));
-  largest = std::max(largest, largest_size(n, point.kz.data()));
+  double largest = std::max(0.0, largest_of_both(n, point.p.data(), point.kz.data()));
   for (const ScalarResponse& r : point.responses) largest = std::max(largest, std::abs(r.y));
   return largest;
 }
@@ -213,21 +212,17 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   }
   clock_.enter(Phase::loads);
   assembler_.external(to.state.z, to.state.v, to.p);
-  to.inputs.resize(m);
-  to.responses.resize(m);
-  std::vector<ScalarInput>& phase = to.inputs;
+  for (std::size_t j = 0; j < m; ++j) given_[j] = assembler_.given_input(system_.scalars()[j]);
   const auto take_phase = [&] {
     if (!phases_) return;
     for (std::size_t j = 0; j < m; ++j)
       if (system_.scalars()[j].phase_node >= 0)
-        phase[j].angle = assembler_.node_angle(system_.scalars()[j].phase_node, to.state.z);
+        given_[j].angle = assembler_.node_angle(system_.scalars()[j].phase_node, to.state.z);
   };
   take_phase();
   const int phase_passes = phases_ && scheme_.order() > 2 ? kPhasePasses : 1;
   lambda_start_ = lambda_;
   const double kappa_z = scheme_.beta * problem.h * problem.h, kappa_v = scheme_.gamma * problem.h;
-  for (std::size_t j = 0; j < m; ++j)
-    still_[j] = assembler_.input(system_.scalars()[j], problem.z_0, problem.v_0);
 
   NewtonResult result;
   double change = 0.0;  // of z since the loads were evaluated
@@ -241,12 +236,13 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     if (m > 0) {
       clock_.enter(Phase::contacts);
       for (std::size_t j = 0; j < m; ++j) {
-        double x = 0.0;
-        for (const Entry& e : system_.scalars()[j].z) x += e.coeff * to.state.a.data()[e.index];
-        free_[j] = still_[j];
-        free_[j].x += kappa_z * x;
-        free_[j].x_dot += kappa_v * x;
-        free_[j].angle = phase[j].angle;
+        double x = given_[j].x, x_dot = given_[j].x_dot;
+        for (const Entry& e : system_.scalars()[j].z) {
+          const double a = to.state.a.data()[e.index];
+          x += e.coeff * (problem.z_0.data()[e.index] + kappa_z * a);
+          x_dot += e.coeff * (problem.v_0.data()[e.index] + kappa_v * a);
+        }
+        free_[j] = {x, x_dot, given_[j].t, given_[j].angle};
       }
       const NewtonResult contact = f.contact.solve(free_, scale, options_.contact, lambda_);
       result.iterations += contact.iterations;

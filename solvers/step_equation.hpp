@@ -113,7 +113,7 @@ class StepEquation {
   MatrixProduct mass_product_, damping_, stiffness_;
   std::unique_ptr<SparseNewton> sparse_;
   Vector linear_, rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
-  std::vector<ScalarInput> still_, free_;  // what the laws would see without acceleration, without forces
+  std::vector<ScalarInput> given_, free_;  // what laws see: known; without their forces
   double force_scale_ = 0.0;
   PhaseClock clock_;
   long load_passes_ = 0, factorizations_ = 0, solves_ = 0;

@@ -220,6 +220,19 @@ DREV_WIDEST
 double largest_size(int n, const double* x) { return largest_of(n, Itself{x}); }
 
 DREV_WIDEST
+double largest_of_both(int n, const double* x, const double* y) {
+  Largest largest;
+  for_blocks(n, [&](int i) __attribute__((always_inline)) {
+    Lanes a;
+    load(x + i, a);
+    largest.note(a);
+    load(y + i, a);
+    largest.note(a);
+  });
+  return largest.result();
+}
+
+DREV_WIDEST
 double largest_difference(int n, const double* x, const double* y) {
   return largest_of(n, Difference{x, y});
 }

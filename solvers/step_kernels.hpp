@@ -30,6 +30,7 @@ void sum_with(int n, const double* y, double factor, const double* x, double* ou
 void elastic_forces(int n, const double* total, const double* p, const double* cv, double* out);
 void add_multiple(int n, double factor, const double* x, double* out);
 double largest_size(int n, const double* x);
+double largest_of_both(int n, const double* x, const double* y);
 double largest_difference(int n, const double* x, const double* y);
 void dense_product(int n, int stride, const double* columns, const double* x, double* out);
 void band_product(int n, const std::vector<Band>& bands, double factor, const double* x, const double* y,
@@ -98,6 +99,17 @@ inline double largest_size(int n, const double* x) {
   if (n >= kLanes) return wide::largest_size(n, x);
   LargestSize largest;
   for (int i = 0; i < n; ++i) largest.note(x[i]);
+  return largest.result();
+}
+
+/// Largest |x_i| and |y_i|; NaN if any is not finite.
+inline double largest_of_both(int n, const double* x, const double* y) {
+  if (n >= kLanes) return wide::largest_of_both(n, x, y);
+  LargestSize largest;
+  for (int i = 0; i < n; ++i) {
+    largest.note(x[i]);
+    largest.note(y[i]);
+  }
   return largest.result();
 }
 
