@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -21,7 +22,7 @@ class Topology {
         outer_(s.pattern().outerIndexPtr(), s.pattern().outerIndexPtr() + s.size() + 1),
         inner_(s.pattern().innerIndexPtr(), s.pattern().innerIndexPtr() + s.pattern().nonZeros()) {
     for (const Placement& p : s.placements()) elements_.push_back(describe(p));
-    for (const ScalarTerm& t : s.scalars()) terms_.push_back(entries(t));
+    for (const ScalarTerm& t : s.scalars()) terms_.emplace(index(t.element), entries(t));
     for (int i = 0; i < s.node_count(); ++i) places_.push_back(place(s, i));
   }
 
@@ -38,9 +39,14 @@ class Topology {
     for (std::size_t i = 0; i < places_.size(); ++i)
       if (t.places_[i] != places_[i])
         return "node " + nodes_[i] + " is tied or prescribed otherwise than in variant 0";
-    if (t.outer_ != outer_ || t.inner_ != inner_ || t.terms_ != terms_)
-      return "its elements connect other nodes than in variant 0";
-    return {};
+    // A law of the one may be a straight line of the other's, and then is no term.
+    const bool same = t.outer_ == outer_ && t.inner_ == inner_ &&
+                      std::all_of(t.terms_.begin(), t.terms_.end(), [this](const auto& term) {
+                        const auto own = terms_.equal_range(term.first);
+                        return own.first == own.second ||
+                               std::any_of(own.first, own.second, [&](const auto& x) { return x == term; });
+                      });
+    return same ? "" : "its elements connect other nodes than in variant 0";
   }
 
  private:
@@ -60,7 +66,7 @@ class Topology {
 
   std::vector<std::string> nodes_, elements_;
   std::vector<int> outer_, inner_;
-  std::vector<std::vector<int>> terms_;
+  std::multimap<int, std::vector<int>> terms_;  // by element
   std::vector<std::pair<int, int>> places_;
 };
 
@@ -119,7 +125,12 @@ class Many {
         variants.push_back(i);
         systems.push_back(std::move(*system));
       }
-    // Variants that step together have the same breakpoints.
+    // Variants that step together have the same breakpoints and laws.
+    const auto alike = [](const System& a, const System& b) {
+      return a.breakpoints() == b.breakpoints() &&
+             std::equal(a.scalars().begin(), a.scalars().end(), b.scalars().begin(), b.scalars().end(),
+                        [](const ScalarTerm& x, const ScalarTerm& y) { return x.element == y.element; });
+    };
     std::vector<bool> done(systems.size(), false);
     double run = 0.0;
     for (std::size_t i = 0; i < systems.size(); ++i) {
@@ -127,7 +138,7 @@ class Many {
       std::vector<const System*> together;
       std::vector<std::size_t> indices;
       for (std::size_t j = i; j < systems.size(); ++j)
-        if (!done[j] && systems[j].breakpoints() == systems[i].breakpoints()) {
+        if (!done[j] && alike(systems[j], systems[i])) {
           done[j] = true;
           together.push_back(&systems[j]);
           indices.push_back(variants[j]);
@@ -276,7 +287,8 @@ ManyResult simulate_many(std::size_t count, const VariantBuilder& build, const T
   if (!many.lockstep) why_not = "not wanted";
   ManyResult result = run.run(std::move(first), why_not ? 1 : kLanes,
                  [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
-                   if (why_not) return one_by_one(systems, options, many.channels, go_on);
+                   if (why_not || why_not_lockstep(*systems.front(), options))
+                     return one_by_one(systems, options, many.channels, go_on);
                    return Lockstep(systems, options, many.channels).run(go_on);
                  });
   result.why_not_lockstep = why_not.value_or("");

@@ -194,6 +194,18 @@ TEST_CASE("Lockstep: other methods of the family, and breakpoints that differ be
   }
 }
 
+TEST_CASE("Lockstep: a backlash that begins at zero, where the mesh is a straight line") {
+  const auto build = [](std::size_t i) {
+    Model m = gear_pair(i, {.stiffness = 1e8, .normal_backlash = i % 4 ? 5e-6 * part(i) : 0.0, .damping = 400.0});
+    m.add<AppliedTorque>("torque", {"load"}, pulses(i));
+    m.constant_speed("motor", 100.0);
+    return m.build();
+  };
+  CHECK(build(0).scalars().empty());
+  CHECK(build(1).scalars().size() == 1);
+  check_same(build, {.step = 1e-5, .t_end = 0.005}, 1e-8, {"mesh.force_N", "mesh.deflection_m"});
+}
+
 TEST_CASE("Lockstep: steps that one variant cannot make with the others it makes by itself") {
   // A damper that jumps where the flanks meet leaves steps without a root, which a single run halves.
   const auto build = [](std::size_t i) {
