@@ -14,6 +14,9 @@ function(drev_room room)
   target_include_directories(drev_${room} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                  $<INSTALL_INTERFACE:include/drev>)
   target_link_libraries(drev_${room} PUBLIC ${ARGN})
+  # Vectors begin where a cache line does, and memory passes between drev and its user whatever
+  # instructions each is compiled for.
+  target_compile_definitions(drev_${room} PUBLIC EIGEN_MAX_ALIGN_BYTES=64)
   if(room STREQUAL "core")
     drev_compile(drev_core ${DREV_PRECOMPILED})
   else()

@@ -19,6 +19,10 @@
 
 namespace drev {
 
+static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64,
+              "compile with -DEIGEN_MAX_ALIGN_BYTES=64, as drev's CMake targets and drev.pc say: drev and its "
+              "user free each other's vectors");
+
 using Vector = Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 /// Rows over the unknowns, each in one piece of memory.

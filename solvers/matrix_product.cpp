@@ -22,12 +22,12 @@ MatrixProduct::MatrixProduct(const SparseMatrix& pattern, const Vector& values)
         by_rows_ = true;
         return;
       }
-  for (const int offset : offsets) bands_.push_back({offset, std::vector<double>(at(n - offset), 0.0)});
+  for (const int offset : offsets) bands_.push_back({offset, Vector::Zero(n - offset)});
   for (int row = 0; row < n; ++row)
     for (int s = outer[row]; s < outer[row + 1]; ++s)
       if (values[s] != 0.0)
         for (Band& band : bands_)
-          if (band.offset == inner[s] - row) band.values[at(row)] = values[s];
+          if (band.offset == inner[s] - row) band.values[row] = values[s];
 }
 
 double MatrixProduct::row(const Vector& x, int i) const {

@@ -77,7 +77,7 @@ StepEquation::Factor& StepEquation::factor(double h) {
 
 void StepEquation::invert(Factor& f) {
   const int n = system_.size(), stride = whole_lanes(n);
-  f.inverse.assign(at(n * stride), 0.0);
+  f.inverse.setZero(n * stride);
   Vector column(n), solved(n);
   for (int j = 0; j < n; ++j) {
     column = Vector::Unit(n, j);
@@ -89,7 +89,7 @@ void StepEquation::invert(Factor& f) {
 void StepEquation::solve(Factor& f, const Vector& b, Vector& x) {
   ++solves_;
   const int n = system_.size();
-  if (f.inverse.empty()) {
+  if (f.inverse.size() == 0) {
     f.cholesky.solve(b, x);
     if (n <= kLargestDense && ++f.used == kUsedOften * n &&
         f.cholesky.reciprocal_condition() > kInvertible)

@@ -90,7 +90,7 @@ class StepEquation {
     ContactNewton contact;
     Eigen::MatrixXd w;  // S^-1 B
     long used = 0;
-    std::vector<double> inverse;  // columns of S^-1, padded to whole lanes
+    Vector inverse;     // columns of S^-1, padded to whole lanes
   };
   void invert(Factor& f);
   void solve(Factor& f, const Vector& b, Vector& x);

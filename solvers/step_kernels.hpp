@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/lanes.hpp"
+#include "core/system.hpp"
 
 namespace drev {
 
@@ -11,7 +12,7 @@ namespace drev {
 /// (i + offset, i).
 struct Band {
   int offset = 0;  ///< >= 0
-  std::vector<double> values;
+  Vector values;
 };
 /// What a step adds to the energy balance, and what is stored at its end [J].
 struct StepWork {
@@ -138,7 +139,7 @@ inline void band_product(int n, const std::vector<Band>& bands, double factor, c
   for (int i = 0; i < n; ++i) out[i] = y ? y[i] : 0.0;
   for (const Band& band : bands)
     for (int i = 0, k = band.offset; k < n; ++i, ++k) {
-      const double value = factor * band.values.data()[i];
+      const double value = factor * band.values[i];
       out[i] += value * x[k];
       if (k > i) out[k] += value * x[i];
     }
@@ -150,7 +151,7 @@ inline double band_energy(int n, const std::vector<Band>& bands, const double* x
   double energy = 0.0;
   for (const Band& band : bands)
     for (int i = 0, k = band.offset; k < n; ++i, ++k)
-      energy += (k > i ? 2.0 : 1.0) * band.values.data()[i] * x[i] * x[k];
+      energy += (k > i ? 2.0 : 1.0) * band.values[i] * x[i] * x[k];
   return energy;
 }
 
