@@ -242,32 +242,35 @@ struct ShiftInvertLanczos::Impl {
       const bool due = n_ > 4 * count && beyond >= 0 && beyond % kBetweenChecks == 0;
       enough = columns_ == n_ || ((columns_ == most_ || due) && converged(count, sharp, tolerance));
     }
-    Eigen::MatrixXd none(0, columns_);
-    if (!enough) {
+    if (enough) {
+      result.status = ArpackStatus::success;
+    } else {
       result.status = ArpackStatus::not_converged;
       result.reason = std::to_string(most_) + " Lanczos vectors did not suffice";
-    } else if (!tridiagonal(none)) {
-      result.status = ArpackStatus::failed;
-      result.reason = "the tridiagonal eigenproblem did not converge";
-    } else {
-      result.status = ArpackStatus::success;
-      result.lambda = problem.sigma + theta_.head(count).cwiseInverse().array();
     }
     return result;
   }
 
-  /// The basis becomes the vectors; false where T's are not found.
-  bool combine_into(int count, Eigen::MatrixXd& vectors) {
-    Eigen::MatrixXd s;
-    if (!vectors_of_t(count, s)) return false;
-    combine(q_.data(), n_, columns_, s.data(), count);
+  /// theta_ as eigenvalues, or why not.
+  void take_values(bool found, int count, ShiftInvertResult& result) const {
+    if (found) {
+      result.lambda = problem.sigma + theta_.head(count).cwiseInverse().array();
+    } else {
+      result.status = ArpackStatus::failed;
+      result.reason = "the tridiagonal eigenproblem did not converge";
+    }
+  }
+
+  /// The basis becomes the vectors T's are s of.
+  void combine_into(const Eigen::MatrixXd& s, Eigen::MatrixXd& vectors) {
+    const Eigen::Index count = s.cols();
+    combine(q_.data(), n_, columns_, s.data(), static_cast<int>(count));
     if (q_.size() > kKept) {
       q_.conservativeResize(n_, count);  // gives the rest back to the system without copying
       vectors = std::move(q_);
     } else {
       vectors = q_.leftCols(count);
     }
-    return true;
   }
 
   double* column(int j) { return q_.data() + static_cast<std::ptrdiff_t>(j) * n_; }
@@ -414,16 +417,19 @@ ShiftInvertLanczos::~ShiftInvertLanczos() = default;
 int ShiftInvertLanczos::count() const { return impl_->problem.count; }
 
 ShiftInvertResult ShiftInvertLanczos::values(int count, double tolerance) {
-  return impl_->go_on(count, count, tolerance);
+  ShiftInvertResult result = impl_->go_on(count, count, tolerance);
+  Eigen::MatrixXd none(0, impl_->columns_);
+  if (result.status == ArpackStatus::success) impl_->take_values(impl_->tridiagonal(none), count, result);
+  return result;
 }
 
 ShiftInvertResult ShiftInvertLanczos::pairs(int sharp, double tolerance) {
   const int count = impl_->problem.count;
   ShiftInvertResult result = impl_->go_on(count, sharp, tolerance);
-  if (result.status == ArpackStatus::success && !impl_->combine_into(count, result.vectors)) {
-    result.status = ArpackStatus::failed;
-    result.reason = "the tridiagonal eigenproblem did not converge";
-  }
+  if (result.status != ArpackStatus::success) return result;
+  Eigen::MatrixXd s;
+  impl_->take_values(impl_->vectors_of_t(count, s), count, result);
+  if (result.status == ArpackStatus::success) impl_->combine_into(s, result.vectors);
   return result;
 }
 
