@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "core/huge_pages.hpp"
 #include "core/lanes.hpp"
+#include "solvers/huge_pages.hpp"
 
 namespace drev {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/cholmod_factor.hpp"
-#include "core/huge_pages.hpp"
 #include "core/lanes.hpp"
+#include "solvers/cholmod_factor.hpp"
+#include "solvers/huge_pages.hpp"
 
 namespace drev {
 

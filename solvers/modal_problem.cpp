@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/dense_eigen.hpp"
-#include "core/huge_pages.hpp"
 #include "core/lanes.hpp"
+#include "solvers/huge_pages.hpp"
 #include "solvers/lanczos.hpp"
 #include "solvers/low_fill_factor.hpp"
 

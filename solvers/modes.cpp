@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/huge_pages.hpp"
 #include "core/units.hpp"
+#include "solvers/huge_pages.hpp"
 #include "solvers/modal_problem.hpp"
 
 namespace drev {

@@ -9,7 +9,7 @@ set(models_may core elements solvers models)
 set(app_may core elements solvers models app)
 
 # Besides Eigen and the standard library (a plain name without ".h").
-set(solvers_libraries "^(cholmod|klu|umfpack|ldl|arpack/arpack|arpack)\\.h(pp)?$")
+set(solvers_libraries "^(cholmod|klu|umfpack|ldl|arpack/arpack|arpack|sys/mman)\\.h(pp)?$")
 set(app_libraries ".")
 # Libraries that stay behind one file each.
 set(behind_one_file cholmod arpack toml)
