@@ -3,6 +3,8 @@
 /// page faults (8 MB arrays, measured). Linux gives them where it is asked; elsewhere nothing happens.
 #include <cstddef>
 
+#include "core/system.hpp"
+
 namespace drev {
 
 /// Asks for them, for memory not written to yet; small arrays are left alone.
@@ -10,6 +12,13 @@ void prefer_huge_pages(const void* untouched, std::size_t bytes);
 template <class Array>
 void prefer_huge_pages(const Array& untouched) {
   prefer_huge_pages(untouched.data(), sizeof(*untouched.data()) * static_cast<std::size_t>(untouched.size()));
+}
+
+/// x becomes n zeros.
+inline void set_zeros(Vector& x, Eigen::Index n) {
+  x.resize(n);
+  prefer_huge_pages(x);
+  x.setZero();
 }
 
 }  // namespace drev

@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "solvers/huge_pages.hpp"
+
 namespace drev {
 
 namespace {
@@ -22,7 +24,7 @@ MatrixProduct::MatrixProduct(const SparseMatrix& pattern, const Vector& values)
         by_rows_ = true;
         return;
       }
-  for (const int offset : offsets) bands_.push_back({offset, Vector::Zero(n - offset)});
+  for (const int offset : offsets) set_zeros(bands_.emplace_back(Band{offset, {}}).values, n - offset);
   for (int row = 0; row < n; ++row)
     for (int s = outer[row]; s < outer[row + 1]; ++s)
       if (values[s] != 0.0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/huge_pages.hpp"
 #include "solvers/step_kernels.hpp"
 
 namespace drev {
@@ -33,6 +34,7 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
       free_(system.scalars().size()),
       clock_(options.time_phases) {
   if (!dense_) sparse_ = std::make_unique<SparseNewton>(system);
+  for (Vector* x : {&linear_, &rhs_, &scratch_}) set_zeros(*x, system.size());
 }
 
 StepEquation::Factor& StepEquation::factor(double h) {

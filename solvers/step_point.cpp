@@ -1,6 +1,14 @@
 #include "solvers/step_point.hpp"
 
+#include "solvers/huge_pages.hpp"
+
 namespace drev {
+
+void make_room(StepPoint& point, int n) {
+  State& s = point.state;
+  for (Vector* x : {&s.z, &s.v, &s.a, &point.p, &point.kz, &point.cv, &point.total})
+    if (x->size() == 0) set_zeros(*x, n);
+}
 
 void evaluate_laws(const Assembler& assembler, StepPoint& point) {
   const std::vector<ScalarTerm>& terms = assembler.system().scalars();

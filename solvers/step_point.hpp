@@ -20,6 +20,8 @@ struct StepPoint {
   double general_power = 0.0;             ///< W, dissipated there
 };
 
+/// Zeros for n unknowns where a vector has no entries yet.
+void make_room(StepPoint& point, int n);
 /// Inputs and responses of all laws at the point's motion and the assembler's time.
 void evaluate_laws(const Assembler& assembler, StepPoint& point);
 /// f += factor B y with the point's responses.

@@ -38,6 +38,7 @@ class Run {
         located_(system, *stepper_) {
     now_->state = std::move(state);
     now_->state.t = options.t_start;
+    for (StepPoint& point : points_) make_room(point, system.size());
     summary_.scheme = options.scheme.name;
     summary_.step = options.step;
     summary_.tolerance = options.tolerance;
