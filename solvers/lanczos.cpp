@@ -8,6 +8,7 @@
 
 #include "core/lanes.hpp"
 #include "solvers/huge_pages.hpp"
+#include "solvers/step_kernels.hpp"
 
 namespace drev {
 
@@ -174,20 +175,6 @@ DREV_WIDEST void combine(double* q, int n, int count, const double* s, int outs)
   }
 }
 
-DREV_WIDEST double dot(const double* a, const double* b, int n) {
-  Lanes sum{}, x, y;
-  int k = 0;
-  for (; k + kLanes <= n; k += kLanes) {
-    load(a + k, x);
-    load(b + k, y);
-    sum += x * y;
-  }
-  double rest = 0.0;
-  for (int lane = 0; lane < kLanes; ++lane) rest += sum[lane];
-  for (; k < n; ++k) rest += a[k] * b[k];
-  return rest;
-}
-
 /// w -= factor q; returns w' m. m may be w.
 DREV_WIDEST double subtract_and_project(double factor, const double* q, const double* m, int n, double* w) {
   Lanes sum{}, x, y;
@@ -282,7 +269,7 @@ struct ShiftInvertLanczos::Impl {
 
   double norm() {
     if (problem.mass) problem.mass(w(), mw());
-    return std::sqrt(std::max(0.0, dot(w(), mw(), n_)));
+    return std::sqrt(std::max(0.0, dot(n_, w(), mw())));
   }
 
   /// w / norm becomes the next vector of the basis.
@@ -299,7 +286,7 @@ struct ShiftInvertLanczos::Impl {
     const int j = columns_ - 1;
     problem.solve(mq(), w());
     alpha_.push_back(j > 0 ? subtract_and_project(beta_.back(), column(j - 1), mq(), n_, w())
-                           : dot(w(), mq(), n_));
+                           : dot(n_, w(), mq()));
     const double square = subtract_and_project(alpha_.back(), column(j), w(), n_, w());
     double beta = problem.mass ? norm() : std::sqrt(square);
     largest_ = std::max({largest_, std::abs(alpha_.back()), beta});
@@ -349,7 +336,7 @@ struct ShiftInvertLanczos::Impl {
     project(q_.data(), n_, j, mq(), mw(), h_.data());
     subtract(q_.data(), n_, j, h_.data(), q, w());
     if (problem.mass) problem.mass(q, mq());
-    subtract_and_project(dot(w(), mq(), n_), q, w(), n_, w());
+    subtract_and_project(dot(n_, w(), mq()), q, w(), n_, w());
     std::fill_n(omega_.begin(), j, kEpsilon);
     std::fill_n(omega_old_.begin(), j, kEpsilon);
   }

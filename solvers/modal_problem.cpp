@@ -8,6 +8,7 @@
 #include "solvers/huge_pages.hpp"
 #include "solvers/lanczos.hpp"
 #include "solvers/low_fill_factor.hpp"
+#include "solvers/step_kernels.hpp"
 
 namespace drev {
 
@@ -48,24 +49,13 @@ Eigen::MatrixXd to_dense(const SparseMatrix& pattern, const Vector& values) {
 }
 
 /// The upper triangle of X' Y.
-DREV_WIDEST void products(const double* x, const double* y, int n, int count, double* g) {
+void products(const double* x, const double* y, int n, int count, double* g) {
   const std::ptrdiff_t next = n;
   for (int start = 0; start < n; start += kShortStrip) {
     const int rows = std::min(kShortStrip, n - start);
     for (int j = 0; j < count; ++j)
-      for (int i = 0; i <= j; ++i) {
-        const double *a = x + i * next + start, *b = y + j * next + start;
-        Lanes sum{}, u, v;
-        int k = 0;
-        for (; k + kLanes <= rows; k += kLanes) {
-          load(a + k, u);
-          load(b + k, v);
-          sum += u * v;
-        }
-        double& whole = g[i + j * count];
-        for (int lane = 0; lane < kLanes; ++lane) whole += sum[lane];
-        for (; k < rows; ++k) whole += a[k] * b[k];
-      }
+      for (int i = 0; i <= j; ++i)
+        g[i + j * count] += dot(rows, x + i * next + start, y + j * next + start);
   }
 }
 
