@@ -11,7 +11,7 @@ namespace {
 
 std::string parts(double part, int significant) { return short_digits(100.0 * part, significant); }
 
-std::string row_of(const Rung& rung, std::size_t width, bool chosen) {
+std::string rung_row(const Rung& rung, std::size_t width, bool chosen) {
   std::string row = (chosen ? "> " : "  ") + pad_right(rung.name, width);
   if (!rung.unsuitable.empty()) return row + "  cannot be used: " + rung.unsuitable + "\n";
   row += pad_left(digits(rung.value, 5), 13);
@@ -30,7 +30,7 @@ std::string as_text(const AdviseRequest& request, const Advice& advice) {
   text += "  " + pad_right("model", width) + pad_left("[" + advice.unit + "]", 13) +
           pad_left("off by [%]", 12) + pad_right("", 13) + pad_left("cost", 9) + "   holds\n";
   for (std::size_t i = 0; i < advice.rungs.size(); ++i)
-    text += row_of(advice.rungs[i], width, i == advice.chosen);
+    text += rung_row(advice.rungs[i], width, i == advice.chosen);
   text += "\n" + wrap(advice.sentence, 0);
   if (!advice.best().evidence.empty())
     text += "\nEvidence: " + wrap(advice.best().evidence + ".", 10);

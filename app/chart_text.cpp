@@ -13,11 +13,7 @@ namespace drev::app {
 namespace {
 
 constexpr double kAccuracies[] = {1e-2, 1e-4, 1e-6};
-constexpr std::size_t kLabel = 24, kColumn = 24;
-
-std::string row(const std::string& label, const std::string& text) {
-  return pad_right(label, kLabel) + wrap(text, kLabel);
-}
+constexpr std::size_t kColumn = 24;
 
 std::string time_text(double seconds) {
   if (seconds < 1e-3) return digits(1e6 * seconds, 2) + " us";
@@ -71,12 +67,12 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   const std::string name = request.model.entry->name;
   std::string text =
       name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
-  text += row("Error", "of " + r.quantity + ", the largest over the samples from 0 to " +
-                           short_digits(data.t_end, 4) + " s, over its peak, " +
-                           digits(data.peak, 4) + " " + data.unit);
-  if (!r.horizon_reason.empty()) text += row("Horizon", r.horizon_reason);
-  text += row("Reference", data.reference + "; " + data.check + " agrees with it to " +
-                               digits(data.agreement, 2) + ", and no error below that is known");
+  text += labelled("Error", "of " + r.quantity + ", the largest over the samples from 0 to " +
+                                short_digits(data.t_end, 4) + " s, over its peak, " +
+                                digits(data.peak, 4) + " " + data.unit);
+  if (!r.horizon_reason.empty()) text += labelled("Horizon", r.horizon_reason);
+  text += labelled("Reference", data.reference + "; " + data.check + " agrees with it to " +
+                                    digits(data.agreement, 2) + ", and no error below that is known");
   std::size_t label = kLabel;
   for (const WorkCurve& curve : data.curves) label = std::max(label, curve.name.size() + 4);
   text += "\n" + pad_right("Processor time for", label);
@@ -94,7 +90,7 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   }
   text += "\nWhich method should I use?\n";
   for (const double accuracy : kAccuracies)
-    text += row("  for " + short_digits(accuracy, 2), conclusion(data, accuracy));
+    text += labelled("  for " + short_digits(accuracy, 2), conclusion(data, accuracy));
   return text;
 }
 

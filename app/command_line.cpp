@@ -17,7 +17,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr const char* kPlace = "command line";
 
 /// What CLI11 fills; an option that was not given stays empty.
 struct Raw {
@@ -77,12 +76,12 @@ void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
     if (!looks_like_option(extra)) continue;
     unknown_option = true;
     const std::string name = extra.substr(0, extra.find('='));
-    findings.push_back({kPlace, "option", name, "",
+    findings.push_back({kCommandLine, "option", name, "",
                         "is no option of drev " + sub.get_name() + option_hint(name, sub)});
   }
   if (unknown_option) return;  // the other words may be its values
   for (const std::string& extra : extras)
-    findings.push_back({kPlace, "argument", extra, "",
+    findings.push_back({kCommandLine, "argument", extra, "",
                         extra.find('=') == std::string::npos ? "is one too many"
                                                              : "must be written --set " + extra});
 }
@@ -108,7 +107,7 @@ void find_models_among_sets(Raw& raw, bool several) {
 void find_sets_among_models(Raw& raw, std::vector<Finding>& findings) {
   std::erase_if(raw.models, [&](const std::string& word) {
     const bool set = word.find('=') != std::string::npos && !names_model(word);
-    if (set) findings.push_back({kPlace, "argument", word, "", "must be written --set " + word});
+    if (set) findings.push_back({kCommandLine, "argument", word, "", "must be written --set " + word});
     return set;
   });
 }
@@ -117,32 +116,22 @@ void take_sets(const Raw& raw, CommandLine& line) {
   for (const std::string& text : raw.sets) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-      line.findings.push_back({kPlace, "--set", text, "", "must be name=value"});
+      line.findings.push_back({kCommandLine, "--set", text, "", "must be name=value"});
       continue;
     }
     const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
     const auto same = std::find_if(line.settings.begin(), line.settings.end(),
                                    [&](const auto& setting) { return setting.first == name; });
     if (same != line.settings.end())
-      line.findings.push_back({kPlace, "--set", text, "", "was set already, to " + same->second});
+      line.findings.push_back({kCommandLine, "--set", text, "", "was set already, to " + same->second});
     else
       line.settings.emplace_back(name, value);
   }
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 void take_option(const OptionEntry& option, const std::vector<std::string>& given, CommandLine& line) {
   const auto report = [&](const std::string& value, const std::string& why) {
-    line.findings.push_back({kPlace, option.name, value, "", why});
+    line.findings.push_back({kCommandLine, option.name, value, "", why});
   };
   if (given.empty()) return;
   std::vector<std::string>& taken = line.options[option.name];
@@ -158,7 +147,7 @@ void take_option(const OptionEntry& option, const std::vector<std::string>& give
   }
   const bool commas = option.values == OptionEntry::Values::commas;
   for (const std::string& text : given)
-    for (const std::string& name : commas ? split(text) : std::vector{text}) {
+    for (const std::string& name : commas ? split(text, ',') : std::vector{text}) {
       if (name.empty() || name.starts_with("--"))
         report(text, std::string("must be ") + option.type);
       else if (std::count(taken.begin(), taken.end(), name) > 0)
@@ -246,9 +235,9 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
   if (command.takes_models) line.options["MODEL"] = raw.models;
   if (chosen.size() > 1)
     line.findings.push_back(
-        {kPlace, "command", chosen[1]->get_name(), "", "is a second one; give one command"});
+        {kCommandLine, "command", chosen[1]->get_name(), "", "is a second one; give one command"});
   for (const std::string& word : app.remaining())
-    line.findings.push_back({kPlace, looks_like_option(word) ? "option" : "argument", word, "",
+    line.findings.push_back({kCommandLine, looks_like_option(word) ? "option" : "argument", word, "",
                              "must stand after the command " + sub.get_name()});
   report_extras(sub.remaining(), sub, line.findings);
   take_sets(raw, line);

@@ -12,6 +12,8 @@
 
 namespace drev::app {
 
+inline constexpr const char* kCommandLine = "command line";  ///< the place that findings on it name
+
 struct CommandLine {
   const CommandEntry* command = nullptr;
   std::string model = {};  ///< name or file, the first of several; empty: not given

@@ -46,7 +46,9 @@ int check_command(const CommandLine& line);
 int export_command(const CommandLine& line);
 int report_command(const CommandLine& line);
 
-/// Writes to stdout, unless --quiet was given; throws OutputError if that fails (a full disk behind a redirection).
+/// Writes to stdout, unless set_quiet(true) came first (--quiet); throws OutputError if that fails (a full disk
+/// behind a redirection).
 void print(const std::string& text);
+void set_quiet(bool value);
 
 }  // namespace drev::app

@@ -14,12 +14,12 @@ namespace drev::app {
 namespace {
 
 /// The model that the words name: its scene, and its file if it is one. Both null: none, or a file with faults.
-struct NamedModel {
+struct TypedModel {
   std::shared_ptr<const SceneEntry> entry = {};
   std::shared_ptr<const ModelFile> file = {};
 };
 
-NamedModel model_in(const std::vector<std::string>& words) {
+TypedModel model_in(const std::vector<std::string>& words) {
   for (const SceneEntry& entry : scenes())
     if (std::find(words.begin(), words.end(), entry.name) != words.end())
       return {{std::shared_ptr<const void>(), &entry}};
@@ -53,7 +53,7 @@ std::vector<std::string> channels_of(const SceneEntry& entry, const std::string&
   return offered;
 }
 
-std::vector<std::string> values_of(const OptionEntry& option, const NamedModel& model,
+std::vector<std::string> values_of(const OptionEntry& option, const TypedModel& model,
                                    const std::string& word) {
   const std::string name = option.name;
   std::vector<std::string> methods = step_scheme_names();
@@ -78,7 +78,7 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
                                     [&](const CommandEntry& entry) { return entry.name == words.front(); });
   if (command == table.end()) return {};
   const std::string& word = words.back();
-  const NamedModel model = model_in(words);
+  const TypedModel model = model_in(words);
   // The option that the word belongs to: the one before it, or before the words before it.
   const auto option = std::find_if(words.rbegin() + 1, words.rend(),
                                    [](const std::string& text) { return text.starts_with("--"); });

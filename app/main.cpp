@@ -1,7 +1,5 @@
 // The command drev. See drev --help.
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <string_view>
 
@@ -11,16 +9,6 @@
 #include "app/output_file.hpp"
 
 namespace drev::app {
-
-namespace {
-bool quiet = false;
-}
-
-void print(const std::string& text) {
-  if (quiet) return;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw OutputError(std::string("cannot write to standard output: ") + std::strerror(errno));
-}
 
 namespace {
 
@@ -45,7 +33,7 @@ int guarded_main(int argc, char** argv) {
     }
     const ParsedCommandLine parsed = parse_command_line(argc, argv);
     if (!parsed.command) return parsed.exit_code;
-    quiet = parsed.command->quiet;
+    set_quiet(parsed.command->quiet);
     return parsed.command->command->execute(*parsed.command);
   } catch (const ModelError& error) {
     complain(error);

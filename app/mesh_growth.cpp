@@ -40,8 +40,8 @@ double mesh_growth(const System& system, double period, int pieces) {
     Eigen::MatrixXd k = stiffness;
     for (const ScalarTerm& term : system.scalars()) {
       slopes.push_back(assembler.respond(term, rest, rest).dy_dx);
-      for (const Entry& a : term.z)
-        for (const Entry& b : term.z) k(a.index, b.index) += slopes.back() * a.coeff * b.coeff;
+      for (const drev::Entry& a : term.z)
+        for (const drev::Entry& b : term.z) k(a.index, b.index) += slopes.back() * a.coeff * b.coeff;
     }
     auto found = turns.find(slopes);
     if (found == turns.end()) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "app/command_line.hpp"
 #include "app/model_file/tree.hpp"
 #include "models/scene.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPlace = "command line";
 
 /// Nothing if the file cannot be read, or is no TOML.
 std::optional<Value> read_root(const std::string& file) {
@@ -47,7 +47,7 @@ std::vector<std::string> toml_files(const std::string& directory, std::vector<Fi
     if (entry->path().extension() == ".toml" && !entry->is_directory())
       files.push_back(entry->path().string());
   if (error)
-    findings.push_back({kPlace, "MODEL", directory, "", "cannot be read: " + error.message()});
+    findings.push_back({kCommandLine, "MODEL", directory, "", "cannot be read: " + error.message()});
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -88,7 +88,7 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
   }
   if (list.models.size() == models && findings.size() == before)
     findings.push_back(
-        {kPlace, "MODEL", directory, "", "is a directory without a model file, *.toml"});
+        {kCommandLine, "MODEL", directory, "", "is a directory without a model file, *.toml"});
 }
 
 }  // namespace
@@ -113,12 +113,12 @@ ModelList list_models(const std::vector<std::string>& words, std::vector<Finding
   std::map<std::string, std::string> named;
   for (const NamedModel& model : list.models)
     if (model.name == "." || model.name == ".." || model.name.starts_with("runs."))
-      findings.push_back({kPlace, "MODEL", model.model, "",
+      findings.push_back({kCommandLine, "MODEL", model.model, "",
                           "has the name '" + model.name + "', which no folder of results can have"});
   for (const NamedModel& model : list.models)
     if (const auto [same, added] = named.emplace(model.name, model.model); !added)
       findings.push_back(
-          {kPlace, "MODEL", model.model, "",
+          {kCommandLine, "MODEL", model.model, "",
            "has the name of " + same->second + "; both results would be in DIR/" + model.name});
   return list;
 }

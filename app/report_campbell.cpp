@@ -14,14 +14,14 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kSamples = 4096;       // of a load over two turns of its node
+constexpr int kLoadSamples = 4096;       // of a load over two turns of its node
 constexpr int kHighestLine = 400;    // order 200 of the node
-constexpr double kRounding = 1e-6;   // relative, of amplitudes
+constexpr double kAmplitudeRounding = 1e-6;   // relative, of amplitudes
 constexpr std::size_t kCrossings = 400;
 constexpr double kFarthest = 4.0;    // crossings up to as many times the speed of the run
 // Orders shown: of each of the lowest modes those that excite it most, resonant between these times the speed;
 // at least kLeastOrders, then the ones that excite most wherever they are resonant.
-constexpr int kModes = 4;
+constexpr int kCampbellModes = 4;
 constexpr std::size_t kOrdersOfMode = 3, kLeastOrders = 3;
 constexpr double kSlowest = 0.5, kFast = 1.6;
 
@@ -44,9 +44,9 @@ class Orders {
   void add(const LoadTerm& term) {
     const double ratio = system_.ratio(term.node);
     if (ratio == 0.0) return;
-    std::vector<double> torque(kSamples + 1);
-    for (int i = 0; i <= kSamples; ++i) {
-      const double angle = 2.0 * kTwoPi * i / kSamples;
+    std::vector<double> torque(kLoadSamples + 1);
+    for (int i = 0; i <= kLoadSamples; ++i) {
+      const double angle = 2.0 * kTwoPi * i / kLoadSamples;
       torque[static_cast<std::size_t>(i)] =
           term.load->evaluate({.nominal_angle = angle, .speed = ratio * rate_}).torque;
     }
@@ -54,7 +54,7 @@ class Orders {
     const double range = *high - *low;
     // Neither a constant nor what does not repeat within two turns has orders.
     if (!std::isfinite(range) || !(range > 0.0) ||
-        std::abs(torque.front() - torque.back()) > kRounding * range)
+        std::abs(torque.front() - torque.back()) > kAmplitudeRounding * range)
       return;
     const Spectrum lines = spectrum(torque, 1.0);
     for (std::size_t k = 1; k <= kHighestLine; ++k) {
@@ -122,9 +122,9 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
   std::sort(all.begin(), all.end(),
             [](const Crossing& a, const Crossing& b) { return a.answer > b.answer; });
   std::set<double> shown;
-  std::vector<std::size_t> taken(kModes, 0);
+  std::vector<std::size_t> taken(kCampbellModes, 0);
   for (const Crossing& c : all)
-    if (c.mode < kModes && c.speed > kSlowest * fastest && c.speed < kFast * fastest &&
+    if (c.mode < kCampbellModes && c.speed > kSlowest * fastest && c.speed < kFast * fastest &&
         taken[static_cast<std::size_t>(c.mode)]++ < kOrdersOfMode)
       shown.insert(c.order);
   for (const Crossing& c : all)

@@ -14,7 +14,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr const char* kPlace = "command line";
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -45,7 +44,7 @@ std::string block_of(std::string run, std::vector<Finding>& findings) {
       std::fprintf(stderr, "drev: %s is of an older run; %s\n", run.c_str(), partial.c_str());
     return blocks.front();
   }
-  findings.push_back({kPlace, "RUN", run, "",
+  findings.push_back({kCommandLine, "RUN", run, "",
                       !readable && !partial.empty()
                           ? "does not exist: " + partial
                       : !readable         ? "is no file that can be read"
@@ -60,12 +59,12 @@ int report_command(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   const std::vector<std::string> runs = line.list("RUN").value_or(std::vector<std::string>{});
   if (runs.empty() || runs.size() > 2)
-    findings.push_back({kPlace, "RUN", runs.empty() ? "" : runs.back(), "",
+    findings.push_back({kCommandLine, "RUN", runs.empty() ? "" : runs.back(), "",
                         "must be one run, or two to compare: directories of drev run --out, or reports"});
   std::vector<std::string> blocks;
   for (const std::string& run : runs) blocks.push_back(block_of(run, findings));
   const std::string out = line.option("--out").value_or("");
-  if (const auto why = why_no_report(out)) findings.push_back({kPlace, "--out", out, "", *why});
+  if (const auto why = why_no_report(out)) findings.push_back({kCommandLine, "--out", out, "", *why});
   if (!findings.empty()) throw ModelError(std::move(findings));
 
   ReportFile file(out);

@@ -17,7 +17,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kSamples = 1e5;         // of a run, unless --every says otherwise
+constexpr double kRunSamples = 1e5;         // of a run, unless --every says otherwise
 constexpr double kAboveModes = 3.0;      // spectra go so far beyond the highest mode listed
 constexpr double kAboveSpeed = 40.0;     // or to this order, where that is higher
 
@@ -104,7 +104,7 @@ Json history_object(const ReportHistory& history) {
 double report_interval(const RunRequest& request, const Method& method) {
   if (request.report_every) return *request.report_every;
   if (!(method.tolerance > 0.0)) return 0.0;
-  const double duration = request.model.scene.duration, about = duration / kSamples;
+  const double duration = request.model.scene.duration, about = duration / kRunSamples;
   const double cycle = cycle_of(request.model);
   if (!(cycle > 2.0 * about) || cycle > duration) return about;
   // A number of samples a cycle that transforms are fast for.

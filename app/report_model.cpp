@@ -7,7 +7,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative, of sums that should be zero
+constexpr double kSumRounding = 1e-9;  // relative, of sums that should be zero
 constexpr std::size_t kSharesShown = 3;
 constexpr double kShareShown = 0.005;
 
@@ -66,7 +66,7 @@ class Drawing {
       for (Eigen::Index j = 0; j < i; ++j)
         if (k(i, j) != 0.0) joint(kind, {static_cast<int>(j), static_cast<int>(i)})[value] = -k(i, j);
       const double to_ground = k.row(i).sum();
-      if (std::abs(to_ground) > kRounding * std::abs(k(i, i)))
+      if (std::abs(to_ground) > kSumRounding * std::abs(k(i, i)))
         joint(kind, {static_cast<int>(i)})[value] = to_ground;
     }
   }

@@ -13,7 +13,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr const char* kPlace = "command line";
 constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
 constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;  // of exact propagation
 constexpr double kLeastOfSteps = 1e-13, kLargestOfSteps = 0.1;       // of controlled steps
@@ -55,7 +54,7 @@ const SceneEntry* find_built_in(const std::string& name, std::vector<Finding>& f
   const std::string hint = did_you_mean(name, names);
   // What is like no model may be the value of an option that does not exist.
   if (findings.empty() || !hint.empty())
-    findings.push_back({kPlace, "MODEL", name, "",
+    findings.push_back({kCommandLine, "MODEL", name, "",
                         "is no model" + (hint.empty() ? "; the models are " + join(names) : hint) +
                             (name.find('/') != name.npos ? "; a model file ends in .toml" : "")});
   return nullptr;
@@ -72,10 +71,10 @@ void check_method(const char* option, const std::string& text, std::vector<Findi
       step_scheme(text);
       return;
     }
-    findings.push_back({kPlace, option, text, "", form});
+    findings.push_back({kCommandLine, option, text, "", form});
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
-      finding.place = kPlace;
+      finding.place = kCommandLine;
       finding.parameter = option + (" " + finding.parameter);
       if (finding.range.starts_with("is no method")) {
         std::vector<std::string> names = step_scheme_names();
@@ -94,7 +93,7 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
     // An option that does not exist may have taken the model's name.
     if (findings.empty())
       findings.push_back(
-          {kPlace, "MODEL", "", "", "is missing; the models are " + join(model_names())});
+          {kCommandLine, "MODEL", "", "", "is missing; the models are " + join(model_names())});
     return {};
   }
   try {
@@ -108,7 +107,7 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
       if (!entry) return {};
       if (const auto run = line.option("--run"))
         findings.push_back(
-            {kPlace, "--run", *run, "", "is for model files only; " + line.model + " is built in"});
+            {kCommandLine, "--run", *run, "", "is for model files only; " + line.model + " is built in"});
     }
     Settings settings = right_settings(*entry, line, findings);
     Scene scene = entry->build(settings);
@@ -129,9 +128,9 @@ double read_time(const char* option, const std::string& text, double low, double
   double value = 0.0;
   if (!read_number(text, value))
     findings.push_back(
-        {kPlace, option, text, "", "is not a plain number of seconds, such as 0.001; " + range});
+        {kCommandLine, option, text, "", "is not a plain number of seconds, such as 0.001; " + range});
   else if (!(value >= low && value <= high))
-    findings.push_back({kPlace, option, text, "s", range});
+    findings.push_back({kCommandLine, option, text, "s", range});
   return value;
 }
 
@@ -155,7 +154,7 @@ double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>&
   const double high = exact ? kLargestTolerance : kLargestOfSteps;
   double value = 0.0;
   if (!read_number(*line.option("--tolerance"), value) || !(value >= low && value <= high))
-    findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "",
+    findings.push_back({kCommandLine, "--tolerance", *line.option("--tolerance"), "",
                         "must be a number from " + short_digits(low, 3) + " to " +
                             short_digits(high, 3)});
   return value;
@@ -166,7 +165,7 @@ void check_exact(const std::optional<ModelRequest>& model, const char* option,
                  std::vector<Finding>& findings) {
   if (!model) return;
   if (const std::optional<std::string> why = why_not_exact(model->system))
-    findings.push_back({kPlace, option, "exact", "", "cannot be used: " + *why});
+    findings.push_back({kCommandLine, option, "exact", "", "cannot be used: " + *why});
 }
 
 /// What `drev chart` draws unless told otherwise.
@@ -184,13 +183,13 @@ std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding
   double value = 0.0;
   if (!read_number(*line.option("--accuracy"), value) ||
       !(value >= kLeastAccuracy && value <= kLargestAccuracy))
-    findings.push_back({kPlace, "--accuracy", *line.option("--accuracy"), "",
+    findings.push_back({kCommandLine, "--accuracy", *line.option("--accuracy"), "",
                         "must be a number from " + short_digits(kLeastAccuracy, 3) + " to " +
                             short_digits(kLargestAccuracy, 3)});
   const std::string why = "cannot be given with --accuracy, which finds it";
-  if (line.option("--step")) findings.push_back({kPlace, "--step", *line.option("--step"), "s", why});
+  if (line.option("--step")) findings.push_back({kCommandLine, "--step", *line.option("--step"), "s", why});
   if (line.option("--tolerance"))
-    findings.push_back({kPlace, "--tolerance", *line.option("--tolerance"), "", why});
+    findings.push_back({kCommandLine, "--tolerance", *line.option("--tolerance"), "", why});
   return value;
 }
 
@@ -202,7 +201,7 @@ double read_part(const char* option, const std::string& text, double low, double
   const bool number = read_number(percent ? text.substr(0, text.size() - 1) : text, value);
   if (percent) value /= 100.0;
   if (!number || !(value >= low && value <= high))
-    findings.push_back({kPlace, option, text, "", range});
+    findings.push_back({kCommandLine, option, text, "", range});
   return value;
 }
 
@@ -217,7 +216,7 @@ std::optional<double> read_reduce(const CommandLine& line, const Method& method,
   }
   if (*text == "off") return {};
   if (line.option("--accuracy"))
-    findings.push_back({kPlace, "--reduce", *text, "",
+    findings.push_back({kCommandLine, "--reduce", *text, "",
                         "cannot be given with --accuracy, whose figures are the whole model's"});
   return read_part("--reduce", *text, kLeastReduce, kLargestReduce,
                    "must be off, or from 0.0001% to 50%, or 1e-6 to 0.5", findings);
@@ -245,7 +244,7 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (line.option("--method") && *line.option("--method") != "exact")
     return {stepping(*line.option("--method"), line, step, findings), "asked for"};
   if (line.option("--step") && line.option("--tolerance") && !line.option("--method")) {
-    findings.push_back({kPlace, "--step", *line.option("--step"), "s",
+    findings.push_back({kCommandLine, "--step", *line.option("--step"), "s",
                         "needs a --method with --tolerance, whose largest step it is"});
     return {};
   }
@@ -259,7 +258,7 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (!line.option("--method") && model && why_not_exact(model->system))
     return {stepping("dormand_prince", line, step, findings), reason};
   if (line.option("--step"))
-    findings.push_back({kPlace, "--step", *line.option("--step"), "s",
+    findings.push_back({kCommandLine, "--step", *line.option("--step"), "s",
                         "has no meaning for --method exact, which finds its own; see --tolerance"});
   check_exact(model, "--method", findings);
   return {{.name = "exact", .tolerance = read_tolerance(line, true, findings)}, reason};
@@ -286,7 +285,7 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
 void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
   for (Finding& finding : findings) {
     const auto option = line.from_file.find(finding.parameter.substr(0, finding.parameter.find(' ')));
-    if (finding.place != kPlace || option == line.from_file.end()) continue;
+    if (finding.place != kCommandLine || option == line.from_file.end()) continue;
     finding.place = option->second;
     finding.parameter.erase(0, 2);
   }
@@ -332,25 +331,25 @@ RunRequest request_run(const CommandLine& given) {
   for (const char* option : {"--record", "--every", "--format"})
     if (!line.option("--out") && !line.option("--report") && line.list(option))
       findings.push_back(
-          {kPlace, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
+          {kCommandLine, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
   if (const auto jobs = line.option("--jobs"))
-    findings.push_back({kPlace, "--jobs", *jobs, "", "is for several runs"});
+    findings.push_back({kCommandLine, "--jobs", *jobs, "", "is for several runs"});
   if (line.option("--format") && line.option("--report") && !line.option("--out"))
-    findings.push_back({kPlace, "--format", "", "", "needs --out DIR"});
+    findings.push_back({kCommandLine, "--format", "", "", "needs --out DIR"});
   if (const auto report = line.option("--report")) {
     namespace fs = std::filesystem;
     const auto out = line.option("--out");
     if (const auto why = why_no_report(*report))
-      findings.push_back({kPlace, "--report", *report, "", *why});
+      findings.push_back({kCommandLine, "--report", *report, "", *why});
     else if (out && fs::path(*report).lexically_normal() ==
                         (fs::path(*out) / "report.html").lexically_normal())
-      findings.push_back({kPlace, "--report", *report, "", "is written by --out already"});
+      findings.push_back({kCommandLine, "--report", *report, "", "is written by --out already"});
   }
   bool hdf5 = false;
   for (const std::string& format : line.list("--format").value_or(std::vector<std::string>{})) {
     hdf5 = hdf5 || format == "hdf5";
     if (format != "csv" && format != "hdf5")
-      findings.push_back({kPlace, "--format", format, "",
+      findings.push_back({kCommandLine, "--format", format, "",
                           "must be csv or hdf5" + did_you_mean(format, {"csv", "hdf5"})});
   }
   if (model) check_channels(*model, line, settings_right, findings);
@@ -371,7 +370,7 @@ ModesRequest request_modes(const CommandLine& line) {
   const std::string contact = line.option("--contact").value_or("closed");
   options.contact = contact == "open" ? Contact::open : Contact::closed;
   if (contact != "open" && contact != "closed")
-    findings.push_back({kPlace, "--contact", contact, "",
+    findings.push_back({kCommandLine, "--contact", contact, "",
                         "must be closed or open" + did_you_mean(contact, states)});
   if (line.option("--count")) {
     double number = 0.0;
@@ -382,7 +381,7 @@ ModesRequest request_modes(const CommandLine& line) {
         (model ? " to " + std::to_string(elastic) + ", the model's elastic modes" : std::string());
     if (!read_number(*line.option("--count"), number) || number != std::floor(number) || number < 1 ||
         (model ? number > elastic : number > 1e9))
-      findings.push_back({kPlace, "--count", *line.option("--count"), "", range});
+      findings.push_back({kCommandLine, "--count", *line.option("--count"), "", range});
     else
       options.count = static_cast<int>(number);
   }
@@ -419,7 +418,7 @@ AdviseRequest request_advise(const CommandLine& line) {
       figure_options(model->scene, model->system, options);
     } catch (const ModelError& error) {
       for (Finding finding : error.findings()) {
-        finding.place = kPlace;
+        finding.place = kCommandLine;
         finding.parameter = "--for";
         findings.push_back(std::move(finding));
       }

@@ -16,7 +16,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kStaticAngles = 1440;
 
 class Timer {
  public:

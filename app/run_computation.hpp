@@ -2,13 +2,16 @@
 /// The computation of `drev run`: modes, static torque over one turn, and the run itself.
 ///
 /// Static torque: largest |torque| over all sections in static equilibrium while the shaft turns once, at
-/// 1440 angles (every 0.25 degrees of the shaft); dynamic amplification: largest torque / static torque.
+/// kStaticAngles angles (every 0.25 degrees of the shaft); dynamic amplification: largest torque / static
+/// torque.
 #include "app/history_file.hpp"
 #include "app/report_history.hpp"
 #include "app/run_result.hpp"
 #include "solvers/reduction.hpp"
 
 namespace drev::app {
+
+inline constexpr int kStaticAngles = 1440;
 
 /// What is run: the model, or a reduction of it.
 struct RunPlan {

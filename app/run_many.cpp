@@ -26,7 +26,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kPlace = "command line";
 constexpr double kMostJobs = 400;  // two descriptors each
 
 std::string without_prefix(std::string text) {
@@ -225,18 +224,18 @@ int run_many(const CommandLine& line) {
     for (const auto& [name, value] : variants.front().settings)
       if (std::any_of(line.settings.begin(), line.settings.end(),
                       [&name = name](const auto& setting) { return setting.first == name; }))
-        findings.push_back({kPlace, "--vary", name, "", "is set by --set already"});
+        findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
   if (!line.option("--out"))
     findings.push_back(
-        {kPlace, "--out", "", "", "is needed for several runs: each has its folder there"});
+        {kCommandLine, "--out", "", "", "is needed for several runs: each has its folder there"});
   if (const auto report = line.option("--report"))
     findings.push_back(
-        {kPlace, "--report", *report, "", "is for one run; of several, each folder has a report"});
+        {kCommandLine, "--report", *report, "", "is for one run; of several, each folder has a report"});
   double at_once = std::max(1U, std::thread::hardware_concurrency());
   if (const auto jobs = line.option("--jobs"))
     if (!read_number(*jobs, at_once) || at_once != std::floor(at_once) ||
         !(at_once >= 1 && at_once <= kMostJobs))
-      findings.push_back({kPlace, "--jobs", *jobs, "", "must be a whole number from 1 to 400"});
+      findings.push_back({kCommandLine, "--jobs", *jobs, "", "must be a whole number from 1 to 400"});
   if (!findings.empty()) throw ModelError(std::move(findings));
   if (line.list("--vary") && list.models.size() <= 1) {
     // What is wrong with all variants is said once.

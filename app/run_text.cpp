@@ -10,12 +10,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kLabel = 24;
 constexpr std::size_t kModesShown = 6;
-
-std::string row(const std::string& label, const std::string& text) {
-  return pad_right(label, kLabel) + wrap(text, kLabel);
-}
 
 std::string value_text(const Largest& l) {
   if (l.unit == "rad") return digits(to_deg(l.value), 4) + " deg";
@@ -51,12 +46,12 @@ std::string deflection_place(const Model& model, const Largest& l) {
 }
 
 std::string modes_row(const RunResult& r) {
-  if (!r.modes) return row("Modes", "not found: " + r.modes_reason);
+  if (!r.modes) return labelled("Modes", "not found: " + r.modes_reason);
   std::vector<std::string> shown;
   for (const double f : r.modes->frequency_Hz)
     if (shown.size() < kModesShown) shown.push_back(digits(f, 5));
-  return row("Lowest modes", (shown.empty() ? "none" : join(shown) + " Hz") + ", and " +
-                                 std::to_string(r.modes->rigid_modes) + " rigid; contacts closed");
+  return labelled("Lowest modes", (shown.empty() ? "none" : join(shown) + " Hz") + ", and " +
+                                      std::to_string(r.modes->rigid_modes) + " rigid; contacts closed");
 }
 
 std::string force_rows(const Scene& scene, const RunResult& r) {
@@ -65,17 +60,17 @@ std::string force_rows(const Scene& scene, const RunResult& r) {
   const std::string name = torque ? "torque" : "force";
   std::string text;
   if (r.force)
-    text += row("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) +
-                                       " at " + short_digits(r.force->at, 4) + " s");
+    text += labelled("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) +
+                                            " at " + short_digits(r.force->at, 4) + " s");
   if (!r.static_force)
     return text +
-           row("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
-  text += row("Static " + name, value_text(*r.static_force) + " in " +
-                                    place_text(model, *r.static_force) + " (largest " + name +
-                                    " in static equilibrium, over all sections and one turn)");
+           labelled("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
+  text += labelled("Static " + name, value_text(*r.static_force) + " in " +
+                                         place_text(model, *r.static_force) + " (largest " + name +
+                                         " in static equilibrium, over all sections and one turn)");
   if (const auto amplification = r.amplification())
-    text += row("Dynamic amplification",
-                digits(*amplification, 3) + " (largest " + name + " / static " + name + ")");
+    text += labelled("Dynamic amplification",
+                     digits(*amplification, 3) + " (largest " + name + " / static " + name + ")");
   return text;
 }
 
@@ -104,15 +99,15 @@ std::string impact_rows(const RunResult& r, double duration) {
             wrap(line + "; rattle index " + digits(k.rattle_index(duration), 3) + " W", kLabel);
   }
   if (text.empty()) return {};
-  return row("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
+  return labelled("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
 }
 
 std::string contact_rows(const RunResult& r) {
   if (r.contacts.empty()) {
     if (!r.mesh_force) return {};
-    return row("Largest mesh force", value_text(*r.mesh_force) + " in " + r.mesh_force->place() +
-                                         " at " + short_digits(r.mesh_force->at, 4) +
-                                         " s; no backlash, so no impacts");
+    return labelled("Largest mesh force", value_text(*r.mesh_force) + " in " + r.mesh_force->place() +
+                                              " at " + short_digits(r.mesh_force->at, 4) +
+                                              " s; no backlash, so no impacts");
   }
   std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
                      pad_left("apart [s]", 12) + pad_left("[%]", 10) +
@@ -138,12 +133,12 @@ std::string contact_rows(const RunResult& r) {
 }
 
 std::string energy_row(const EnergyBalance& e) {
-  if (!(e.scale > 0.0)) return row("Energy balance", "no energy in the run");
-  if (std::abs(e.relative_error()) < 1e-12) return row("Energy balance", "holds to rounding");
-  return row("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
-                                   digits(e.scale, 3) + " J" +
-                                   (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
-                                   ", worst at " + short_digits(e.worst_time, 4) + " s");
+  if (!(e.scale > 0.0)) return labelled("Energy balance", "no energy in the run");
+  if (std::abs(e.relative_error()) < 1e-12) return labelled("Energy balance", "holds to rounding");
+  return labelled("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
+                                        digits(e.scale, 3) + " J" +
+                                        (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
+                                        ", worst at " + short_digits(e.worst_time, 4) + " s");
 }
 
 std::string method_text(const RunResult& r) {
@@ -188,12 +183,12 @@ std::string figure_text(const Figure& f) {
 
 std::string accuracy_rows(double asked, const AccuracyResult& a) {
   std::string text =
-      row("Accuracy asked", short_digits(asked, 3) +
-                                (a.reached ? ": reached" : ": not reached: " + a.reason));
-  text += row("Growth", "a small difference grows " +
-                            short_digits(a.growth.growth.empty() ? 1.0 : a.growth.growth.back(), 3) +
-                            " times at most, exp(" + short_digits(a.growth.rate, 3) + " t) +- " +
-                            short_digits(a.growth.rate_error, 2) + " 1/s on the whole");
+      labelled("Accuracy asked", short_digits(asked, 3) +
+                                     (a.reached ? ": reached" : ": not reached: " + a.reason));
+  text += labelled("Growth", "a small difference grows " +
+                                 short_digits(a.growth.growth.empty() ? 1.0 : a.growth.growth.back(), 3) +
+                                 " times at most, exp(" + short_digits(a.growth.rate, 3) + " t) +- " +
+                                 short_digits(a.growth.rate_error, 2) + " 1/s on the whole");
   for (const Figure& f : a.figures)
     text += "  " + f.name + ": " + figure_text(f) +
             (f.kind == Figure::Kind::interval ? " (95 % interval)"
@@ -230,18 +225,18 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
           wrap(settings_text(request.model.settings), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);
   if (r.deflection)
-    text += row("Largest deflection", value_text(*r.deflection) + " " +
-                                          deflection_place(model, *r.deflection) + " at " +
-                                          short_digits(r.deflection->at, 4) + " s");
+    text += labelled("Largest deflection", value_text(*r.deflection) + " " +
+                                               deflection_place(model, *r.deflection) + " at " +
+                                               short_digits(r.deflection->at, 4) + " s");
   if (!r.force && !r.ok())
-    text += row("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
+    text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
-  text += row("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
-  text += row("Why this method", r.method_reason);
-  text += row("Reduction", r.reduction.reason);
-  text += row("Effort", effort_text(r));
+  text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
+  text += labelled("Why this method", r.method_reason);
+  text += labelled("Reduction", r.reduction.reason);
+  text += labelled("Effort", effort_text(r));
   if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
-  if (!request.model.scene.note.empty()) text += row("Note", request.model.scene.note);
+  if (!request.model.scene.note.empty()) text += labelled("Note", request.model.scene.note);
   return text;
 }
 

@@ -54,7 +54,7 @@ SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
   outputs_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(names.size()), count);
   Eigen::Index row = 0;
   for (const Channel& channel : find_channels(system, names)) {
-    for (const Entry& e : channel.z_row())
+    for (const drev::Entry& e : channel.z_row())
       outputs_.row(row) += e.coeff * modes.vectors.row(e.index);
     ++row;
   }

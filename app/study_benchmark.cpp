@@ -28,7 +28,7 @@ const Case kCases[] = {
     {"Table 4.5", "k 2000 and 1000, half gaps 0.05 and 0.03 m", {}}};
 constexpr double kEvery = 0.02, kEnd = 5.0;  // s; the figures' range is not printed
 constexpr double kAgree = 0.01;              // of the largest position
-constexpr double kCoarse = 1e-12, kFine = 1e-15;
+constexpr double kBenchmarkCoarse = 1e-12, kBenchmarkFine = 1e-15;
 
 Recorder history(const System& system, const Method& method) {
   Recorder recorder(system, {"mass_1.position_m", "mass_2.position_m"}, kEvery);
@@ -51,13 +51,13 @@ StudyGroup study_benchmark() {
   for (const Case& c : kCases) {
     const System system = build_scene("two_mass_backlash", c.settings).model.build();
     const Recorder stepped = history(system, source_method()),
-                   coarse = history(system, exact_method(kCoarse)),
-                   fine = history(system, exact_method(kFine));
+                   coarse = history(system, exact_method(kBenchmarkCoarse)),
+                   fine = history(system, exact_method(kBenchmarkFine));
     for (std::size_t mass = 0; mass < 2; ++mass)
       table.rows.push_back(
           {c.source, std::string(c.name) + ", mass " + std::to_string(mass + 1) + " at 5 s", "m",
            "curve only", digits(stepped.samples(mass).back(), 6),
-           from_two(coarse.samples(mass).back(), fine.samples(mass).back(), kFine), ""});
+           from_two(coarse.samples(mass).back(), fine.samples(mass).back(), kBenchmarkFine), ""});
     double worst = 0.0, largest = 0.0;
     for (std::size_t mass = 0; mass < 2; ++mass)
       for (std::size_t i = 0; i < fine.times().size(); ++i) {

@@ -14,7 +14,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kRounding =
+constexpr double kFrequencyRounding =
     1e-11;  // relative, of a frequency (solvers/modes.hpp) and what follows from it
 
 constexpr double kNear = 5e-4;  // of critical: what 1 % may be off
@@ -25,7 +25,7 @@ double first_frequency(int cylinders, const char* drive) {
   return solve_modes(scene.model.build(), {.count = 1}).omega(0);
 }
 
-Known exact(double value) { return {value, kRounding * std::abs(value)}; }
+Known exact(double value) { return {value, kFrequencyRounding * std::abs(value)}; }
 
 double ratio_at(double omega, double a, double b) { return a / (2.0 * omega) + b * omega / 2.0; }
 

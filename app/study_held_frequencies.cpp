@@ -15,7 +15,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kModes = 3;
+constexpr int kHeldModes = 3;
 constexpr double kStart = 1e-3;  // rad, of the free end
 
 /// The inverse of shown_at_step().
@@ -76,7 +76,7 @@ StudyGroup study_held_frequencies() {
   double first_8 = 0.0, shown_8 = 0.0, second_off = 0.0, worst = 0.0;
   for (int cylinders = 6; cylinders <= 10; ++cylinders) {
     const System system = let_go(cylinders);
-    const ModeSet modes = solve_modes(system, {.count = kModes});
+    const ModeSet modes = solve_modes(system, {.count = kHeldModes});
     std::vector<double> by_step, by_sampling;
     for (const double f : modes.frequency_Hz) {
       by_step.push_back(shown_at_step(f, h));
@@ -84,7 +84,7 @@ StudyGroup study_held_frequencies() {
     }
     const std::vector<double> stepped = decay_frequencies(system, source_method(), by_step);
     const std::vector<double> exact = decay_frequencies(system, exact_method(1e-10), by_sampling);
-    for (int m = 0; m < (cylinders == 7 || cylinders == 10 ? 1 : kModes); ++m) {
+    for (int m = 0; m < (cylinders == 7 || cylinders == 10 ? 1 : kHeldModes); ++m) {
       const auto at = static_cast<std::size_t>(m);
       const double f = modes.frequency_Hz[at];
       const bool in_text = cylinders == 8 && m == 0;

@@ -19,10 +19,10 @@ constexpr double kSlow = 20.0, kFast = 800.0;  // rpm of the engine
 constexpr double kTime = 10.0;  // s
 constexpr int kWindows = 78;    // of 10 rpm
 constexpr int kShafts[] = {6, 8, 9};
-constexpr const char* kDampings[] = {"undamped", "case_1", "case_2", "case_3"};
+constexpr const char* kRunUpDampings[] = {"undamped", "case_1", "case_2", "case_3"};
 constexpr const char* kNames[] = {"undamped", "case 1", "case 2", "case 3"};
 constexpr double kNeeded = 1.2;  // times case 1's peak
-constexpr double kCoarse = 1e-6, kFine = 1e-10;
+constexpr double kRunUpCoarse = 1e-6, kRunUpFine = 1e-10;
 constexpr std::size_t kKinds = 3;  // of run: at 1 ms, exact to both tolerances
 
 double speed_of(std::size_t window) {
@@ -73,7 +73,7 @@ StudyRow row_of(const std::string& source, const std::string& name, const std::s
           unit,
           "curve only",
           cell(step[at_step]),
-          from_two(coarse[top(coarse)], fine[at], kFine),
+          from_two(coarse[top(coarse)], fine[at], kRunUpFine),
           "at " + digits(speed_of(at), 3) + " rpm; at 1 ms at " + digits(speed_of(at_step), 3) +
               " rpm"};
 }
@@ -102,11 +102,11 @@ StudyGroup study_run_up() {
       "state at each speed, "
       "by superposition of modes and harmonics, which no ramp reaches at a resonance; below some "
       "200 rpm a window is a part of a revolution, and the ramp's peaks are lower for that.";
-  std::vector<RunUp> runs(std::size(kShafts) * std::size(kDampings) * kKinds);
+  std::vector<RunUp> runs(std::size(kShafts) * std::size(kRunUpDampings) * kKinds);
   for_all(runs.size(), [&](std::size_t i) {
-    const Method methods[kKinds] = {source_method(), exact_method(kCoarse), exact_method(kFine)};
-    runs[i] = run_one(kShafts[i / kKinds / std::size(kDampings)],
-                      kDampings[i / kKinds % std::size(kDampings)], methods[i % kKinds]);
+    const Method methods[kKinds] = {source_method(), exact_method(kRunUpCoarse), exact_method(kRunUpFine)};
+    runs[i] = run_one(kShafts[i / kKinds / std::size(kRunUpDampings)],
+                      kRunUpDampings[i / kKinds % std::size(kRunUpDampings)], methods[i % kKinds]);
   });
   std::vector<double> speeds;
   for (std::size_t w = 0; w < kWindows; ++w) speeds.push_back(speed_of(w));
@@ -118,8 +118,8 @@ StudyGroup study_run_up() {
     const std::string n = std::to_string(kShafts[s]);
     StudyTable table{n + " cylinders: largest over the run-up"};
     std::vector<ChartSeries> deflections, torques;
-    for (std::size_t d = 0; d < std::size(kDampings); ++d) {
-      const RunUp* of = &runs[(s * std::size(kDampings) + d) * kKinds];
+    for (std::size_t d = 0; d < std::size(kRunUpDampings); ++d) {
+      const RunUp* of = &runs[(s * std::size(kRunUpDampings) + d) * kKinds];
       const std::string figure = "Figure 5." + std::to_string(16 + s),
                         other = "Figure A." + std::to_string(11 + s);
       table.rows.push_back(row_of(figure, std::string(kNames[d]) + ", deflection", "deg",
@@ -141,8 +141,8 @@ StudyGroup study_run_up() {
         const std::vector<double> still = steady(kShafts[s]);
         deflections.push_back({.name = "case 1, steady", .x = speeds, .y = still});
         const double ramped = of[2].deflection[top(of[2].deflection)];
-        undamped_over_case_1.push_back(runs[s * std::size(kDampings) * kKinds + 2].deflection[top(
-                                           runs[s * std::size(kDampings) * kKinds + 2].deflection)] /
+        undamped_over_case_1.push_back(runs[s * std::size(kRunUpDampings) * kKinds + 2].deflection[top(
+                                           runs[s * std::size(kRunUpDampings) * kKinds + 2].deflection)] /
                                        ramped);
         ramp_over_steady.push_back(ramped / still[top(still)]);
         ramp_and_steady.push_back(n + " cylinders " + digits(still[top(still)], 3) + " deg at " +

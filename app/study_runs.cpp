@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "app/interrupt.hpp"
+#include "app/run_computation.hpp"
 #include "app/text_layout.hpp"
 #include "core/units.hpp"
 #include "models/camshaft/published.hpp"
@@ -24,7 +25,6 @@ namespace {
 constexpr double kSettled = 1.0;                 // s
 constexpr double kNudge = 1e-9;                  // rad
 constexpr double kCoarse = 1e-7, kFine = 1e-11;  // tolerances of exact propagation
-constexpr int kStaticAngles = 1440;
 constexpr std::size_t kStepRuns = 8;
 
 Settings values_of(const SceneEntry& entry, const SettingList& settings) {

@@ -56,6 +56,20 @@ std::string wrap(const std::string& text, std::size_t indent) {
   return result + "\n";
 }
 
+std::string labelled(const std::string& label, const std::string& text) {
+  return pad_right(label, kLabel) + wrap(text, kLabel);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 std::string join(const std::vector<std::string>& items, const std::string& separator) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "" : separator) + item;

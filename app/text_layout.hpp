@@ -17,6 +17,14 @@ std::string pad_left(const std::string& text, std::size_t width);
 /// Words wrapped at 100 columns, every line but the first indented; ends with a line end.
 std::string wrap(const std::string& text, std::size_t indent);
 
+/// The width of the labels that texts for people begin their lines with.
+inline constexpr std::size_t kLabel = 24;
+/// The label, padded to it, and the text, wrapped beside it.
+std::string labelled(const std::string& label, const std::string& text);
+
+/// "a,b,,c" as a, b, nothing, c: always one part more than there are separators.
+std::vector<std::string> split(const std::string& text, char separator);
+
 /// "a, b, c".
 std::string join(const std::vector<std::string>& items, const std::string& separator = ", ");
 

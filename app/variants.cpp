@@ -12,16 +12,6 @@ namespace {
 
 constexpr double kMostVariants = 10000;
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 /// What is wrong with the values; empty: nothing.
 std::string read_values(const std::string& text, std::vector<std::string>& values) {
   const std::vector<std::string> range = split(text, ':');

@@ -60,7 +60,7 @@ CsvTable read_csv(const std::string& path, const Position& named_at) {
     }
     for (std::size_t c = 0; c < cells.size(); ++c) {
       double value = 0.0;
-      if (!read_number(cells[c].first, value) || !std::isfinite(value))
+      if (!drev::read_number(cells[c].first, value) || !std::isfinite(value))
         findings.push_back(fault_at({file, number, cells[c].second}, table.names[c],
                                     "'" + cells[c].first.substr(0, 40) + "' is no finite number"));
       table.columns[c].push_back(value);

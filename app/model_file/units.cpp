@@ -8,25 +8,25 @@ namespace drev::app {
 
 namespace {
 
-constexpr Unit kAngle[] = {{"rad", 1.0}, {"deg", deg(1.0)}, {"mrad", 1e-3}};
-constexpr Unit kLength[] = {{"m", 1.0}, {"mm", mm(1.0)}, {"um", 1e-6}};
-constexpr Unit kTime[] = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}};
-constexpr Unit kAngularSpeed[] = {{"rad_per_s", 1.0}, {"rpm", rpm(1.0)}, {"deg_per_s", deg(1.0)}};
-constexpr Unit kSpeed[] = {{"m_per_s", 1.0}, {"mm_per_s", 1e-3}};
-constexpr Unit kFrequency[] = {{"Hz", 1.0}, {"kHz", 1e3}};
-constexpr Unit kInertia[] = {{"kg_m2", 1.0}, {"kgm2", 1.0}, {"kg_mm2", 1e-6}};
-constexpr Unit kMass[] = {{"kg", 1.0}};
-constexpr Unit kTorsionalStiffness[] = {
+constexpr Unit kAngleUnits[] = {{"rad", 1.0}, {"deg", deg(1.0)}, {"mrad", 1e-3}};
+constexpr Unit kLengthUnits[] = {{"m", 1.0}, {"mm", mm(1.0)}, {"um", 1e-6}};
+constexpr Unit kTimeUnits[] = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}};
+constexpr Unit kAngularSpeedUnits[] = {{"rad_per_s", 1.0}, {"rpm", rpm(1.0)}, {"deg_per_s", deg(1.0)}};
+constexpr Unit kSpeedUnits[] = {{"m_per_s", 1.0}, {"mm_per_s", 1e-3}};
+constexpr Unit kFrequencyUnits[] = {{"Hz", 1.0}, {"kHz", 1e3}};
+constexpr Unit kInertiaUnits[] = {{"kg_m2", 1.0}, {"kgm2", 1.0}, {"kg_mm2", 1e-6}};
+constexpr Unit kMassUnits[] = {{"kg", 1.0}};
+constexpr Unit kTorsionalStiffnessUnits[] = {
     {"Nm_per_rad", 1.0}, {"kNm_per_rad", 1e3}, {"MNm_per_rad", 1e6}, {"Nm_per_deg", to_deg(1.0)}};
-constexpr Unit kStiffness[] = {{"N_per_m", 1.0}, {"N_per_mm", 1e3}, {"N_per_um", 1e6}};
-constexpr Unit kTorsionalDamping[] = {{"Nms_per_rad", 1.0}, {"kNms_per_rad", 1e3}};
-constexpr Unit kDamping[] = {{"Ns_per_m", 1.0}, {"Ns_per_mm", 1e3}};
-constexpr Unit kTorque[] = {{"Nm", 1.0}, {"kNm", 1e3}, {"MNm", 1e6}};
-constexpr Unit kForce[] = {{"N", 1.0}, {"kN", 1e3}, {"MN", 1e6}};
-constexpr Unit kPressure[] = {{"Pa", 1.0}, {"MPa", 1e6}, {"GPa", 1e9}};
-constexpr Unit kDensity[] = {{"kg_per_m3", 1.0}};
-constexpr Unit kRate[] = {{"per_s", 1.0}};
-constexpr Unit kMeshPeriods[] = {{"periods", 1.0}};
+constexpr Unit kStiffnessUnits[] = {{"N_per_m", 1.0}, {"N_per_mm", 1e3}, {"N_per_um", 1e6}};
+constexpr Unit kTorsionalDampingUnits[] = {{"Nms_per_rad", 1.0}, {"kNms_per_rad", 1e3}};
+constexpr Unit kDampingUnits[] = {{"Ns_per_m", 1.0}, {"Ns_per_mm", 1e3}};
+constexpr Unit kTorqueUnits[] = {{"Nm", 1.0}, {"kNm", 1e3}, {"MNm", 1e6}};
+constexpr Unit kForceUnits[] = {{"N", 1.0}, {"kN", 1e3}, {"MN", 1e6}};
+constexpr Unit kPressureUnits[] = {{"Pa", 1.0}, {"MPa", 1e6}, {"GPa", 1e9}};
+constexpr Unit kDensityUnits[] = {{"kg_per_m3", 1.0}};
+constexpr Unit kRateUnits[] = {{"per_s", 1.0}};
+constexpr Unit kMeshPeriodsUnits[] = {{"periods", 1.0}};
 
 constexpr std::array<NamedDimension, 18> kDimensions{{{"angle", Dimension::angle},
                                                       {"length", Dimension::length},
@@ -54,41 +54,41 @@ std::span<const Unit> units_of(Dimension dimension) {
     case Dimension::none:
       return {};
     case Dimension::angle:
-      return kAngle;
+      return kAngleUnits;
     case Dimension::length:
-      return kLength;
+      return kLengthUnits;
     case Dimension::time:
-      return kTime;
+      return kTimeUnits;
     case Dimension::angular_speed:
-      return kAngularSpeed;
+      return kAngularSpeedUnits;
     case Dimension::speed:
-      return kSpeed;
+      return kSpeedUnits;
     case Dimension::frequency:
-      return kFrequency;
+      return kFrequencyUnits;
     case Dimension::inertia:
-      return kInertia;
+      return kInertiaUnits;
     case Dimension::mass:
-      return kMass;
+      return kMassUnits;
     case Dimension::torsional_stiffness:
-      return kTorsionalStiffness;
+      return kTorsionalStiffnessUnits;
     case Dimension::stiffness:
-      return kStiffness;
+      return kStiffnessUnits;
     case Dimension::torsional_damping:
-      return kTorsionalDamping;
+      return kTorsionalDampingUnits;
     case Dimension::damping:
-      return kDamping;
+      return kDampingUnits;
     case Dimension::torque:
-      return kTorque;
+      return kTorqueUnits;
     case Dimension::force:
-      return kForce;
+      return kForceUnits;
     case Dimension::pressure:
-      return kPressure;
+      return kPressureUnits;
     case Dimension::density:
-      return kDensity;
+      return kDensityUnits;
     case Dimension::rate:
-      return kRate;
+      return kRateUnits;
     case Dimension::mesh_periods:
-      return kMeshPeriods;
+      return kMeshPeriodsUnits;
   }
   return {};
 }

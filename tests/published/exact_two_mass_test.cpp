@@ -15,7 +15,7 @@ using namespace drev;
 
 namespace {
 
-System build_case(const std::string& name) {
+System build_exact_case(const std::string& name) {
   const bool b = name == "case_B";
   Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
   s.set("k_2_N_per_m", b ? "1000" : "2000");
@@ -28,7 +28,7 @@ System build_case(const std::string& name) {
 
 TEST_CASE("Exact propagation, two masses with backlash: curves and contact changes to 1e-11") {
   for (const std::string name : {"case_A", "case_A2", "case_B"}) {
-    const System system = build_case(name);
+    const System system = build_exact_case(name);
     Recorder recorder(system,
                       {"mass_1.position_m", "mass_2.position_m", "mass_1.velocity_m_per_s",
                        "mass_2.velocity_m_per_s"},

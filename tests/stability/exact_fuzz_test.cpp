@@ -14,7 +14,7 @@ using namespace drev;
 
 namespace {
 
-constexpr int kSamples = 50;
+constexpr int kPhaseSamples = 50;
 
 /// exp(A) by scaling, Taylor series and squaring.
 Eigen::MatrixXd exponential(Eigen::MatrixXd a) {
@@ -92,14 +92,14 @@ class PieceCheck final : public Observer {
     a.block(n, 2 * n, n, 1) = h * h * inverse * p;
     a.block(n, 2 * n + 1, n, 1) = h * h * inverse * (to.p - from.p);
     a(2 * n + 1, 2 * n) = 1.0;
-    const Eigen::MatrixXd forward = exponential(a / kSamples);
+    const Eigen::MatrixXd forward = exponential(a / kPhaseSamples);
     Vector y(2 * n + 2);
     y << from.state.z, h * from.state.v, 1.0, 0.0;
     for (const State* s : {&from.state, &to.state}) {
       z_scale_ = std::max(z_scale_, s->z.lpNorm<Eigen::Infinity>());
       v_scale_ = std::max(v_scale_, s->v.lpNorm<Eigen::Infinity>());
     }
-    for (int i = 1; i <= kSamples; ++i) {
+    for (int i = 1; i <= kPhaseSamples; ++i) {
       y = forward * y;
       for (std::size_t j = 0; j < pieces_.size(); ++j) {
         double x = 0.0, x_dot = 0.0;

@@ -2,7 +2,6 @@
 // (where it has one) and what would be right; a model with five faults lists five.
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "core/channel.hpp"
 #include "core/system.hpp"
@@ -13,13 +12,11 @@
 #include "solvers/statics.hpp"
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/not_finite.hpp"
 
 using namespace drev;
 
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// motor -- shaft -- load, sound.
 Model sound() {

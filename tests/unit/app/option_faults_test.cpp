@@ -8,13 +8,13 @@ using drev::test::drev_command;
 
 namespace {
 
-struct Fault {
+struct OptionFault {
   std::vector<std::string> words;
   std::vector<std::string> said;
 };
 
-const std::vector<Fault>& faults() {
-  static const std::vector<Fault> all{
+const std::vector<OptionFault>& faults() {
+  static const std::vector<OptionFault> all{
       // commands and models
       {{}, {"no command", "run, modes, list, chart, study, advise"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
@@ -116,7 +116,7 @@ const std::vector<Fault>& faults() {
 }  // namespace
 
 TEST_CASE("Faults of the command line are named") {
-  for (const Fault& fault : faults()) {
+  for (const OptionFault& fault : faults()) {
     std::string line = "drev";
     for (const std::string& word : fault.words) line += " " + word;
     const auto run = drev_command(fault.words);

@@ -13,7 +13,7 @@ using problems::dense;
 
 namespace {
 
-void disc(Model& m, const char* name, double inertia) {
+void add_disc(Model& m, const char* name, double inertia) {
   m.add_node(name);
   m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = inertia});
 }
@@ -22,12 +22,12 @@ void disc(Model& m, const char* name, double inertia) {
 /// one node driven, one tied by an ideal gear.
 Model everything() {
   Model m("everything");
-  disc(m, "crank", 2.0);
-  disc(m, "idler", 0.5);
-  disc(m, "cam", 0.8);
-  disc(m, "tail", 0.3);
-  disc(m, "pump", 0.1);
-  disc(m, "shaker", 1.0);
+  add_disc(m, "crank", 2.0);
+  add_disc(m, "idler", 0.5);
+  add_disc(m, "cam", 0.8);
+  add_disc(m, "tail", 0.3);
+  add_disc(m, "pump", 0.1);
+  add_disc(m, "shaker", 1.0);
   m.add<GearMesh>("mesh_1", {"crank", "idler"},
                   {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 5e4,
                    .normal_backlash = 2e-3, .damping = 30.0});
@@ -53,9 +53,9 @@ Model everything() {
 
 TEST_CASE("Run-up loads every inertia with -J n phi''") {
   Model m("run_up");
-  disc(m, "crank", 2.0);
-  disc(m, "wheel", 0.5);
-  disc(m, "pump", 0.3);
+  add_disc(m, "crank", 2.0);
+  add_disc(m, "wheel", 0.5);
+  add_disc(m, "pump", 0.3);
   m.add<GearMesh>("mesh", {"crank", "wheel"},
                   {.base_radius_1 = 0.1, .base_radius_2 = 0.25, .stiffness = 1e8});
   m.add<IdealGear>("gear", {"wheel", "pump"}, {.ratio = 5.0});
@@ -81,8 +81,8 @@ TEST_CASE("Run-up loads every inertia with -J n phi''") {
 
 TEST_CASE("Dashpots load the mean motion") {
   Model m("drag");
-  disc(m, "crank", 2.0);
-  disc(m, "wheel", 0.5);
+  add_disc(m, "crank", 2.0);
+  add_disc(m, "wheel", 0.5);
   m.add<GearMesh>("mesh", {"crank", "wheel"},
                   {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e8});
   m.set_reference("crank", constant_speed(30.0));
@@ -103,8 +103,8 @@ TEST_CASE("Dashpots load the mean motion") {
     CHECK(p[1] == Approx(0.2 * 45.0));
   }
   SECTION("a shaft's damping and Rayleigh damping do not drag") {
-    disc(m, "disc", 1.0);
-    m.add<ShaftSpring>("shaft", {"wheel", "disc"}, {.stiffness = 1.0, .damping = 7.0});
+    add_disc(m, "add_disc", 1.0);
+    m.add<ShaftSpring>("shaft", {"wheel", "add_disc"}, {.stiffness = 1.0, .damping = 7.0});
     m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 3.0});
     const System s = m.build();
     const Vector three = Vector::Zero(3);
@@ -115,8 +115,8 @@ TEST_CASE("Dashpots load the mean motion") {
 
 TEST_CASE("A given motion drives its neighbours through spring, damper and shared mass") {
   Model m("shaker");
-  disc(m, "table", 2.0);
-  disc(m, "load", 1.0);
+  add_disc(m, "table", 2.0);
+  add_disc(m, "load", 1.0);
   m.add<DistributedShaft>("bar", {"table", "load"},
                           {.shear_modulus = 8e10, .density = 8000.0, .outer_diameter = 0.02,
                            .length = 0.5});
@@ -176,7 +176,7 @@ TEST_CASE("Tangents against finite differences of the forces, in contact, apart 
 
 TEST_CASE("The loads' slopes enter the tangent on request alone") {
   Model m("cam");
-  disc(m, "cam", 1.0);
+  add_disc(m, "cam", 1.0);
   m.add<GroundSpring>("spring", {"cam"}, {.stiffness = 10.0});
   m.add<CamTorque>("load", {"cam"}, {.angle_table = PeriodicTable({0.0, 2.0, 4.0}, {0.0, 6.0, 0.0})});
   const System s = m.build();
@@ -191,8 +191,8 @@ TEST_CASE("The loads' slopes enter the tangent on request alone") {
 
 TEST_CASE("Contact closed and open") {
   Model m("pair");
-  disc(m, "a", 1.0);
-  disc(m, "b", 1.0);
+  add_disc(m, "a", 1.0);
+  add_disc(m, "b", 1.0);
   m.add<GearMesh>("mesh", {"a", "b"},
                   {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .teeth_1 = 20,
                    .stiffness = MeshStiffness::step(1e4, 2e4, 1.5), .normal_backlash = 1e-3,
@@ -226,8 +226,8 @@ TEST_CASE("multiply() is the product with the matrix") {
 
 TEST_CASE("Known matrices of a shaft with damping") {
   Model m("pair");
-  disc(m, "a", 1.0);
-  disc(m, "b", 2.0);
+  add_disc(m, "a", 1.0);
+  add_disc(m, "b", 2.0);
   m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 7.0, .damping = 3.0});
   const System s = m.build();
   Vector values;

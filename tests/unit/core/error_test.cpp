@@ -3,16 +3,11 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 
 #include "tests/catch.hpp"
+#include "tests/unit/not_finite.hpp"
 
 using namespace drev;
-
-namespace {
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInfinity = std::numeric_limits<double>::infinity();
-}  // namespace
 
 TEST_CASE("A finding names place, parameter, value, unit and range") {
   CHECK(Finding{"camshaft/mesh_1", "normal_backlash", "-0.0001", "m", "must be >= 0"}.text() ==

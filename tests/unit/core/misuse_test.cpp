@@ -1,7 +1,6 @@
 // What a tired user gets wrong: everything ends in a clear error, never in a crash, a hang or nonsense.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "elements/catalogue.hpp"
@@ -10,12 +9,11 @@
 #include "solvers/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/oscillator.hpp"
+#include "tests/unit/not_finite.hpp"
 
 using namespace drev;
 
 namespace {
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Ends with an error of the engine or a status that says so.
 bool refused(const System& system) {

@@ -1,11 +1,11 @@
 // Validation: what is wrong with a model is found, all at once, and said in words that name it.
 #include "core/model.hpp"
 
-#include <limits>
 
 #include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
+#include "tests/unit/not_finite.hpp"
 
 using namespace drev;
 using problems::count_with;
@@ -13,9 +13,6 @@ using problems::findings_of;
 using problems::only_fault;
 
 namespace {
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInfinity = std::numeric_limits<double>::infinity();
 
 /// motor - shaft - pump: sound.
 Model sound() {

@@ -14,11 +14,11 @@ using namespace drev;
 
 namespace {
 
-struct Chain {
+struct GapChain {
   std::vector<double> ground, stiffness, half_gap, load;
 };
 
-System build(const Chain& c) {
+System build(const GapChain& c) {
   Model m("chain of gaps");
   std::string last;
   for (std::size_t i = 0; i < c.ground.size(); ++i) {
@@ -39,11 +39,11 @@ System build(const Chain& c) {
   return m.build();
 }
 
-const Chain kCycles{{5, 1, 200}, {500, 200, 50}, {0.1, 0.1, 0.5}, {8, -2, -5}};
+const GapChain kCycles{{5, 1, 200}, {500, 200, 50}, {0.1, 0.1, 0.5}, {8, -2, -5}};
 const double kRoot[3] = {0.11088933680743326, 0.0008849122462022629, -0.025};
 
 /// The same static problem on the contact forces: S = A, x_free = B' A^-1 P, G = B' A^-1 B.
-NewtonResult solve_on_contacts(const System& system, const Chain& c, bool line_search, Vector& u) {
+NewtonResult solve_on_contacts(const System& system, const GapChain& c, bool line_search, Vector& u) {
   const auto n = static_cast<Eigen::Index>(c.ground.size());
   Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -100,7 +100,7 @@ TEST_CASE("The exact line search converges on random chains of gaps, from the ga
   std::uniform_real_distribution<double> exponent(-1.0, 3.0), sign(-1.0, 1.0);
   int full_newton_fails = 0;
   for (int problem = 0; problem < 3000; ++problem) {
-    Chain c;
+    GapChain c;
     for (int i = 0; i < 3; ++i) {
       c.ground.push_back(std::pow(10.0, exponent(random)));
       c.stiffness.push_back(std::pow(10.0, exponent(random)));

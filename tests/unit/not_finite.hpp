@@ -1,0 +1,5 @@
+#pragma once
+#include <limits>
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
