@@ -70,15 +70,13 @@ void Assembler::external_of_motions(Vector& p) const {
   }
 }
 
-void Assembler::find_known() const {
-  external_of_motions(known_);
+void Assembler::external_known(Vector& p) const {
+  external_of_motions(p);
   for (const int l : system_.known_loads()) {
     const LoadTerm& term = system_.loads()[at(l)];
     add_torque(system_.node_map(term.node),
-               load(term, system_.initial_deviation(), system_.initial_rate()).torque, known_);
+               load(term, system_.initial_deviation(), system_.initial_rate()).torque, p);
   }
-  if (system_.table_loads().size() > 0) system_.table_loads().set_nominal(nominal_.value, tables_);
-  known_found_ = true;
 }
 
 void Assembler::add_tables(const Vector& z, Vector& p) const {
@@ -99,9 +97,15 @@ void Assembler::add_tables(const Vector& z, Vector& p) const {
 }
 
 void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
-  if (!known_found_) find_known();
+  const bool tables = system_.table_loads().size() > 0;
+  if (!tables && system_.moving_loads().empty()) return external_known(p);
+  if (!known_found_) {
+    external_known(known_);
+    if (tables) system_.table_loads().set_nominal(nominal_.value, tables_);
+    known_found_ = true;
+  }
   p = known_;
-  if (system_.table_loads().size() > 0) add_tables(z, p);
+  if (tables) add_tables(z, p);
   for (const int l : system_.moving_loads()) {
     const LoadTerm& term = system_.loads()[at(l)];
     add_torque(system_.node_map(term.node), load(term, z, v).torque, p);

@@ -103,7 +103,7 @@ class Assembler {
     return map.row < 0 ? u_[at(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
   }
   void add_tables(const Vector& z, Vector& p) const;
-  void find_known() const;
+  void external_known(Vector& p) const;  // the part of p that is the same for all motions
   void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
   LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
                         const Vector& history, Vector& history_new) const;
@@ -116,7 +116,7 @@ class Assembler {
   MotionPoint nominal_;
   std::vector<MotionPoint> u_;
   double row_gain_ = 1.0;  // bound of how a torque per deviation of loaded rows acts on the unknowns
-  // Kept for one time: the part of p that is the same for all motions, and the tables.
+  // Kept for one time: external_known(), and the tables.
   mutable bool known_found_ = false;
   mutable Vector known_;
   mutable TableLoads::Values tables_;

@@ -6,6 +6,10 @@
 
 namespace drev {
 
+namespace {
+constexpr int kFewKnots = 8;  // one after the other is faster than bisection
+}
+
 PolylineSpring::PolylineSpring(Params params) : params_(std::move(params)) {
   if (!usable()) return;  // check() says why
   find_segments();
@@ -84,8 +88,13 @@ void PolylineSpring::find_pieces() {
 }
 
 std::size_t PolylineSpring::segment_at(double x) const {
-  const auto inner = params_.x.begin() + 1;
-  return static_cast<std::size_t>(std::upper_bound(inner, params_.x.end() - 1, x) - inner);
+  const double *first = params_.x.data() + 1, *end = params_.x.data() + params_.x.size() - 1;
+  const double* above = first;
+  if (end - first > kFewKnots)
+    above = std::upper_bound(first, end, x);
+  else
+    while (above != end && !(x < *above)) ++above;
+  return static_cast<std::size_t>(above - first);
 }
 
 ScalarResponse PolylineSpring::evaluate(const ScalarInput& in) const {

@@ -31,9 +31,10 @@ ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, d
       kappa_v_(kappa_v),
       inputs_(system.scalars().size()),
       responses_(system.scalars().size()),
+      slopes_(system.scalars().size()),
       tangent_(system.scalars().size() * system.scalars().size()),
       x_start_(system.scalars().size()),
-      last_free_(system.scalars().size()),
+      last_(system.scalars().size()),
       residual_(compliance_.rows()),
       direction_(compliance_.rows()),
       g_direction_(compliance_.rows()),
@@ -56,6 +57,7 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
     in.t = in_0.t;
     in.angle = in_0.angle;
     const ScalarResponse& r = *std::construct_at(&responses_[j], laws_[j]->evaluate(in));  // without a copy
+    slopes_[j] = {r.dy_dx, r.dy_dx_dot};
     const double residual = residual_.data()[j] = r.y - force[j];
     if (std::abs(residual) <= limit) continue;
     // What rounding of x and x' alone does to the force of a stiff contact is no error of Newton's.
@@ -70,14 +72,11 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
 
 void ContactNewton::expect(const std::vector<ScalarInput>& free, Vector& lambda) {
   const std::size_t m = laws_.size();
-  for (std::size_t j = 0; j < m; ++j) {
-    const ScalarResponse& r = responses_[j];
-    lambda.data()[j] = r.y - residual_.data()[j];  // where they were evaluated
-    residual_.data()[j] += r.dy_dx * (free[j].x - last_free_[j].x) +
-                           r.dy_dx_dot * (free[j].x_dot - last_free_[j].x_dot);
-  }
+  for (std::size_t j = 0; j < m; ++j)
+    residual_.data()[j] += slopes_[j].dy_dx * (free[j].x - last_[j].x) +
+                           slopes_[j].dy_dx_dot * (free[j].x_dot - last_[j].x_dot);
   find_direction();
-  for (std::size_t j = 0; j < m; ++j) lambda.data()[j] += direction_.data()[j];
+  for (std::size_t j = 0; j < m; ++j) lambda.data()[j] = last_[j].lambda + direction_.data()[j];
 }
 
 void ContactNewton::find_direction() {
@@ -85,7 +84,7 @@ void ContactNewton::find_direction() {
   double *a = tangent_.data(), *x = direction_.data();
   const double *g = compliance_.data(), *r = residual_.data();
   const auto slope = [this](std::size_t j) {
-    return kappa_x_ * responses_[j].dy_dx + kappa_v_ * responses_[j].dy_dx_dot;
+    return kappa_x_ * slopes_[j].dy_dx + kappa_v_ * slopes_[j].dy_dx_dot;
   };
   if (m == 2) {  // most often: two stages of gears
     const double d_0 = slope(0), d_1 = slope(1), a_00 = 1.0 + d_0 * g[0], a_01 = d_0 * g[1],
@@ -126,28 +125,31 @@ void ContactNewton::find_direction() {
 NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double force_scale,
                                   const Options& options, Vector& lambda) {
   const double limit = options.tolerance * force_scale;
+  const std::size_t m = laws_.size();
   NewtonResult result;
-  if (options.expects && evaluated_) {
+  if (options.expects && converged_) {
     expect(free, lambda);
     ++result.iterations;
   }
-  for (std::size_t j = 0; j < laws_.size(); ++j) last_free_[j] = {free[j].x, free[j].x_dot};
+  converged_ = false;
   double size = evaluate(free, lambda, limit);
-  evaluated_ = std::isfinite(size);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
+    if (size <= limit) {
+      for (std::size_t j = 0; j < m; ++j) {
+        last_[j] = {free[j].x, free[j].x_dot, lambda.data()[j]};
+        lambda.data()[j] = responses_[j].y;
+      }
+      converged_ = true;
+      return result;
+    }
     if (!std::isfinite(size)) {
-      evaluated_ = false;
       result.status = NewtonStatus::not_finite;
       return result;
     }
-    if (size <= limit) {
-      for (std::size_t j = 0; j < laws_.size(); ++j) lambda.data()[j] = responses_[j].y;
-      return result;
-    }
     find_direction();
-    for (std::size_t j = 0; j < laws_.size(); ++j) x_start_[j] = inputs_[j].x;
+    for (std::size_t j = 0; j < m; ++j) x_start_[j] = inputs_[j].x;
     const double g_0 = options.line_search ? descent() : 0.0;
-    for (std::size_t j = 0; j < laws_.size(); ++j)
+    for (std::size_t j = 0; j < m; ++j)
       trial_.data()[j] = lambda.data()[j] + direction_.data()[j];
     size = evaluate(free, trial_, limit);
     if (size <= limit || !(g_0 < 0.0)) {
@@ -160,6 +162,13 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
   }
   result.status = NewtonStatus::too_many_steps;
   return result;
+}
+
+void ContactNewton::hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
+  if (inputs.size() != inputs_.size()) inputs.resize(inputs_.size());
+  if (responses.size() != responses_.size()) responses.resize(responses_.size());
+  inputs.swap(inputs_);
+  responses.swap(responses_);
 }
 
 double ContactNewton::descent() {

@@ -47,9 +47,8 @@ class ContactNewton {
   NewtonResult solve(const std::vector<ScalarInput>& free, double force_scale,
                      const Options& options, Vector& lambda);
 
-  /// The laws' inputs and responses at the last lambda evaluated.
-  const std::vector<ScalarInput>& inputs() const { return inputs_; }
-  const std::vector<ScalarResponse>& responses() const { return responses_; }
+  /// Gives the laws' inputs and responses at the last lambda evaluated, for the vectors that are there.
+  void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses);
 
  private:
   /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding; what is
@@ -68,14 +67,19 @@ class ContactNewton {
   std::vector<const ScalarForce*> laws_;
   Eigen::MatrixXd compliance_;  // G, symmetric
   double kappa_x_ = 0.0, kappa_v_ = 0.0;
-  bool evaluated_ = false;  // responses_, residual_ and last_free_ are of a solve() before
   std::vector<ScalarInput> inputs_;
   std::vector<ScalarResponse> responses_;
-  std::vector<double> tangent_, x_start_, kinks_;
-  struct Free {
-    double x, x_dot;
+  struct Slopes {
+    double dy_dx, dy_dx_dot;
   };
-  std::vector<Free> last_free_;  // of the solve() before
+  std::vector<Slopes> slopes_;  // of responses_
+  std::vector<double> tangent_, x_start_, kinks_;
+  struct Last {
+    double x, x_dot;  // free
+    double lambda;    // where the laws were evaluated last
+  };
+  std::vector<Last> last_;  // of the solve() before
+  bool converged_ = false;  // that one; residual_ and slopes_ are of its end
   Vector residual_, direction_, g_direction_, trial_;
 };
 

@@ -17,11 +17,8 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
 }
 
 double EnergyMonitor::stored(const StepPoint& point) const {
-  return stored(point, 0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()));
-}
-
-double EnergyMonitor::stored(const StepPoint& point, double by_stiffness) const {
-  double sum = by_stiffness + point.general_energy;
+  double sum = 0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) +
+               point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }
@@ -31,17 +28,23 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
   auto [input, dissipated, by_stiffness] =
       step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
                 damped_ ? from.cv.data() : nullptr, to.cv.data(), to.kz.data());
-  for (std::size_t j = 0; j < system.scalars().size(); ++j) {
-    const ScalarTerm& term = system.scalars()[j];
-    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+  double stored = by_stiffness + to.general_energy, power = from.general_power + to.general_power;
+  const ScalarResponse *r_0 = from.responses.data(), *r_1 = to.responses.data();
+  for (const ScalarTerm& term : system.scalars()) {
+    const ScalarResponse &r0 = *r_0++, &r1 = *r_1++;
+    power += r0.dissipated_power + r1.dissipated_power;
+    stored += r1.stored_energy;
+    const bool partly_known = !term.u.empty() || term.phase_node >= 0;
+    if (!partly_known && !term.varies) continue;
+    const auto j = static_cast<std::size_t>(&r1 - to.responses.data());
     const ScalarInput &in0 = from.inputs[j], &in1 = to.inputs[j];
-    dissipated += 0.5 * h * (r0.dissipated_power + r1.dissipated_power);
     // Known part of the deflection: prescribed ends and transmission error do work on the law.
-    double by_unknowns = 0.0;
-    for (const Entry& e : term.z)
-      by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
-    if (!term.u.empty() || term.phase_node >= 0)
+    if (partly_known) {
+      double by_unknowns = 0.0;
+      for (const Entry& e : term.z)
+        by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
       input += 0.5 * (r0.y + r1.y) * (in1.x - in0.x - by_unknowns);
+    }
     // A law that varies: its energy changes at constant x too; mean over both orders of changing.
     if (term.varies) {
       const double v01 =
@@ -51,8 +54,7 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
       input += 0.5 * ((v01 - r0.stored_energy) + (r1.stored_energy - v10));
     }
   }
-  dissipated += 0.5 * h * (from.general_power + to.general_power);
-  enter(to, input, dissipated, stored(to, by_stiffness));
+  enter(to, input, dissipated + 0.5 * h * power, stored);
 }
 
 void EnergyMonitor::step(const StepPoint& to, double input, double dissipated) {

@@ -44,7 +44,6 @@ class EnergyMonitor {
 
  private:
   double stored(const StepPoint& point) const;
-  double stored(const StepPoint& point, double by_stiffness) const;
   void enter(const StepPoint& to, double input, double dissipated, double stored);
   void note(double t);
 

@@ -41,6 +41,13 @@ class SparseNewton {
   /// general elements at the solution.
   NewtonResult solve(const Assembler& assembler, const SparseNewtonProblem& problem,
                      const Options& options, Vector& w, Vector& history_new);
+  /// Gives the laws' inputs and responses at the last w evaluated, for the vectors that are there.
+  void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
+    inputs.resize(inputs_.size());
+    responses.resize(responses_.size());
+    inputs.swap(inputs_);
+    responses.swap(responses_);
+  }
   long factorizations() const { return factorizations_; }
 
  private:

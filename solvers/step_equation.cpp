@@ -37,9 +37,8 @@ StepEquation::StepEquation(const System& system, StepScheme scheme, StepOptions 
   for (Vector* x : {&linear_, &rhs_, &scratch_}) set_zeros(*x, system.size());
 }
 
-StepEquation::Factor& StepEquation::factor(double h) {
+StepEquation::Factor& StepEquation::find_factor(double h) {
   const auto fits = [h](const auto& f) { return std::abs(f->h - h) <= kSameStep * h; };
-  if (!factors_.empty() && fits(factors_.back())) return *factors_.back();
   for (auto f = factors_.rbegin(); f != factors_.rend(); ++f)
     if (fits(*f)) {
       std::rotate(f.base() - 1, f.base(), factors_.end());
@@ -88,18 +87,11 @@ void StepEquation::invert(Factor& f) {
   }
 }
 
-void StepEquation::solve(Factor& f, const Vector& b, Vector& x) {
-  ++solves_;
+void StepEquation::solve_by_factor(Factor& f, const Vector& b, Vector& x) {
   const int n = system_.size();
-  if (f.inverse.size() == 0) {
-    f.cholesky.solve(b, x);
-    if (n <= kLargestDense && ++f.used == kUsedOften * n &&
-        f.cholesky.reciprocal_condition() > kInvertible)
-      invert(f);
-    return;
-  }
-  x.resize(n);
-  dense_product(n, whole_lanes(n), f.inverse.data(), b.data(), x.data());
+  f.cholesky.solve(b, x);
+  if (n <= kLargestDense && ++f.used == kUsedOften * n && f.cholesky.reciprocal_condition() > kInvertible)
+    invert(f);
 }
 
 void StepEquation::evaluate(const Vector& history, StepPoint& point, Vector* history_new) {
@@ -155,12 +147,6 @@ double largest_force(const StepPoint& point) {
   double largest = std::max(0.0, largest_of_both(n, point.p.data(), point.kz.data()));
   for (const ScalarResponse& r : point.responses) largest = std::max(largest, std::abs(r.y));
   return largest;
-}
-
-NewtonResult StepEquation::solve(Problem& problem, StepPoint& to) {
-  if (dense_) return solve_dense(problem, to);
-  to.state.history = *problem.history;
-  return solve_sparse(problem, to);
 }
 
 void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
@@ -233,7 +219,12 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     clock_.enter(Phase::linear);
     rhs_.resize(n);
     sum_with(n, linear_.data(), phi, to.p.data(), rhs_.data());
-    solve(f, rhs_, to.state.a);
+    ++solves_;
+    to.state.a.resize(n);
+    if (f.inverse.size() == 0)
+      solve_by_factor(f, rhs_, to.state.a);
+    else
+      dense_product(n, whole_lanes(n), f.inverse.data(), rhs_.data(), to.state.a.data());
     const double scale = force_scale_ > 0.0 ? force_scale_ : largest_size(n, to.p.data());
     if (m > 0) {
       clock_.enter(Phase::contacts);
@@ -288,8 +279,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     return result;
   }
   if (m > 0) {
-    to.inputs = f.contact.inputs();
-    to.responses = f.contact.responses();
+    f.contact.hand_over(to.inputs, to.responses);
     if (problem.accept_jump)
       for (std::size_t j = 0; j < m; ++j)
         to.responses[j].y = lambda_[static_cast<Eigen::Index>(j)];
@@ -312,11 +302,12 @@ NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
                                    .r_0 = &scratch_,
                                    .history = problem.history};
   to.state.a = *problem.a_start;
+  to.state.history = *problem.history;
   const NewtonResult result = sparse_->solve(assembler_, sparse, {}, to.state.a, to.state.history);
   solves_ += result.iterations;
   if (result.status != NewtonStatus::converged) return result;
   correct(problem, to);
-  evaluate_laws(assembler_, to);
+  sparse_->hand_over(to.inputs, to.responses);
   assembler_.external(to.state.z, to.state.v, to.p);
   return result;
 }

@@ -58,7 +58,9 @@ class StepEquation {
   Assembler& assembler() { return assembler_; }
 
   /// Solves at the assembler's time. Fills to's z, v, a, p, inputs, responses, history.
-  NewtonResult solve(Problem& problem, StepPoint& to);
+  NewtonResult solve(Problem& problem, StepPoint& to) {
+    return dense_ ? solve_dense(problem, to) : solve_sparse(problem, to);
+  }
   /// kz, cv and total after solve(); the step's own equation gives the total force, so that no product
   /// with K is needed. from: where the step began, a_0: with which acceleration.
   void totals(const StepPoint& from, const Vector& a_0, StepPoint& to);
@@ -93,8 +95,12 @@ class StepEquation {
     Vector inverse;     // columns of S^-1, padded to whole lanes
   };
   void invert(Factor& f);
-  void solve(Factor& f, const Vector& b, Vector& x);
-  Factor& factor(double h);
+  /// x = S^-1 b; inverts S when this has been asked for often enough.
+  void solve_by_factor(Factor& f, const Vector& b, Vector& x);
+  Factor& factor(double h) {
+    return !factors_.empty() && factors_.back()->h == h ? *factors_.back() : find_factor(h);
+  }
+  Factor& find_factor(double h);
   void evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new);
   NewtonResult solve_dense(Problem& problem, StepPoint& to);
   NewtonResult solve_sparse(const Problem& problem, StepPoint& to);

@@ -137,21 +137,29 @@ inline void band_product(int n, const std::vector<Band>& bands, double factor, c
                          const double* y, double* out) {
   if (n >= kLanes) return wide::band_product(n, bands, factor, x, y, out);
   for (int i = 0; i < n; ++i) out[i] = y ? y[i] : 0.0;
-  for (const Band& band : bands)
-    for (int i = 0, k = band.offset; k < n; ++i, ++k) {
-      const double value = factor * band.values[i];
-      out[i] += value * x[k];
-      if (k > i) out[k] += value * x[i];
-    }
+  for (const Band& band : bands) {
+    const double* values = band.values.data();
+    if (band.offset == 0)
+      for (int i = 0; i < n; ++i) out[i] += factor * values[i] * x[i];
+    else
+      for (int i = 0, k = band.offset; k < n; ++i, ++k) {
+        const double value = factor * values[i];
+        out[i] += value * x[k];
+        out[k] += value * x[i];
+      }
+  }
 }
 
 /// x' A x.
 inline double band_energy(int n, const std::vector<Band>& bands, const double* x) {
   if (n >= kLanes) return wide::band_energy(n, bands, x);
   double energy = 0.0;
-  for (const Band& band : bands)
-    for (int i = 0, k = band.offset; k < n; ++i, ++k)
-      energy += (k > i ? 2.0 : 1.0) * band.values[i] * x[i] * x[k];
+  for (const Band& band : bands) {
+    const double* values = band.values.data();
+    double sum = 0.0;
+    for (int i = 0, k = band.offset; k < n; ++i, ++k) sum += values[i] * x[i] * x[k];
+    energy += band.offset == 0 ? sum : 2.0 * sum;
+  }
   return energy;
 }
 

@@ -21,8 +21,12 @@ void evaluate_laws(const Assembler& assembler, StepPoint& point) {
 }
 
 void add_law_forces(const System& system, const StepPoint& point, double factor, Vector& f) {
-  for (std::size_t j = 0; j < point.responses.size(); ++j)
-    for (const Entry& e : system.scalars()[j].z) f[e.index] += factor * e.coeff * point.responses[j].y;
+  const ScalarResponse* r = point.responses.data();
+  double* force = f.data();
+  for (const ScalarTerm& term : system.scalars()) {
+    const double y = factor * (r++)->y;
+    for (const Entry& e : term.z) force[e.index] += e.coeff * y;
+  }
 }
 
 }  // namespace drev
