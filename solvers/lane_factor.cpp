@@ -49,13 +49,60 @@ template <class T>
   }
 }
 
+/// The same where places 0, 2, ... are a chain's unknowns from its low end, 1, 3, ... from its high end, and
+/// the last one is where both ends meet.
+template <class T>
+[[gnu::always_inline]] inline void solve_chain(const Triangle<T>& t, const LaneRow* b, double factor,
+                                               const LaneRow* c, LaneRow* x) {
+  const int n = t.n;
+  const bool even = n % 2 == 0;
+  const T *l = t.by_rows, *lower = t.lower, *inverse = t.inverse;
+  int low = 0, high = n - 1, k = 2;
+  Lanes at_low = b[low].v + factor * c[low].v, at_high = b[high].v + factor * c[high].v;
+  x[low].v = at_low, x[high].v = at_high;
+  const auto step_low = [&] {
+    ++low;
+    Lanes sum = b[low].v + factor * c[low].v;
+    sum -= each(*l++) * at_low;
+    x[low].v = at_low = sum;
+  };
+  for (; k < n - 2; k += 2) {
+    step_low();
+    --high;
+    Lanes sum = b[high].v + factor * c[high].v;
+    sum -= each(*l++) * at_high;
+    x[high].v = at_high = sum;
+  }
+  if (even) step_low();
+  const int middle = low + 1;
+  Lanes sum = b[middle].v + factor * c[middle].v;
+  sum -= each(*l++) * (even ? at_high : at_low);
+  sum -= each(*l++) * (even ? at_low : at_high);
+  x[middle].v = at_low = at_high = sum * each(inverse[n - 1]);
+  k = n - 2;
+  const auto back_low = [&] {
+    Lanes back = x[low].v * each(inverse[k]);
+    back -= each(lower[k--]) * at_low;
+    x[low--].v = at_low = back;
+  };
+  if (even) back_low();
+  while (k > 0) {
+    Lanes back = x[high].v * each(inverse[k]);
+    back -= each(lower[k--]) * at_high;
+    x[high++].v = at_high = back;
+    back_low();
+  }
+}
+
 DREV_WIDEST
-void solve_lanes(const Triangle<double>& t, const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) {
-  solve_with(t, b, factor, c, x);
+void solve_lanes(bool chain, const Triangle<double>& t, const LaneRow* b, double factor, const LaneRow* c,
+                 LaneRow* x) {
+  chain ? solve_chain(t, b, factor, c, x) : solve_with(t, b, factor, c, x);
 }
 DREV_WIDEST
-void solve_lanes(const Triangle<LaneRow>& t, const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) {
-  solve_with(t, b, factor, c, x);
+void solve_lanes(bool chain, const Triangle<LaneRow>& t, const LaneRow* b, double factor, const LaneRow* c,
+                 LaneRow* x) {
+  chain ? solve_chain(t, b, factor, c, x) : solve_with(t, b, factor, c, x);
 }
 
 }  // namespace
@@ -80,6 +127,9 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(patter
       below = std::move(c);
       order = std::move(other);
     }
+
+  chain_ = n_ >= 4 && pattern.nonZeros() == 3 * n_ - 2;
+  for (int j = 0; chain_ && j + 1 < n_; ++j) chain_ = pattern.coeff(j + 1, j) != 0.0;
 
   std::vector<int> place(n);
   for (int k = 0; k < n_; ++k) place[at(order[at(k)])] = k;
@@ -191,7 +241,8 @@ void LaneFactor::factorize(const LaneArray& values) {
 
 void LaneFactor::solve(const LaneRow* b, double factor, const LaneRow* c, LaneRow* x) const {
   const auto with = [&]<class T>(const T* by_rows, const T* lower, const T* inverse) {
-    solve_lanes(Triangle<T>{n_, static_cast<int>(row_of_.size()), rows_.data(), columns_.data(),
+    solve_lanes(chain_,
+                Triangle<T>{n_, static_cast<int>(row_of_.size()), rows_.data(), columns_.data(),
                             left_unknown_.data(), unknown_of_.data(), by_rows, lower, inverse},
                 b, factor, c, x);
   };

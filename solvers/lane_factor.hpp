@@ -45,6 +45,7 @@ class LaneFactor {
   LaneValues lower_, by_rows_, inverse_;
   LaneArray pivot_;
   bool common_ = false;  // all lanes have one factor
+  bool chain_ = false;   // the pattern is the diagonal and both its neighbours, whole
   bool ok_[kLanes] = {};
 };
 

@@ -8,6 +8,8 @@ namespace drev {
 
 namespace {
 
+constexpr int kLeastChain = 4;  // unknowns
+
 /// A matrix by rows, or its diagonal where that is all there is. T: double where all lanes have one value.
 template <class T>
 struct Product {
@@ -28,6 +30,31 @@ struct Product {
   }
 };
 
+/// The same for a matrix that is known to be diagonal.
+template <class T>
+struct DiagonalProduct {
+  const T* diagonal;
+
+  [[gnu::always_inline]] void row(int i, const LaneRow* x, Lanes& out) const {
+    out = Lanes{} + each(diagonal[i]) * x[i].v;
+  }
+};
+
+/// The same for a chain's matrix.
+template <class T>
+struct ChainProduct {
+  const T* values;
+  int last;
+
+  [[gnu::always_inline]] void row(int i, const LaneRow* x, Lanes& out) const {
+    const T* value = values + 3 * i;
+    out = Lanes{};
+    if (i > 0) out += each(value[-1]) * x[i - 1].v;
+    out += each(value[0]) * x[i].v;
+    if (i < last) out += each(value[1]) * x[i + 1].v;
+  }
+};
+
 template <class T>
 [[gnu::always_inline]] inline const T* entries(const LaneValues& v) {
   if constexpr (std::is_same_v<T, double>)
@@ -41,6 +68,12 @@ template <class T>
   return {m.pattern.outerIndexPtr(), m.pattern.innerIndexPtr(), entries<T>(values), entries<T>(diagonal)};
 }
 
+/// The usual case, for which loops are shorter: the equation is of the step's end alone, M and C are diagonal.
+template <class T>
+bool at_end(const StepScheme& c, const Product<T>& mass, const Product<T>& damping) {
+  return c.alpha_m == 0.0 && c.alpha_f == 0.0 && mass.diagonal && damping.diagonal;
+}
+
 }  // namespace
 
 LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n(systems[0]->size()) {
@@ -48,17 +81,30 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
   std::vector<Eigen::Triplet<double>> kept;
   std::vector<int> slots;
   std::vector<std::size_t> diagonal;  // of the slots kept
+  const int *outer = full.outerIndexPtr(), *inner = full.innerIndexPtr();
+  const auto filled = [&](int s) {
+    return std::any_of(systems.begin(), systems.end(), [s](const System* system) {
+      return system->mass_values()[s] != 0.0 || system->damping_values()[s] != 0.0 ||
+             system->stiffness_values()[s] != 0.0;
+    });
+  };
+  const auto keep = [&](int i, int j, int s) {
+    if (i == j) diagonal.push_back(slots.size());
+    kept.emplace_back(i, j, 1.0);
+    slots.push_back(s);
+  };
+  chain = n >= kLeastChain;
   for (int j = 0; j < n; ++j)
-    for (int s = full.outerIndexPtr()[j]; s < full.outerIndexPtr()[j + 1]; ++s) {
-      const int i = full.innerIndexPtr()[s];
-      const bool there = i == j || std::any_of(systems.begin(), systems.end(), [&](const System* system) {
-        return system->mass_values()[s] != 0.0 || system->damping_values()[s] != 0.0 ||
-               system->stiffness_values()[s] != 0.0;
-      });
-      if (!there) continue;
-      kept.emplace_back(i, j, 1.0);
-      slots.push_back(s);
-      if (i == j) diagonal.push_back(slots.size() - 1);
+    for (int s = outer[j]; s < outer[j + 1]; ++s) chain = chain && (std::abs(inner[s] - j) <= 1 || !filled(s));
+  for (int j = 0; j < n; ++j)
+    if (chain) {
+      for (int i = std::max(0, j - 1); i <= std::min(n - 1, j + 1); ++i) {
+        const int* const found = std::lower_bound(inner + outer[j], inner + outer[j + 1], i);
+        keep(i, j, found != inner + outer[j + 1] && *found == i ? static_cast<int>(found - inner) : -1);
+      }
+    } else {
+      for (int s = outer[j]; s < outer[j + 1]; ++s)
+        if (inner[s] == j || filled(s)) keep(inner[s], j, s);
     }
   pattern.resize(n, n);
   pattern.setFromTriplets(kept.begin(), kept.end());
@@ -69,6 +115,7 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
     mass_is_diagonal = mass_is_diagonal && system.mass_is_diagonal();
     damping_is_diagonal = damping_is_diagonal && system.damping_is_diagonal();
     for (std::size_t s = 0; s < slots.size(); ++s) {
+      if (slots[s] < 0) continue;
       mass.rows[s].v[lane] = system.mass_values()[slots[s]];
       damping.rows[s].v[lane] = system.damping_values()[slots[s]];
       stiffness.rows[s].v[lane] = system.stiffness_values()[slots[s]];
@@ -136,33 +183,45 @@ void LaneEnergy::set(int lane, const EnergyBalance& b) {
 
 namespace {
 
-template <class T>
-[[gnu::always_inline]] inline void predict_with(const LaneMatrices& m, const StepScheme& c, double h,
+template <bool kAtEnd, class Stiffness, class Matrix>
+[[gnu::always_inline]] inline void predict_with(const Stiffness& stiffness, const Matrix& mass,
+                                                const Matrix& damping, const StepScheme& c, double h,
                                                 const LanePoint& from, LaneArray& right, LanePoint& to) {
-  const double phi = 1.0 - c.alpha_f, to_z_0 = h * h * (0.5 - c.beta), to_v_0 = h * (1.0 - c.gamma);
+  const double phi = 1.0 - c.alpha_f, to_z_0 = h * h * (0.5 - c.beta), to_v_0 = h * (1.0 - c.gamma),
+               of_a = kAtEnd ? 0.0 : c.alpha_m, of_total = kAtEnd ? 0.0 : c.alpha_f;
   const LaneRow *z = from.z.data(), *v = from.v.data(), *a = from.a.data(), *total = from.total.data();
   LaneRow *z_0 = to.z.data(), *v_0 = to.v.data(), *known = right.data();
-  const Product<T> stiffness = product<T>(m, m.stiffness, {}),
-                   damping = product<T>(m, m.damping, m.damping_diagonal),
-                   mass = product<T>(m, m.mass, m.mass_diagonal);
-  for (int i = 0; i < m.n; ++i) {
+  const int n = static_cast<int>(from.z.size());
+  for (int i = 0; i < n; ++i) {
     const Lanes a_i = a[i].v, v_i = v[i].v;
     z_0[i].v = z[i].v + h * v_i + to_z_0 * a_i;
     v_0[i].v = v_i + to_v_0 * a_i;
   }
-  for (int i = 0; i < m.n; ++i) {
+  for (int i = 0; i < n; ++i) {
     Lanes elastic, loss;
     stiffness.row(i, z_0, elastic);
     damping.row(i, v_0, loss);
     Lanes sum = -phi * (elastic + loss);
-    if (c.alpha_m != 0.0) {
+    if (of_a != 0.0) {
       Lanes inertia;
       mass.row(i, a, inertia);
-      sum -= c.alpha_m * inertia;
+      sum -= of_a * inertia;
     }
-    if (c.alpha_f != 0.0) sum -= c.alpha_f * total[i].v;
+    if (of_total != 0.0) sum -= of_total * total[i].v;
     known[i].v = sum;
   }
+}
+template <class T>
+[[gnu::always_inline]] inline void predict_with(const LaneMatrices& m, const StepScheme& c, double h,
+                                                const LanePoint& from, LaneArray& known, LanePoint& to) {
+  const Product<T> mass = product<T>(m, m.mass, m.mass_diagonal),
+                   damping = product<T>(m, m.damping, m.damping_diagonal);
+  const DiagonalProduct<T> lumped{mass.diagonal}, dashpots{damping.diagonal};
+  if (m.chain && at_end(c, mass, damping))
+    predict_with<true>(ChainProduct<T>{entries<T>(m.stiffness), m.n - 1}, lumped, dashpots, c, h, from, known,
+                       to);
+  else
+    predict_with<false>(product<T>(m, m.stiffness, {}), mass, damping, c, h, from, known, to);
 }
 
 template <class T>
@@ -172,12 +231,24 @@ template <class T>
   const LaneRow* force = lambda.data();
   LaneRow* to = a.data();
   Lanes most{};
-  for (std::size_t i = 0; i < n; ++i) {
-    Lanes sum{};
-    for (std::size_t j = 0; j < m; ++j) sum += each(*w++) * force[j].v;
-    sum = to[i].v - factor * sum;
-    to[i].v = sum;
-    larger(most, sum - before[i].v);
+  const auto row = [&](std::size_t i, const Lanes& sum) {
+    const Lanes corrected = to[i].v - factor * sum;
+    to[i].v = corrected;
+    larger(most, corrected - before[i].v);
+  };
+  if (m == 2) {  // most often: two stages of gears
+    const Lanes force_0 = force[0].v, force_1 = force[1].v;
+    for (std::size_t i = 0; i < n; ++i, w += 2) {
+      Lanes sum = each(w[0]) * force_0;
+      sum += each(w[1]) * force_1;
+      row(i, sum);
+    }
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      Lanes sum{};
+      for (std::size_t j = 0; j < m; ++j) sum += each(*w++) * force[j].v;
+      row(i, sum);
+    }
   }
   change.v = most;
 }
@@ -186,8 +257,9 @@ template <class T>
 struct Sums {
   LaneRow work, loss, kinetic, stored, largest;
 };
-template <class T>
-[[gnu::always_inline]] inline void finish_with(const LaneMatrices& m, const StepScheme& c, double h,
+template <bool kAtEnd, class Matrix>  // as predict_with()
+[[gnu::always_inline]] inline void finish_with(const LaneMatrices& m, const Matrix& mass,
+                                               const Matrix& damping, const StepScheme& c, double h,
                                                const LanePoint& from, const LaneForces& by, LanePoint& to,
                                                Sums& sums) {
   const double of_a = (1.0 - c.alpha_m) / (1.0 - c.alpha_f), of_a_0 = c.alpha_m / (1.0 - c.alpha_f),
@@ -195,11 +267,10 @@ template <class T>
   const LaneRow *z_0 = from.z.data(), *v_0 = from.v.data(), *a_0 = from.a.data(), *p_0 = from.p.data(),
                 *total_0 = from.total.data(), *a = to.a.data(), *p = to.p.data(), *force = by.values.data();
   LaneRow *total = to.total.data(), *z = to.z.data(), *v = to.v.data();
-  const Product<T> damping = product<T>(m, m.damping, m.damping_diagonal),
-                   mass = product<T>(m, m.mass, m.mass_diagonal);
   const int *next = by.rows.data(), *end = next + by.rows.size();
-  Lanes work{}, loss{}, kinetic{}, stored{}, largest = sums.largest.v;
-  const bool a_before = c.alpha_m != 0.0, forces_before = c.alpha_f != 0.0;
+  // Two largest, since a maximum waits for the one before it.
+  Lanes work{}, loss{}, kinetic{}, stored{}, largest = sums.largest.v, largest_elastic{};
+  const bool a_before = !kAtEnd && c.alpha_m != 0.0, forces_before = !kAtEnd && c.alpha_f != 0.0;
   const bool rows_apart = mass.diagonal && damping.diagonal;
   if (!rows_apart)
     for (int i = 0; i < m.n; ++i) v[i].v = v[i].v + to_v * a[i].v;
@@ -232,10 +303,23 @@ template <class T>
     kinetic += v[i].v * mv;
     stored += z_i * elastic;
     larger(largest, p_i);
-    larger(largest, elastic);
+    larger(largest_elastic, elastic);
   }
+  larger(largest, largest_elastic);
   sums.work.v = work, sums.loss.v = loss, sums.kinetic.v = kinetic, sums.stored.v = stored;
   sums.largest.v = largest;
+}
+template <class T>
+[[gnu::always_inline]] inline void finish_with(const LaneMatrices& m, const StepScheme& c, double h,
+                                               const LanePoint& from, const LaneForces& by, LanePoint& to,
+                                               Sums& sums) {
+  const Product<T> mass = product<T>(m, m.mass, m.mass_diagonal),
+                   damping = product<T>(m, m.damping, m.damping_diagonal);
+  if (at_end(c, mass, damping))
+    finish_with<true>(m, DiagonalProduct<T>{mass.diagonal}, DiagonalProduct<T>{damping.diagonal}, c, h, from,
+                      by, to, sums);
+  else
+    finish_with<false>(m, mass, damping, c, h, from, by, to, sums);
 }
 
 }  // namespace

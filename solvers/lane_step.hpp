@@ -21,6 +21,8 @@ struct LaneMatrices {
   /// Of M and C, where they hold nothing else; else empty.
   LaneValues mass_diagonal, damping_diagonal;
   bool common = false;  ///< all are the same in all lanes
+  /// A chain in its own order: the pattern holds the diagonal and both its neighbours, whole.
+  bool chain = false;
 };
 
 /// StepPoint in lanes; total is there with alpha_f != 0 only, kz and cv not at all.
