@@ -1,5 +1,6 @@
 #include "core/projected_system.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 

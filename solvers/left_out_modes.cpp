@@ -1,5 +1,6 @@
 #include "solvers/left_out_modes.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,9 @@
 #include "solvers/modal_problem.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/dense_eigen.hpp"
 #include "core/lanes.hpp"
@@ -195,12 +197,15 @@ double ModalProblem::first_elastic(int rigid_modes, int most, bool prefer_dense)
 }
 
 ModalPairs ModalProblem::lanczos(int count, int round) {
-  constexpr double kTolerance = 1e-15;
+  // Rounding in K - sigma M changes its inverse by epsilon lambda_max/|sigma|, relatively: a small part of it
+  // is not felt in the pairs.
+  constexpr double kNotFelt = 1e-4 * std::numeric_limits<double>::epsilon();
+  const double tolerance = std::clamp(kNotFelt * lambda_max_ / -summary_.shift, 1e-15, 1e-10);
   ShiftInvertProblem problem = shift_invert(count, round);
   ShiftInvertResult result;
   if (round == 0) {  // the last pair is only asked where the next frequency lies
     if (!lanczos_ || lanczos_->count() != count) lanczos_ = std::make_unique<ShiftInvertLanczos>(problem);
-    result = lanczos_->pairs(std::max(1, count - 1), kTolerance);
+    result = lanczos_->pairs(std::max(1, count - 1), tolerance);
     lanczos_.reset();
     summary_.solves += result.solves;
     if (result.status == ArpackStatus::success) polish(problem, result);
