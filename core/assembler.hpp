@@ -32,8 +32,8 @@ class Assembler {
   /// Actual angle theta = n phi + q.
   double node_angle(int node, const Vector& z) const;
 
-  /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t). What does not
-  /// depend on the motion is evaluated once a time.
+  /// p: all loads, less m phi'' + d phi' and less the constant matrices' coupling to u(t). Where loads follow
+  /// the motion, what does not is evaluated once a time.
   void external(const Vector& z, const Vector& v, Vector& p) const;
   /// The same without the loads: what known motions alone put on the right side.
   void external_of_motions(Vector& p) const;
@@ -116,7 +116,7 @@ class Assembler {
   MotionPoint nominal_;
   std::vector<MotionPoint> u_;
   double row_gain_ = 1.0;  // bound of how a torque per deviation of loaded rows acts on the unknowns
-  // Kept for one time: external_known(), and the tables.
+  // Kept for one time where loads follow the motion: external_known(), and the tables.
   mutable bool known_found_ = false;
   mutable Vector known_;
   mutable TableLoads::Values tables_;

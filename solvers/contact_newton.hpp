@@ -47,7 +47,8 @@ class ContactNewton {
   NewtonResult solve(const std::vector<ScalarInput>& free, double force_scale,
                      const Options& options, Vector& lambda);
 
-  /// Gives the laws' inputs and responses at the last lambda evaluated, for the vectors that are there.
+  /// Swaps the laws' inputs and responses at the last lambda evaluated with these vectors; what is left here
+  /// means nothing until the next solve().
   void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses);
 
  private:
@@ -72,7 +73,7 @@ class ContactNewton {
   struct Slopes {
     double dy_dx, dy_dx_dot;
   };
-  std::vector<Slopes> slopes_;  // of responses_
+  std::vector<Slopes> slopes_;  // of the last evaluate(), also when its responses were handed over
   std::vector<double> tangent_, x_start_, kinks_;
   struct Last {
     double x, x_dot;  // free

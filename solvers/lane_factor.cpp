@@ -107,7 +107,8 @@ void solve_lanes(bool chain, const Triangle<LaneRow>& t, const LaneRow* b, doubl
 
 }  // namespace
 
-LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(pattern.rows())) {
+LaneFactor::LaneFactor(const SparseMatrix& pattern, bool chain)
+    : n_(static_cast<int>(pattern.rows())), chain_(chain) {
   const auto n = static_cast<std::size_t>(n_);
   std::vector<int> order(n);  // unknown at place k
   const auto filled = [](const std::vector<std::vector<int>>& all) {
@@ -115,7 +116,8 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(patter
     for (const auto& c : all) sum += c.size();
     return sum;
   };
-  // From both ends a chain's solve is two chains of half the length, which run at once.
+  // From both ends a chain's solve is two chains of half the length, which run at once. No order of a whole
+  // chain fills less.
   for (int k = 0; k < n_; ++k) order[at(k)] = k % 2 == 0 ? k / 2 : n_ - 1 - k / 2;
   std::vector<std::vector<int>> below = columns(pattern, order);
   std::vector<int> own(n), least(n);
@@ -127,9 +129,6 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern) : n_(static_cast<int>(patter
       below = std::move(c);
       order = std::move(other);
     }
-
-  chain_ = n_ >= 4 && pattern.nonZeros() == 3 * n_ - 2;
-  for (int j = 0; chain_ && j + 1 < n_; ++j) chain_ = pattern.coeff(j + 1, j) != 0.0;
 
   std::vector<int> place(n);
   for (int k = 0; k < n_; ++k) place[at(order[at(k)])] = k;

@@ -12,8 +12,9 @@ namespace drev {
 class LaneFactor {
  public:
   LaneFactor() = default;
-  /// pattern: compressed, structurally symmetric, with its diagonal.
-  explicit LaneFactor(const SparseMatrix& pattern);
+  /// pattern: compressed, structurally symmetric, with its diagonal. chain: it is the diagonal and both its
+  /// neighbours, whole, of three rows at least.
+  LaneFactor(const SparseMatrix& pattern, bool chain);
 
   /// values: on the pattern's slots. Lanes whose matrix is not positive definite, or singular but for
   /// rounding, are not ok().
@@ -45,7 +46,7 @@ class LaneFactor {
   LaneValues lower_, by_rows_, inverse_;
   LaneArray pivot_;
   bool common_ = false;  // all lanes have one factor
-  bool chain_ = false;   // the pattern is the diagonal and both its neighbours, whole
+  bool chain_ = false;
   bool ok_[kLanes] = {};
 };
 

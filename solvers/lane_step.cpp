@@ -68,7 +68,8 @@ template <class T>
   return {m.pattern.outerIndexPtr(), m.pattern.innerIndexPtr(), entries<T>(values), entries<T>(diagonal)};
 }
 
-/// The usual case, for which loops are shorter: the equation is of the step's end alone, M and C are diagonal.
+/// The usual case, for which loops are shorter (kAtEnd): the equation is of the step's end alone, M and C are
+/// diagonal.
 template <class T>
 bool at_end(const StepScheme& c, const Product<T>& mass, const Product<T>& damping) {
   return c.alpha_m == 0.0 && c.alpha_f == 0.0 && mass.diagonal && damping.diagonal;
@@ -93,9 +94,11 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
     kept.emplace_back(i, j, 1.0);
     slots.push_back(s);
   };
-  chain = n >= kLeastChain;
+  int links = 0, others = 0;
   for (int j = 0; j < n; ++j)
-    for (int s = outer[j]; s < outer[j + 1]; ++s) chain = chain && (std::abs(inner[s] - j) <= 1 || !filled(s));
+    for (int s = outer[j]; s < outer[j + 1]; ++s)
+      if (inner[s] > j && filled(s)) ++(inner[s] == j + 1 ? links : others);
+  chain = n >= kLeastChain && others == 0 && 2 * links >= n;
   for (int j = 0; j < n; ++j)
     if (chain) {
       for (int i = std::max(0, j - 1); i <= std::min(n - 1, j + 1); ++i) {
@@ -186,11 +189,11 @@ namespace {
 template <bool kAtEnd, class Stiffness, class Matrix>
 [[gnu::always_inline]] inline void predict_with(const Stiffness& stiffness, const Matrix& mass,
                                                 const Matrix& damping, const StepScheme& c, double h,
-                                                const LanePoint& from, LaneArray& right, LanePoint& to) {
+                                                const LanePoint& from, LaneArray& right_side, LanePoint& to) {
   const double phi = 1.0 - c.alpha_f, to_z_0 = h * h * (0.5 - c.beta), to_v_0 = h * (1.0 - c.gamma),
                of_a = kAtEnd ? 0.0 : c.alpha_m, of_total = kAtEnd ? 0.0 : c.alpha_f;
   const LaneRow *z = from.z.data(), *v = from.v.data(), *a = from.a.data(), *total = from.total.data();
-  LaneRow *z_0 = to.z.data(), *v_0 = to.v.data(), *known = right.data();
+  LaneRow *z_0 = to.z.data(), *v_0 = to.v.data(), *known = right_side.data();
   const int n = static_cast<int>(from.z.size());
   for (int i = 0; i < n; ++i) {
     const Lanes a_i = a[i].v, v_i = v[i].v;
@@ -213,15 +216,16 @@ template <bool kAtEnd, class Stiffness, class Matrix>
 }
 template <class T>
 [[gnu::always_inline]] inline void predict_with(const LaneMatrices& m, const StepScheme& c, double h,
-                                                const LanePoint& from, LaneArray& known, LanePoint& to) {
+                                                const LanePoint& from, LaneArray& right_side,
+                                                LanePoint& to) {
   const Product<T> mass = product<T>(m, m.mass, m.mass_diagonal),
                    damping = product<T>(m, m.damping, m.damping_diagonal);
   const DiagonalProduct<T> lumped{mass.diagonal}, dashpots{damping.diagonal};
   if (m.chain && at_end(c, mass, damping))
-    predict_with<true>(ChainProduct<T>{entries<T>(m.stiffness), m.n - 1}, lumped, dashpots, c, h, from, known,
-                       to);
+    predict_with<true>(ChainProduct<T>{entries<T>(m.stiffness), m.n - 1}, lumped, dashpots, c, h, from,
+                       right_side, to);
   else
-    predict_with<false>(product<T>(m, m.stiffness, {}), mass, damping, c, h, from, known, to);
+    predict_with<false>(product<T>(m, m.stiffness, {}), mass, damping, c, h, from, right_side, to);
 }
 
 template <class T>
@@ -257,7 +261,7 @@ template <class T>
 struct Sums {
   LaneRow work, loss, kinetic, stored, largest;
 };
-template <bool kAtEnd, class Matrix>  // as predict_with()
+template <bool kAtEnd, class Matrix>
 [[gnu::always_inline]] inline void finish_with(const LaneMatrices& m, const Matrix& mass,
                                                const Matrix& damping, const StepScheme& c, double h,
                                                const LanePoint& from, const LaneForces& by, LanePoint& to,

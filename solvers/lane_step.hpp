@@ -21,7 +21,7 @@ struct LaneMatrices {
   /// Of M and C, where they hold nothing else; else empty.
   LaneValues mass_diagonal, damping_diagonal;
   bool common = false;  ///< all are the same in all lanes
-  /// A chain in its own order: the pattern holds the diagonal and both its neighbours, whole.
+  /// Mostly a chain in its own order: the pattern holds the diagonal and both its neighbours, whole.
   bool chain = false;
 };
 

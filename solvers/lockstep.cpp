@@ -43,7 +43,7 @@ Lockstep::Lockstep(const std::vector<const System*>& systems, const TransientOpt
       scheme_(options.scheme),
       results_(count_),
       matrices_(systems_),
-      factor_(matrices_.pattern),
+      factor_(matrices_.pattern, matrices_.chain),
       laws_(systems_),
       loads_(systems_),
       watch_(systems_, channels),

@@ -18,10 +18,9 @@ void end_run(RunSummary& summary, const std::string& system, double t, RunStatus
 void end_growing_run(RunSummary& summary, const std::string& system, double t, const EnergyBalance& b,
                      double growth_limit) {
   if (!std::isfinite(b.imbalance)) return end_run(summary, system, t, RunStatus::not_finite, "the energy");
-  if (b.given > 0.0)
-    end_run(summary, system, t, RunStatus::unstable,
-            "energy grew from nothing to more than " + to_text(growth_limit) +
-                " times what was put in; take a smaller step or a method that damps");
+  end_run(summary, system, t, RunStatus::unstable,
+          "energy grew from nothing to more than " + to_text(growth_limit) +
+              " times what was put in; take a smaller step or a method that damps");
 }
 
 void judge_energy(RunSummary& summary, double tolerance) {

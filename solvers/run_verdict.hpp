@@ -9,13 +9,14 @@ namespace drev {
 /// Ends a run, unless it ended before.
 void end_run(RunSummary& summary, const std::string& system, double t, RunStatus status,
              const std::string& what);
-/// Ends it as unstable: its energy grew from nothing beyond the limit, or is not finite.
+/// Ends a run whose energy is not finite as that, another as unstable.
 void end_growing_run(RunSummary& summary, const std::string& system, double t, const EnergyBalance& balance,
                      double growth_limit);
-/// Does that where it is so.
+/// Ends a run as unstable where its energy grew from nothing beyond the limit, as not finite where it is so.
 inline void check_growth(RunSummary& summary, const std::string& system, double t,
                          const EnergyBalance& balance, double growth_limit) {
-  if (!std::isfinite(balance.imbalance) || balance.imbalance > growth_limit * balance.given)
+  const bool grew = balance.imbalance > growth_limit * balance.given && balance.given > 0.0;
+  if (grew || !std::isfinite(balance.imbalance))
     end_growing_run(summary, system, t, balance, growth_limit);
 }
 /// The verdict on summary.energy of a run that came to its end.

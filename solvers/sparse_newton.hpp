@@ -41,7 +41,8 @@ class SparseNewton {
   /// general elements at the solution.
   NewtonResult solve(const Assembler& assembler, const SparseNewtonProblem& problem,
                      const Options& options, Vector& w, Vector& history_new);
-  /// Gives the laws' inputs and responses at the last w evaluated, for the vectors that are there.
+  /// Swaps the laws' inputs and responses at the last w evaluated with these vectors; what is left here means
+  /// nothing until the next solve().
   void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
     inputs.resize(inputs_.size());
     responses.resize(responses_.size());
@@ -63,7 +64,7 @@ class SparseNewton {
   std::unique_ptr<SparseCholesky> cholesky_;
   std::unique_ptr<SparseLu> lu_;
   Vector z_, v_, r_, part_, values_, direction_, trial_;
-  std::vector<ScalarInput> inputs_;  // and responses of the last residual
+  std::vector<ScalarInput> inputs_;  // and responses: of the last residual, unless handed over
   std::vector<ScalarResponse> responses_;
   std::vector<double> slopes_, kinks_;
   Weights weights_;  // of the tangent, as slopes_ and shift_

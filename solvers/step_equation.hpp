@@ -97,6 +97,7 @@ class StepEquation {
   void invert(Factor& f);
   /// x = S^-1 b; inverts S when this has been asked for often enough.
   void solve_by_factor(Factor& f, const Vector& b, Vector& x);
+  /// For steps of h: the last one used; else another whose h differs by rounding at most; else a new one.
   Factor& factor(double h) {
     return !factors_.empty() && factors_.back()->h == h ? *factors_.back() : find_factor(h);
   }

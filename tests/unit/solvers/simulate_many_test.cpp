@@ -194,37 +194,46 @@ TEST_CASE("Lockstep: other methods of the family, and breakpoints that differ be
   }
 }
 
-TEST_CASE("Lockstep: chains of 2 to 7 inertias, whole, in two parts with a gap between, with a loop") {
-  enum class Shape { whole, parts, loop };
-  for (const Shape shape : {Shape::whole, Shape::parts, Shape::loop})
-    for (int n = shape == Shape::loop ? 3 : 2; n <= 7; ++n)
-      for (const bool same : {true, false}) {  // matrices in all variants
-        CAPTURE(static_cast<int>(shape), n, same);
-        const auto build = [=](std::size_t i) {
-          const double varied = same ? 0.0 : part(i);
-          Model m("chain");
-          NodeId before{};
-          for (int k = 0; k < n; ++k) {
-            const std::string name = std::to_string(k);
-            const NodeId node = m.add_node("n" + name);
-            m.add<Inertia>("J" + name, {node}, {.inertia = 0.01 + 0.001 * k + 1e-4 * varied});
-            if (k == 0)
-              m.add<Dashpot>("friction", {node}, {.damping = 0.3});
-            else if (shape == Shape::parts && k == n / 2)
-              m.add<PolylineSpring>("gap", {before, node},
-                                    PolylineSpring::dead_band(5e3, 1e-4 * (1.0 + part(i))));
-            else
-              m.add<ShaftSpring>("k" + name, {before, node},
-                                 {.stiffness = 1e4 + 100.0 * varied, .damping = 0.05});
-            if (shape == Shape::loop && k == 2)
-              m.add<ShaftSpring>("loop", {"n0", "n2"}, {.stiffness = 3e3 + 10.0 * varied});
-            before = node;
-          }
-          m.add<AppliedTorque>("torque", {before}, pulses(i));
-          return m.build();
-        };
-        check_same(build, {.step = 1e-4, .t_end = 0.05}, 1e-9, {"n0.angle_rad"});
+TEST_CASE("Lockstep: chains of 2 to 7 inertias, whole and in parts, with gaps along and across, with a loop") {
+  enum class Shape { whole, gap_along, gap_across, apart, loop };
+  const auto check_chain = [](Shape shape, int n, bool same, const char* method) {  // same: all matrices
+    CAPTURE(static_cast<int>(shape), n, same, method);
+    const auto build = [=](std::size_t i) {
+      const double varied = same ? 0.0 : part(i), damping = same ? 0.0 : 0.05;
+      const PolylineSpring::Params gap = PolylineSpring::dead_band(5e3, 1e-4 * (1.0 + part(i)));
+      Model m("chain");
+      NodeId before{};
+      for (int k = 0; k < n; ++k) {
+        const std::string name = std::to_string(k);
+        const NodeId node = m.add_node("n" + name);
+        m.add<Inertia>("J" + name, {node}, {.inertia = 0.01 + 0.001 * k + 1e-4 * varied});
+        const bool middle = k == n / 2;
+        if (k == 0)
+          m.add<Dashpot>("friction", {node}, {.damping = 0.3});
+        else if (shape == Shape::gap_along && middle)
+          m.add<PolylineSpring>("gap", {before, node}, gap);
+        else if (!(shape == Shape::apart && middle))
+          m.add<ShaftSpring>("k" + name, {before, node},
+                             {.stiffness = 1e4 + 100.0 * varied, .damping = damping});
+        before = node;
       }
+      if (shape == Shape::gap_across) m.add<PolylineSpring>("gap", {"n0", "n3"}, gap);
+      if (shape == Shape::loop)
+        m.add<ShaftSpring>("loop", {"n0", "n2"}, {.stiffness = 3e3 + 10.0 * varied});
+      m.add<AppliedTorque>("torque", {before}, pulses(i));
+      m.add<AppliedTorque>("other torque", {"n0"}, pulses(i + 1));
+      return m.build();
+    };
+    check_same(build, {.scheme = step_scheme(method), .step = 1e-4, .t_end = 0.05}, 1e-9, {"n0.angle_rad"});
+  };
+  for (const bool same : {true, false})
+    for (int n = 2; n <= 7; ++n) {
+      for (const Shape shape : {Shape::whole, Shape::gap_along, Shape::apart})
+        check_chain(shape, n, same, "average_acceleration");
+      if (n > 2) check_chain(Shape::loop, n, same, "average_acceleration");
+      if (n > 3) check_chain(Shape::gap_across, n, same, "average_acceleration");
+      if (n > 5) check_chain(Shape::gap_along, n, same, "hht:0.1");
+    }
 }
 
 TEST_CASE("Lockstep: a backlash that begins at zero, where the mesh is a straight line") {
