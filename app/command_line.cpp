@@ -17,7 +17,6 @@ namespace drev::app {
 
 namespace {
 
-
 /// What CLI11 fills; an option that was not given stays empty.
 struct Raw {
   std::string model;

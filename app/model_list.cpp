@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 /// Nothing if the file cannot be read, or is no TOML.
 std::optional<Value> read_root(const std::string& file) {
   try {

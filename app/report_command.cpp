@@ -14,7 +14,6 @@ namespace drev::app {
 
 namespace {
 
-
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

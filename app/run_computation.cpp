@@ -16,7 +16,6 @@ namespace drev::app {
 
 namespace {
 
-
 class Timer {
  public:
   double seconds() const {

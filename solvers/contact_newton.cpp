@@ -164,13 +164,6 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
   return result;
 }
 
-void ContactNewton::hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
-  if (inputs.size() != inputs_.size()) inputs.resize(inputs_.size());
-  if (responses.size() != responses_.size()) responses.resize(responses_.size());
-  inputs.swap(inputs_);
-  responses.swap(responses_);
-}
-
 double ContactNewton::descent() {
   const std::size_t m = laws_.size();
   double g_0 = 0.0;

@@ -27,6 +27,13 @@ struct NewtonResult {
   bool inside_jump = false;  ///< a force was taken inside its jump (StepEquation::Problem::accept_jump)
 };
 
+/// Swaps `own` with the vector that is there, which takes its size first.
+template <class T>
+void hand_over(std::vector<T>& own, std::vector<T>& there) {
+  if (there.size() != own.size()) there.resize(own.size());
+  there.swap(own);
+}
+
 class ContactNewton {
  public:
   struct Options {
@@ -49,7 +56,10 @@ class ContactNewton {
 
   /// Swaps the laws' inputs and responses at the last lambda evaluated with these vectors; what is left here
   /// means nothing until the next solve().
-  void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses);
+  void hand_over_laws(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
+    hand_over(inputs_, inputs);
+    hand_over(responses_, responses);
+  }
 
  private:
   /// Evaluates the laws at lambda and returns the largest part of |y - lambda| that is no rounding; what is

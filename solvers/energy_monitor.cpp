@@ -29,14 +29,13 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
       step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
                 damped_ ? from.cv.data() : nullptr, to.cv.data(), to.kz.data());
   double stored = by_stiffness + to.general_energy, power = from.general_power + to.general_power;
-  const ScalarResponse *r_0 = from.responses.data(), *r_1 = to.responses.data();
-  for (const ScalarTerm& term : system.scalars()) {
-    const ScalarResponse &r0 = *r_0++, &r1 = *r_1++;
+  for (std::size_t j = 0, m = system.scalars().size(); j < m; ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
     power += r0.dissipated_power + r1.dissipated_power;
     stored += r1.stored_energy;
     const bool partly_known = !term.u.empty() || term.phase_node >= 0;
     if (!partly_known && !term.varies) continue;
-    const auto j = static_cast<std::size_t>(&r1 - to.responses.data());
     const ScalarInput &in0 = from.inputs[j], &in1 = to.inputs[j];
     // Known part of the deflection: prescribed ends and transmission error do work on the law.
     if (partly_known) {

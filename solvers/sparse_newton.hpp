@@ -43,11 +43,9 @@ class SparseNewton {
                      const Options& options, Vector& w, Vector& history_new);
   /// Swaps the laws' inputs and responses at the last w evaluated with these vectors; what is left here means
   /// nothing until the next solve().
-  void hand_over(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
-    inputs.resize(inputs_.size());
-    responses.resize(responses_.size());
-    inputs.swap(inputs_);
-    responses.swap(responses_);
+  void hand_over_laws(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {
+    hand_over(inputs_, inputs);
+    hand_over(responses_, responses);
   }
   long factorizations() const { return factorizations_; }
 

@@ -279,7 +279,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     return result;
   }
   if (m > 0) {
-    f.contact.hand_over(to.inputs, to.responses);
+    f.contact.hand_over_laws(to.inputs, to.responses);
     if (problem.accept_jump)
       for (std::size_t j = 0; j < m; ++j)
         to.responses[j].y = lambda_[static_cast<Eigen::Index>(j)];
@@ -307,7 +307,7 @@ NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
   solves_ += result.iterations;
   if (result.status != NewtonStatus::converged) return result;
   correct(problem, to);
-  sparse_->hand_over(to.inputs, to.responses);
+  sparse_->hand_over_laws(to.inputs, to.responses);
   assembler_.external(to.state.z, to.state.v, to.p);
   return result;
 }

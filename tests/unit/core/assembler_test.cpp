@@ -103,8 +103,8 @@ TEST_CASE("Dashpots load the mean motion") {
     CHECK(p[1] == Approx(0.2 * 45.0));
   }
   SECTION("a shaft's damping and Rayleigh damping do not drag") {
-    add_disc(m, "add_disc", 1.0);
-    m.add<ShaftSpring>("shaft", {"wheel", "add_disc"}, {.stiffness = 1.0, .damping = 7.0});
+    add_disc(m, "disc", 1.0);
+    m.add<ShaftSpring>("shaft", {"wheel", "disc"}, {.stiffness = 1.0, .damping = 7.0});
     m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 3.0});
     const System s = m.build();
     const Vector three = Vector::Zero(3);

@@ -1,7 +1,6 @@
 // Validation: what is wrong with a model is found, all at once, and said in words that name it.
 #include "core/model.hpp"
 
-
 #include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
