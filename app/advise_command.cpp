@@ -23,8 +23,7 @@ std::string rung_row(const Rung& rung, std::size_t width, bool chosen) {
 
 std::string as_text(const AdviseRequest& request, const Advice& advice) {
   const std::string& name = request.model.entry->name;
-  std::string text =
-      name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
   std::size_t width = 5;
   for (const Rung& rung : advice.rungs) width = std::max(width, rung.name.size());
   text += "  " + pad_right("model", width) + pad_left("[" + advice.unit + "]", 13) +
@@ -32,8 +31,7 @@ std::string as_text(const AdviseRequest& request, const Advice& advice) {
   for (std::size_t i = 0; i < advice.rungs.size(); ++i)
     text += rung_row(advice.rungs[i], width, i == advice.chosen);
   text += "\n" + wrap(advice.sentence, 0);
-  if (!advice.best().evidence.empty())
-    text += "\nEvidence: " + wrap(advice.best().evidence + ".", 10);
+  if (!advice.best().evidence.empty()) text += "\nEvidence: " + wrap(advice.best().evidence + ".", 10);
   if (!request.model.scene.note.empty()) text += "\n" + wrap(request.model.scene.note, 0);
   return text;
 }

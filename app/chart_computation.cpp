@@ -51,12 +51,11 @@ ChartResult compute_chart(const ChartRequest& request) {
   Method method = choose_method(system, horizon, std::min(scene.default_step, horizon)).method;
   if (method.exact()) method.tolerance = kGrowthTolerance;
   const Growth growth = measure_growth(
-      system,
-      {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
+      system, {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
   if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
     horizon = comparable;
-    result.horizon_reason = "later, a small difference has grown by more than a factor of " +
-                            short_digits(kMostGrowth, 3);
+    result.horizon_reason =
+        "later, a small difference has grown by more than a factor of " + short_digits(kMostGrowth, 3);
   }
   // Samples at a power of two times the source's step, so that it is among the steps tried; fewer
   // than 64 of them where the horizon is short.

@@ -65,11 +65,10 @@ std::string changed_settings(const Settings& settings) {
 std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   const WorkPrecision& data = r.data;
   const std::string name = request.model.entry->name;
-  std::string text =
-      name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
   text += labelled("Error", "of " + r.quantity + ", the largest over the samples from 0 to " +
-                                short_digits(data.t_end, 4) + " s, over its peak, " +
-                                digits(data.peak, 4) + " " + data.unit);
+                                short_digits(data.t_end, 4) + " s, over its peak, " + digits(data.peak, 4) +
+                                " " + data.unit);
   if (!r.horizon_reason.empty()) text += labelled("Horizon", r.horizon_reason);
   text += labelled("Reference", data.reference + "; " + data.check + " agrees with it to " +
                                     digits(data.agreement, 2) + ", and no error below that is known");
@@ -82,9 +81,8 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
     text += pad_right("  " + curve.name, label);
     for (const double accuracy : kAccuracies) {
       const WorkPoint* p = data.cheapest(curve, accuracy);
-      text += pad_right(
-          p ? time_text(p->seconds) + " (" + knob_text(p->method) + ")" : std::string("-"),
-          kColumn);
+      text += pad_right(p ? time_text(p->seconds) + " (" + knob_text(p->method) + ")" : std::string("-"),
+                        kColumn);
     }
     text += source_step_text(curve) + "\n";
   }
@@ -111,14 +109,13 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
   for (const WorkCurve& curve : data.curves) {
     Json points = Json::array();
     for (const WorkPoint& p : curve.points)
-      points.push_back(
-          {{"step_s", p.method.step > 0.0 ? number(p.method.step) : Json()},
-           {"tolerance", p.method.tolerance > 0.0 ? number(p.method.tolerance) : Json()},
-           {"error", p.ok ? number(p.error) : Json()},
-           {"processor_time_s", p.ok ? number(p.seconds) : Json()},
-           {"work", p.ok ? number(p.work) : Json()},
-           {"trusted", data.trusted(p)},
-           {"reason", text_or_null(p.reason)}});
+      points.push_back({{"step_s", p.method.step > 0.0 ? number(p.method.step) : Json()},
+                        {"tolerance", p.method.tolerance > 0.0 ? number(p.method.tolerance) : Json()},
+                        {"error", p.ok ? number(p.error) : Json()},
+                        {"processor_time_s", p.ok ? number(p.seconds) : Json()},
+                        {"work", p.ok ? number(p.work) : Json()},
+                        {"trusted", data.trusted(p)},
+                        {"reason", text_or_null(p.reason)}});
     object["curves"].push_back({{"method", curve.name}, {"points", std::move(points)}});
   }
   object["cheapest"] = Json::array();
@@ -127,11 +124,9 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
     object["cheapest"].push_back(
         {{"accuracy", accuracy},
          {"method", best ? Json(best->point->method.name) : Json()},
-         {"step_s",
-          best && best->point->method.step > 0.0 ? number(best->point->method.step) : Json()},
-         {"tolerance", best && best->point->method.tolerance > 0.0
-                           ? number(best->point->method.tolerance)
-                           : Json()},
+         {"step_s", best && best->point->method.step > 0.0 ? number(best->point->method.step) : Json()},
+         {"tolerance",
+          best && best->point->method.tolerance > 0.0 ? number(best->point->method.tolerance) : Json()},
          {"processor_time_s", best ? number(best->point->seconds) : Json()}});
   }
   return json_text(object);
@@ -141,14 +136,12 @@ std::string chart_as_csv(const ChartResult& r) {
   std::string text = "method,step_s,tolerance,error,processor_time_s,work,trusted\n";
   for (const WorkCurve& curve : r.data.curves)
     for (const WorkPoint& p : curve.points) {
-      const auto cell = [](double x, bool there) {
-        return there ? short_digits(x, 17) : std::string();
-      };
+      const auto cell = [](double x, bool there) { return there ? short_digits(x, 17) : std::string(); };
       // Method names hold commas: newmark:0.25,0.5.
       text += "\"" + curve.name + "\"," + cell(p.method.step, p.method.step > 0.0) + "," +
               cell(p.method.tolerance, p.method.tolerance > 0.0) + "," + cell(p.error, p.ok) + "," +
-              cell(p.seconds, p.ok) + "," + cell(p.work, p.ok) + "," +
-              (r.data.trusted(p) ? "yes" : "no") + "\n";
+              cell(p.seconds, p.ok) + "," + cell(p.work, p.ok) + "," + (r.data.trusted(p) ? "yes" : "no") +
+              "\n";
     }
   return text;
 }
@@ -176,8 +169,8 @@ std::string chart_as_svg(const ChartRequest& request, const ChartResult& r, Char
                       .x = {shortest, longest},
                       .y = {r.data.agreement, r.data.agreement}});
   const std::string name = request.model.entry->name;
-  return svg_chart({.title = name + changed_settings(request.model.settings) + ": error of " +
-                             r.quantity + " from 0 to " + short_digits(r.data.t_end, 3) + " s",
+  return svg_chart({.title = name + changed_settings(request.model.settings) + ": error of " + r.quantity +
+                             " from 0 to " + short_digits(r.data.t_end, 3) + " s",
                     .x_label = axis == ChartAxis::time ? "processor time [s]" : "linear solves",
                     .y_label = "largest error over peak",
                     .log_x = true,

@@ -1,14 +1,13 @@
 #include "app/child_process.hpp"
 
+#include <cerrno>
+#include <csignal>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <csignal>
 #include <system_error>
+#include <unistd.h>
 
 namespace drev::app {
 
@@ -27,8 +26,7 @@ std::string text_of(int descriptor) {
 }  // namespace
 
 ChildProcess::InMemory::InMemory() : descriptor(::memfd_create("drev", MFD_CLOEXEC)) {
-  if (descriptor < 0)
-    throw std::system_error(errno, std::generic_category(), "cannot keep a run's output");
+  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot keep a run's output");
 }
 
 ChildProcess::InMemory::~InMemory() { ::close(descriptor); }

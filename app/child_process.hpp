@@ -1,8 +1,7 @@
 #pragma once
 /// Another drev, with what it prints kept; what becomes of it does not touch this one.
-#include <sys/types.h>
-
 #include <string>
+#include <sys/types.h>
 #include <vector>
 
 namespace drev::app {

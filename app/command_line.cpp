@@ -35,8 +35,7 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
       sub.add_option("MODEL", raw.models, meaning)->option_text("...");
     else
       sub.add_option("MODEL", raw.model, meaning)->option_text(" ");
-    sub.add_option("--set", raw.sets, "Changes settings; as often as needed")
-        ->option_text("NAME=VALUE ...");
+    sub.add_option("--set", raw.sets, "Changes settings; as often as needed")->option_text("NAME=VALUE ...");
   }
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
   sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
@@ -62,8 +61,7 @@ bool looks_like_option(const std::string& text) {
 /// "; did you mean ..." or the command that has the option.
 std::string option_hint(const std::string& name, const CLI::App& sub) {
   for (const CLI::App* other : sub.get_parent()->get_subcommands({}))
-    if (other->get_option_no_throw(name) != nullptr)
-      return "; drev " + other->get_name() + " has it";
+    if (other->get_option_no_throw(name) != nullptr) return "; drev " + other->get_name() + " has it";
   return did_you_mean(name, option_names(sub));
 }
 
@@ -80,9 +78,9 @@ void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
   }
   if (unknown_option) return;  // the other words may be its values
   for (const std::string& extra : extras)
-    findings.push_back({kCommandLine, "argument", extra, "",
-                        extra.find('=') == std::string::npos ? "is one too many"
-                                                             : "must be written --set " + extra});
+    findings.push_back(
+        {kCommandLine, "argument", extra, "",
+         extra.find('=') == std::string::npos ? "is one too many" : "must be written --set " + extra});
 }
 
 bool names_model(const std::string& word) {
@@ -179,8 +177,7 @@ int no_command(const CLI::App& app) {
   else if (looks_like_option(word))
     std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
   else
-    std::cerr << (word == "help" ? "; did you mean --help?"
-                                 : did_you_mean(word, command_names()))
+    std::cerr << (word == "help" ? "; did you mean --help?" : did_you_mean(word, command_names()))
               << "\nThe commands are " << join(command_names()) << ".\n";
   return kBadInput;
 }

@@ -16,8 +16,8 @@ struct OptionEntry {
     words,   ///< NAME NAME ...
     again    ///< one each time that it is given, as often as needed
   };
-  const char* name;     ///< "--step"
-  const char* type;     ///< of its value, as --help shows it
+  const char* name;  ///< "--step"
+  const char* type;  ///< of its value, as --help shows it
   const char* meaning;
   Values values = Values::one;
 };
@@ -25,7 +25,7 @@ struct OptionEntry {
 struct CommandEntry {
   const char* name;
   const char* summary;
-  bool takes_model = true;  ///< MODEL, and --set for its settings
+  bool takes_model = true;    ///< MODEL, and --set for its settings
   bool takes_models = false;  ///< more than one, too: line.list("MODEL")
   std::vector<OptionEntry> options = {};
   std::string footer = {};
@@ -46,8 +46,8 @@ int check_command(const CommandLine& line);
 int export_command(const CommandLine& line);
 int report_command(const CommandLine& line);
 
-/// Writes to stdout, unless set_quiet(true) came first (--quiet); throws OutputError if that fails (a full disk
-/// behind a redirection).
+/// Writes to stdout, unless set_quiet(true) came first (--quiet); throws OutputError if that fails (a full
+/// disk behind a redirection).
 void print(const std::string& text);
 void set_quiet(bool value);
 

@@ -13,7 +13,8 @@ namespace drev::app {
 
 namespace {
 
-/// The model that the words name: its scene, and its file if it is one. Both null: none, or a file with faults.
+/// The model that the words name: its scene, and its file if it is one. Both null: none, or a file with
+/// faults.
 struct TypedModel {
   std::shared_ptr<const SceneEntry> entry = {};
   std::shared_ptr<const ModelFile> file = {};
@@ -88,7 +89,8 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
     offered.insert(offered.end(), {"--json", "--quiet", "--help"});
     return offered;
   }
-  if (option != words.rend() && (*option == "--set" || *option == "--vary") && model.entry) return settings_of(*model.entry, word);
+  if (option != words.rend() && (*option == "--set" || *option == "--vary") && model.entry)
+    return settings_of(*model.entry, word);
   for (const OptionEntry& entry : command->options) {
     if (option == words.rend() || entry.name != *option) continue;
     if (option == words.rbegin() + 1 || entry.values == OptionEntry::Values::words)

@@ -14,8 +14,7 @@ void append(std::string& line, double value) {
 
 }  // namespace
 
-HistoryFile::HistoryFile(const std::string& directory, const std::vector<std::string>& channels,
-                         double every)
+HistoryFile::HistoryFile(const std::string& directory, const std::vector<std::string>& channels, double every)
     : file_(directory, "history", "csv"), every_(every) {
   line_ = "time_s";
   for (const std::string& channel : channels) line_ += "," + channel;

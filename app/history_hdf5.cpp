@@ -1,11 +1,10 @@
 #include "app/history_hdf5.hpp"
 
-#include <hdf5.h>
-
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <hdf5.h>
 #include <utility>
 
 #include "app/output_file.hpp"
@@ -54,9 +53,9 @@ class Hdf5File {
     const Handle chunks(H5Pcreate(H5P_DATASET_CREATE), H5Pclose), links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_chunk(chunks, 1, &kBlock);
     H5Pset_create_intermediate_group(links, 1);  // a name with a slash
-    columns_.emplace_back(H5Dcreate2(file_, column.name.c_str(), H5T_NATIVE_DOUBLE, space, links, chunks,
-                                     H5P_DEFAULT),
-                          H5Dclose);
+    columns_.emplace_back(
+        H5Dcreate2(file_, column.name.c_str(), H5T_NATIVE_DOUBLE, space, links, chunks, H5P_DEFAULT),
+        H5Dclose);
     check(columns_.back() >= 0);
     add_text(columns_.back(), "unit", column.unit);
   }

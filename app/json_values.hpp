@@ -12,20 +12,15 @@ using Json = nlohmann::ordered_json;
 
 inline Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-inline Json number(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
-}
+inline Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
-inline Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
+inline Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// Numbers as numbers, everything else as text.
 inline Json setting_value(const Setting& setting, const std::string& text) {
   double value = 0.0;
   if (setting.kind == Setting::Kind::number && read_number(text, value)) return number(value);
-  if (setting.kind == Setting::Kind::integer && read_number(text, value))
-    return static_cast<long>(value);
+  if (setting.kind == Setting::Kind::integer && read_number(text, value)) return static_cast<long>(value);
   return text;
 }
 

@@ -15,15 +15,13 @@ std::string models_as_text() {
   std::size_t width = 0;
   for (const SceneEntry& entry : scenes()) width = std::max(width, entry.name.size() + 2);
   std::string text;
-  for (const SceneEntry& entry : scenes())
-    text += pad_right(entry.name, width) + wrap(entry.summary, width);
+  for (const SceneEntry& entry : scenes()) text += pad_right(entry.name, width) + wrap(entry.summary, width);
   return text + "\ndrev list MODEL shows a model's settings and channels.\n";
 }
 
 std::string models_as_json() {
   Json list = Json::array();
-  for (const SceneEntry& entry : scenes())
-    list.push_back({{"name", entry.name}, {"summary", entry.summary}});
+  for (const SceneEntry& entry : scenes()) list.push_back({{"name", entry.name}, {"summary", entry.summary}});
   return json_text({{"models", std::move(list)}});
 }
 
@@ -38,9 +36,8 @@ std::string channels_as_text(const System& system) {
   }
   std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> groups;
   for (const auto& [object, names] : quantities) {
-    const auto same =
-        std::find_if(groups.begin(), groups.end(),
-                     [&, &wanted = names](const auto& g) { return g.first == wanted; });
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&, &wanted = names](const auto& g) { return g.first == wanted; });
     if (same == groups.end())
       groups.push_back({names, {object}});
     else
@@ -86,10 +83,8 @@ std::string model_as_text(const ModelRequest& model) {
           short_digits(model.scene.default_step, 4) + " s unless --step says otherwise.\n";
   if (model.file && !model.file->run_names().empty())
     text += "Runs, named by --run: " + join(model.file->run_names()) + ".\n";
-  text += "\nChannels recorded unless --record says otherwise:\n  " +
-          wrap(join(model.scene.channels), 2);
-  text +=
-      "Channels that can be recorded, written NAME.quantity:\n" + channels_as_text(model.system);
+  text += "\nChannels recorded unless --record says otherwise:\n  " + wrap(join(model.scene.channels), 2);
+  text += "Channels that can be recorded, written NAME.quantity:\n" + channels_as_text(model.system);
   if (has_kind(model.system, NodeKind::rotational))
     text += "  NODE-NODE.twist_rad: the first node's angle less the second's\n";
   if (has_kind(model.system, NodeKind::translational))

@@ -19,8 +19,7 @@ void complain(const ModelError& error) {
     return;
   }
   std::fprintf(stderr, "drev: %zu faults:\n", count);
-  for (const Finding& finding : error.findings())
-    std::fprintf(stderr, "  %s\n", finding.text().c_str());
+  for (const Finding& finding : error.findings()) std::fprintf(stderr, "  %s\n", finding.text().c_str());
 }
 
 int guarded_main(int argc, char** argv) {

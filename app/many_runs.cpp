@@ -20,11 +20,9 @@ Json figure(const OneOfMany& run, const char* key) {
 }
 
 /// The first of the keys that has a number, with its unit; empty: none.
-std::string shown(const OneOfMany& run,
-                  const std::vector<std::pair<const char*, const char*>>& keys) {
+std::string shown(const OneOfMany& run, const std::vector<std::pair<const char*, const char*>>& keys) {
   for (const auto& [key, unit] : keys)
-    if (const Json value = figure(run, key); value.is_number())
-      return digits(value, 5) + " " + unit;
+    if (const Json value = figure(run, key); value.is_number()) return digits(value, 5) + " " + unit;
   return {};
 }
 
@@ -48,8 +46,8 @@ Json varied_object(const OneOfMany& run) {
 }  // namespace
 
 std::size_t ManyRuns::count(bool ok) const {
-  return static_cast<std::size_t>(std::count_if(
-      runs.begin(), runs.end(), [&](const OneOfMany& r) { return r.ended() && r.ok() == ok; }));
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [&](const OneOfMany& r) { return r.ended() && r.ok() == ok; }));
 }
 
 std::string many_as_json(const ManyRuns& many) {
@@ -118,15 +116,12 @@ std::string many_as_text(const ManyRuns& many) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
   for (const OneOfMany& run : many.runs)
-    if (!run.reason.empty())
-      text += "\n" + wrap(run.model.name + ": " + run.status + ": " + run.reason, 2);
+    if (!run.reason.empty()) text += "\n" + wrap(run.model.name + ": " + run.status + ": " + run.reason, 2);
   if (!many.skipped.empty()) text += "\n";
-  for (const SkippedFile& file : many.skipped)
-    text += wrap("not run: " + file.file + ": " + file.reason, 2);
+  for (const SkippedFile& file : many.skipped) text += wrap("not run: " + file.file + ": " + file.reason, 2);
   const std::string part = many.status == "interrupted" ? ".partial" : "";
-  return text + "\n" + std::to_string(many.count(true)) + " of " +
-         std::to_string(many.runs.size()) + " succeeded; figures of all in " + many.folder +
-         "/runs" + part + ".csv and runs" + part + ".json\n";
+  return text + "\n" + std::to_string(many.count(true)) + " of " + std::to_string(many.runs.size()) +
+         " succeeded; figures of all in " + many.folder + "/runs" + part + ".csv and runs" + part + ".json\n";
 }
 
 }  // namespace drev::app

@@ -41,12 +41,10 @@ std::vector<std::string> included_by(const Value& root, const std::string& file)
 std::vector<std::string> toml_files(const std::string& directory, std::vector<Finding>& findings) {
   std::vector<std::string> files;
   std::error_code error;
-  for (fs::directory_iterator entry(directory, error), end; !error && entry != end;
-       entry.increment(error))
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
     if (entry->path().extension() == ".toml" && !entry->is_directory())
       files.push_back(entry->path().string());
-  if (error)
-    findings.push_back({kCommandLine, "MODEL", directory, "", "cannot be read: " + error.message()});
+  if (error) findings.push_back({kCommandLine, "MODEL", directory, "", "cannot be read: " + error.message()});
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -86,15 +84,13 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
       list.models.push_back({fs::path(file).stem().string(), file});
   }
   if (list.models.size() == models && findings.size() == before)
-    findings.push_back(
-        {kCommandLine, "MODEL", directory, "", "is a directory without a model file, *.toml"});
+    findings.push_back({kCommandLine, "MODEL", directory, "", "is a directory without a model file, *.toml"});
 }
 
 }  // namespace
 
 bool is_built_in(const std::string& word) {
-  return std::any_of(scenes().begin(), scenes().end(),
-                     [&](const SceneEntry& e) { return e.name == word; });
+  return std::any_of(scenes().begin(), scenes().end(), [&](const SceneEntry& e) { return e.name == word; });
 }
 
 bool is_model_directory(const std::string& word) {

@@ -19,8 +19,7 @@ std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::
   if (modes.frequency_Hz.empty()) return text + "no elastic mode\n";
   text += "mode   frequency [Hz]\n";
   for (std::size_t i = 0; i < modes.frequency_Hz.size(); ++i)
-    text +=
-        pad_left(std::to_string(i + 1), 4) + pad_left(digits(modes.frequency_Hz[i], 7), 17) + "\n";
+    text += pad_left(std::to_string(i + 1), 4) + pad_left(digits(modes.frequency_Hz[i], 7), 17) + "\n";
   if (!model.scene.note.empty()) text += "\n" + wrap(model.scene.note, 0);
   return text;
 }

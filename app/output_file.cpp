@@ -1,14 +1,13 @@
 #include "app/output_file.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace drev::app {
 
@@ -58,9 +57,7 @@ int write_all(int descriptor, const std::string& text) {
 }
 
 /// To the disk; 0, or errno.
-int sync(int descriptor) {
-  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
-}
+int sync(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno; }
 
 }  // namespace
 
@@ -84,8 +81,7 @@ void write_file(const std::string& directory, const std::string& name, const std
   file.commit();
 }
 
-OutputFile::OutputFile(const std::string& directory, const std::string& name,
-                       const std::string& extension)
+OutputFile::OutputFile(const std::string& directory, const std::string& name, const std::string& extension)
     : path_(directory + "/" + name + "." + extension),
       partial_(directory + "/" + name + ".partial." + extension) {
   descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);

@@ -1,10 +1,9 @@
 #pragma once
 /// Files that are never half written under their own name: DIR/NAME.partial.EXT becomes DIR/NAME.EXT when it
 /// is complete. Every write is checked, and a file has one writer.
-#include <sys/types.h>
-
 #include <stdexcept>
 #include <string>
+#include <sys/types.h>
 
 namespace drev::app {
 

@@ -1,13 +1,11 @@
 #include "app/progress.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
+#include <unistd.h>
 
 namespace drev::app {
 
-Progress::Progress()
-    : terminal_(::isatty(STDERR_FILENO) != 0), start_(Clock::now()), drawn_(start_) {}
+Progress::Progress() : terminal_(::isatty(STDERR_FILENO) != 0), start_(Clock::now()), drawn_(start_) {}
 
 Progress::~Progress() { clear(); }
 

@@ -14,13 +14,13 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kLoadSamples = 4096;       // of a load over two turns of its node
-constexpr int kHighestLine = 400;    // order 200 of the node
-constexpr double kAmplitudeRounding = 1e-6;   // relative, of amplitudes
+constexpr int kLoadSamples = 4096;           // of a load over two turns of its node
+constexpr int kHighestLine = 400;            // order 200 of the node
+constexpr double kAmplitudeRounding = 1e-6;  // relative, of amplitudes
 constexpr std::size_t kCrossings = 400;
-constexpr double kFarthest = 4.0;    // crossings up to as many times the speed of the run
-// Orders shown: of each of the lowest modes those that excite it most, resonant between these times the speed;
-// at least kLeastOrders, then the ones that excite most wherever they are resonant.
+constexpr double kFarthest = 4.0;  // crossings up to as many times the speed of the run
+// Orders shown: of each of the lowest modes those that excite it most, resonant between these times the
+// speed; at least kLeastOrders, then the ones that excite most wherever they are resonant.
 constexpr int kCampbellModes = 4;
 constexpr std::size_t kOrdersOfMode = 3, kLeastOrders = 3;
 constexpr double kSlowest = 0.5, kFast = 1.6;
@@ -60,7 +60,8 @@ class Orders {
     for (std::size_t k = 1; k <= kHighestLine; ++k) {
       if (lines.amplitude[k] < 1e-4 * range) continue;
       const double order = 0.5 * static_cast<double>(k) * std::abs(ratio);
-      Excitation& sum = found.try_emplace(key_of(order), Excitation(modes_.frequency_Hz.size())).first->second;
+      Excitation& sum =
+          found.try_emplace(key_of(order), Excitation(modes_.frequency_Hz.size())).first->second;
       const std::complex<double> load =
           std::polar(lines.amplitude[k], ratio > 0.0 ? lines.phase[k] : -lines.phase[k]);
       for (int m = 0; m < modes_.count(); ++m)
@@ -102,8 +103,7 @@ struct Crossing {
 
 }  // namespace
 
-Json campbell_object(const Model& model, const System& system, const ModeSet& modes,
-                     double duration) {
+Json campbell_object(const Model& model, const System& system, const ModeSet& modes, double duration) {
   const auto& reference = system.reference();
   if (!reference || !reference->at) return nullptr;
   const double first = reference->at(0.0).rate, last = reference->at(duration).rate;
@@ -119,8 +119,7 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
                             modes.shapes.col(m).cwiseAbs().maxCoeff();
       all.push_back({m, order, omega / order, answer});
     }
-  std::sort(all.begin(), all.end(),
-            [](const Crossing& a, const Crossing& b) { return a.answer > b.answer; });
+  std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) { return a.answer > b.answer; });
   std::set<double> shown;
   std::vector<std::size_t> taken(kCampbellModes, 0);
   for (const Crossing& c : all)

@@ -36,19 +36,17 @@ std::string block_of(std::string run, std::vector<Finding>& findings) {
     run += "/report.html";
   }
   const bool readable = std::filesystem::is_regular_file(run) && std::ifstream(run).good();
-  const std::vector<std::string> blocks =
-      readable ? blocks_of(text_of(run)) : std::vector<std::string>{};
+  const std::vector<std::string> blocks = readable ? blocks_of(text_of(run)) : std::vector<std::string>{};
   if (blocks.size() == 1) {
     if (!partial.empty())
       std::fprintf(stderr, "drev: %s is of an older run; %s\n", run.c_str(), partial.c_str());
     return blocks.front();
   }
   findings.push_back({kCommandLine, "RUN", run, "",
-                      !readable && !partial.empty()
-                          ? "does not exist: " + partial
-                      : !readable         ? "is no file that can be read"
-                      : blocks.size() > 1 ? "compares two runs already; give each run's own report"
-                                          : "is no report of drev run"});
+                      !readable && !partial.empty() ? "does not exist: " + partial
+                      : !readable                   ? "is no file that can be read"
+                      : blocks.size() > 1           ? "compares two runs already; give each run's own report"
+                                                    : "is no report of drev run"});
   return {};
 }
 

@@ -17,9 +17,9 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kRunSamples = 1e5;         // of a run, unless --every says otherwise
-constexpr double kAboveModes = 3.0;      // spectra go so far beyond the highest mode listed
-constexpr double kAboveSpeed = 40.0;     // or to this order, where that is higher
+constexpr double kRunSamples = 1e5;   // of a run, unless --every says otherwise
+constexpr double kAboveModes = 3.0;   // spectra go so far beyond the highest mode listed
+constexpr double kAboveSpeed = 40.0;  // or to this order, where that is higher
 
 std::string now() {
   const std::time_t time = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -133,8 +133,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   }
   highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
   data["history"] = history_object(history);
-  data["spectra"] =
-      spectra_object(history, cycle_of(m), highest > 0.0 ? highest : HUGE_VAL);
+  data["spectra"] = spectra_object(history, cycle_of(m), highest > 0.0 ? highest : HUGE_VAL);
   return data;
 }
 

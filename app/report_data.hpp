@@ -7,7 +7,8 @@
 
 namespace drev::app {
 
-/// Interval of what is recorded of a run by `method` [s], fine enough for the report's spectra; 0: every step.
+/// Interval of what is recorded of a run by `method` [s], fine enough for the report's spectra; 0: every
+/// step.
 double report_interval(const RunRequest& request, const Method& method);
 
 Json report_data(const RunRequest& request, const RunResult& result, const ReportHistory& history);

@@ -29,9 +29,7 @@ ReportFile::~ReportFile() {
   if (pdf_) std::remove(partial_pdf().c_str());
 }
 
-std::string ReportFile::partial_pdf() const {
-  return folder_of(path_) + "/" + stem_ + ".partial.pdf";
-}
+std::string ReportFile::partial_pdf() const { return folder_of(path_) + "/" + stem_ + ".partial.pdf"; }
 
 void ReportFile::commit(const std::string& page) {
   page_.write(page);

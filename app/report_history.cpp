@@ -22,8 +22,7 @@ std::size_t even(std::size_t n) { return n - n % 2; }
 
 }  // namespace
 
-ReportHistory::ReportHistory(const System& system, const std::vector<std::string>& channels,
-                             double every)
+ReportHistory::ReportHistory(const System& system, const std::vector<std::string>& channels, double every)
     : channels_(find_channels(system, channels)), every_(every) {
   for (const Channel& channel : channels_) series_.push_back({channel.name(), channel.unit(), {}, {}, {}});
   for (const char* name : {"kinetic", "stored"}) series_.push_back({name, "J", {}, {}, {}});
@@ -33,8 +32,7 @@ ReportHistory::ReportHistory(const System& system, const std::vector<std::string
     if (const auto gap = system.scalars()[j].force->gap()) {
       terms_.push_back(j);
       gaps_.push_back(*gap);
-      bands_.push_back(
-          {system.placements()[at(index(system.scalars()[j].element))].name, {}, {}});
+      bands_.push_back({system.placements()[at(index(system.scalars()[j].element))].name, {}, {}});
     }
 }
 
@@ -51,8 +49,7 @@ void ReportHistory::step(const Assembler& assembler, const StepPoint& from, cons
     bands_[i].back.back() += static_cast<float>(h * share_above(-x0, -x1, -gaps_[i].low));
   }
   end_ = to.state.t;
-  if (every_ == 0.0 || to.state.t >= next_stop(0.0) - kSameTime * every_)
-    sample(assembler, to);
+  if (every_ == 0.0 || to.state.t >= next_stop(0.0) - kSameTime * every_) sample(assembler, to);
 }
 
 double ReportHistory::next_stop(double /*t*/) const {

@@ -1,14 +1,15 @@
 #pragma once
 /// What the report keeps of a run over time, in memory that does not grow with it:
 ///
-///   groups   of 1, 2, 4, ... consecutive samples, at most kPlaces / channels of them; of each group the first
-///            time, and the lowest and the highest value of every channel, so that no peak of the samples is
-///            lost. When all places are taken, neighbours are joined and groups are twice as long from then on.
+///   groups   of 1, 2, 4, ... consecutive samples, at most kPlaces / channels of them; of each group the
+///            first time, and the lowest and the highest value of every channel, so that no peak of the
+///            samples is lost. When all places are taken, neighbours are joined and groups are twice as long
+///            from then on.
 ///   tail     the last samples as they are, for spectra: at most kTail / channels, 2^17 at most.
 ///   contacts time of each group that a gap spent closed on its front and on its back flank.
 ///
-/// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic and
-/// stored energy [J].
+/// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
+/// and stored energy [J].
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,8 +42,8 @@ class ReportHistory final : public Observer {
 
   double every() const { return every_; }
   long samples() const { return samples_; }
-  long group() const { return group_; }             ///< samples in a group
-  double end() const { return end_; }               ///< s, of the last sample
+  long group() const { return group_; }                        ///< samples in a group
+  double end() const { return end_; }                          ///< s, of the last sample
   const std::vector<double>& times() const { return times_; }  ///< s, first of each group
   const std::vector<Series>& series() const { return series_; }
   const std::vector<Band>& bands() const { return bands_; }
@@ -51,9 +52,7 @@ class ReportHistory final : public Observer {
   std::size_t tail_size() const { return tail_times_.size(); }
   /// Sample i of the tail, the oldest first.
   double tail_time(std::size_t i) const { return tail_times_[tail_place(i)]; }
-  double tail_value(std::size_t series, std::size_t i) const {
-    return series_[series].tail[tail_place(i)];
-  }
+  double tail_value(std::size_t series, std::size_t i) const { return series_[series].tail[tail_place(i)]; }
 
  private:
   std::size_t tail_place(std::size_t i) const { return (oldest_ + i) % tail_times_.size(); }

@@ -116,8 +116,7 @@ double potential(const Terms& terms, const Eigen::VectorXd& q) {
 
 Json model_object(const Model& model, const System& system) {
   Drawing drawing(system);
-  for (const Placement& placement : model.placements())
-    drawing.add(placement, nodes_of(placement, system));
+  for (const Placement& placement : model.placements()) drawing.add(placement, nodes_of(placement, system));
   Json nodes = Json::array();
   for (int i = 0; i < system.node_count(); ++i) {
     const int prescribed = system.node_map(i).prescribed;
@@ -135,8 +134,7 @@ Json model_object(const Model& model, const System& system) {
 
 Json modes_object(const System& system, const ModeSet& modes) {
   std::vector<std::vector<int>> nodes;
-  for (const Placement& placement : system.placements())
-    nodes.push_back(nodes_of(placement, system));
+  for (const Placement& placement : system.placements()) nodes.push_back(nodes_of(placement, system));
   Json list = Json::array();
   for (int m = 0; m < modes.count(); ++m) {
     const Eigen::VectorXd shape = modes.shapes.col(m);
@@ -145,8 +143,7 @@ Json modes_object(const System& system, const ModeSet& modes) {
     for (std::size_t e = 0; e < nodes.size(); ++e) {
       const Placement& placement = system.placements()[e];
       Eigen::VectorXd q(static_cast<Eigen::Index>(nodes[e].size()));
-      for (std::size_t i = 0; i < nodes[e].size(); ++i)
-        q[static_cast<Eigen::Index>(i)] = shape[nodes[e][i]];
+      for (std::size_t i = 0; i < nodes[e].size(); ++i) q[static_cast<Eigen::Index>(i)] = shape[nodes[e][i]];
       const double energy = potential(terms_of(placement, static_cast<int>(nodes[e].size())), q);
       sum += energy;
       shares.emplace_back(energy, placement.name);

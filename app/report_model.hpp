@@ -2,8 +2,8 @@
 /// The model as the report draws it: nodes with their inertias, what joins them, loads; and its modes.
 ///
 /// All of it is read from what the elements say of themselves (Element::describe), so that one's own elements
-/// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh, a
-/// constraint is an ideal gear.
+/// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
+/// a constraint is an ideal gear.
 #include "app/json_values.hpp"
 #include "core/system.hpp"
 #include "solvers/modes.hpp"

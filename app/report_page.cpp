@@ -4,8 +4,8 @@
 
 namespace drev::data {
 extern const std::string_view report_html, report_css, dygraph_css, dygraph_js, report_js_data,
-    report_js_format, report_js_train, report_js_charts, report_js_tables, report_js_modes,
-    report_js_time, report_js_spectra, report_js_main;
+    report_js_format, report_js_train, report_js_charts, report_js_tables, report_js_modes, report_js_time,
+    report_js_spectra, report_js_main;
 }  // namespace drev::data
 
 namespace drev::app {
@@ -25,15 +25,12 @@ void fill(std::string& page, const std::string& name, const std::string& text) {
 
 std::string report_page(const std::vector<std::string>& blocks) {
   std::string page(data::report_html), style, program, runs;
-  for (const std::string_view part : {data::dygraph_css, data::report_css})
-    style += std::string(part) + "\n";
-  for (const std::string_view part :
-       {data::report_js_format, data::report_js_data, data::report_js_train, data::report_js_charts,
-        data::report_js_tables, data::report_js_modes, data::report_js_time, data::report_js_spectra,
-        data::report_js_main})
+  for (const std::string_view part : {data::dygraph_css, data::report_css}) style += std::string(part) + "\n";
+  for (const std::string_view part : {data::report_js_format, data::report_js_data, data::report_js_train,
+                                      data::report_js_charts, data::report_js_tables, data::report_js_modes,
+                                      data::report_js_time, data::report_js_spectra, data::report_js_main})
     program += part;
-  for (const std::string& block : blocks)
-    runs += std::string(kBlockBegin) + block + std::string(kEnd) + "\n";
+  for (const std::string& block : blocks) runs += std::string(kBlockBegin) + block + std::string(kEnd) + "\n";
   fill(page, "style", style);
   fill(page, "library", std::string(data::dygraph_js));
   fill(page, "program", program);

@@ -1,17 +1,16 @@
 #include "app/report_pdf.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <spawn.h>
 #include <sstream>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 #include "app/output_file.hpp"
@@ -100,9 +99,14 @@ void print_as_pdf(const std::string& html, const std::string& pdf) {
   const std::string browser = find_browser();
   if (browser.empty()) throw OutputError("cannot write " + pdf + ": it " + kNoBrowser);
   const ProfileFolder profile;
-  std::vector<std::string> words{browser, "--headless", "--disable-gpu", "--no-first-run",
-                                 "--user-data-dir=" + profile.path(), "--no-pdf-header-footer",
-                                 "--virtual-time-budget=20000", "--print-to-pdf=" + pdf};
+  std::vector<std::string> words{browser,
+                                 "--headless",
+                                 "--disable-gpu",
+                                 "--no-first-run",
+                                 "--user-data-dir=" + profile.path(),
+                                 "--no-pdf-header-footer",
+                                 "--virtual-time-budget=20000",
+                                 "--print-to-pdf=" + pdf};
   if (::geteuid() == 0) words.push_back("--no-sandbox");  // it refuses to run as root otherwise
   words.push_back(file_url(html));
   const int status = run_silently(std::move(words));

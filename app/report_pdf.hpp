@@ -5,7 +5,8 @@
 namespace drev::app {
 
 inline constexpr const char* kNoBrowser =
-    "needs Chromium, which is not installed here (Debian's package: chromium; Ubuntu 24.04's snap: chromium). "
+    "needs Chromium, which is not installed here (Debian's package: chromium; Ubuntu 24.04's snap: "
+    "chromium). "
     "Without it: --report FILE.html, which any browser prints well";
 
 /// Path of chromium, chromium-browser, google-chrome; empty: none is installed.

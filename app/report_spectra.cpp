@@ -26,8 +26,8 @@ std::size_t fast_size(std::size_t n) {
 
 /// Samples at from, from + dt, ...: cubics through the four nearest of the tail, which need not be evenly
 /// spaced (constant steps are cut at breakpoints).
-std::vector<double> resampled(const ReportHistory& history, std::size_t series, double from,
-                              double dt, std::size_t count) {
+std::vector<double> resampled(const ReportHistory& history, std::size_t series, double from, double dt,
+                              std::size_t count) {
   std::vector<double> values(count);
   const std::size_t n = history.tail_size();
   std::size_t next = 2;  // place of the third of the four
@@ -38,8 +38,7 @@ std::vector<double> resampled(const ReportHistory& history, std::size_t series, 
     for (std::size_t j = next - 2; j < next + 2; ++j) {
       double weight = history.tail_value(series, j);
       for (std::size_t k = next - 2; k < next + 2; ++k)
-        if (k != j)
-          weight *= (t - history.tail_time(k)) / (history.tail_time(j) - history.tail_time(k));
+        if (k != j) weight *= (t - history.tail_time(k)) / (history.tail_time(j) - history.tail_time(k));
       sum += weight;
     }
     values[i] = sum;
@@ -67,8 +66,7 @@ std::string base64(const void* data, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 3) {
     const auto byte = [&](std::size_t k) -> unsigned { return i + k < bytes ? in[i + k] : 0U; };
     const unsigned word = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (unsigned k = 0; k < 4; ++k)
-      text += i + k <= bytes ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
+    for (unsigned k = 0; k < 4; ++k) text += i + k <= bytes ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
   }
   return text;
 }
@@ -93,8 +91,8 @@ Json spectra_object(const ReportHistory& history, double cycle, double highest) 
   for (std::size_t s = 0; s < history.channel_count(); ++s) {
     const auto samples = resampled(history, s, end - span, dt, count);
     if (!std::all_of(samples.begin(), samples.end(), [](double x) { return std::isfinite(x); })) continue;
-    const Spectrum all = spectrum(
-        samples, dt, {.window = Window::hann, .drop_end_point = false, .remove_mean = true});
+    const Spectrum all =
+        spectrum(samples, dt, {.window = Window::hann, .drop_end_point = false, .remove_mean = true});
     Json peaks = Json::array();
     for (const SpectrumPeak& peak : spectrum_peaks(all, kPeaks, 3.0 * line))
       peaks.push_back({{"frequency_Hz", peak.frequency_Hz}, {"amplitude", peak.amplitude}});

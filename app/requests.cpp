@@ -13,7 +13,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
+constexpr double kMostSteps = 1e10, kMostRows = 1e8;                 // of one run
 constexpr double kLeastTolerance = 1e-15, kLargestTolerance = 1e-3;  // of exact propagation
 constexpr double kLeastOfSteps = 1e-13, kLargestOfSteps = 0.1;       // of controlled steps
 constexpr double kLeastAccuracy = 1e-12, kLargestAccuracy = 0.5;
@@ -24,8 +24,7 @@ void take_findings(const ModelError& error, std::vector<Finding>& findings) {
 }
 
 /// The settings that are right; what is wrong with the others goes to findings.
-Settings right_settings(const SceneEntry& entry, const CommandLine& line,
-                        std::vector<Finding>& findings) {
+Settings right_settings(const SceneEntry& entry, const CommandLine& line, std::vector<Finding>& findings) {
   Settings right(entry.name, entry.settings);
   for (const auto& [name, value] : line.settings) {
     Settings probe(entry.name, entry.settings);
@@ -79,8 +78,7 @@ void check_method(const char* option, const std::string& text, std::vector<Findi
       if (finding.range.starts_with("is no method")) {
         std::vector<std::string> names = step_scheme_names();
         names.insert(names.begin(), "exact");
-        finding.range =
-            "is no method" + did_you_mean(text.substr(0, text.find(':')), names) + "; " + form;
+        finding.range = "is no method" + did_you_mean(text.substr(0, text.find(':')), names) + "; " + form;
       }
       findings.push_back(std::move(finding));
     }
@@ -155,8 +153,7 @@ double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>&
   double value = 0.0;
   if (!read_number(*line.option("--tolerance"), value) || !(value >= low && value <= high))
     findings.push_back({kCommandLine, "--tolerance", *line.option("--tolerance"), "",
-                        "must be a number from " + short_digits(low, 3) + " to " +
-                            short_digits(high, 3)});
+                        "must be a number from " + short_digits(low, 3) + " to " + short_digits(high, 3)});
   return value;
 }
 
@@ -170,9 +167,14 @@ void check_exact(const std::optional<ModelRequest>& model, const char* option,
 
 /// What `drev chart` draws unless told otherwise.
 std::vector<std::string> chart_methods(const System& system) {
-  std::vector<std::string> methods{"average_acceleration", "generalized_alpha:0.8", "bathe",
-                                   "sdirk4", "rk4", "generalized_alpha:0.8@tolerance",
-                                   "sdirk4@tolerance", "dormand_prince@tolerance",
+  std::vector<std::string> methods{"average_acceleration",
+                                   "generalized_alpha:0.8",
+                                   "bathe",
+                                   "sdirk4",
+                                   "rk4",
+                                   "generalized_alpha:0.8@tolerance",
+                                   "sdirk4@tolerance",
+                                   "dormand_prince@tolerance",
                                    "central_difference"};
   if (!why_not_exact(system)) methods.insert(methods.begin(), "exact");
   return methods;
@@ -249,8 +251,7 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
     return {};
   }
   if (line.option("--step") && !line.option("--method"))
-    return {stepping("average_acceleration", line, step, findings),
-            "the default where a step is asked for"};
+    return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
   if (!line.option("--method") && !line.option("--tolerance"))
     return model ? choose_method(model->system, duration, step) : MethodChoice{};
   const std::string reason =
@@ -341,8 +342,8 @@ RunRequest request_run(const CommandLine& given) {
     const auto out = line.option("--out");
     if (const auto why = why_no_report(*report))
       findings.push_back({kCommandLine, "--report", *report, "", *why});
-    else if (out && fs::path(*report).lexically_normal() ==
-                        (fs::path(*out) / "report.html").lexically_normal())
+    else if (out &&
+             fs::path(*report).lexically_normal() == (fs::path(*out) / "report.html").lexically_normal())
       findings.push_back({kCommandLine, "--report", *report, "", "is written by --out already"});
   }
   bool hdf5 = false;
@@ -356,8 +357,17 @@ RunRequest request_run(const CommandLine& given) {
   blame_file(line, findings);
   if (!findings.empty()) refuse(std::move(findings));
   std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
-  return {std::move(*model), chosen, accuracy, method.reason, any_method, reduce, line.option("--out"),
-          std::move(record), every, hdf5, line.option("--report"),
+  return {std::move(*model),
+          chosen,
+          accuracy,
+          method.reason,
+          any_method,
+          reduce,
+          line.option("--out"),
+          std::move(record),
+          every,
+          hdf5,
+          line.option("--report"),
           line.option("--every") ? std::optional(every) : std::nullopt,
           line.model + (line.option("--run") ? " --run " + *line.option("--run") : "")};
 }
@@ -370,12 +380,11 @@ ModesRequest request_modes(const CommandLine& line) {
   const std::string contact = line.option("--contact").value_or("closed");
   options.contact = contact == "open" ? Contact::open : Contact::closed;
   if (contact != "open" && contact != "closed")
-    findings.push_back({kCommandLine, "--contact", contact, "",
-                        "must be closed or open" + did_you_mean(contact, states)});
+    findings.push_back(
+        {kCommandLine, "--contact", contact, "", "must be closed or open" + did_you_mean(contact, states)});
   if (line.option("--count")) {
     double number = 0.0;
-    const int elastic =
-        model ? model->system.size() - model->system.rigid_mode_count(options.contact) : 0;
+    const int elastic = model ? model->system.size() - model->system.rigid_mode_count(options.contact) : 0;
     const std::string range =
         "must be a whole number from 1" +
         (model ? " to " + std::to_string(elastic) + ", the model's elastic modes" : std::string());
@@ -412,8 +421,8 @@ AdviseRequest request_advise(const CommandLine& line) {
   AdviseOptions options;
   options.figure = line.option("--for").value_or(options.figure);
   if (const std::optional<std::string> text = line.option("--within"))
-    options.within = read_part("--within", *text, 1e-4, 0.5,
-                               "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
+    options.within =
+        read_part("--within", *text, 1e-4, 0.5, "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
   if (model) try {
       figure_options(model->scene, model->system, options);
     } catch (const ModelError& error) {

@@ -79,9 +79,8 @@ class RunFiles {
       written = false;
     }
     if (!complete && history_)
-      say("what there is of the run is in " + history_->partial_path() + " and " +
-          summary_->partial_path() + "; " + history_->path() +
-          ", summary.json and report.html, if they are there, are of an older run");
+      say("what there is of the run is in " + history_->partial_path() + " and " + summary_->partial_path() +
+          "; " + history_->path() + ", summary.json and report.html, if they are there, are of an older run");
     return written;
   }
 
@@ -89,10 +88,10 @@ class RunFiles {
   std::string text() const {
     std::string text;
     if (history_)
-      text += pad_right("History", 24) + wrap(std::to_string(history_->rows()) + " rows, every " +
-                                                  short_digits(request_.every, 12) + " s, of " +
-                                                  join(request_.record) + " in " + history_->path(),
-                                              24);
+      text += pad_right("History", 24) +
+              wrap(std::to_string(history_->rows()) + " rows, every " + short_digits(request_.every, 12) +
+                       " s, of " + join(request_.record) + " in " + history_->path(),
+                   24);
     if (shown_) text += pad_right("Report", 24) + join(report_paths_) + "\n";
     return text;
   }

@@ -26,8 +26,7 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::optional<Largest> largest_of(const std::vector<Channel>& channels,
-                                  const std::vector<Peak>& peaks) {
+std::optional<Largest> largest_of(const std::vector<Channel>& channels, const std::vector<Peak>& peaks) {
   std::optional<Largest> largest;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const double value = peaks[c].amplitude();
@@ -48,8 +47,7 @@ void add_modes(const System& system, RunResult& result) {
   result.modes_time = timer.seconds();
 }
 
-void add_static_force(const ModelRequest& model, const std::vector<Channel>& torques,
-                      RunResult& result) {
+void add_static_force(const ModelRequest& model, const std::vector<Channel>& torques, RunResult& result) {
   if (model.scene.static_turn == 0.0 || torques.empty()) {
     result.static_reason = "this model has no turn over which it would be sought";
     return;
@@ -60,8 +58,8 @@ void add_static_force(const ModelRequest& model, const std::vector<Channel>& tor
   }
   const Timer timer;
   try {
-    result.static_force = largest_of(
-        torques, static_sweep(model.system, torques, 0.0, model.scene.static_turn, kStaticAngles));
+    result.static_force =
+        largest_of(torques, static_sweep(model.system, torques, 0.0, model.scene.static_turn, kStaticAngles));
     if (!result.static_force) result.static_reason = "it is not finite";
   } catch (const SolverError& error) {
     result.static_reason = error.what();
@@ -87,17 +85,16 @@ bool find_accuracy(const RunRequest& request, RunResult& result) {
   Progress shown;
   const Timer timer;
   try {
-    result.accuracy = run_to_accuracy(request.model.system,
-                                      {.accuracy = *request.accuracy,
-                                       .t_end = scene.duration,
-                                       .deflection = scene.deflection,
-                                       .torques = scene.torques,
-                                       .cycle = cycle_of(request.model),
-                                       .method = request.method,
-                                       .progress = [&](double part) {
-                                         shown.update(part);
-                                         return !interrupted();
-                                       }});
+    result.accuracy = run_to_accuracy(request.model.system, {.accuracy = *request.accuracy,
+                                                             .t_end = scene.duration,
+                                                             .deflection = scene.deflection,
+                                                             .torques = scene.torques,
+                                                             .cycle = cycle_of(request.model),
+                                                             .method = request.method,
+                                                             .progress = [&](double part) {
+                                                               shown.update(part);
+                                                               return !interrupted();
+                                                             }});
     result.method = result.accuracy->fine;
     result.summary = result.accuracy->summary;
     result.status = to_text(result.summary.status);
@@ -116,8 +113,7 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
   std::vector<std::string> names = scene.torques;
   if (!scene.deflection.empty()) names.push_back(scene.deflection);
   for (const Channel& c : mesh_channels(request.model.system)) names.push_back(c.name());
-  if (request.out || request.report)
-    names.insert(names.end(), request.record.begin(), request.record.end());
+  if (request.out || request.report) names.insert(names.end(), request.record.begin(), request.record.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
@@ -216,8 +212,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFil
       shown.update(part);
       return !interrupted() && (history == nullptr || history->error().empty());
     };
-    result.summary = run_method(system, result.method,
-                                {.t_end = scene.duration, .progress = progress}, observers);
+    result.summary =
+        run_method(system, result.method, {.t_end = scene.duration, .progress = progress}, observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {

@@ -46,10 +46,10 @@ Json contact_object(const Contacts& c, double duration) {
           {"max_force_N", newton ? number(c.record.largest_force) : Json()},
           {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
           {"max_at_time_s", number(c.record.largest_force_time)},
-          {"impact_speed", flanks_object(c.record.front_speed, c.record.back_speed,
-                                         c.record.speed(), c.speed_unit())},
-          {"impact_force", flanks_object(c.record.front_force, c.record.back_force,
-                                         c.record.force(), c.force_unit)},
+          {"impact_speed",
+           flanks_object(c.record.front_speed, c.record.back_speed, c.record.speed(), c.speed_unit())},
+          {"impact_force",
+           flanks_object(c.record.front_force, c.record.back_force, c.record.force(), c.force_unit)},
           {"impact_energy_J", number(c.record.impact_energy)},
           {"rattle_index_W", number(c.record.rattle_index(duration))}};
 }
@@ -58,8 +58,7 @@ void add_contacts(Json& results, const RunResult& r) {
   results["max_mesh_force_N"] = in_unit(r.mesh_force, "N");
   results["max_mesh_force_at"] = place_of(r.mesh_force, "N");
   if (r.contacts.empty()) {  // no gap anywhere, or no figures
-    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s"})
-      results[key] = nullptr;
+    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s"}) results[key] = nullptr;
     results["contacts"] = Json::array();
     return;
   }
@@ -202,8 +201,9 @@ std::string run_as_json(const RunRequest& request, const RunResult& result) {
 }
 
 std::string running_as_json(const RunRequest& request) {
-  Json object = head_object(request, request.method.name, request.method, "running",
-                            "the run has not ended: it still goes on, its process was killed, or the disk was full");
+  Json object =
+      head_object(request, request.method.name, request.method, "running",
+                  "the run has not ended: it still goes on, its process was killed, or the disk was full");
   object["process"] = ::getpid();
   object["duration_s"] = number(request.model.scene.duration);
   object["record"] = request.record;

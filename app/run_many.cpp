@@ -117,8 +117,8 @@ class Batch {
   };
 
   std::size_t in_work() const {
-    return static_cast<std::size_t>(std::count_if(
-        running_.begin(), running_.end(), [](const Running& r) { return r.process != nullptr; }));
+    return static_cast<std::size_t>(std::count_if(running_.begin(), running_.end(),
+                                                  [](const Running& r) { return r.process != nullptr; }));
   }
 
   void start(std::size_t i) {
@@ -175,8 +175,8 @@ class Batch {
     for (std::size_t i = 0; i < running_.size(); ++i)
       if (running_[i].process) names.push_back(many_.runs[i].model.name);
     const std::size_t failed = many_.count(false);
-    std::string text = std::to_string(many_.count(true) + failed) + " of " +
-                       std::to_string(many_.runs.size()) + " done";
+    std::string text =
+        std::to_string(many_.count(true) + failed) + " of " + std::to_string(many_.runs.size()) + " done";
     if (failed > 0) text += ", " + std::to_string(failed) + " failed";
     return text + (interrupted() ? "; waiting for " : "; running ") + join(names);
   }
@@ -191,8 +191,8 @@ class Batch {
 };
 
 /// Every model with every variant, each with a folder of its own.
-std::vector<OneOfMany> all_runs(const std::vector<NamedModel>& models,
-                                const std::vector<Variant>& variants, const std::string& folder) {
+std::vector<OneOfMany> all_runs(const std::vector<NamedModel>& models, const std::vector<Variant>& variants,
+                                const std::string& folder) {
   std::vector<OneOfMany> runs;
   for (const NamedModel& model : models)
     for (const Variant& variant : variants) {
@@ -200,9 +200,8 @@ std::vector<OneOfMany> all_runs(const std::vector<NamedModel>& models,
       const std::string name = varied.empty()      ? model.name
                                : models.size() > 1 ? model.name + "," + varied
                                                    : varied;
-      runs.push_back({.model = {name, model.model},
-                      .varied = variant.settings,
-                      .folder = folder + "/" + name});
+      runs.push_back(
+          {.model = {name, model.model}, .varied = variant.settings, .folder = folder + "/" + name});
     }
   return runs;
 }
@@ -249,10 +248,9 @@ int run_many(const CommandLine& line) {
 
   watch_signals();
   const std::string folder = *line.option("--out");
-  Batch batch({.runs = all_runs(list.models, variants, folder),
-               .skipped = std::move(list.skipped),
-               .folder = folder},
-              line);
+  Batch batch(
+      {.runs = all_runs(list.models, variants, folder), .skipped = std::move(list.skipped), .folder = folder},
+      line);
   batch.run(static_cast<std::size_t>(at_once));
   std::optional<OutputError> unwritten;
   try {

@@ -30,7 +30,7 @@ struct Contacts {
 /// Of a run in fewer coordinates, or why it is not.
 struct ReductionNote {
   bool used = false;
-  int coordinates = 0, of = 0;   ///< of the run; unknowns of the model
+  int coordinates = 0, of = 0;  ///< of the run; unknowns of the model
   int modes = 0, static_shapes = 0;
   std::optional<double> error = {};  ///< estimated, relative to the peak of `channel`, the largest of all
   std::string channel = {};

@@ -23,8 +23,7 @@ std::string place_text(const Model& model, const Largest& l) {
   for (const Placement& placement : model.placements()) {
     if (placement.name != place) continue;
     std::vector<std::string> nodes;
-    for (const NodeRef& node : placement.nodes)
-      nodes.push_back(model.name_of(node));
+    for (const NodeRef& node : placement.nodes) nodes.push_back(model.name_of(node));
     return place + " (" + join(nodes, " to ") + ")";
   }
   return place;
@@ -37,8 +36,7 @@ std::string deflection_place(const Model& model, const Largest& l) {
   const auto is_node = [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
-  for (std::size_t cut = place.find('-'); cut != std::string::npos;
-       cut = place.find('-', cut + 1)) {
+  for (std::size_t cut = place.find('-'); cut != std::string::npos; cut = place.find('-', cut + 1)) {
     const std::string first = place.substr(0, cut), second = place.substr(cut + 1);
     if (is_node(first) && is_node(second)) return "between " + second + " and " + first;
   }
@@ -60,11 +58,10 @@ std::string force_rows(const Scene& scene, const RunResult& r) {
   const std::string name = torque ? "torque" : "force";
   std::string text;
   if (r.force)
-    text += labelled("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) +
-                                            " at " + short_digits(r.force->at, 4) + " s");
+    text += labelled("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) + " at " +
+                                            short_digits(r.force->at, 4) + " s");
   if (!r.static_force)
-    return text +
-           labelled("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
+    return text + labelled("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
   text += labelled("Static " + name, value_text(*r.static_force) + " in " +
                                          place_text(model, *r.static_force) + " (largest " + name +
                                          " in static equilibrium, over all sections and one turn)");
@@ -110,16 +107,15 @@ std::string contact_rows(const RunResult& r) {
                                               " s; no backlash, so no impacts");
   }
   std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
-                     pad_left("apart [s]", 12) + pad_left("[%]", 10) +
-                     pad_left("largest force", 18) + "\n";
+                     pad_left("apart [s]", 12) + pad_left("[%]", 10) + pad_left("largest force", 18) + "\n";
   const double duration = r.summary.t_end > 0.0 ? r.summary.t_end : 1.0;
   long front = 0, back = 0;
   double apart = 0.0;
   const Contacts* hardest = &r.contacts.front();
   for (const Contacts& c : r.contacts) {
     const ContactRecord& k = c.record;
-    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_apart,
-                         k.time_apart / duration, digits(k.largest_force, 5) + " " + c.force_unit);
+    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_apart, k.time_apart / duration,
+                         digits(k.largest_force, 5) + " " + c.force_unit);
     front += k.front_impacts;
     back += k.back_impacts;
     apart += k.time_apart;
@@ -137,16 +133,16 @@ std::string energy_row(const EnergyBalance& e) {
   if (std::abs(e.relative_error()) < 1e-12) return labelled("Energy balance", "holds to rounding");
   return labelled("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
                                         digits(e.scale, 3) + " J" +
-                                        (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") +
-                                        ", worst at " + short_digits(e.worst_time, 4) + " s");
+                                        (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") + ", worst at " +
+                                        short_digits(e.worst_time, 4) + " s");
 }
 
 std::string method_text(const RunResult& r) {
   std::string text = r.summary.scheme;
   if (r.method.tolerance > 0.0) text += ", tolerance " + short_digits(r.method.tolerance, 3);
   if (r.method.step > 0.0)
-    text += (r.method.controlled() ? ", steps of at most " : ", step ") +
-            short_digits(r.method.step, 4) + " s";
+    text +=
+        (r.method.controlled() ? ", steps of at most " : ", step ") + short_digits(r.method.step, 4) + " s";
   return text;
 }
 
@@ -177,14 +173,12 @@ std::string figure_text(const Figure& f) {
     places = std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(f.value) / f.error))) + 1, 2, 15);
   const bool known = std::isfinite(f.error);
   return short_digits(f.value, known ? places : 3) + " +- " +
-         (known ? short_digits(f.error, 2) : std::string("unknown")) +
-         (f.unit.empty() ? "" : " " + f.unit);
+         (known ? short_digits(f.error, 2) : std::string("unknown")) + (f.unit.empty() ? "" : " " + f.unit);
 }
 
 std::string accuracy_rows(double asked, const AccuracyResult& a) {
-  std::string text =
-      labelled("Accuracy asked", short_digits(asked, 3) +
-                                     (a.reached ? ": reached" : ": not reached: " + a.reason));
+  std::string text = labelled(
+      "Accuracy asked", short_digits(asked, 3) + (a.reached ? ": reached" : ": not reached: " + a.reason));
   text += labelled("Growth", "a small difference grows " +
                                  short_digits(a.growth.growth.empty() ? 1.0 : a.growth.growth.back(), 3) +
                                  " times at most, exp(" + short_digits(a.growth.rate, 3) + " t) +- " +

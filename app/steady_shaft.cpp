@@ -41,8 +41,7 @@ int place_of(const std::vector<int>& order, int cylinder) {
 
 SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
   const Scene scene = build_scene(
-      "camshaft",
-      {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}});
+      "camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}});
   const System system = scene.model.build();
   const ModeSet modes = solve_modes(system, {.count = system.size()});
   const Eigen::Index count = modes.count();
@@ -54,8 +53,7 @@ SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
   outputs_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(names.size()), count);
   Eigen::Index row = 0;
   for (const Channel& channel : find_channels(system, names)) {
-    for (const drev::Entry& e : channel.z_row())
-      outputs_.row(row) += e.coeff * modes.vectors.row(e.index);
+    for (const drev::Entry& e : channel.z_row()) outputs_.row(row) += e.coeff * modes.vectors.row(e.index);
     ++row;
   }
 
@@ -66,30 +64,26 @@ SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
   all_ = Spectrum::Zero(count, kHarmonics + 1);
   for (int k = 1; k <= cylinders; ++k) {
     const std::string n = "_" + std::to_string(k);
-    const auto shape = [&](const std::string& name) {
-      return modes.shapes.row(system.node(name + n));
-    };
+    const auto shape = [&](const std::string& name) { return modes.shapes.row(system.node(name + n)); };
     Spectrum force(count, kHarmonics + 1);
     for (int h = 0; h <= kHarmonics; ++h) {
       const auto at = static_cast<std::size_t>(h);
-      force.col(h) =
-          (fuel[at] * shape("fuel") + exhaust[at] * shape("exhaust") + inlet[at] * shape("inlet"))
-              .transpose();
+      force.col(h) = (fuel[at] * shape("fuel") + exhaust[at] * shape("exhaust") + inlet[at] * shape("inlet"))
+                         .transpose();
       all_.col(h) += force.col(h) * std::polar(1.0, -kTwoPi * h * place_of(order, k) / cylinders);
     }
     force_.push_back(std::move(force));
   }
 }
 
-SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega,
-                                        const RayleighCase& damping, Eigen::Index count) const {
+SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega, const RayleighCase& damping,
+                                        Eigen::Index count) const {
   const Eigen::MatrixXcd outputs = outputs_.topRows(count).cast<Complex>();
   Spectrum x(count, kHarmonics + 1);
   for (int h = 0; h <= kHarmonics; ++h) {
     const double w = h * omega;
-    const Eigen::ArrayXcd dynamic =
-        (lambda_.array() - w * w).cast<Complex>() +
-        kI * w * (damping.a + damping.b * lambda_.array()).cast<Complex>();
+    const Eigen::ArrayXcd dynamic = (lambda_.array() - w * w).cast<Complex>() +
+                                    kI * w * (damping.a + damping.b * lambda_.array()).cast<Complex>();
     x.col(h) = outputs * (force.col(h).array() / dynamic).matrix();
   }
   Waves waves(kSamples, count);
@@ -109,8 +103,7 @@ SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega,
   return waves;
 }
 
-std::vector<SteadyShaft::Waves> SteadyShaft::cylinder_waves(double omega,
-                                                            const RayleighCase& damping) const {
+std::vector<SteadyShaft::Waves> SteadyShaft::cylinder_waves(double omega, const RayleighCase& damping) const {
   std::vector<Waves> waves;
   for (const Spectrum& force : force_) waves.push_back(respond(force, omega, damping, outputs_.rows()));
   return waves;
@@ -126,8 +119,7 @@ SteadyShaft::Waves in_order(const std::vector<SteadyShaft::Waves>& cylinder_wave
   const auto cylinders = static_cast<Eigen::Index>(order.size());
   SteadyShaft::Waves sum = SteadyShaft::Waves::Zero(samples, count);
   for (Eigen::Index place = 0; place < cylinders; ++place) {
-    const auto& wave =
-        cylinder_waves[static_cast<std::size_t>(order[static_cast<std::size_t>(place)] - 1)];
+    const auto& wave = cylinder_waves[static_cast<std::size_t>(order[static_cast<std::size_t>(place)] - 1)];
     const Eigen::Index shift = place * samples / cylinders;
     sum.bottomRows(samples - shift) += wave.block(0, first, samples - shift, count);
     sum.topRows(shift) += wave.block(samples - shift, first, shift, count);

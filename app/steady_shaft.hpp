@@ -22,8 +22,7 @@ namespace drev::app {
 
 class SteadyShaft {
  public:
-  static constexpr int kSamples =
-      2880;  ///< a revolution; whole numbers of 6, 8 and 9 cylinders' share
+  static constexpr int kSamples = 2880;  ///< a revolution; whole numbers of 6, 8 and 9 cylinders' share
   /// Row: sample of one revolution; column 0: twist from the first to the last cam [rad], then the torques of
   /// the sections [N m].
   using Waves = Eigen::MatrixXd;
@@ -41,8 +40,7 @@ class SteadyShaft {
  private:
   using Spectrum = Eigen::MatrixXcd;  // row: mode, column: harmonic
   /// The first `count` waves.
-  Waves respond(const Spectrum& force, double omega, const RayleighCase& damping,
-                Eigen::Index count) const;
+  Waves respond(const Spectrum& force, double omega, const RayleighCase& damping, Eigen::Index count) const;
 
   int cylinders_;
   Eigen::VectorXd lambda_;       // w_m^2

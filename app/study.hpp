@@ -12,8 +12,7 @@ namespace drev::app {
 struct Known {
   double value = 0.0;
   double error = 0.0;
-  bool interval =
-      false;  ///< the error is the half-width of a 95 % confidence interval, else an estimate
+  bool interval = false;  ///< the error is the half-width of a 95 % confidence interval, else an estimate
 };
 
 /// "1.2769", with at most six digits, as many as the error leaves.
@@ -56,8 +55,7 @@ StudyGroup study_gear_drive();
 StudyGroup study_benchmark();
 
 /// The report: Markdown whose pictures are at picture_folder/study_NAME.svg.
-std::string study_as_markdown(const std::vector<StudyGroup>& groups,
-                              const std::string& picture_folder);
+std::string study_as_markdown(const std::vector<StudyGroup>& groups, const std::string& picture_folder);
 /// In brief: the verdicts.
 std::string study_as_text(const std::vector<StudyGroup>& groups);
 

@@ -19,9 +19,7 @@ struct Case {
   SettingList settings;
 };
 const Case kCases[] = {
-    {"Figure 4.8",
-     "no backlash",
-     {{"k_2_N_per_m", "2000"}, {"half_gap_1_m", "0"}, {"half_gap_2_m", "0"}}},
+    {"Figure 4.8", "no backlash", {{"k_2_N_per_m", "2000"}, {"half_gap_1_m", "0"}, {"half_gap_2_m", "0"}}},
     {"Table 4.3, Table 4.4",
      "half gaps 0.05 m",
      {{"k_2_N_per_m", "2000"}, {"half_gap_1_m", "0.05"}, {"half_gap_2_m", "0.05"}}},
@@ -54,10 +52,10 @@ StudyGroup study_benchmark() {
                    coarse = history(system, exact_method(kBenchmarkCoarse)),
                    fine = history(system, exact_method(kBenchmarkFine));
     for (std::size_t mass = 0; mass < 2; ++mass)
-      table.rows.push_back(
-          {c.source, std::string(c.name) + ", mass " + std::to_string(mass + 1) + " at 5 s", "m",
-           "curve only", digits(stepped.samples(mass).back(), 6),
-           from_two(coarse.samples(mass).back(), fine.samples(mass).back(), kBenchmarkFine), ""});
+      table.rows.push_back({c.source, std::string(c.name) + ", mass " + std::to_string(mass + 1) + " at 5 s",
+                            "m", "curve only", digits(stepped.samples(mass).back(), 6),
+                            from_two(coarse.samples(mass).back(), fine.samples(mass).back(), kBenchmarkFine),
+                            ""});
     double worst = 0.0, largest = 0.0;
     for (std::size_t mass = 0; mass < 2; ++mass)
       for (std::size_t i = 0; i < fine.times().size(); ++i) {
@@ -66,20 +64,13 @@ StudyGroup study_benchmark() {
       }
     agree = agree && worst < kAgree * largest;
     largest_texts.push_back(digits(largest, 2));
-    table.rows.push_back({c.source,
-                          std::string(c.name) + ", deviation up to 5 s",
-                          "m",
-                          "-",
-                          short_digits(worst, 2),
-                          {},
-                          ""});
+    table.rows.push_back(
+        {c.source, std::string(c.name) + ", deviation up to 5 s", "m", "-", short_digits(worst, 2), {}, ""});
     worst_texts.push_back(short_digits(1e3 * worst, 2) + " mm (" + c.name + ")");
     if (&c == &kCases[2])
       group.pictures.push_back(
           {"two_masses", "Two masses with backlash: positions at 1 ms and exact",
-           svg_chart({.title = "Two masses with backlash",
-                      .x_label = "time [s]",
-                      .y_label = "position [m]"},
+           svg_chart({.title = "Two masses with backlash", .x_label = "time [s]", .y_label = "position [m]"},
                      {{.name = "mass 1, exact", .x = fine.times(), .y = fine.samples(0)},
                       {.name = "mass 2, exact", .x = fine.times(), .y = fine.samples(1)},
                       {.name = "mass 1, 1 ms", .x = stepped.times(), .y = stepped.samples(0)},
@@ -93,9 +84,9 @@ StudyGroup study_benchmark() {
                there = fastest(build_scene("camshaft", {}).model.build());
   group.verdicts = {
       "\"The two solutions are generally in agreement\": **it " + stands(agree) +
-      ".** Average acceleration at 1 ms stays within " +
-      join(worst_texts, ", ") + " of the exact curves, whose largest positions are " +
-      join(largest_texts, ", ") + " m. It says nothing of the gear drive: here the step is 1/" +
+      ".** Average acceleration at 1 ms stays within " + join(worst_texts, ", ") +
+      " of the exact curves, whose largest positions are " + join(largest_texts, ", ") +
+      " m. It says nothing of the gear drive: here the step is 1/" +
       digits(1.0 / (here * published::kStep), 2) + " of the fastest mode's period, there " +
       digits(there * published::kStep, 2) +
       " periods. Table 4.3 is FEDEM's entry of the dead band, whose stiffness rises over 0.1 mm; "

@@ -48,8 +48,7 @@ std::vector<StudyEntry> chosen(const CommandLine& line) {
       findings.push_back({"command line", "--only", name, "",
                           "is no study; they are " + join(names) + did_you_mean(name, names)});
   if (line.json)
-    findings.push_back(
-        {"command line", "--json", "", "", "is not for drev study; --out writes study.md"});
+    findings.push_back({"command line", "--json", "", "", "is not for drev study; --out writes study.md"});
   if (!findings.empty()) throw ModelError(findings);
   std::vector<StudyEntry> entries;
   for (const StudyEntry& entry : studies())
@@ -67,9 +66,8 @@ int study_command(const CommandLine& line) {
   // Side by side, the longest first: what one leaves of the processors at its end, another takes.
   std::vector<std::size_t> by_work(entries.size());
   std::iota(by_work.begin(), by_work.end(), std::size_t{0});
-  std::stable_sort(by_work.begin(), by_work.end(), [&](std::size_t a, std::size_t b) {
-    return entries[a].work > entries[b].work;
-  });
+  std::stable_sort(by_work.begin(), by_work.end(),
+                   [&](std::size_t a, std::size_t b) { return entries[a].work > entries[b].work; });
   double work = 0.0, done = 0.0;
   for (const StudyEntry& entry : entries) work += entry.work + kLeastWork;
   Progress progress;

@@ -20,8 +20,7 @@ constexpr double kFrequencyRounding =
 constexpr double kNear = 5e-4;  // of critical: what 1 % may be off
 
 double first_frequency(int cylinders, const char* drive) {
-  const Scene scene =
-      build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", drive}});
+  const Scene scene = build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", drive}});
   return solve_modes(scene.model.build(), {.count = 1}).omega(0);
 }
 
@@ -31,14 +30,13 @@ double ratio_at(double omega, double a, double b) { return a / (2.0 * omega) + b
 
 void proportional_damping(StudyTable& table) {
   for (const auto& p : published::kRayleigh) {
-    const double free = first_frequency(p.cylinders, "free"),
-                 held = first_frequency(p.cylinders, "held");
+    const double free = first_frequency(p.cylinders, "free"), held = first_frequency(p.cylinders, "held");
     const std::string cylinders = std::to_string(p.cylinders) + " cylinders, ";
     const auto a = RayleighDamping::mass_proportional(free, 0.01);
     const auto b = RayleighDamping::stiffness_proportional(free, 0.01);
     const auto note = [&](double a_used, double b_used) {
-      return "damps the held shaft's first mode by " +
-             digits(100.0 * ratio_at(held, a_used, b_used), 3) + " %";
+      return "damps the held shaft's first mode by " + digits(100.0 * ratio_at(held, a_used, b_used), 3) +
+             " %";
     };
     table.rows.push_back({"Table 3.2", cylinders + "case 1, a", "1/s", printed(p.case_1_a), "-",
                           exact(a.alpha_mass), note(p.case_1_a, 0.0)});
@@ -52,15 +50,13 @@ void two_mode_damping(StudyTable& table) {
     const std::string cylinders = std::to_string(p.cylinders) + " cylinders, ";
     const auto right = RayleighDamping::from_two_modes(p.omega_1, 0.01, p.omega_2, 0.02);
     table.rows.push_back(
-        {"Table 3.3", cylinders + "case 3, a", "1/s", printed(p.case_3_a), "-",
-         exact(right.alpha_mass),
-         "as printed the damping is " +
-             digits(100.0 * ratio_at(p.omega_1, p.case_3_a, p.case_3_b), 3) + " % and " +
-             digits(100.0 * ratio_at(p.omega_2, p.case_3_a, p.case_3_b), 3) + " %"});
+        {"Table 3.3", cylinders + "case 3, a", "1/s", printed(p.case_3_a), "-", exact(right.alpha_mass),
+         "as printed the damping is " + digits(100.0 * ratio_at(p.omega_1, p.case_3_a, p.case_3_b), 3) +
+             " % and " + digits(100.0 * ratio_at(p.omega_2, p.case_3_a, p.case_3_b), 3) + " %"});
     table.rows.push_back({"Table 3.3", cylinders + "case 3, b", "s", printed(p.case_3_b), "-",
                           exact(right.beta_stiffness),
-                          "printed over right: a " + digits(p.case_3_a / right.alpha_mass, 3) +
-                              ", b 1/" + digits(right.beta_stiffness / p.case_3_b, 3)});
+                          "printed over right: a " + digits(p.case_3_a / right.alpha_mass, 3) + ", b 1/" +
+                              digits(right.beta_stiffness / p.case_3_b, 3)});
   }
 }
 
@@ -68,9 +64,8 @@ void gears(StudyTable& table) {
   const double cosine = std::cos(deg(published::kPressureAngleDeg));
   for (const auto& gear : published::kGears) {
     const double teeth = gear.base_diameter / (gear.module * cosine);
-    table.rows.push_back({"Table 4.1", std::string(gear.name) + ", teeth", "",
-                          std::to_string(gear.teeth), "-",
-                          Known{teeth, 0.0005 / (gear.module * cosine)},
+    table.rows.push_back({"Table 4.1", std::string(gear.name) + ", teeth", "", std::to_string(gear.teeth),
+                          "-", Known{teeth, 0.0005 / (gear.module * cosine)},
                           "from the printed base diameter, known to 0.0005 mm"});
   }
 }
@@ -82,8 +77,7 @@ void mesh_stiffness(StudyTable& table) {
     const double k = mesh.moment / base_radius / mesh.deflection;
     // Moment and deflection are printed to four digits.
     const double error = k * (0.05 / mesh.moment + 5e-10 / mesh.deflection);
-    table.rows.push_back({"Table 4.2", mesh.name, "N/m", printed(mesh.stiffness), "-",
-                          Known{k, error},
+    table.rows.push_back({"Table 4.2", mesh.name, "N/m", printed(mesh.stiffness), "-", Known{k, error},
                           "printed " + percent(mesh.stiffness, k) + ": force at the pitch radius"});
   }
 }
@@ -119,18 +113,15 @@ StudyGroup study_data() {
       "cylinders case 1 damps that mode by " +
           digits(100.0 * ratio_at(held, nine.case_1_a, 0.0), 3) + " % and case 2 by " +
           digits(100.0 * ratio_at(held, 0.0, nine.case_2_b), 3) +
-          " %, not 1 %. Case 3 as printed damps its first two free modes by " +
-          digits(100.0 * third_1, 3) + " % and " + digits(100.0 * third_2, 3) +
-          " %: **that it has 1 % and 2 % " +
+          " %, not 1 %. Case 3 as printed damps its first two free modes by " + digits(100.0 * third_1, 3) +
+          " % and " + digits(100.0 * third_2, 3) + " %: **that it has 1 % and 2 % " +
           stands(std::abs(third_1 - 0.01) < kNear && std::abs(third_2 - 0.02) < kNear) +
           "**; hertz and rad/s are mixed (`damping=case_3_corrected` is the right one). Both are "
           "simulated below.",
       "The big idler has " + digits(drive.rows[1].converged->value, 2) + " teeth, not " +
-          drive.rows[1].published +
-          ". Table 4.2's stiffnesses are " + digits(*low, 3) + " to " + digits(*high, 3) +
-          " of what follows from its own moments and deflections, cos 20 deg being " +
-          digits(std::cos(deg(published::kPressureAngleDeg)), 3) +
-          "; drev's gear drive has the right ones."};
+          drive.rows[1].published + ". Table 4.2's stiffnesses are " + digits(*low, 3) + " to " +
+          digits(*high, 3) + " of what follows from its own moments and deflections, cos 20 deg being " +
+          digits(std::cos(deg(published::kPressureAngleDeg)), 3) + "; drev's gear drive has the right ones."};
   return group;
 }
 

@@ -34,8 +34,7 @@ struct Steady {
 Steady steady_of(const std::vector<Waves>& waves, const Order& order) {
   const Waves all = in_order(waves, order, 0, waves.front().cols());
   Steady result{order, to_deg(peak_of(all.col(0)))};
-  for (Eigen::Index c = 1; c < all.cols(); ++c)
-    result.torque = std::max(result.torque, peak_of(all.col(c)));
+  for (Eigen::Index c = 1; c < all.cols(); ++c) result.torque = std::max(result.torque, peak_of(all.col(c)));
   return result;
 }
 
@@ -64,8 +63,7 @@ double common_part(const std::vector<Waves>& waves) {
   const Eigen::VectorXd all = in_order(waves, order, 0, 1).col(0);
   const Eigen::Index n = sum.size();
   for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index i = 0; i < n; ++i)
-      sum[i] += all[(i + j * n / count) % n] / static_cast<double>(count);
+    for (Eigen::Index i = 0; i < n; ++i) sum[i] += all[(i + j * n / count) % n] / static_cast<double>(count);
   return to_deg(peak_of(sum));
 }
 
@@ -100,8 +98,7 @@ Search search_orders(int cylinders, const std::string& source,
     std::string order, deflection, torque, note;
   };
   std::vector<Shown> shown;
-  for (const auto& p : orders)
-    shown.push_back({p.order, printed(p.deflection), printed(p.torque), ""});
+  for (const auto& p : orders) shown.push_back({p.order, printed(p.deflection), printed(p.torque), ""});
   shown.push_back({order_text(all[0].order), "-", "-", "least steady deflection of all; "});
   shown.push_back({order_text(lightest.order), "-", "-", "least steady torque of all; "});
   const std::string default_order = order_text(default_firing_order(cylinders));
@@ -113,34 +110,28 @@ Search search_orders(int cylinders, const std::string& source,
                      {"firing_order", s.order == default_order ? "default" : s.order}});
   const std::vector<CamshaftCase> runs = run_cases(cases, 2);
 
-  Search result{{std::to_string(cylinders) + " cylinders"},
-                {},
-                {},
-                {}};
+  Search result{{std::to_string(cylinders) + " cylinders"}, {}, {}, {}};
   std::vector<Steady> exact;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const auto at = std::find_if(all.begin(), all.end(), [&](const Steady& s) {
-      return order_text(s.order) == shown[i].order;
-    });
+    const auto at = std::find_if(all.begin(), all.end(),
+                                 [&](const Steady& s) { return order_text(s.order) == shown[i].order; });
     exact.push_back(steady_of(waves, at->order));
-    const std::string rank =
-        std::to_string(at - all.begin() + 1) + " of " + std::to_string(all.size());
+    const std::string rank = std::to_string(at - all.begin() + 1) + " of " + std::to_string(all.size());
     result.table.rows.push_back(
         {i < N ? source : "-", shown[i].order + ", deflection", "deg", shown[i].deflection,
          runs[i].step_cell(&CamshaftFigures::deflection), runs[i].deflection(),
          shown[i].note + "steady " + digits(exact.back().deflection, 4) + ", rank " + rank});
-    result.table.rows.push_back({i < N ? source : "-", shown[i].order + ", torque", "N m",
-                                 shown[i].torque, runs[i].step_cell(&CamshaftFigures::torque),
-                                 runs[i].torque(), "steady " + cell(exact.back().torque)});
+    result.table.rows.push_back({i < N ? source : "-", shown[i].order + ", torque", "N m", shown[i].torque,
+                                 runs[i].step_cell(&CamshaftFigures::torque), runs[i].torque(),
+                                 "steady " + cell(exact.back().torque)});
   }
   const std::string n = std::to_string(cylinders);
   result.verdict = n + " cylinders, steady state: the best order is " + shown[N].order + " with " +
-                   digits(exact[N].deflection, 3) + " deg, the source's " + shown[0].order +
-                   " has " + digits(exact[0].deflection, 3) + " deg, the worst of all " +
-                   order_text(all.back().order) + " " + digits(all.back().deflection, 3) +
-                   " deg. The least torque, " + digits(exact[N + 1].torque, 4) + " N m, has " +
-                   shown[N + 1].order + "; the source's order has " + digits(exact[0].torque, 4) +
-                   " N m.";
+                   digits(exact[N].deflection, 3) + " deg, the source's " + shown[0].order + " has " +
+                   digits(exact[0].deflection, 3) + " deg, the worst of all " + order_text(all.back().order) +
+                   " " + digits(all.back().deflection, 3) + " deg. The least torque, " +
+                   digits(exact[N + 1].torque, 4) + " N m, has " + shown[N + 1].order +
+                   "; the source's order has " + digits(exact[0].torque, 4) + " N m.";
   const double range = all.back().deflection / all[0].deflection;
   const int strongest =
       largest_orders(in_order(waves, default_firing_order(cylinders), 0, 1).col(0))[0].second;
@@ -148,8 +139,7 @@ Search search_orders(int cylinders, const std::string& source,
       "With " + n + " cylinders the worst order has " + digits(range, 2) +
       " times the deflection of the best: **it " + stands(range < kLowEffect) + "**" +
       (range < kLowEffect && strongest % cylinders == 0 ? ", but for another reason" : "") +
-      "; the largest part of the deflection has the frequency of order " +
-      std::to_string(strongest) +
+      "; the largest part of the deflection has the frequency of order " + std::to_string(strongest) +
       (strongest % cylinders == 0 ? ", a multiple of " + n +
                                         " and therefore the same in every firing order, which "
                                         "cannot detune it."

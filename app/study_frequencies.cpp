@@ -22,8 +22,8 @@ struct Differences {
     squares += d * d, worst = std::max(worst, d), ++count;
   }
   std::string text() const {
-    return digits(100.0 * std::sqrt(squares / count), 2) + " % rms, at most " +
-           digits(100.0 * worst, 2) + " %";
+    return digits(100.0 * std::sqrt(squares / count), 2) + " % rms, at most " + digits(100.0 * worst, 2) +
+           " %";
   }
 };
 
@@ -75,11 +75,10 @@ StudyGroup study_frequencies() {
     for (int m = 0; m < kModes; ++m) {
       const auto at = static_cast<std::size_t>(m);
       const double f = modes.frequency_Hz[at];
-      StudyRow row{
-          "-",          std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1),
-          "Hz",         "-",
-          "-",          Known{f, kModeError * f},
-          "not printed"};
+      StudyRow row{"-",          std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1),
+                   "Hz",         "-",
+                   "-",          Known{f, kModeError * f},
+                   "not printed"};
       if (printed != published::kFreeModes.end()) {
         double mbs = printed->mbs[at], fem = printed->fem[at];
         const bool swapped = cylinders == 9 && m == 4;
@@ -88,10 +87,9 @@ StudyGroup study_frequencies() {
         to_fem.add(f, fem);
         row.source = std::string("Table ") + printed->table;
         row.published = digits(printed->mbs[at], printed->mbs[at] < 1000.0 ? 5 : 6);
-        row.note =
-            std::string(swapped ? "printed values swapped, compared in their right places; " : "") +
-            "drev to multibody " + percent(f, mbs) + ", to finite elements (" + digits(fem, 5) +
-            ") " + percent(f, fem);
+        row.note = std::string(swapped ? "printed values swapped, compared in their right places; " : "") +
+                   "drev to multibody " + percent(f, mbs) + ", to finite elements (" + digits(fem, 5) + ") " +
+                   percent(f, fem);
       }
       table.rows.push_back(std::move(row));
       shapes_right = shapes_right && sign_changes(modes.shapes.col(m)) == m + 1;
@@ -103,8 +101,8 @@ StudyGroup study_frequencies() {
   group.verdicts = {
       "The reconstruction has the multibody frequencies to " + to_mbs.text() +
           ", the finite-element ones to " + to_fem.text() +
-          ". Frequencies fall with the number of cylinders, from " + digits(first.front(), 4) +
-          " to " + digits(first.back(), 4) + " Hz: **that conclusion " +
+          ". Frequencies fall with the number of cylinders, from " + digits(first.front(), 4) + " to " +
+          digits(first.back(), 4) + " Hz: **that conclusion " +
           stands(std::is_sorted(first.rbegin(), first.rend())) + "**.",
       std::string("Figures 5.5 to 5.8 and A.1 to A.8: mode m changes its sign ") +
           (shapes_right ? "m times along the shaft, for 6 to 10 cylinders, as a shaft's modes must."

@@ -29,29 +29,28 @@ SettingList gears(const char* damping, double backlash_mm, const char* stiffness
 /// Free motion's growth with gaps closed and stepped stiffness [1/s].
 double growth_at(double engine_rpm, const char* damping, int pieces = kPieces) {
   SettingList settings = gears(damping, 0.0, "step");
-  settings.insert(settings.end(),
-                  {{"loads", "source"}, {"engine_rpm", short_digits(engine_rpm, 8)}});
+  settings.insert(settings.end(), {{"loads", "source"}, {"engine_rpm", short_digits(engine_rpm, 8)}});
   const double period = 60.0 / engine_rpm * 68.0 / 59.0 / 34.0;  // of mesh 2, two of mesh 1
   return mesh_growth(build_scene("camshaft", settings).model.build(), period, pieces);
 }
 
 std::string off_balance(const CamshaftFigures& f) {
-  return f.summary.ok() ? ""
-                        : "; at 1 ms the energy is off by " +
-                              percent(1.0 + f.summary.energy.relative_error(), 1.0);
+  return f.summary.ok()
+             ? ""
+             : "; at 1 ms the energy is off by " + percent(1.0 + f.summary.energy.relative_error(), 1.0);
 }
 
 std::string settled(const CamshaftCase& c) {
   return "settled " + with_error(c.known(&CamshaftFigures::settled_deflection), "deg");
 }
 
-void add_rows(StudyTable& table, const std::string& source, const std::string& name,
-              const CamshaftCase& c, const std::string& deflection, const std::string& torque) {
+void add_rows(StudyTable& table, const std::string& source, const std::string& name, const CamshaftCase& c,
+              const std::string& deflection, const std::string& torque) {
   table.rows.push_back({source, name + ", deflection", "deg", deflection,
                         c.step_cell(&CamshaftFigures::deflection), c.deflection(),
                         settled(c) + off_balance(c.source[0])});
-  table.rows.push_back({source, name + ", torque", "N m", torque,
-                        c.step_cell(&CamshaftFigures::torque), c.torque(),
+  table.rows.push_back({source, name + ", torque", "N m", torque, c.step_cell(&CamshaftFigures::torque),
+                        c.torque(),
                         "settled " + with_error(c.known(&CamshaftFigures::settled_torque), "N m")});
 }
 
@@ -79,12 +78,11 @@ GearStudy run_gear_study() {
   for (const auto& p : published::kBacklash) rattling.push_back(gears("case_1", p.gap));
   const std::vector<CamshaftCase> rattle = run_cases(rattling, kRuns);
   const auto held = [](const char* damping, int cylinders) {
-    return SettingList{
-        {"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
+    return SettingList{{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
   };
   const std::vector<CamshaftCase> smooth =
-      run_cases({held("case_1", 9), held("undamped", 9), gears("case_1", 0.0),
-                 gears("undamped", 0.0), held("case_1", 8)},
+      run_cases({held("case_1", 9), held("undamped", 9), gears("case_1", 0.0), gears("undamped", 0.0),
+                 held("case_1", 8)},
                 2);
   SettingList varying = gears("case_1", 0.0, "step");
   varying.push_back({"loads", "source"});
@@ -138,8 +136,7 @@ StudyGroup study_gear_drive() {
   add_rows(drive, "-", "0.15 mm, case 3 corrected", s.corrected, "-", "-");
 
   StudyTable backlash{"Backlash, case 1"};
-  ChartSeries source{.name = "published", .markers = true},
-      stepped{.name = "drev, 1 ms", .markers = true},
+  ChartSeries source{.name = "published", .markers = true}, stepped{.name = "drev, 1 ms", .markers = true},
       known{.name = "converged, largest", .markers = true},
       calm{.name = "converged, settled", .markers = true};
   known.x = calm.x = {0.0};
@@ -149,18 +146,17 @@ StudyGroup study_gear_drive() {
     const auto& p = published::kBacklash[i];
     const CamshaftCase& c = s.gaps[i];
     backlash.rows.push_back({"Table 5.13", short_digits(p.gap, 3) + " mm, deflection", "deg",
-                             printed(p.deflection), c.step_cell(&CamshaftFigures::deflection),
-                             c.deflection(), settled(c) + off_balance(c.source[0])});
+                             printed(p.deflection), c.step_cell(&CamshaftFigures::deflection), c.deflection(),
+                             settled(c) + off_balance(c.source[0])});
     for (ChartSeries* series : {&source, &stepped, &known, &calm}) series->x.push_back(p.gap);
     source.y.push_back(p.deflection);
     stepped.y.push_back(c.at_step(&CamshaftFigures::deflection));
     known.y.push_back(c.deflection().value);
     calm.y.push_back(c.known(&CamshaftFigures::settled_deflection).value);
   }
-  backlash.rows.push_back(
-      {"Figure 5.19", "0.15 mm, 8 cylinders, deflection", "deg", "-",
-       s.eight.step_cell(&CamshaftFigures::deflection), s.eight.deflection(),
-       "the figure's caption says 8 cylinders; Table 5.13 has Table 5.12's value of 9"});
+  backlash.rows.push_back({"Figure 5.19", "0.15 mm, 8 cylinders, deflection", "deg", "-",
+                           s.eight.step_cell(&CamshaftFigures::deflection), s.eight.deflection(),
+                           "the figure's caption says 8 cylinders; Table 5.13 has Table 5.12's value of 9"});
   group.pictures.push_back({"backlash", "Deflection over backlash, 9 cylinders, case 1",
                             svg_chart({.title = "Backlash and deflection",
                                        .x_label = "backlash of each mesh [mm]",
@@ -168,22 +164,19 @@ StudyGroup study_gear_drive() {
                                       {source, stepped, known, calm})});
 
   std::vector<double> speeds, growth(61), growth_undamped(61);
-  for (std::size_t i = 0; i < growth.size(); ++i)
-    speeds.push_back(500.0 + 5.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < growth.size(); ++i) speeds.push_back(500.0 + 5.0 * static_cast<double>(i));
   for_all(2 * growth.size(), [&](std::size_t i) {
     const std::size_t at = i / 2;
-    (i % 2 == 0 ? growth : growth_undamped)[at] =
-        growth_at(speeds[at], i % 2 == 0 ? "case_1" : "undamped");
+    (i % 2 == 0 ? growth : growth_undamped)[at] = growth_at(speeds[at], i % 2 == 0 ? "case_1" : "undamped");
   });
-  group.pictures.push_back(
-      {"mesh_growth",
-       "Growth of free motion under stepped mesh stiffness, gaps closed, 9 cylinders",
-       svg_chart({.title = "Parametric instability by the meshes",
-                  .x_label = "engine speed [rpm]",
-                  .y_label = "growth [1/s]",
-                  .vertical_lines = {{published::kEngineRpm, "750 rpm"}}},
-                 {{.name = "undamped", .x = speeds, .y = growth_undamped},
-                  {.name = "case 1", .x = speeds, .y = growth}})});
+  group.pictures.push_back({"mesh_growth",
+                            "Growth of free motion under stepped mesh stiffness, gaps closed, 9 cylinders",
+                            svg_chart({.title = "Parametric instability by the meshes",
+                                       .x_label = "engine speed [rpm]",
+                                       .y_label = "growth [1/s]",
+                                       .vertical_lines = {{published::kEngineRpm, "750 rpm"}}},
+                                      {{.name = "undamped", .x = speeds, .y = growth_undamped},
+                                       {.name = "case 1", .x = speeds, .y = growth}})});
   StudyTable stiffness{"Mesh stiffness, case 1"};
   const auto &constant = published::kStiffness[0], &varying = published::kStiffness[1];
   add_rows(stiffness, "Table 5.14", "no backlash, constant", s.tight, printed(constant.deflection),
@@ -195,25 +188,23 @@ StudyGroup study_gear_drive() {
                             cell(s.varying_at_step.deflection),
                             {},
                             s.growth.value > 0.0 ? "unstable: no value to converge to" : "stable"});
-  stiffness.rows.push_back(
-      {"Table 5.14",
-       "no backlash, varying, torque",
-       "N m",
-       printed(varying.torque),
-       cell(s.varying_at_step.torque),
-       {},
-       "1 ms samples the meshes' 737.5 and 368.8 Hz 1.4 and 2.7 times a period"});
-  stiffness.rows.push_back({"-", "no backlash, varying, growth of free motion", "1/s", "-", "-",
-                            s.growth, "by Floquet's theorem; positive: unstable"});
-  stiffness.rows.push_back(
-      {"Table 5.14",
-       "iterations, constant; varying",
-       "",
-       std::to_string(constant.iterations) + "; " + std::to_string(varying.iterations),
-       std::to_string(s.tight.source[0].summary.iterations) + "; " +
-           std::to_string(s.varying_at_step.summary.iterations),
-       {},
-       "5000 steps"});
+  stiffness.rows.push_back({"Table 5.14",
+                            "no backlash, varying, torque",
+                            "N m",
+                            printed(varying.torque),
+                            cell(s.varying_at_step.torque),
+                            {},
+                            "1 ms samples the meshes' 737.5 and 368.8 Hz 1.4 and 2.7 times a period"});
+  stiffness.rows.push_back({"-", "no backlash, varying, growth of free motion", "1/s", "-", "-", s.growth,
+                            "by Floquet's theorem; positive: unstable"});
+  stiffness.rows.push_back({"Table 5.14",
+                            "iterations, constant; varying",
+                            "",
+                            std::to_string(constant.iterations) + "; " + std::to_string(varying.iterations),
+                            std::to_string(s.tight.source[0].summary.iterations) + "; " +
+                                std::to_string(s.varying_at_step.summary.iterations),
+                            {},
+                            "5000 steps"});
   add_rows(stiffness, "-", "0.15 mm, constant", s.gap(), "-", "-");
   add_rows(stiffness, "-", "0.15 mm, varying", s.varying, "-", "-");
   group.tables = {std::move(drive), std::move(backlash), std::move(stiffness)};

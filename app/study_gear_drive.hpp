@@ -9,11 +9,10 @@ struct GearStudy {
   CamshaftCase held, held_undamped, tight, tight_undamped, held_8;
   /// With 0.15 mm: damping cases; case 1 with mesh stiffness that steps, and with 8 cylinders.
   CamshaftCase undamped, case_2, corrected, varying, eight;
-  std::vector<CamshaftCase> gaps;  ///< case 1, each of published::kBacklash
-  CamshaftFigures
-      varying_at_step;   ///< no backlash, case 1, stepped stiffness, at the source's step
-  Known growth;          ///< of free motion in that case [1/s]
-  double first_8 = 0.0;  ///< Hz, first mode of 8 cylinders with the drive
+  std::vector<CamshaftCase> gaps;   ///< case 1, each of published::kBacklash
+  CamshaftFigures varying_at_step;  ///< no backlash, case 1, stepped stiffness, at the source's step
+  Known growth;                     ///< of free motion in that case [1/s]
+  double first_8 = 0.0;             ///< Hz, first mode of 8 cylinders with the drive
   const CamshaftCase& gap() const { return gaps[1]; }  ///< 0.15 mm, case 1
 };
 

@@ -39,7 +39,7 @@ Known over(const Known& known, double divisor) {
 struct Shaft {
   StudyTable table;
   std::vector<double> at_step = {}, converged = {};  // amplification of each damping
-  int largest_order = 0;                   // of the deflection, case 1
+  int largest_order = 0;                             // of the deflection, case 1
 };
 
 /// Largest torque of the shaft turning at 15 rpm, the source's "static" one, at its step; second revolution.
@@ -69,16 +69,14 @@ Shaft rows(const published::Transient& p, const CamshaftCase* cases, double at_r
     shaft.table.rows.push_back(
         {source, name + ", deflection", "deg", in_table ? printed(p.deflection[d]) : "-",
          c.step_cell(&CamshaftFigures::deflection), c.deflection(),
-         "the step is off by " +
-             percent(c.at_step(&CamshaftFigures::deflection), c.deflection().value)});
+         "the step is off by " + percent(c.at_step(&CamshaftFigures::deflection), c.deflection().value)});
     if (d == 0)
       shaft.table.rows.push_back(
-          {table, name + ", torque", "N m", printed(p.torque),
-           c.step_cell(&CamshaftFigures::torque), c.torque(),
+          {table, name + ", torque", "N m", printed(p.torque), c.step_cell(&CamshaftFigures::torque),
+           c.torque(),
            "the step is off by " + percent(c.at_step(&CamshaftFigures::torque), c.torque().value)});
     shaft.table.rows.push_back({source, name + ", dynamic amplification", "-",
-                                in_table ? printed(p.amplification[d]) : "-", cell(factor_at_step),
-                                factor,
+                                in_table ? printed(p.amplification[d]) : "-", cell(factor_at_step), factor,
                                 "the step is off by " + percent(factor_at_step, factor.value)});
   }
   shaft.table.rows.push_back(
@@ -116,9 +114,8 @@ std::string step_statement(const std::vector<Shaft>& shafts) {
   std::vector<std::string> parts;
   for (std::size_t s = 0; s < shafts.size(); ++s)
     parts.push_back(std::to_string(published::kTransient[s].cylinders) + " cylinders " +
-                    digits(shafts[s].at_step[0], 3) + " against " +
-                    digits(shafts[s].converged[0], 3) + " undamped, " +
-                    digits(shafts[s].at_step[1], 3) + " against " +
+                    digits(shafts[s].at_step[0], 3) + " against " + digits(shafts[s].converged[0], 3) +
+                    " undamped, " + digits(shafts[s].at_step[1], 3) + " against " +
                     digits(shafts[s].converged[1], 3) + " in case 1");
   std::vector<std::string> low, high;
   for (std::size_t s = 0; s < shafts.size(); ++s)
@@ -133,9 +130,9 @@ std::string step_statement(const std::vector<Shaft>& shafts) {
   };
   return "Dynamic amplification at 1 ms against converged: " + join(parts, "; ") +
          ". **The published tables are " + (off > kConverged ? "not " : "") +
-         "converged in time**: the step changes them by up to " +
-         digits(100.0 * off, 2) + " %; in case 1 it shows too little for " +
-         which(low) + " cylinders and too much for " + which(high) + ".";
+         "converged in time**: the step changes them by up to " + digits(100.0 * off, 2) +
+         " %; in case 1 it shows too little for " + which(low) + " cylinders and too much for " +
+         which(high) + ".";
 }
 
 }  // namespace
@@ -162,8 +159,7 @@ StudyGroup study_held() {
     SettingList settings = held(p.cylinders, "case_1");
     settings.push_back({"loads", "source"});
     shafts.push_back(rows(p, &cases[s * std::size(kDampings)],
-                          static_torque(build_scene("camshaft", settings)),
-                          slow_torque(p.cylinders)));
+                          static_torque(build_scene("camshaft", settings)), slow_torque(p.cylinders)));
     constexpr const char* kSpectra[] = {"Figure 5.15", "Figure 5.14", "Figure 5.13"};
     shafts.back().largest_order = add_orders(p, kSpectra[s], shafts.back().table);
     group.tables.push_back(shafts.back().table);
@@ -172,16 +168,14 @@ StudyGroup study_held() {
   const CamshaftCase& actual = cases.back();
   group.tables.push_back(
       {"Loads at the actual angle: 9 cylinders, case 1",
-       {{"-", "deflection", "deg", "-", actual.step_cell(&CamshaftFigures::deflection),
-         actual.deflection(),
+       {{"-", "deflection", "deg", "-", actual.step_cell(&CamshaftFigures::deflection), actual.deflection(),
          "the twist's feedback changes it by " +
              percent(actual.deflection().value, fixed.deflection().value)},
         {"-", "torque", "N m", "-", actual.step_cell(&CamshaftFigures::torque), actual.torque(),
          "by " + percent(actual.torque().value, fixed.torque().value)}}});
 
   const auto first_mode = [](int cylinders) {
-    return solve_modes(build_scene("camshaft", held(cylinders, "undamped")).model.build(),
-                       {.count = 1})
+    return solve_modes(build_scene("camshaft", held(cylinders, "undamped")).model.build(), {.count = 1})
         .frequency_Hz[0];
   };
   const auto shown = [](double f) { return shown_at_step(f, published::kStep); };
@@ -203,22 +197,19 @@ StudyGroup study_held() {
       "Resonance of the 8-cylinder shaft with the 16th order (" + digits(order_16, 4) +
           " Hz): the first mode is at " + digits(first, 4) + " Hz, " + percent(first, order_16) +
           " from it; at 1 ms it acts as " + digits(shown(first), 4) + " Hz, " +
-          percent(shown(first), order_16) + ", so that the resonance is at " +
-          digits(7.5 * first, 4) + " rpm and at 1 ms at " + digits(7.5 * shown(first), 4) +
-          " rpm. " +
-          (worst_everywhere
-               ? "**The conclusion stands in kind**: the 8-cylinder shaft is the worst in every "
-                 "damping case, with "
-               : "**The conclusion stands in part**: amplifications are ") +
-          digits(shafts[1].converged[1], 3) + " beside " + digits(shafts[0].converged[1], 3) +
-          " and " + digits(shafts[2].converged[1], 3) +
-          " in case 1. The step changes its factor by " +
+          percent(shown(first), order_16) + ", so that the resonance is at " + digits(7.5 * first, 4) +
+          " rpm and at 1 ms at " + digits(7.5 * shown(first), 4) + " rpm. " +
+          (worst_everywhere ? "**The conclusion stands in kind**: the 8-cylinder shaft is the worst in every "
+                              "damping case, with "
+                            : "**The conclusion stands in part**: amplifications are ") +
+          digits(shafts[1].converged[1], 3) + " beside " + digits(shafts[0].converged[1], 3) + " and " +
+          digits(shafts[2].converged[1], 3) + " in case 1. The step changes its factor by " +
           percent(shafts[1].at_step[1], shafts[1].converged[1]) + ".",
       "Damping: from undamped to case 1 the converged amplification of 8 cylinders falls from " +
           digits(shafts[1].converged[0], 3) + " to " + digits(shafts[1].converged[1], 3) +
           "; case 3 as printed gives " + digits(shafts[1].converged[3], 3) + ", corrected " +
-          digits(shafts[1].converged[4], 3) +
-          ". **That damping matters " + stands(damping_matters) + "**, but of all undamped figures "
+          digits(shafts[1].converged[4], 3) + ". **That damping matters " + stands(damping_matters) +
+          "**, but of all undamped figures "
           "only those of runs of "
           "the same length "
           "can be compared: nothing in them settles.",
@@ -228,8 +219,7 @@ StudyGroup study_held() {
           " Hz), which has the largest part in the deflection; at 1 ms it acts as " +
           digits(shown(first_6), 4) + " Hz, " + percent(shown(first_6), excitation_6) +
           ". Its amplification is " + digits(shafts[0].converged[1], 3) + " in case 1, not " +
-          printed(published::kTransient[0].amplification[1]) + ", and " +
-          digits(shafts[0].converged[0], 3) +
+          printed(published::kTransient[0].amplification[1]) + ", and " + digits(shafts[0].converged[0], 3) +
           " undamped. **It " + stands(far_6) + "**" +
           (!far_6 && hidden_6 ? ": the step hid the resonance." : ".")};
   return group;

@@ -19,16 +19,14 @@ constexpr int kHeldModes = 3;
 constexpr double kStart = 1e-3;  // rad, of the free end
 
 /// The inverse of shown_at_step().
-double true_one(double shown_Hz, double h) {
-  return to_hz(2.0 / h * std::tan(0.5 * hz(shown_Hz) * h));
-}
+double true_one(double shown_Hz, double h) { return to_hz(2.0 / h * std::tan(0.5 * hz(shown_Hz) * h)); }
 
 /// The held camshaft without loads, let go with its free end turned.
 System let_go(int cylinders) {
-  const Model full = build_scene("camshaft", {{"cylinders", std::to_string(cylinders)},
-                                              {"drive", "held"},
-                                              {"damping", "undamped"}})
-                         .model;
+  const Model full =
+      build_scene("camshaft",
+                  {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}})
+          .model;
   Model model("let_go");
   for (const std::string& node : full.node_names()) model.add_node(node);
   for (const Placement& p : full.placements())
@@ -43,8 +41,8 @@ std::vector<double> decay_frequencies(const System& system, const Method& method
                                       const std::vector<double>& expected) {
   Recorder recorder(system, {"end.angle_rad"}, published::kStep);
   run_watched(system, method, published::kDuration, {&recorder});
-  const auto peaks = spectrum_peaks(
-      spectrum(recorder.samples(0), published::kStep, {.window = Window::hann}), 20, 5.0);
+  const auto peaks =
+      spectrum_peaks(spectrum(recorder.samples(0), published::kStep, {.window = Window::hann}), 20, 5.0);
   std::vector<double> found;
   for (const double f : expected)
     found.push_back(std::min_element(peaks.begin(), peaks.end(), [&](const auto& a, const auto& b) {
@@ -96,12 +94,11 @@ StudyGroup study_held_frequencies() {
                             : cylinders == 8 ? "Figure 5.10"
                             : cylinders == 9 ? "Figure 5.11"
                                              : "Figure A.10",
-                            std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1),
-                            "Hz", in_text ? printed(published::kHeldFirst8) : "-",
-                            digits(stepped[at], 5), Known{f, kModeError * f},
-                            "by the step's formula " + digits(by_step[at], 5) +
-                                ", exact motion's spectrum " + digits(exact[at], 5) +
-                                (f > 0.5 / h ? " (folded)" : "")});
+                            std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1), "Hz",
+                            in_text ? printed(published::kHeldFirst8) : "-", digits(stepped[at], 5),
+                            Known{f, kModeError * f},
+                            "by the step's formula " + digits(by_step[at], 5) + ", exact motion's spectrum " +
+                                digits(exact[at], 5) + (f > 0.5 / h ? " (folded)" : "")});
     }
   }
   group.tables.push_back(std::move(table));
@@ -109,14 +106,11 @@ StudyGroup study_held_frequencies() {
       "The printed " + digits(published::kHeldFirst8, 5) +
           " Hz is no frequency of the shaft: it is what a step of 1 ms shows of " +
           digits(true_one(published::kHeldFirst8, h), 5) + " Hz. On the reconstruction a mode of " +
-          digits(first_8, 5) + " Hz shows as " + digits(shown_8, 5) +
-          " Hz. **The frequency " +
-          stands(std::abs(published::kHeldFirst8 - first_8) <=
-                 std::abs(published::kHeldFirst8 - shown_8)) +
+          digits(first_8, 5) + " Hz shows as " + digits(shown_8, 5) + " Hz. **The frequency " +
+          stands(std::abs(published::kHeldFirst8 - first_8) <= std::abs(published::kHeldFirst8 - shown_8)) +
           "**; of the second mode of 8 cylinders 1 ms shows a frequency that is off by " +
           percent(second_off, 1.0) + ".",
-      "The spectra at 1 ms agree with the step's formula to " + digits(worst, 2) +
-          " Hz" +
+      "The spectra at 1 ms agree with the step's formula to " + digits(worst, 2) + " Hz" +
           (worst < 0.01 * (first_8 - shown_8) ? ", so that the step alone makes the difference"
                                               : "; the rest is not the step's") +
           ". The source's remark that the step "

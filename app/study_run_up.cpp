@@ -35,18 +35,15 @@ struct RunUp {
 
 RunUp run_one(int cylinders, const char* damping, const Method& method) {
   const RayleighCase rayleigh = rayleigh_case(damping, cylinders);
-  const Scene held =
-      build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}});
+  const Scene held = build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}});
   Model model("run_up");
-  add_camshaft(model, {.cylinders = cylinders,
-                       .twist_feedback = false,
-                       .rayleigh_a = rayleigh.a,
-                       .rayleigh_b = rayleigh.b});
+  add_camshaft(
+      model,
+      {.cylinders = cylinders, .twist_feedback = false, .rayleigh_a = rayleigh.a, .rayleigh_b = rayleigh.b});
   model.hold("gear");
   model.set_reference("gear", run_up(rpm(0.5 * kSlow), rpm(0.5 * kFast), 0.0, kTime));
   const System system = model.build();
-  WindowPeaks deflection(find_channels(system, {held.deflection}), method.exact(), 0.0,
-                         kTime / kWindows);
+  WindowPeaks deflection(find_channels(system, {held.deflection}), method.exact(), 0.0, kTime / kWindows);
   WindowPeaks torque(find_channels(system, held.torques), method.exact(), 0.0, kTime / kWindows);
   run_watched(system, method, kTime, {&deflection, &torque});
   RunUp result{deflection.amplitudes(), torque.amplitudes()};
@@ -74,8 +71,7 @@ StudyRow row_of(const std::string& source, const std::string& name, const std::s
           "curve only",
           cell(step[at_step]),
           from_two(coarse[top(coarse)], fine[at], kRunUpFine),
-          "at " + digits(speed_of(at), 3) + " rpm; at 1 ms at " + digits(speed_of(at_step), 3) +
-              " rpm"};
+          "at " + digits(speed_of(at), 3) + " rpm; at 1 ms at " + digits(speed_of(at_step), 3) + " rpm"};
 }
 
 /// Case 1 in the steady state at each window's speed: deflection [deg].
@@ -83,8 +79,7 @@ std::vector<double> steady(int cylinders) {
   const SteadyShaft shaft(cylinders);
   std::vector<double> peaks(kWindows);
   for_all(kWindows, [&](std::size_t w) {
-    peaks[w] = to_deg(
-        peak_of(shaft.deflection(rpm(0.5 * speed_of(w)), rayleigh_case("case_1", cylinders))));
+    peaks[w] = to_deg(peak_of(shaft.deflection(rpm(0.5 * speed_of(w)), rayleigh_case("case_1", cylinders))));
   });
   return peaks;
 }
@@ -122,17 +117,16 @@ StudyGroup study_run_up() {
       const RunUp* of = &runs[(s * std::size(kRunUpDampings) + d) * kKinds];
       const std::string figure = "Figure 5." + std::to_string(16 + s),
                         other = "Figure A." + std::to_string(11 + s);
-      table.rows.push_back(row_of(figure, std::string(kNames[d]) + ", deflection", "deg",
-                                  of[0].deflection, of[1].deflection, of[2].deflection));
+      table.rows.push_back(row_of(figure, std::string(kNames[d]) + ", deflection", "deg", of[0].deflection,
+                                  of[1].deflection, of[2].deflection));
       table.rows.push_back(row_of(other, std::string(kNames[d]) + ", torque", "N m", of[0].torque,
                                   of[1].torque, of[2].torque));
       deflections.push_back({.name = kNames[d], .x = speeds, .y = of[2].deflection});
       torques.push_back({.name = kNames[d], .x = speeds, .y = of[2].torque});
       if (d == 0) {
         same_speeds = same_speeds && top(of[0].deflection) == top(of[2].deflection);
-        undamped_tops.push_back(n + " cylinders " +
-                                digits(of[2].deflection[top(of[2].deflection)], 3) + " deg at " +
-                                digits(speed_of(top(of[2].deflection)), 3) + " rpm (at 1 ms " +
+        undamped_tops.push_back(n + " cylinders " + digits(of[2].deflection[top(of[2].deflection)], 3) +
+                                " deg at " + digits(speed_of(top(of[2].deflection)), 3) + " rpm (at 1 ms " +
                                 digits(of[0].deflection[top(of[0].deflection)], 3) + " deg at " +
                                 digits(speed_of(top(of[0].deflection)), 3) + " rpm)");
       }
@@ -141,9 +135,10 @@ StudyGroup study_run_up() {
         const std::vector<double> still = steady(kShafts[s]);
         deflections.push_back({.name = "case 1, steady", .x = speeds, .y = still});
         const double ramped = of[2].deflection[top(of[2].deflection)];
-        undamped_over_case_1.push_back(runs[s * std::size(kRunUpDampings) * kKinds + 2].deflection[top(
-                                           runs[s * std::size(kRunUpDampings) * kKinds + 2].deflection)] /
-                                       ramped);
+        undamped_over_case_1.push_back(
+            runs[s * std::size(kRunUpDampings) * kKinds + 2]
+                .deflection[top(runs[s * std::size(kRunUpDampings) * kKinds + 2].deflection)] /
+            ramped);
         ramp_over_steady.push_back(ramped / still[top(still)]);
         ramp_and_steady.push_back(n + " cylinders " + digits(still[top(still)], 3) + " deg at " +
                                   digits(speed_of(top(still)), 3) + " rpm steady, " +
@@ -152,10 +147,9 @@ StudyGroup study_run_up() {
       }
     }
     group.tables.push_back(std::move(table));
-    const auto picture = [&](const std::string& name, const std::string& what,
-                             const std::string& unit, const std::vector<ChartSeries>& series) {
-      group.pictures.push_back({"run_up_" + name + "_" + n,
-                                "Run-up of " + n + " cylinders: " + what,
+    const auto picture = [&](const std::string& name, const std::string& what, const std::string& unit,
+                             const std::vector<ChartSeries>& series) {
+      group.pictures.push_back({"run_up_" + name + "_" + n, "Run-up of " + n + " cylinders: " + what,
                                 svg_chart({.title = "Run-up, " + n + " cylinders",
                                            .x_label = "engine speed [rpm]",
                                            .y_label = what + " [" + unit + "]"},
@@ -167,15 +161,13 @@ StudyGroup study_run_up() {
   group.verdicts = {
       "\"Without damping these peaks are large\", as at 600 rpm with 9 cylinders: undamped, the "
       "largest are " +
-          join(undamped_tops, "; ") +
-          ", " + range(undamped_over_case_1, 1.0) +
+          join(undamped_tops, "; ") + ", " + range(undamped_over_case_1, 1.0) +
           " times those of case 1. **That damping is needed where the shaft passes critical speeds " +
-          stands(*std::min_element(undamped_over_case_1.begin(), undamped_over_case_1.end()) >
-                 kNeeded) +
+          stands(*std::min_element(undamped_over_case_1.begin(), undamped_over_case_1.end()) > kNeeded) +
           "**; where those speeds lie " + stands(same_speeds) +
           (same_speeds ? "." : ", since 1 ms puts every frequency too low."),
-      "In case 1 the largest of all speeds is " + join(ramp_and_steady, "; ") +
-          ": the ramp reaches " + range(ramp_over_steady, 100.0) + " % of the steady state's peaks."};
+      "In case 1 the largest of all speeds is " + join(ramp_and_steady, "; ") + ": the ramp reaches " +
+          range(ramp_over_steady, 100.0) + " % of the steady state's peaks."};
   return group;
 }
 

@@ -69,16 +69,14 @@ Method exact_method(double tolerance) { return {.name = "exact", .tolerance = to
 
 RunSummary run_watched(const System& system, const Method& method, double t_end,
                        const std::vector<Observer*>& observers) {
-  const RunSummary summary =
-      run_method(system, method,
-                 {.t_end = t_end, .progress = [](double) { return !interrupted(); }}, observers);
+  const RunSummary summary = run_method(
+      system, method, {.t_end = t_end, .progress = [](double) { return !interrupted(); }}, observers);
   if (!summary.ok() && summary.status != RunStatus::energy_error)
     throw SolverError(system.name() + ": " + summary.reason);
   return summary;
 }
 
-WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start,
-                         double length)
+WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start, double length)
     : peaks_(std::move(channels), inside_steps),
       start_(start),
       length_(length),
@@ -107,8 +105,7 @@ CamshaftFigures make_run(const SettingList& settings, const Method& method, doub
   Peaks deflection(find_channels(system, {scene.deflection}));
   Peaks torque(find_channels(system, scene.torques));
   const double revolution = scene.static_turn / system.reference_speed();
-  WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled,
-                                 revolution);
+  WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled, revolution);
   WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
   ContactStatistics contacts(system, inside);
   std::vector<Observer*> observers{&contacts};
@@ -172,17 +169,15 @@ double CamshaftCase::at_step(Member member) const {
 
 std::string CamshaftCase::step_cell(Member member) const {
   if (!statistic) return cell(source[0].*member);
-  const auto [low, high] =
-      std::minmax_element(source.begin(), source.end(),
-                          [member](const auto& a, const auto& b) { return a.*member < b.*member; });
-  return digits(at_step(member), 4) + " (" + digits((*low).*member, 3) + " to " +
-         digits((*high).*member, 3) + ")";
+  const auto [low, high] = std::minmax_element(
+      source.begin(), source.end(), [member](const auto& a, const auto& b) { return a.*member < b.*member; });
+  return digits(at_step(member), 4) + " (" + digits((*low).*member, 3) + " to " + digits((*high).*member, 3) +
+         ")";
 }
 
 std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int runs) {
   const bool statistic = runs > 2;
-  const std::size_t at_step = statistic ? kStepRuns : 1,
-                    each = at_step + static_cast<std::size_t>(runs);
+  const std::size_t at_step = statistic ? kStepRuns : 1, each = at_step + static_cast<std::size_t>(runs);
   std::vector<CamshaftCase> results(cases.size());
   for (CamshaftCase& result : results) {
     result.statistic = statistic;
@@ -195,14 +190,12 @@ std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int r
     CamshaftCase& result = results[i / each];
     const std::size_t run = i % each;
     if (run < at_step) {
-      result.source[run] =
-          run_camshaft(settings, source_method(), kNudge * static_cast<double>(run));
+      result.source[run] = run_camshaft(settings, source_method(), kNudge * static_cast<double>(run));
       return;
     }
     const std::size_t k = run - at_step;
-    result.exact[k] =
-        statistic ? run_camshaft(settings, exact_method(1e-10), kNudge * static_cast<double>(k))
-                  : run_camshaft(settings, exact_method(k == 0 ? kCoarse : kFine), 0.0);
+    result.exact[k] = statistic ? run_camshaft(settings, exact_method(1e-10), kNudge * static_cast<double>(k))
+                                : run_camshaft(settings, exact_method(k == 0 ? kCoarse : kFine), 0.0);
   });
   return results;
 }
@@ -210,8 +203,8 @@ std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int r
 double static_torque(const Scene& scene) {
   const System system = scene.model.build();
   double largest = 0.0;
-  for (const Peak& peak : static_sweep(system, find_channels(system, scene.torques), 0.0,
-                                       scene.static_turn, kStaticAngles))
+  for (const Peak& peak :
+       static_sweep(system, find_channels(system, scene.torques), 0.0, scene.static_turn, kStaticAngles))
     largest = std::max(largest, peak.amplitude());
   return largest;
 }
@@ -237,8 +230,7 @@ std::string printed(double value) { return short_digits(value, 6); }
 
 std::string percent(double value, double reference) {
   const double change = 100.0 * (value / reference - 1.0);
-  return (change < 0.0 ? "-" : "+") + digits(std::abs(change), std::abs(change) < 1.0 ? 1 : 2) +
-         " %";
+  return (change < 0.0 ? "-" : "+") + digits(std::abs(change), std::abs(change) < 1.0 ? 1 : 2) + " %";
 }
 
 }  // namespace drev::app

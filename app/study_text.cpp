@@ -18,22 +18,20 @@ std::string error_text(const StudyRow& row) {
 }
 
 std::string cell_text(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
-    text.insert(at, "\\");
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
   return text.empty() ? " " : text;
 }
 
 std::string table_text(const StudyTable& table) {
-  std::string text =
-      "### " + table.title +
-      "\n\n"
-      "| source | quantity | unit | published | drev at 1 ms | converged | error | note |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+  std::string text = "### " + table.title +
+                     "\n\n"
+                     "| source | quantity | unit | published | drev at 1 ms | converged | error | note |\n"
+                     "|---|---|---|---|---|---|---|---|\n";
   for (const StudyRow& row : table.rows) {
     const std::string converged = row.converged ? known_text(*row.converged) : "-";
     text += "|";
-    for (const std::string& item : {row.source, row.name, row.unit, row.published,
-                                    row.at_source_step, converged, error_text(row), row.note})
+    for (const std::string& item : {row.source, row.name, row.unit, row.published, row.at_source_step,
+                                    converged, error_text(row), row.note})
       text += " " + cell_text(item) + " |";
     text += "\n";
   }
@@ -63,8 +61,7 @@ std::string known_text(const Known& known) {
   return size < 1e7 ? digits(known.value, places) : short_digits(known.value, places);
 }
 
-std::string study_as_markdown(const std::vector<StudyGroup>& groups,
-                              const std::string& picture_folder) {
+std::string study_as_markdown(const std::vector<StudyGroup>& groups, const std::string& picture_folder) {
   std::string text = "# The source's studies, repeated\n\n";
   text += paragraph(
       "Made by `drev study`; do not edit. The source (S. L. Sunde, Mechanical analysis of camshaft "

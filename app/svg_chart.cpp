@@ -33,12 +33,23 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&apos;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&apos;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
     }
   }
   return out;
@@ -68,18 +79,14 @@ struct Tick {
 /// One axis: data range, ticks, and the map from data to pixels.
 struct Axis {
   bool log = false;
-  double low = 0.0, high = 1.0;  // log10 where log
+  double low = 0.0, high = 1.0;   // log10 where log
   double begin = 0.0, end = 1.0;  // px of low and high
   std::vector<Tick> ticks = {};
   std::string label = {};
 
   double scale(double value) const { return log ? std::log10(value) : value; }
-  double pixel(double value) const {
-    return begin + (scale(value) - low) / (high - low) * (end - begin);
-  }
-  double at(const Tick& tick) const {
-    return begin + (tick.at - low) / (high - low) * (end - begin);
-  }
+  double pixel(double value) const { return begin + (scale(value) - low) / (high - low) * (end - begin); }
+  double at(const Tick& tick) const { return begin + (tick.at - low) / (high - low) * (end - begin); }
 };
 
 /// 1, 2 or 5 times a power of ten: at most `most` steps in the range.
@@ -96,12 +103,10 @@ void add_linear_ticks(Axis& axis, double most) {
   const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
   // Large and small numbers are written in thousands, thousandths, ...
   int thousands = 0;
-  if (largest >= 1e5 || largest < 1e-2)
-    thousands = static_cast<int>(std::floor(std::log10(largest) / 3.0));
+  if (largest >= 1e5 || largest < 1e-2) thousands = static_cast<int>(std::floor(std::log10(largest) / 3.0));
   const double unit = std::pow(1000.0, thousands);
   if (thousands != 0) axis.label += " (×10" + superscript(3 * thousands) + ")";
-  const int decimals =
-      std::clamp(static_cast<int>(std::ceil(-std::log10(step / unit) - 1e-9)), 0, 12);
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step / unit) - 1e-9)), 0, 12);
   const double first = std::ceil(axis.low / step - 1e-9), last = std::floor(axis.high / step + 1e-9);
   for (double i = first; i <= last; i += 1.0)
     axis.ticks.push_back({i * step, number(i * step / unit, decimals)});
@@ -128,8 +133,7 @@ void add_log_ticks(Axis& axis, double most) {
       const double at = n + std::log10(factor);
       if (!shown(at)) continue;
       const bool labelled = between && std::abs(power) <= 4 && (factor == 2 || factor == 5);
-      axis.ticks.push_back(
-          {at, labelled ? number(factor * std::pow(10.0, n), std::max(0, -power)) : ""});
+      axis.ticks.push_back({at, labelled ? number(factor * std::pow(10.0, n), std::max(0, -power)) : ""});
     }
   }
 }
@@ -210,8 +214,7 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
 /// The symbol of a series at a point, about 7 px wide.
 std::string symbol(int series, double x, double y) {
   const int style = series % kStyles;
-  const std::string c =
-      " class=\"m c" + std::to_string(style) + (series >= kStyles ? " o" : "") + "\"";
+  const std::string c = " class=\"m c" + std::to_string(style) + (series >= kStyles ? " o" : "") + "\"";
   const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
     std::string points;
     for (const auto& [dx, dy] : corners)
@@ -219,19 +222,26 @@ std::string symbol(int series, double x, double y) {
     return "<polygon" + c + " points=\"" + points + "\"/>";
   };
   switch (style) {
-    case 1: return polygon({{-3.2, -3.2}, {3.2, -3.2}, {3.2, 3.2}, {-3.2, 3.2}});
-    case 2: return polygon({{0, -4}, {4, 3.2}, {-4, 3.2}});
-    case 3: return polygon({{0, -4.4}, {4.4, 0}, {0, 4.4}, {-4.4, 0}});
-    case 4: return polygon({{0, 4}, {4, -3.2}, {-4, -3.2}});
-    case 5: return polygon({{-4, 0}, {3.2, -4}, {3.2, 4}});
-    case 6: return polygon({{4, 0}, {-3.2, -4}, {-3.2, 4}});
-    default: return "<circle" + c + " cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"3.5\"/>";
+    case 1:
+      return polygon({{-3.2, -3.2}, {3.2, -3.2}, {3.2, 3.2}, {-3.2, 3.2}});
+    case 2:
+      return polygon({{0, -4}, {4, 3.2}, {-4, 3.2}});
+    case 3:
+      return polygon({{0, -4.4}, {4.4, 0}, {0, 4.4}, {-4.4, 0}});
+    case 4:
+      return polygon({{0, 4}, {4, -3.2}, {-4, -3.2}});
+    case 5:
+      return polygon({{-4, 0}, {3.2, -4}, {3.2, 4}});
+    case 6:
+      return polygon({{4, 0}, {-3.2, -4}, {-3.2, 4}});
+    default:
+      return "<circle" + c + " cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"3.5\"/>";
   }
 }
 
 std::string line(const char* css, double x1, double y1, double x2, double y2) {
-  return std::string("<line class=\"") + css + "\" x1=\"" + px(x1) + "\" y1=\"" + px(y1) +
-         "\" x2=\"" + px(x2) + "\" y2=\"" + px(y2) + "\"/>\n";
+  return std::string("<line class=\"") + css + "\" x1=\"" + px(x1) + "\" y1=\"" + px(y1) + "\" x2=\"" +
+         px(x2) + "\" y2=\"" + px(y2) + "\"/>\n";
 }
 
 std::string text(double x, double y, const char* anchor, const std::string& content,
@@ -277,10 +287,9 @@ std::string axes_text(const Axis& x, const Axis& y) {
     out += line(zero ? "z" : t.label.empty() ? "n" : "g", x.begin, at, x.end, at);
     if (!t.label.empty()) out += text(x.begin - 7, at + 4, "end", tick_text(t));
   }
-  out += "<rect class=\"f\" fill=\"none\" x=\"" + px(x.begin) + "\" y=\"" + px(y.end) +
-         "\" width=\"" + px(x.end - x.begin) + "\" height=\"" + px(y.begin - y.end) + "\"/>\n";
-  if (!x.label.empty())
-    out += text(0.5 * (x.begin + x.end), y.begin + 36, "middle", escaped(x.label));
+  out += "<rect class=\"f\" fill=\"none\" x=\"" + px(x.begin) + "\" y=\"" + px(y.end) + "\" width=\"" +
+         px(x.end - x.begin) + "\" height=\"" + px(y.begin - y.end) + "\"/>\n";
+  if (!x.label.empty()) out += text(0.5 * (x.begin + x.end), y.begin + 36, "middle", escaped(x.label));
   if (!y.label.empty()) {
     const std::string at = px(15) + " " + px(0.5 * (y.begin + y.end));
     out += "<text transform=\"translate(" + at + ") rotate(-90)\" text-anchor=\"middle\">" +
@@ -327,10 +336,9 @@ double add_legend(const std::vector<ChartSeries>& series, double left, double ri
     const double width = 36.0 + text_width(s.name) + 16.0;
     if (any && x + width > right) x = left, y += kLegendRow;
     if (s.line) {
-      out += "<line class=\"l c" + std::to_string(style) + "\" x1=\"" + px(x) + "\" y1=\"" +
-             px(y + 8) + "\" x2=\"" + px(x + 30) + "\" y2=\"" + px(y + 8) + "\"";
-      if (*kDashes[style] != '\0')
-        out += " stroke-dasharray=\"" + std::string(kDashes[style]) + "\"";
+      out += "<line class=\"l c" + std::to_string(style) + "\" x1=\"" + px(x) + "\" y1=\"" + px(y + 8) +
+             "\" x2=\"" + px(x + 30) + "\" y2=\"" + px(y + 8) + "\"";
+      if (*kDashes[style] != '\0') out += " stroke-dasharray=\"" + std::string(kDashes[style]) + "\"";
       out += "/>\n";
     }
     if (s.markers) out += symbol(static_cast<int>(i), x + 15, y + 8) + "\n";
@@ -378,8 +386,7 @@ std::string svg_chart(const ChartOptions& o, const std::vector<ChartSeries>& ser
   else
     add_linear_ticks(y, (y.begin - y.end) / 36.0);
   double widest = 0.0;
-  for (const Tick& t : y.ticks)
-    widest = std::max(widest, text_width(t.label) + 0.8 * text_width(t.exponent));
+  for (const Tick& t : y.ticks) widest = std::max(widest, text_width(t.label) + 0.8 * text_width(t.exponent));
   x.begin = 14.0 + widest + (o.y_label.empty() ? 0.0 : 20.0);
   x.end = o.width - 18.0;
   if (x.log)
@@ -388,8 +395,8 @@ std::string svg_chart(const ChartOptions& o, const std::vector<ChartSeries>& ser
     add_linear_ticks(x, (x.end - x.begin) / 80.0);
 
   const std::string w = std::to_string(o.width), h = std::to_string(o.height);
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + w + " " + h +
-                    "\" width=\"" + w + "\" height=\"" + h + "\" role=\"img\">\n";
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + w + " " + h + "\" width=\"" +
+                    w + "\" height=\"" + h + "\" role=\"img\">\n";
   if (!o.title.empty()) out += "<title>" + escaped(o.title) + "</title>\n";
   out += kStyle;
   out += "<rect class=\"bg\" width=\"" + w + "\" height=\"" + h + "\"/>\n" + head + axes_text(x, y);
@@ -398,8 +405,7 @@ std::string svg_chart(const ChartOptions& o, const std::vector<ChartSeries>& ser
     out += line("v", at, y.begin, at, y.end);
     if (!m.label.empty()) out += text(at, y.end - 6, "middle", escaped(m.label));
   }
-  for (std::size_t i = 0; i < series.size(); ++i)
-    out += series_text(series[i], static_cast<int>(i), x, y);
+  for (std::size_t i = 0; i < series.size(); ++i) out += series_text(series[i], static_cast<int>(i), x, y);
   return out + "</svg>\n";
 }
 

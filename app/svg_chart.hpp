@@ -23,11 +23,11 @@ namespace drev::app {
 
 /// One curve, or a set of points.
 struct ChartSeries {
-  std::string name;          ///< in the legend; empty: not listed there
+  std::string name;                    ///< in the legend; empty: not listed there
   std::vector<double> x = {}, y = {};  ///< same length, at least one point, finite; > 0 on a logarithmic axis
-  bool line = true;          ///< points joined in the order given
-  bool markers = false;      ///< a symbol at every point
-  bool rings = false;        ///< a wide circle around every point, of no colour of its own
+  bool line = true;                    ///< points joined in the order given
+  bool markers = false;                ///< a symbol at every point
+  bool rings = false;                  ///< a wide circle around every point, of no colour of its own
 };
 
 /// A vertical line across the chart, for an event or a reference value of x.

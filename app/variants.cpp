@@ -17,8 +17,7 @@ std::string read_values(const std::string& text, std::vector<std::string>& value
   const std::vector<std::string> range = split(text, ':');
   if (range.size() == 1) {
     for (const std::string& value : split(text, ',')) {
-      if (value.empty() || value.find('/') != value.npos)
-        return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
+      if (value.empty() || value.find('/') != value.npos) return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
       if (std::count(values.begin(), values.end(), value) > 0) return "has " + value + " twice";
       values.push_back(value);
     }
@@ -26,16 +25,14 @@ std::string read_values(const std::string& text, std::vector<std::string>& value
   }
   double first = 0.0, step = 0.0, last = 0.0;
   if (range.size() != 3 || !read_number(range[0], first) || !read_number(range[1], step) ||
-      !read_number(range[2], last) || !std::isfinite(first) || !std::isfinite(step) ||
-      !std::isfinite(last))
+      !read_number(range[2], last) || !std::isfinite(first) || !std::isfinite(step) || !std::isfinite(last))
     return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
   const double steps = std::floor((last - first) / step + 1e-9);
   if (!(steps >= 0.0) || step == 0.0) return "has a STEP that does not lead from FIRST to LAST";
   if (steps >= kMostVariants) return "has more values than " + short_digits(kMostVariants, 5);
   for (double i = 0.0; i <= steps; ++i) {
     const double value = first + i * step;
-    const std::string text =
-        short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12);
+    const std::string text = short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12);
     if (!values.empty() && values.back() == text) return "has a STEP too small for 12 digits";
     values.push_back(text);
   }
@@ -50,8 +47,7 @@ std::string Variant::name() const {
   return join(parts, ",");
 }
 
-std::vector<Variant> read_variants(const std::vector<std::string>& words,
-                                   std::vector<Finding>& findings) {
+std::vector<Variant> read_variants(const std::vector<std::string>& words, std::vector<Finding>& findings) {
   std::vector<Variant> variants(1);
   for (const std::string& word : words) {
     const auto refuse = [&](const std::string& why) {

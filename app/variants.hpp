@@ -17,7 +17,6 @@ struct Variant {
 
 /// Every combination, the last setting varying fastest; one Variant without settings where there are no
 /// words.
-std::vector<Variant> read_variants(const std::vector<std::string>& words,
-                                   std::vector<Finding>& findings);
+std::vector<Variant> read_variants(const std::vector<std::string>& words, std::vector<Finding>& findings);
 
 }  // namespace drev::app

@@ -37,8 +37,7 @@ MotionPoint Assembler::node_motion(int node, const State& s) const {
 
 double Assembler::node_angle(int node, const Vector& z) const {
   const NodeMap& map = system_.node_map(node);
-  return system_.ratio(node) * nominal_.value +
-         map.coeff * over_coeff(map, z, &MotionPoint::value);
+  return system_.ratio(node) * nominal_.value + map.coeff * over_coeff(map, z, &MotionPoint::value);
 }
 
 LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector& v) const {
@@ -46,26 +45,21 @@ LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector
   const double n = system_.ratio(term.node);
   const double q = over_coeff(map, z, &MotionPoint::value);
   const double q_dot = over_coeff(map, v, &MotionPoint::rate);
-  return term.load->evaluate({t_, n * nominal_.value, map.coeff * q,
-                              n * nominal_.rate + map.coeff * q_dot});
+  return term.load->evaluate({t_, n * nominal_.value, map.coeff * q, n * nominal_.rate + map.coeff * q_dot});
 }
 
 void Assembler::external_of_motions(Vector& p) const {
   const int n = system_.size();
   p.setZero(n);
-  if (nominal_.acceleration != 0.0)
-    p -= nominal_.acceleration * system_.nominal_inertia().head(n);
+  if (nominal_.acceleration != 0.0) p -= nominal_.acceleration * system_.nominal_inertia().head(n);
   if (nominal_.rate != 0.0) p -= nominal_.rate * system_.nominal_drag().head(n);
   if (system_.any_prescribed_moves()) {
     const MatrixSet& zu = system_.coupling_zu();
     for (int k = 0; k < system_.prescribed_count(); ++k) {
       const MotionPoint& u = u_[at(k)];
-      for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it)
-        p[it.row()] -= it.value() * u.acceleration;
-      for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it)
-        p[it.row()] -= it.value() * u.rate;
-      for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
-        p[it.row()] -= it.value() * u.value;
+      for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it) p[it.row()] -= it.value() * u.acceleration;
+      for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) p[it.row()] -= it.value() * u.rate;
+      for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it) p[it.row()] -= it.value() * u.value;
     }
   }
 }
@@ -165,8 +159,8 @@ LocalResponse Assembler::respond(const GeneralTerm& g, const Vector& z, const Ve
   return r;
 }
 
-void Assembler::add_general_forces(const Vector& z, const Vector& v, const Vector& history,
-                                   Vector& f, Vector& history_new) const {
+void Assembler::add_general_forces(const Vector& z, const Vector& v, const Vector& history, Vector& f,
+                                   Vector& history_new) const {
   for (const GeneralTerm& g : system_.generals()) {
     const LocalResponse r = respond(g, z, v, history, history_new);
     for (std::size_t i = 0; i < g.nodes.size(); ++i) {
@@ -185,8 +179,7 @@ void Assembler::add_general_node_forces(const State& s, Vector& r) const {
   }
 }
 
-std::pair<double, double> Assembler::general_energy(const State& s,
-                                                    const Vector& history) const {
+std::pair<double, double> Assembler::general_energy(const State& s, const Vector& history) const {
   std::pair<double, double> sum{0.0, 0.0};
   Vector scratch(system_.history_size());
   for (const GeneralTerm& g : system_.generals()) {
@@ -198,8 +191,7 @@ std::pair<double, double> Assembler::general_energy(const State& s,
 }
 
 void Assembler::linear_values(const Weights& w, Vector& values) const {
-  values = w.m * system_.mass_values() + w.c * system_.damping_values() +
-           w.k * system_.stiffness_values();
+  values = w.m * system_.mass_values() + w.c * system_.damping_values() + w.k * system_.stiffness_values();
 }
 
 void Assembler::add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const {
@@ -208,8 +200,8 @@ void Assembler::add_scalar_slope(const ScalarTerm& term, double slope, Vector& v
     for (const Entry& col : term.z) values[term.slots[s++]] += slope * row.coeff * col.coeff;
 }
 
-void Assembler::add_general_slopes(const Weights& w, const Vector& z, const Vector& v,
-                                   const Vector& history, Vector& values) const {
+void Assembler::add_general_slopes(const Weights& w, const Vector& z, const Vector& v, const Vector& history,
+                                   Vector& values) const {
   if (system_.generals().empty()) return;
   Vector scratch(system_.history_size());
   for (const GeneralTerm& g : system_.generals()) {
@@ -219,15 +211,14 @@ void Assembler::add_general_slopes(const Weights& w, const Vector& z, const Vect
       for (std::size_t j = 0; j < g.nodes.size(); ++j, ++s)
         if (g.slots[s] >= 0) {
           const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
-          values[g.slots[s]] += system_.node_map(g.nodes[i]).coeff *
-                                system_.node_map(g.nodes[j]).coeff *
+          values[g.slots[s]] += system_.node_map(g.nodes[i]).coeff * system_.node_map(g.nodes[j]).coeff *
                                 (w.k * r.stiffness(a, b) + w.c * r.damping(a, b));
         }
   }
 }
 
-void Assembler::tangent_values(const Weights& w, const Vector& z, const Vector& v,
-                               const Vector& history, bool with_loads, Vector& values) const {
+void Assembler::tangent_values(const Weights& w, const Vector& z, const Vector& v, const Vector& history,
+                               bool with_loads, Vector& values) const {
   linear_values(w, values);
   for (const ScalarTerm& term : system_.scalars()) {
     const ScalarResponse r = respond(term, z, v);
@@ -238,8 +229,7 @@ void Assembler::tangent_values(const Weights& w, const Vector& z, const Vector& 
       const NodeMap& map = system_.node_map(term.node);
       if (map.prescribed >= 0 || !term.load->depends_on_motion()) continue;
       const LoadResponse r = load(term, z, v);
-      const double slope =
-          map.coeff * map.coeff * (w.k * r.dtorque_dangle + w.c * r.dtorque_dspeed);
+      const double slope = map.coeff * map.coeff * (w.k * r.dtorque_dangle + w.c * r.dtorque_dspeed);
       if (map.unknown >= 0) {
         values[term.slot] -= slope;
       } else {  // the pattern is full
@@ -254,8 +244,7 @@ void Assembler::contact_values(const Weights& w, Contact contact, Vector& values
   linear_values(w, values);
   for (const ScalarTerm& term : system_.scalars()) {
     if (contact == Contact::open && term.force->gap()) continue;
-    add_scalar_slope(
-        term, w.k * term.force->closed_stiffness() + w.c * term.force->closed_damping(), values);
+    add_scalar_slope(term, w.k * term.force->closed_stiffness() + w.c * term.force->closed_damping(), values);
   }
   const Vector zero = Vector::Zero(system_.size());
   add_general_slopes(w, zero, zero, State::initial(system_).history, values);

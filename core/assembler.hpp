@@ -105,11 +105,11 @@ class Assembler {
   void add_tables(const Vector& z, Vector& p) const;
   void external_known(Vector& p) const;  // the part of p that is the same for all motions
   void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
-  LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v,
-                        const Vector& history, Vector& history_new) const;
+  LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v, const Vector& history,
+                        Vector& history_new) const;
   void add_scalar_slope(const ScalarTerm& term, double slope, Vector& values) const;
-  void add_general_slopes(const Weights& w, const Vector& z, const Vector& v,
-                          const Vector& history, Vector& values) const;
+  void add_general_slopes(const Weights& w, const Vector& z, const Vector& v, const Vector& history,
+                          Vector& values) const;
 
   const System& system_;
   double t_ = 0.0;

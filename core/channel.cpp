@@ -31,8 +31,8 @@ class ChannelFinder {
     }
     for (std::size_t l = 0; l < system.loads().size(); ++l) {
       const bool turns = rotational(system.loads()[l].node);
-      add(element(system.loads()[l].element) + force_name(turns), force_unit(turns),
-          Channel::Kind::load, static_cast<int>(l));
+      add(element(system.loads()[l].element) + force_name(turns), force_unit(turns), Channel::Kind::load,
+          static_cast<int>(l));
     }
     for (std::size_t r = 0; r < system.ideal_ratios().size(); ++r) {
       const bool turns = rotational(system.ideal_ratios()[r].second);
@@ -115,14 +115,12 @@ class ChannelFinder {
     const std::string& name = system_.node_names()[at(i)];
     const bool turns = rotational(i);
     add(name + (turns ? ".angle_rad" : ".position_m"), turns ? "rad" : "m", Kind::value, i);
-    add(name + (turns ? ".speed_rad_per_s" : ".velocity_m_per_s"), turns ? "rad/s" : "m/s",
-        Kind::rate, i);
-    add(name + (turns ? ".acceleration_rad_per_s2" : ".acceleration_m_per_s2"),
-        turns ? "rad/s^2" : "m/s^2", Kind::acceleration, i);
+    add(name + (turns ? ".speed_rad_per_s" : ".velocity_m_per_s"), turns ? "rad/s" : "m/s", Kind::rate, i);
+    add(name + (turns ? ".acceleration_rad_per_s2" : ".acceleration_m_per_s2"), turns ? "rad/s^2" : "m/s^2",
+        Kind::acceleration, i);
     const NodeMap& map = system_.node_map(i);
     if (map.prescribed >= 0 && system_.prescribed_node(map.prescribed) == i)
-      add(name + (turns ? ".reaction_Nm" : ".reaction_N"), force_unit(turns), Kind::reaction,
-          map.prescribed);
+      add(name + (turns ? ".reaction_Nm" : ".reaction_N"), force_unit(turns), Kind::reaction, map.prescribed);
   }
   static std::string force_name(bool turns) { return turns ? ".torque_Nm" : ".force_N"; }
   static std::string force_unit(bool turns) { return turns ? "N m" : "N"; }
@@ -259,24 +257,30 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
   if (direct_) return over_unknowns(state);
   const System& system = assembler.system();
   switch (kind_) {
-    case Kind::value: return assembler.node_motion(index_, state).value;
-    case Kind::rate: return assembler.node_motion(index_, state).rate;
-    case Kind::acceleration: return assembler.node_motion(index_, state).acceleration;
+    case Kind::value:
+      return assembler.node_motion(index_, state).value;
+    case Kind::rate:
+      return assembler.node_motion(index_, state).rate;
+    case Kind::acceleration:
+      return assembler.node_motion(index_, state).acceleration;
     case Kind::difference:
-      return assembler.node_motion(index_, state).value -
-             assembler.node_motion(second_, state).value;
-    case Kind::reaction: return reaction(assembler, state, index_);
+      return assembler.node_motion(index_, state).value - assembler.node_motion(second_, state).value;
+    case Kind::reaction:
+      return reaction(assembler, state, index_);
     case Kind::output: {
       double y = over_unknowns(state);
       for (const Entry& e : u_) y += e.coeff * assembler.prescribed(e.index).value;
       for (const Entry& e : u_rate_) y += e.coeff * assembler.prescribed(e.index).rate;
       return y;
     }
-    case Kind::force: return assembler.respond(system.scalars()[at(index_)], state.z, state.v).y;
+    case Kind::force:
+      return assembler.respond(system.scalars()[at(index_)], state.z, state.v).y;
     case Kind::deflection:
       return assembler.input(system.scalars()[at(index_)], state.z, state.v).x;
-    case Kind::load: return assembler.load(system.loads()[at(index_)], state.z, state.v).torque;
-    case Kind::ideal_ratio: return ideal_ratio_torque(assembler, state, index_);
+    case Kind::load:
+      return assembler.load(system.loads()[at(index_)], state.z, state.v).torque;
+    case Kind::ideal_ratio:
+      return ideal_ratio_torque(assembler, state, index_);
   }
   return 0.0;
 }
@@ -287,8 +291,7 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
   const std::set<std::string> wanted(names.begin(), names.end());
   const ChannelFinder finder(system, &wanted);
   std::unordered_map<std::string, std::vector<std::size_t>> by_name;
-  for (std::size_t i = 0; i < finder.channels.size(); ++i)
-    by_name[finder.channels[i].name()].push_back(i);
+  for (std::size_t i = 0; i < finder.channels.size(); ++i) by_name[finder.channels[i].name()].push_back(i);
   std::vector<std::string> known;  // for the error alone
   const auto hint = [&](const std::string& name) {
     if (known.empty())
@@ -309,12 +312,11 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
     } else if (const int readings = finder.find_difference(name, difference); readings == 1)
       found.push_back(difference);
     else if (readings > 1)
-      findings.push_back({system.name(), "channel", name, "",
-                          "can be read as " + std::to_string(readings) +
-                              " pairs of nodes; rename one of them"});
+      findings.push_back(
+          {system.name(), "channel", name, "",
+           "can be read as " + std::to_string(readings) + " pairs of nodes; rename one of them"});
     else
-      findings.push_back({system.name(), "channel", name, "",
-                          "is no channel of this model" + hint(name)});
+      findings.push_back({system.name(), "channel", name, "", "is no channel of this model" + hint(name)});
   }
   if (!findings.empty()) throw ModelError(findings);
   return found;

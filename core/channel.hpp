@@ -26,8 +26,8 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time.
   double evaluate(const Assembler& assembler, const State& state) const;
-  /// Its rate of change at a state, for values linear in deviations and rates, and for laws (dy/dx x' + dy/dx'
-  /// x'', at constant phase and time); none for others.
+  /// Its rate of change at a state, for values linear in deviations and rates, and for laws (dy/dx x' +
+  /// dy/dx' x'', at constant phase and time); none for others.
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
   /// Whether evaluate() reads the state's accelerations, or rate() does.
@@ -47,8 +47,18 @@ class Channel {
  private:
   friend class ChannelFinder;
   double over_unknowns(const State& state) const;
-  enum class Kind { value, rate, acceleration, difference, reaction, output, force, deflection, load,
-                    ideal_ratio };
+  enum class Kind {
+    value,
+    rate,
+    acceleration,
+    difference,
+    reaction,
+    output,
+    force,
+    deflection,
+    load,
+    ideal_ratio
+  };
   std::string name_, unit_;
   Kind kind_ = Kind::value;
   int index_ = 0, second_ = 0;

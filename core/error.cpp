@@ -54,8 +54,8 @@ ModelError::ModelError(std::vector<Finding> findings)
 
 void ParameterCheck::fail(std::string_view parameter, std::string value, std::string_view unit,
                           std::string range) {
-  findings_.push_back({place_, std::string(parameter), std::move(value), std::string(unit),
-                       std::move(range)});
+  findings_.push_back(
+      {place_, std::string(parameter), std::move(value), std::string(unit), std::move(range)});
 }
 
 void ParameterCheck::finite(std::string_view parameter, double value, std::string_view unit) {
@@ -67,8 +67,7 @@ void ParameterCheck::positive(std::string_view parameter, double value, std::str
     fail(parameter, to_text(value), unit, "must be > 0 and finite");
 }
 
-void ParameterCheck::non_negative(std::string_view parameter, double value,
-                                  std::string_view unit) {
+void ParameterCheck::non_negative(std::string_view parameter, double value, std::string_view unit) {
   if (!(value >= 0.0) || !std::isfinite(value))
     fail(parameter, to_text(value), unit, "must be >= 0 and finite");
 }
@@ -76,8 +75,7 @@ void ParameterCheck::non_negative(std::string_view parameter, double value,
 void ParameterCheck::within(std::string_view parameter, double value, double low, double high,
                             std::string_view unit) {
   if (!(value >= low && value <= high))
-    fail(parameter, to_text(value), unit,
-         "must be between " + to_text(low) + " and " + to_text(high));
+    fail(parameter, to_text(value), unit, "must be between " + to_text(low) + " and " + to_text(high));
 }
 
 void ParameterCheck::increasing(std::string_view parameter, const std::vector<double>& values,
@@ -107,8 +105,7 @@ std::string to_text(double value) {
   char buffer[64];
   const double size = std::abs(value);
   const bool plain = size == 0.0 || (size >= 1e-5 && size < 1e16);
-  const auto result = plain ? std::to_chars(buffer, buffer + sizeof buffer, value,
-                                            std::chars_format::fixed)
+  const auto result = plain ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed)
                             : std::to_chars(buffer, buffer + sizeof buffer, value);
   return {buffer, result.ptr};
 }

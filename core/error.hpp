@@ -44,15 +44,11 @@ class ParameterCheck {
   void positive(std::string_view parameter, double value, std::string_view unit);
   void non_negative(std::string_view parameter, double value, std::string_view unit);
   /// low <= value <= high.
-  void within(std::string_view parameter, double value, double low, double high,
-              std::string_view unit);
+  void within(std::string_view parameter, double value, double low, double high, std::string_view unit);
   /// Strictly increasing and finite.
-  void increasing(std::string_view parameter, const std::vector<double>& values,
-                  std::string_view unit);
-  void all_finite(std::string_view parameter, const std::vector<double>& values,
-                  std::string_view unit);
-  void fail(std::string_view parameter, std::string value, std::string_view unit,
-            std::string range);
+  void increasing(std::string_view parameter, const std::vector<double>& values, std::string_view unit);
+  void all_finite(std::string_view parameter, const std::vector<double>& values, std::string_view unit);
+  void fail(std::string_view parameter, std::string value, std::string_view unit, std::string range);
   const std::string& place() const { return place_; }
 
  private:

@@ -60,8 +60,7 @@ std::string loop_text(const Walk& walk, const std::vector<Placement>& placements
 
 }  // namespace
 
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures,
-                                      bool with_contacts) {
+std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures, bool with_contacts) {
   std::vector<int> root(at(nodes));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int i) {
@@ -84,9 +83,8 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& clo
 }
 
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
-                       const std::vector<Placement>& placements,
-                       const std::vector<Closure>& closures, int reference,
-                       std::vector<Finding>& findings) {
+                       const std::vector<Placement>& placements, const std::vector<Closure>& closures,
+                       int reference, std::vector<Finding>& findings) {
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
   k.component = connected_components(nodes, closures, true);
@@ -121,11 +119,11 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
         } else if (std::abs(n - known) > kRatioTolerance * std::max(std::abs(n), std::abs(known)) &&
                    !reported[at(c)]) {
           reported[at(c)] = true;
-          findings.push_back({model + "/" + placements[at(row.element)].name,
-                              "nominal ratio of " + node_names[at(to)], to_text(n), "",
-                              "but the rest of the loop gives " + to_text(known) +
-                                  "; this loop cannot turn: " +
-                                  loop_text(walk, placements, closures, i, to, c)});
+          findings.push_back(
+              {model + "/" + placements[at(row.element)].name, "nominal ratio of " + node_names[at(to)],
+               to_text(n), "",
+               "but the rest of the loop gives " + to_text(known) +
+                   "; this loop cannot turn: " + loop_text(walk, placements, closures, i, to, c)});
         }
       }
     }
@@ -140,8 +138,8 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
     if (k.component[at(i)] == moving) k.ratio[at(i)] = walk.relative[at(i)];
   for (const Closure& row : closures)
     if (row.second < 0 && k.component[at(row.first)] == moving)
-      findings.push_back({model + "/" + placements[at(row.element)].name, "node", node_names[at(row.first)], "",
-                          "turns with the reference shaft and cannot be tied to ground by a spring"});
+      findings.push_back({model + "/" + placements[at(row.element)].name, "node", node_names[at(row.first)],
+                          "", "turns with the reference shaft and cannot be tied to ground by a spring"});
   return k;
 }
 

@@ -27,13 +27,11 @@ struct Kinematics {
 /// reference < 0: nothing moves nominally and all ratios are 0.
 /// model: its name; placements: for the names of the elements.
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
-                       const std::vector<Placement>& placements,
-                       const std::vector<Closure>& closures, int reference,
-                       std::vector<Finding>& findings);
+                       const std::vector<Placement>& placements, const std::vector<Closure>& closures,
+                       int reference, std::vector<Finding>& findings);
 
 /// Components of the graph of nodes under the closures; those only_in_contact are left out if
 /// with_contacts is false. Returns the component of each node, numbered from 0.
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures,
-                                      bool with_contacts);
+std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures, bool with_contacts);
 
 }  // namespace drev

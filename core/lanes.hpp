@@ -10,10 +10,9 @@
 
 namespace drev {
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define DREV_WIDEST \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define DREV_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define DREV_WIDEST
 #endif
@@ -54,9 +53,7 @@ struct LaneValues {
 constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 
 // By reference: a vector passed by value has another calling convention on each level.
-[[gnu::always_inline]] inline void load(const double* from, Lanes& to) {
-  std::memcpy(&to, from, sizeof to);
-}
+[[gnu::always_inline]] inline void load(const double* from, Lanes& to) { std::memcpy(&to, from, sizeof to); }
 [[gnu::always_inline]] inline void store(const Lanes& from, double* to) {
   std::memcpy(to, &from, sizeof from);
 }

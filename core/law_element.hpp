@@ -27,8 +27,7 @@ class LawElement final : public Element {
   }
   void describe(int nodes, Terms& terms) const override {
     terms.scalars.push_back({.b = relative_motion(nodes), .force = &force_});
-    terms.closures.push_back(
-        {.b = relative_motion(nodes), .only_in_contact = force_.gap().has_value()});
+    terms.closures.push_back({.b = relative_motion(nodes), .only_in_contact = force_.gap().has_value()});
   }
 
  private:

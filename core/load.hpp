@@ -18,9 +18,9 @@ struct LoadInput {
 
 /// What a load returns.
 struct LoadResponse {
-  double torque = 0.0;         ///< N m (or N)
-  double dtorque_dangle = 0.0; ///< N m/rad
-  double dtorque_dspeed = 0.0; ///< N m s/rad
+  double torque = 0.0;          ///< N m (or N)
+  double dtorque_dangle = 0.0;  ///< N m/rad
+  double dtorque_dspeed = 0.0;  ///< N m s/rad
 };
 
 /// A load over a stretch of its angle: torque + time_slope (t - t_0) + angle_slope (theta - theta_0),
@@ -55,8 +55,7 @@ class Load {
   /// The stretch about (t, theta), for exact propagation; nullopt for a load that is smooth between its
   /// breakpoints. On a knot, or within rounding of it, the stretch ahead of it: on the side of growing theta
   /// where direction > 0, else on the other.
-  virtual std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/,
-                                             double /*direction*/) const {
+  virtual std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/, double /*direction*/) const {
     return std::nullopt;
   }
 };

@@ -25,9 +25,9 @@ enum class NodeKind : unsigned char {
 
 /// A node by its id or by its name. Names are looked up by build(), so that all errors come at once.
 struct NodeRef {
-  NodeRef(NodeId node) : id(node) {}                         // NOLINT: implicit by intent
-  NodeRef(std::string node) : name(std::move(node)) {}       // NOLINT
-  NodeRef(const char* node) : name(node) {}                  // NOLINT
+  NodeRef(NodeId node) : id(node) {}                    // NOLINT: implicit by intent
+  NodeRef(std::string node) : name(std::move(node)) {}  // NOLINT
+  NodeRef(const char* node) : name(node) {}             // NOLINT
   std::optional<NodeId> id;
   std::string name;
 };
@@ -89,12 +89,10 @@ class Model {
   /// Adds an element of the catalogue or of one's own, e.g.
   ///   model.add<ShaftSpring>("shaft", {"motor", "pinion"}, {.stiffness = 8.5e3});
   template <class E>
-  ElementId add(std::string name, std::initializer_list<NodeRef> nodes,
-                typename E::Params params) {
+  ElementId add(std::string name, std::initializer_list<NodeRef> nodes, typename E::Params params) {
     return place(std::move(name), NodeList(nodes), std::make_shared<const E>(std::move(params)));
   }
-  ElementId add(std::string name, const std::vector<NodeRef>& nodes,
-                std::shared_ptr<const Element> element) {
+  ElementId add(std::string name, const std::vector<NodeRef>& nodes, std::shared_ptr<const Element> element) {
     return place(std::move(name), NodeList(nodes), std::move(element));
   }
 
@@ -145,8 +143,7 @@ class Model {
   }
 
   std::string name_;
-  std::shared_ptr<std::vector<std::string>> node_names_ =
-      std::make_shared<std::vector<std::string>>();
+  std::shared_ptr<std::vector<std::string>> node_names_ = std::make_shared<std::vector<std::string>>();
   std::vector<NodeKind> node_kinds_;
   std::shared_ptr<std::vector<Placement>> placements_ = std::make_shared<std::vector<Placement>>();
   std::vector<Prescription> prescriptions_;

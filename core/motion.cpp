@@ -28,8 +28,7 @@ Motion run_up(double omega_0, double omega_1, double t_0, double t_1) {
   const auto at = [=](double t) {
     if (t < t_0) return MotionPoint{omega_0 * t, omega_0, 0.0};
     const double s = std::min(t, t_1) - t_0;
-    MotionPoint p{omega_0 * (t_0 + s) + 0.5 * acceleration * s * s, omega_0 + acceleration * s,
-                  acceleration};
+    MotionPoint p{omega_0 * (t_0 + s) + 0.5 * acceleration * s * s, omega_0 + acceleration * s, acceleration};
     if (t >= t_1) p = {p.value + omega_1 * (t - t_1), omega_1, 0.0};
     return p;
   };

@@ -30,8 +30,7 @@ SparseMatrix on_pattern(SparseMatrix pattern, const Vector& values) {
 Eigen::MatrixXd projected(const SparseMatrix& a, const Eigen::MatrixXd& basis) {
   const Eigen::MatrixXd small = basis.transpose() * (a * basis);
   const Eigen::MatrixXd sizes = basis.cwiseAbs().transpose() * (a.cwiseAbs() * basis.cwiseAbs());
-  return (small.array().abs() > kRounding * sizes.array())
-      .select(0.5 * (small + small.transpose()), 0.0);
+  return (small.array().abs() > kRounding * sizes.array()).select(0.5 * (small + small.transpose()), 0.0);
 }
 
 SparseMatrix couplings(const SparseMatrix& a, const Eigen::MatrixXd& basis) {
@@ -119,8 +118,8 @@ class SystemProjector {
     for (const GeneralTerm& g : full_.generals())
       for (const int node : g.nodes)
         if (system_.node_map(node).row >= 0)
-          findings.push_back({full_.name(), "general element",
-                              full_.placements()[at(index(g.element))].name, "",
+          findings.push_back({full_.name(), "general element", full_.placements()[at(index(g.element))].name,
+                              "",
                               "needs node " + full_.node_names()[at(node)] + " as a coordinate: keep it"});
     if (!findings.empty()) throw ModelError(findings);
   }

@@ -21,12 +21,12 @@ struct ScalarInput {
 
 /// What a law returns.
 struct ScalarResponse {
-  double y = 0.0;                ///< force [N] or torque [N m]; opposes x: f = +b y on the left side
-  double dy_dx = 0.0;            ///< slope in x
-  double dy_dx_dot = 0.0;        ///< slope in x_dot
-  double dy_dangle = 0.0;        ///< slope in angle (mesh stiffness by phase), else 0
-  double stored_energy = 0.0;    ///< J, >= 0
-  double dissipated_power = 0.0; ///< W, >= 0 for a passive law
+  double y = 0.0;                 ///< force [N] or torque [N m]; opposes x: f = +b y on the left side
+  double dy_dx = 0.0;             ///< slope in x
+  double dy_dx_dot = 0.0;         ///< slope in x_dot
+  double dy_dangle = 0.0;         ///< slope in angle (mesh stiffness by phase), else 0
+  double stored_energy = 0.0;     ///< J, >= 0
+  double dissipated_power = 0.0;  ///< W, >= 0 for a passive law
 };
 
 /// Open interval of x in which the two sides do not touch.

@@ -86,8 +86,8 @@ State State::initial(const System& system, double t) {
   state.a = Vector::Zero(system.size());
   state.history = Vector::Zero(system.history_size());
   for (const GeneralTerm& g : system.generals())
-    g.force->initial_history({state.history.data() + g.history_begin,
-                              static_cast<std::size_t>(g.force->history_size())});
+    g.force->initial_history(
+        {state.history.data() + g.history_begin, static_cast<std::size_t>(g.force->history_size())});
   return state;
 }
 

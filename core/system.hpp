@@ -19,9 +19,10 @@
 
 namespace drev {
 
-static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64,
-              "compile with -DEIGEN_MAX_ALIGN_BYTES=64, as drev's CMake targets and drev.pc say: drev and its "
-              "user free each other's vectors");
+static_assert(
+    EIGEN_DEFAULT_ALIGN_BYTES == 64,
+    "compile with -DEIGEN_MAX_ALIGN_BYTES=64, as drev's CMake targets and drev.pc say: drev and its "
+    "user free each other's vectors");
 
 using Vector = Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
@@ -205,8 +206,8 @@ class System {
   std::optional<Motion> reference_;
   std::vector<Motion> prescribed_;
   std::shared_ptr<const SparseMatrix> pattern_;  // a SparseMatrix cannot be moved
-  Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, node_drag_,
-      initial_z_, initial_v_, nominal_direction_;
+  Vector mass_, damping_, stiffness_, nominal_inertia_, nominal_drag_, node_drag_, initial_z_, initial_v_,
+      nominal_direction_;
   MatrixSet zu_, uu_;
   std::optional<MatrixSet> node_matrices_;
   std::vector<ScalarTerm> scalars_;

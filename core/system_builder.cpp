@@ -7,7 +7,7 @@ namespace drev {
 
 namespace {
 
-constexpr double kSpeedTolerance = 1e-9;  // relative, constant_speed against the nominal speed
+constexpr double kSpeedTolerance = 1e-9;    // relative, constant_speed against the nominal speed
 constexpr double kInitialTolerance = 1e-9;  // relative, of initial conditions that say the same
 
 bool usable_name(const std::string& name) {
@@ -47,8 +47,8 @@ void SystemBuilder::check_names() {
     findings_.push_back({model_.name(), "nodes", "0", "", "the model is empty; add nodes"});
   const auto check = [this](const char* what, const std::string& name, bool first) {
     if (!usable_name(name))
-      findings_.push_back({model_.name(), what, name, "",
-                           "must be non-empty, without '.', ',', quotes and line ends"});
+      findings_.push_back(
+          {model_.name(), what, name, "", "must be non-empty, without '.', ',', quotes and line ends"});
     if (!first) findings_.push_back({model_.name(), what, name, "", "is used twice"});
   };
   const auto name_of_node = [this](int i) -> const std::string& { return node_name(i); };
@@ -66,8 +66,7 @@ int SystemBuilder::find(const NodeRef& ref) const {
   return i >= 0 && i < system_.node_count() ? i : -1;
 }
 
-int SystemBuilder::resolve(const NodeRef& ref, const std::string& where,
-                           const std::string& parameter) {
+int SystemBuilder::resolve(const NodeRef& ref, const std::string& where, const std::string& parameter) {
   const int found = find(ref);
   if (found >= 0) return found;
   if (ref.id)
@@ -87,8 +86,8 @@ void SystemBuilder::check_motion(const Motion& motion, const std::string& where,
 
 void SystemBuilder::resolve_motions() {
   if (model_.references().size() > 1)
-    findings_.push_back({model_.name(), "reference", std::to_string(model_.references().size()),
-                         "", "at most one reference shaft can be set"});
+    findings_.push_back({model_.name(), "reference", std::to_string(model_.references().size()), "",
+                         "at most one reference shaft can be set"});
   for (const auto& [ref, motion] : model_.references()) {
     check_motion(motion, model_.name(), "reference motion");
     reference_node_ = resolve(ref, model_.name(), "reference");
@@ -117,8 +116,8 @@ void SystemBuilder::find_nominal_motion() {
                                       reference_node_, findings_);
   system_.ratio_ = std::move(kinematics.ratio);
   system_.floating_closed_ = floating_parts(kinematics.component, Contact::closed);
-  system_.floating_open_ = floating_parts(
-      connected_components(system_.node_count(), closures_, false), Contact::open);
+  system_.floating_open_ =
+      floating_parts(connected_components(system_.node_count(), closures_, false), Contact::open);
   std::vector<Closure>().swap(closures_);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
@@ -131,8 +130,7 @@ void SystemBuilder::find_nominal_motion() {
     for (const double t : times) {
       const double nominal = system_.ratio(node) * system_.reference_->at(t).rate;
       if (std::abs(nominal - *p.omega) <= kSpeedTolerance * std::abs(*p.omega)) continue;
-      findings_.push_back({place(node_name(node)), "omega", to_text(*p.omega),
-                           "rad/s",
+      findings_.push_back({place(node_name(node)), "omega", to_text(*p.omega), "rad/s",
                            "but the reference shaft turns this node at " + to_text(nominal) +
                                " rad/s at t = " + to_text(t) + " s"});
       break;
@@ -159,8 +157,8 @@ std::vector<int> SystemBuilder::floating_parts(const std::vector<int>& component
 void SystemBuilder::check_inertias() {
   const int unknowns = static_cast<int>(system_.unknown_node_.size());
   if (unknowns == 0 && system_.node_count() > 0)
-    findings_.push_back({model_.name(), "unknowns", "0", "",
-                         "every node is prescribed; nothing is left to compute"});
+    findings_.push_back(
+        {model_.name(), "unknowns", "0", "", "every node is prescribed; nothing is left to compute"});
   if (inertia_in_doubt_) return;
   std::vector<double> inertia(at(unknowns), 0.0);
   std::vector<bool> in_doubt(at(unknowns), false);
@@ -176,11 +174,10 @@ void SystemBuilder::check_inertias() {
     if (inertia[at(k)] > 0.0 || in_doubt[at(k)]) continue;
     if (node_by_name_.find(node_name(node)) != node) continue;  // its name is used twice
     const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
-    findings_.push_back(
-        {place(node_name(node)), turns ? "inertia" : "mass",
-         to_text(inertia[at(k)]), turns ? "kg m^2" : "kg",
-         "every node that is not prescribed needs an inertia > 0: add one, or replace the "
-         "springs on both sides by one"});
+    findings_.push_back({place(node_name(node)), turns ? "inertia" : "mass", to_text(inertia[at(k)]),
+                         turns ? "kg m^2" : "kg",
+                         "every node that is not prescribed needs an inertia > 0: add one, or replace the "
+                         "springs on both sides by one"});
   }
 }
 

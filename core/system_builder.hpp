@@ -55,9 +55,9 @@ class SystemBuilder {
   NameIndex node_by_name_{0, {}};
   NodeMatrix mass_[2], damping_, stiffness_[2];  // the second ones take part in C = a M + b K
   std::vector<Closure> closures_;
-  std::vector<int> faulty_nodes_;  // of elements whose terms are not known
+  std::vector<int> faulty_nodes_;            // of elements whose terms are not known
   std::vector<int> resolved_prescriptions_;  // -1: unknown or already prescribed
-  bool inertia_in_doubt_ = false;  // a fault hides which node some inertia or tie belongs to
+  bool inertia_in_doubt_ = false;            // a fault hides which node some inertia or tie belongs to
   int reference_node_ = -1;
   double rayleigh_a_ = 0.0, rayleigh_b_ = 0.0;
 };

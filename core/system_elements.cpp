@@ -28,8 +28,8 @@ std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) 
     usable = false;
     const std::string parameter = "node " + std::to_string(i + 1);
     if (twice)
-      findings_.push_back({place(p.name), parameter, node_name(node), "",
-                           "is given twice; the ends must differ"});
+      findings_.push_back(
+          {place(p.name), parameter, node_name(node), "", "is given twice; the ends must differ"});
     else
       resolve(ref, place(p.name), parameter);
   }
@@ -59,8 +59,7 @@ void SystemBuilder::describe_elements() {
     const bool count_fits = given >= low && given <= high;
     if (!count_fits)
       findings_.push_back({place(p.name), "nodes", std::to_string(given), "",
-                           "a " + std::string(p.element->type()) + " takes " +
-                               std::to_string(low) +
+                           "a " + std::string(p.element->type()) + " takes " + std::to_string(low) +
                                (high > low ? " or " + std::to_string(high) : std::string())});
     const std::size_t before = findings_.size();
     ParameterCheck check(place(p.name), findings_);
@@ -147,8 +146,7 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     term.varies = s.force->varies();
     system_.scalars_.push_back(std::move(term));
   }
-  for (const LoadSpec& l : terms.loads)
-    system_.loads_.push_back({id, nodes[at(l.node)], l.load, -1});
+  for (const LoadSpec& l : terms.loads) system_.loads_.push_back({id, nodes[at(l.node)], l.load, -1});
   for (const GeneralForce* g : terms.generals) {
     system_.generals_.push_back({id, g, nodes, system_.history_size_, {}});
     system_.history_size_ += g->history_size();
@@ -173,15 +171,15 @@ std::vector<OutputTerm> System::outputs() const {
     for (const ScalarSpec& s : terms.scalars)
       if (const LawPiece* line = straight_line(s)) {
         const bool along = s.along_line_of_action;
-        outputs.push_back({id, "", over_nodes(line->k * s.b, nodes), over_nodes(line->c * s.b, nodes), along});
+        outputs.push_back(
+            {id, "", over_nodes(line->k * s.b, nodes), over_nodes(line->c * s.b, nodes), along});
         outputs.push_back({id, "", over_nodes(s.b, nodes), {}, along, true});
       }
   }
   return outputs;
 }
 
-bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes,
-                                const Placement& p) {
+bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes, const Placement& p) {
   const std::size_t before = findings_.size();
   const auto n = static_cast<Eigen::Index>(nodes.size());
   const auto fail = [&](const std::string& what, std::string value, std::string range) {
@@ -200,8 +198,8 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
   const auto row = [&](const char* name, const LocalRow& b, bool may_be_empty) {
     if (may_be_empty && b.size() == 0) return 0;
     if (b.size() != n)
-      fail(name, std::to_string(b.size()) + " entries", "must have one for each of " +
-                                                           std::to_string(n) + " nodes");
+      fail(name, std::to_string(b.size()) + " entries",
+           "must have one for each of " + std::to_string(n) + " nodes");
     else if (!b.allFinite())
       fail(name, "not finite", "must be finite");
     else
@@ -221,13 +219,12 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       for (Eigen::Index i = 0; i < n; ++i) {
         const int node = nodes[static_cast<std::size_t>(i)];
         if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[at(node)] != NodeKind::rotational)
-          findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node),
-                               "", "is translational; a gear needs a rotational node"});
+          findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node), "",
+                               "is translational; a gear needs a rotational node"});
       }
   }
   for (const LoadSpec& l : terms.loads) {
-    if (l.node < 0 || l.node >= n)
-      fail("load node", std::to_string(l.node), "is no node of the element");
+    if (l.node < 0 || l.node >= n) fail("load node", std::to_string(l.node), "is no node of the element");
     if (!l.load)
       fail("load", "", "is missing (a null pointer)");
     else
@@ -235,8 +232,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
   }
   for (const GeneralForce* g : terms.generals) {
     if (!g) fail("general force", "", "is missing (a null pointer)");
-    if (g && g->history_size() < 0)
-      fail("history_size", std::to_string(g->history_size()), "must be >= 0");
+    if (g && g->history_size() < 0) fail("history_size", std::to_string(g->history_size()), "must be >= 0");
     if (n > kMaxLocalDofs)
       fail("general force", std::to_string(n) + " nodes",
            "must have at most " + std::to_string(kMaxLocalDofs));
@@ -268,9 +264,8 @@ bool SystemBuilder::check_kinds(const Placement& p, const std::vector<int>& node
     const bool turns = first == NodeKind::rotational;
     findings_.push_back({place(p.name), "node", node_name(node), "",
                          std::string("is ") + (turns ? "translational" : "rotational") + " and " +
-                             node_name(nodes.front()) + " is " +
-                             (turns ? "rotational" : "translational") + "; a " +
-                             std::string(p.element->type()) + " joins nodes of one kind"});
+                             node_name(nodes.front()) + " is " + (turns ? "rotational" : "translational") +
+                             "; a " + std::string(p.element->type()) + " joins nodes of one kind"});
     return false;
   }
   return true;

@@ -123,8 +123,7 @@ std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
     for (int k = 0; k < n; ++k) visit(k, k);
     for (int matrix = 0; matrix < 3; ++matrix)
       for_each_entry(matrix, [&](int i, int j, double) {
-        if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j))
-          visit(unknown(i), unknown(j));
+        if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j)) visit(unknown(i), unknown(j));
       });
     for (const ScalarTerm& s : system_.scalars_)
       for (const Entry& r : s.z)
@@ -133,8 +132,7 @@ std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
     for (const GeneralTerm& g : system_.generals_)
       for (const int i : g.nodes)
         for (const int j : g.nodes)
-          if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j))
-            visit(unknown(i), unknown(j));
+          if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j)) visit(unknown(i), unknown(j));
   };
   std::vector<int> begin(at(n + 1), 0);
   for_each([&](int, int column) { ++begin[at(column + 1)]; });
@@ -163,8 +161,7 @@ Vector SystemBuilder::values_on_pattern(int matrix) const {
   Vector v = Vector::Zero(system_.pattern_->nonZeros());
   for_each_entry(matrix, [&](int i, int j, double value) {
     const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
-    if (a.unknown >= 0 && b.unknown >= 0)
-      v[system_.slot(a.unknown, b.unknown)] += value * a.coeff * b.coeff;
+    if (a.unknown >= 0 && b.unknown >= 0) v[system_.slot(a.unknown, b.unknown)] += value * a.coeff * b.coeff;
   });
   return v;
 }
@@ -179,8 +176,7 @@ void SystemBuilder::assemble_matrices() {
       const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
       const double v = value * a.coeff * b.coeff;
       if (a.unknown >= 0 && b.prescribed >= 0) zu[which].emplace_back(a.unknown, b.prescribed, v);
-      if (a.prescribed >= 0 && b.prescribed >= 0)
-        uu[which].emplace_back(a.prescribed, b.prescribed, v);
+      if (a.prescribed >= 0 && b.prescribed >= 0) uu[which].emplace_back(a.prescribed, b.prescribed, v);
       if (keep_nodes) node[which].emplace_back(i, j, value);
     });
   // Inertia and mean drag of the nominal motion; Rayleigh damping acts on deviations only.
@@ -207,15 +203,13 @@ void SystemBuilder::assemble_matrices() {
   system_.mass_ = values_on_pattern(0);
   for (NodeMatrix& part : mass_) part.clear();
   system_.find_slots();
-  system_.zu_ = {from_triplets(nz, nu, zu[0]), from_triplets(nz, nu, zu[1]),
-                 from_triplets(nz, nu, zu[2])};
-  system_.uu_ = {from_triplets(nu, nu, uu[0]), from_triplets(nu, nu, uu[1]),
-                 from_triplets(nu, nu, uu[2])};
+  system_.zu_ = {from_triplets(nz, nu, zu[0]), from_triplets(nz, nu, zu[1]), from_triplets(nz, nu, zu[2])};
+  system_.uu_ = {from_triplets(nu, nu, uu[0]), from_triplets(nu, nu, uu[1]), from_triplets(nu, nu, uu[2])};
   if (keep_nodes) {
     const int nodes = system_.node_count();
-    system_.node_matrices_ = MatrixSet{from_triplets(nodes, nodes, node[0]),
-                                       from_triplets(nodes, nodes, node[1]),
-                                       from_triplets(nodes, nodes, node[2])};
+    system_.node_matrices_ =
+        MatrixSet{from_triplets(nodes, nodes, node[0]), from_triplets(nodes, nodes, node[1]),
+                  from_triplets(nodes, nodes, node[2])};
   }
 }
 

@@ -16,8 +16,7 @@ TableLoads::Values::Values(const TableLoads& loads) {
 
 void TableLoads::add(const LoadTable& table, int unknown, double coeff, double ratio, double gain) {
   const std::size_t n = table.values.size();
-  const auto [place, is_new] =
-      begin_of_.try_emplace(table.values.data(), static_cast<int>(knots_.size()));
+  const auto [place, is_new] = begin_of_.try_emplace(table.values.data(), static_cast<int>(knots_.size()));
   if (is_new) {
     std::vector<Knot> knots;
     for (std::size_t k = 0; k <= n; ++k) {
@@ -27,9 +26,8 @@ void TableLoads::add(const LoadTable& table, int unknown, double coeff, double r
                        table.slopes[i]});
     }
     std::size_t same = 0;
-    while (same < begin_.size() &&
-           !(count_[same] == static_cast<int>(n) &&
-             std::equal(knots.begin(), knots.end(), knots_.begin() + begin_[same])))
+    while (same < begin_.size() && !(count_[same] == static_cast<int>(n) &&
+                                     std::equal(knots.begin(), knots.end(), knots_.begin() + begin_[same])))
       ++same;
     if (same < begin_.size())
       place->second = begin_[same];

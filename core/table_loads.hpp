@@ -48,7 +48,7 @@ class TableLoads {
 
  private:
   struct Knot {
-    double argument;  // less that of knot 0
+    double argument;            // less that of knot 0
     double value, left, right;  // slopes on both sides
     bool operator==(const Knot&) const = default;
   };

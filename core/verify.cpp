@@ -61,8 +61,7 @@ struct Difference {
   double slope = 0.0, doubt = 0.0;
 };
 
-Difference difference(const std::function<double(double)>& f, double x, double step,
-                      double tolerance) {
+Difference difference(const std::function<double(double)>& f, double x, double step, double tolerance) {
   const double h = step * std::max(std::abs(x), kLeastArgument);
   const double high = x + h, low = x - h;
   const double at = f(x), up = f(high), down = f(low);
@@ -79,8 +78,8 @@ struct SlopeCheck {
   double expected = 0.0;
 };
 
-SlopeCheck check_slope(const std::function<double(double)>& f, double x, double returned,
-                       double tolerance, double more_doubt = 0.0) {
+SlopeCheck check_slope(const std::function<double(double)>& f, double x, double returned, double tolerance,
+                       double more_doubt = 0.0) {
   SlopeCheck check;
   for (const double step : kSteps) {
     const Difference d = difference(f, x, step, tolerance);
@@ -91,10 +90,9 @@ SlopeCheck check_slope(const std::function<double(double)>& f, double x, double 
   return check;
 }
 
-std::string compare_text(const char* what, double returned, double expected,
-                         const std::string& where) {
-  return std::string(what) + " = " + to_text(returned) + ", differences give " + to_text(expected) +
-         " at " + where;
+std::string compare_text(const char* what, double returned, double expected, const std::string& where) {
+  return std::string(what) + " = " + to_text(returned) + ", differences give " + to_text(expected) + " at " +
+         where;
 }
 
 template <class T>
@@ -104,8 +102,7 @@ bool same_bits(const T& a, const T& b) {
 
 bool finite(const ScalarResponse& r) {
   return std::isfinite(r.y) && std::isfinite(r.dy_dx) && std::isfinite(r.dy_dx_dot) &&
-         std::isfinite(r.dy_dangle) && std::isfinite(r.stored_energy) &&
-         std::isfinite(r.dissipated_power);
+         std::isfinite(r.dy_dangle) && std::isfinite(r.stored_energy) && std::isfinite(r.dissipated_power);
 }
 
 std::string place(const ScalarInput& in) {
@@ -116,14 +113,13 @@ std::string place(const ScalarInput& in) {
 double draw_deflection(Draw& draw, std::span<const double> kinks, double largest) {
   if (kinks.empty() || draw.unit() < 0.5) return draw.magnitude(largest);
   const auto count = static_cast<double>(kinks.size());
-  const double kink =
-      kinks[std::min(static_cast<std::size_t>(count * draw.unit()), kinks.size() - 1)];
+  const double kink = kinks[std::min(static_cast<std::size_t>(count * draw.unit()), kinks.size() - 1)];
   const double reach = std::max(std::abs(kink), kinks.back() - kinks.front());
   return kink + draw.magnitude(reach > 0.0 ? 2.0 * reach : largest);
 }
 
-void check_law_slopes(const ScalarForce& law, const ScalarInput& in, bool phased,
-                      const CheckOptions& o, Findings& out) {
+void check_law_slopes(const ScalarForce& law, const ScalarInput& in, bool phased, const CheckOptions& o,
+                      Findings& out) {
   const ScalarResponse r = law.evaluate(in);
   const auto y_of = [&](double ScalarInput::*argument) {
     return [&law, in, argument](double value) {
@@ -141,8 +137,7 @@ void check_law_slopes(const ScalarForce& law, const ScalarInput& in, bool phased
   if (phased) slope("dy_dangle", r.dy_dangle, &ScalarInput::angle);
 }
 
-void check_law_energy(const ScalarForce& law, const ScalarInput& in, const CheckOptions& o,
-                      Findings& out) {
+void check_law_energy(const ScalarForce& law, const ScalarInput& in, const CheckOptions& o, Findings& out) {
   const ScalarResponse r = law.evaluate(in);
   ScalarInput rest = in;
   rest.x_dot = 0.0;
@@ -164,11 +159,10 @@ void check_law_energy(const ScalarForce& law, const ScalarInput& in, const Check
   const double size = (std::abs(r.y) + std::abs(elastic)) * std::abs(in.x_dot);
   out.require(power >= -kRoundOff * kEps * size, "active damper",
               "(y - y at rest) x_dot = " + to_text(power) + " W at " + place(in));
-  out.require(std::abs(r.dissipated_power - power) <=
-                  o.tolerance * std::abs(power) + kRoundOff * kEps * size,
+  out.require(std::abs(r.dissipated_power - power) <= o.tolerance * std::abs(power) + kRoundOff * kEps * size,
               "dissipated power does not match the force",
-              to_text(r.dissipated_power) + " W, but (y - y at rest) x_dot = " + to_text(power) +
-                  " W at " + place(in));
+              to_text(r.dissipated_power) + " W, but (y - y at rest) x_dot = " + to_text(power) + " W at " +
+                  place(in));
 }
 
 void check_law(const ScalarSpec& spec, const CheckOptions& o, Draw& draw, Findings& out) {
@@ -176,8 +170,7 @@ void check_law(const ScalarSpec& spec, const CheckOptions& o, Draw& draw, Findin
   const bool phased = spec.phase_node >= 0;
   const std::span<const double> kinks = law.kinks();
   out.require(std::is_sorted(kinks.begin(), kinks.end()), "kinks", "must ascend");
-  if (const auto gap = law.gap())
-    out.require(gap->low < gap->high, "gap", "low must be less than high");
+  if (const auto gap = law.gap()) out.require(gap->low < gap->high, "gap", "low must be less than high");
   const double k = law.closed_stiffness(), c = law.closed_damping();
   out.require(std::isfinite(k) && k >= 0.0, "closed_stiffness", to_text(k) + ", must be >= 0");
   out.require(std::isfinite(c) && c >= 0.0, "closed_damping", to_text(c) + ", must be >= 0");
@@ -206,8 +199,7 @@ void check_law(const ScalarSpec& spec, const CheckOptions& o, Draw& draw, Findin
       const double slope = law.offset(in.angle).de_dangle;
       const SlopeCheck d =
           check_slope([&law](double a) { return law.offset(a).e; }, in.angle, slope, o.tolerance);
-      out.require(d.good, "wrong offset slope",
-                  compare_text("de_dangle", slope, d.expected, place(in)));
+      out.require(d.good, "wrong offset slope", compare_text("de_dangle", slope, d.expected, place(in)));
     }
   }
   for (const auto& [in, before] : seen)
@@ -223,10 +215,9 @@ void check_load(const Load& load, const CheckOptions& o, Draw& draw, Findings& o
                        .deviation = draw.magnitude(o.deflection),
                        .speed = draw.magnitude(o.rate)};
     const LoadResponse r = load.evaluate(in);
-    const std::string where = "t = " + to_text(in.t) + ", angle = " + to_text(in.nominal_angle) +
-                              " + " + to_text(in.deviation) + ", speed = " + to_text(in.speed);
-    if (!std::isfinite(r.torque) || !std::isfinite(r.dtorque_dangle) ||
-        !std::isfinite(r.dtorque_dspeed)) {
+    const std::string where = "t = " + to_text(in.t) + ", angle = " + to_text(in.nominal_angle) + " + " +
+                              to_text(in.deviation) + ", speed = " + to_text(in.speed);
+    if (!std::isfinite(r.torque) || !std::isfinite(r.dtorque_dangle) || !std::isfinite(r.dtorque_dspeed)) {
       out.add("not finite", where);
       continue;
     }
@@ -248,9 +239,8 @@ void check_load(const Load& load, const CheckOptions& o, Draw& draw, Findings& o
     moved.deviation = draw.magnitude(o.deflection);
     moved.speed = draw.magnitude(o.rate);
     if (!load.depends_on_motion())
-      out.require(
-          same_bits(load.evaluate(moved), r) && r.dtorque_dangle == 0.0 && r.dtorque_dspeed == 0.0,
-          "depends_on_motion() is false", "but the torque follows the motion at " + where);
+      out.require(same_bits(load.evaluate(moved), r) && r.dtorque_dangle == 0.0 && r.dtorque_dspeed == 0.0,
+                  "depends_on_motion() is false", "but the torque follows the motion at " + where);
   }
   for (const auto& [in, before] : seen)
     out.require(same_bits(load.evaluate(in), before), "impure",
@@ -283,8 +273,7 @@ struct GeneralTrial {
   LocalState state;
 };
 
-void check_general(const GeneralForce& force, int nodes, const CheckOptions& o, Draw& draw,
-                   Findings& out) {
+void check_general(const GeneralForce& force, int nodes, const CheckOptions& o, Draw& draw, Findings& out) {
   if (nodes > kMaxLocalDofs)
     return out.add("general force", "has " + std::to_string(nodes) + " nodes; at most " +
                                         std::to_string(kMaxLocalDofs) + " fit");
@@ -328,17 +317,15 @@ void check_general(const GeneralForce& force, int nodes, const CheckOptions& o, 
         compare("damping", &LocalState::v, state.v[b], r.damping(a, b));
       }
     if (force.symmetric_tangent())
-      out.require(r.stiffness.isApprox(r.stiffness.transpose()) &&
-                      r.damping.isApprox(r.damping.transpose()),
+      out.require(r.stiffness.isApprox(r.stiffness.transpose()) && r.damping.isApprox(r.damping.transpose()),
                   "symmetric_tangent() is true", "but a tangent is not symmetric, " + where);
   }
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const LocalResponse again = trial.respond(seen[i].first), &before = seen[i].second;
-    out.require(
-        again.f == before.f && again.stiffness == before.stiffness &&
-            again.damping == before.damping && again.stored_energy == before.stored_energy &&
-            again.dissipated_power == before.dissipated_power && trial.history_new == histories[i],
-        "impure", "the same state gave another response, sample " + std::to_string(i));
+    out.require(again.f == before.f && again.stiffness == before.stiffness &&
+                    again.damping == before.damping && again.stored_energy == before.stored_energy &&
+                    again.dissipated_power == before.dissipated_power && trial.history_new == histories[i],
+                "impure", "the same state gave another response, sample " + std::to_string(i));
   }
 }
 
@@ -372,8 +359,7 @@ void check_closures(const Terms& terms, int nodes, double tolerance, Findings& o
   const double strain = (terms.stiffness * n).cwiseAbs().maxCoeff();
   const double size = terms.stiffness.cwiseAbs().maxCoeff() * n.cwiseAbs().maxCoeff();
   out.require(strain <= tolerance * size, "closures",
-              "a nominal motion that satisfies them strains the stiffness matrix: K n = " +
-                  to_text(strain));
+              "a nominal motion that satisfies them strains the stiffness matrix: K n = " + to_text(strain));
   for (const ScalarSpec& s : terms.scalars) {
     const double x = (s.b.transpose() * n).cwiseAbs().maxCoeff();
     // A law that only damps may slip nominally, as a dashpot does.
@@ -408,8 +394,7 @@ bool check_description(const Terms& terms, int nodes, Findings& out) {
     require(entries == 1 || entries == 2, "closure row",
             "ties " + std::to_string(entries) + " nodes; it must tie one or two");
   }
-  for (const LocalRow& b : terms.constraints)
-    require(b.size() == nodes, "constraint row", expected);
+  for (const LocalRow& b : terms.constraints) require(b.size() == nodes, "constraint row", expected);
   for (const OutputSpec& s : terms.outputs)
     require(s.stiffness.size() == nodes && s.damping.size() == nodes, "output row", expected);
   return usable;
@@ -431,8 +416,8 @@ CheckReport check_element(const Element& element, int nodes, const CheckOptions&
   element.check(parameters);
   for (const Finding& f : findings) report.failures.push_back(f.text());
   out.require(nodes >= element.min_nodes() && nodes <= element.max_nodes(), "nodes",
-              std::to_string(nodes) + " given, takes " + std::to_string(element.min_nodes()) +
-                  " to " + std::to_string(element.max_nodes()));
+              std::to_string(nodes) + " given, takes " + std::to_string(element.min_nodes()) + " to " +
+                  std::to_string(element.max_nodes()));
   if (!report.ok()) return report;
 
   const int n = nodes + element.internal_nodes();

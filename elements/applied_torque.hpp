@@ -23,7 +23,7 @@ class AppliedTorque final : public Element, public Load {
     std::function<double(double t)> torque = {};  ///< N m over s; pure, callable from any thread
     std::vector<double> breakpoints = {};         ///< of the function [s]
     std::optional<TimeTable> table = {};          ///< instead of the function: s -> N m
-    std::vector<Harmonic> harmonics = {};  ///< or these: order = frequency f [Hz], N m, rad
+    std::vector<Harmonic> harmonics = {};         ///< or these: order = frequency f [Hz], N m, rad
   };
   explicit AppliedTorque(Params params) : params_(std::move(params)) {}
 
@@ -31,8 +31,8 @@ class AppliedTorque final : public Element, public Load {
   std::string_view type() const override { return "applied torque"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& check) const override {
-    const int given = int(bool(params_.torque)) + int(params_.table.has_value()) +
-                      int(!params_.harmonics.empty());
+    const int given =
+        int(bool(params_.torque)) + int(params_.table.has_value()) + int(!params_.harmonics.empty());
     if (given != 1)
       check.fail("torque", given == 0 ? "nothing" : "several", "",
                  "exactly one of torque, table and harmonics must be given");
@@ -44,12 +44,10 @@ class AppliedTorque final : public Element, public Load {
 
   LoadResponse evaluate(const LoadInput& in) const override {
     if (params_.table) return {.torque = params_.table->at(in.t).value};
-    return {.torque = params_.torque ? params_.torque(in.t)
-                                     : sum_at(params_.harmonics, kTwoPi * in.t).value};
+    return {.torque = params_.torque ? params_.torque(in.t) : sum_at(params_.harmonics, kTwoPi * in.t).value};
   }
   bool depends_on_motion() const override { return false; }
-  std::optional<LoadStretch> stretch(double t, double /*angle*/,
-                                     double /*direction*/) const override {
+  std::optional<LoadStretch> stretch(double t, double /*angle*/, double /*direction*/) const override {
     if (!params_.table) return std::nullopt;
     const CurvePoint p = params_.table->at(t);
     return LoadStretch{.torque = p.value, .time_slope = p.slope};

@@ -52,9 +52,7 @@ void DistributedShaft::describe(int nodes, Terms& terms) const {
                          : params_.mass == SegmentMass::consistent ? j / 6.0
                                                                    : j / 12.0;
   // Positions along the shaft 0..n in the element's node order: a, b, internal.
-  const auto local = [n](int position) {
-    return position == 0 ? 0 : position == n ? 1 : position + 1;
-  };
+  const auto local = [n](int position) { return position == 0 ? 0 : position == n ? 1 : position + 1; };
   for (int s = 0; s < n; ++s) {
     const int a = local(s), b = local(s + 1);
     terms.mass(a, a) += 0.5 * j - coupled;

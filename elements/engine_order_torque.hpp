@@ -32,8 +32,7 @@ class EngineOrderTorque final : public Element, public Load {
   LoadResponse evaluate(const LoadInput& in) const override {
     const double twist = params_.twist_feedback ? in.deviation : 0.0;
     const CurvePoint p = sum_at(params_.harmonics, in.nominal_angle + twist);
-    return {.torque = params_.mean + p.value,
-            .dtorque_dangle = params_.twist_feedback ? p.slope : 0.0};
+    return {.torque = params_.mean + p.value, .dtorque_dangle = params_.twist_feedback ? p.slope : 0.0};
   }
   bool depends_on_motion() const override { return params_.twist_feedback; }
 

@@ -27,10 +27,8 @@ GearMesh::GearMesh(Params params)
             .damping = params_.damping,
             .damping_law = params_.damping_law,
             .reference_penetration = params_.reference_penetration}),
-      radius_1_(
-          radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
-      radius_2_(
-          radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
+      radius_1_(radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
+      radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
       teeth_per_radian_(params_.teeth_1 / kTwoPi) {
   if (!params_.stiffness.varies() && !params_.transmission_error.varies())
     pieces_ = law_.product_pieces(params_.stiffness.mean());
@@ -53,9 +51,8 @@ void GearMesh::check(ParameterCheck& check) const {
                std::to_string(params_.teeth_1 < 0 ? params_.teeth_1 : params_.teeth_2), "",
                "must be > 0 where given");
   if ((params_.stiffness.varies() || params_.transmission_error.varies()) && params_.teeth_1 <= 0)
-    check.fail(
-        "teeth_1", std::to_string(params_.teeth_1), "",
-        "must be given where the stiffness or the transmission error follows the mesh phase");
+    check.fail("teeth_1", std::to_string(params_.teeth_1), "",
+               "must be given where the stiffness or the transmission error follows the mesh phase");
 }
 
 void GearMesh::check_radii(ParameterCheck& check) const {
@@ -79,9 +76,8 @@ void GearMesh::check_radii(ParameterCheck& check) const {
       check.fail("pressure_angle", to_text(p.pressure_angle), "rad", "must be >= 0 and < pi/2");
   }
   if (p.internal && radius_2_ <= radius_1_)
-    check.fail(
-        "base_radius_2", to_text(radius_2_), "m",
-        "must exceed base_radius_1, " + to_text(radius_1_) + ", of the gear inside the ring");
+    check.fail("base_radius_2", to_text(radius_2_), "m",
+               "must exceed base_radius_1, " + to_text(radius_1_) + ", of the gear inside the ring");
   if (!radii) return;
   if (teeth) {
     const double from_1 = involute_base_radius(p.module, p.teeth_1, p.pressure_angle);

@@ -20,9 +20,7 @@ class Inertia final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "inertia"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.positive("inertia", params_.inertia, "kg m^2");
-  }
+  void check(ParameterCheck& check) const override { check.positive("inertia", params_.inertia, "kg m^2"); }
   void describe(int /*nodes*/, Terms& terms) const override {
     terms.mass(0, 0) = params_.inertia;
     terms.rayleigh = true;

@@ -22,16 +22,14 @@ double involute_contact_ratio(const InvolutePair& g) {
   if (!(g.tip_radius_2 > g.base_radius_2))
     check.fail("tip_radius_2", to_text(g.tip_radius_2), "m", "must exceed the base radius");
   if (!(g.centre_distance > g.base_radius_1 + g.base_radius_2))
-    check.fail("centre_distance", to_text(g.centre_distance), "m",
-               "must exceed the sum of the base radii");
+    check.fail("centre_distance", to_text(g.centre_distance), "m", "must exceed the sum of the base radii");
   if (!findings.empty()) throw ModelError(std::move(findings));
 
   // a sin(alpha_w): length of the common tangent of the base circles.
   const double base_sum = g.base_radius_1 + g.base_radius_2;
   const double tangent = std::sqrt((g.centre_distance - base_sum) * (g.centre_distance + base_sum));
   const auto leg = [](double tip, double base) { return std::sqrt((tip - base) * (tip + base)); };
-  const double path =
-      leg(g.tip_radius_1, g.base_radius_1) + leg(g.tip_radius_2, g.base_radius_2) - tangent;
+  const double path = leg(g.tip_radius_1, g.base_radius_1) + leg(g.tip_radius_2, g.base_radius_2) - tangent;
   return path / (kTwoPi * g.base_radius_1 / g.teeth_1);
 }
 

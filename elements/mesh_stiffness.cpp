@@ -89,8 +89,7 @@ void MeshStiffness::check(ParameterCheck& check, const std::string& parameter) c
     double lowest = series->mean;
     for (int i = 0; i < samples; ++i) lowest = std::min(lowest, at(double(i) / samples).value);
     if (series->mean > 0.0 && lowest <= 0.0)
-      check.fail(parameter, to_text(lowest), "N/m",
-                 "is the lowest over the mesh period; it must stay > 0");
+      check.fail(parameter, to_text(lowest), "N/m", "is the lowest over the mesh period; it must stay > 0");
   } else {
     const auto& table = std::get<PeriodicTable>(law_);
     table.check(check, parameter, "mesh periods", "N/m");

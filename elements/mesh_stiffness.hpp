@@ -32,8 +32,7 @@ class MeshStiffness {
   /// mean [N/m]; harmonics per mesh period: whole orders, amplitude [N/m], phase [rad].
   static MeshStiffness fourier(double mean, std::vector<Harmonic> harmonics);
   /// Fourier series of the step with the first `harmonics` orders.
-  static MeshStiffness fourier_of_step(double single, double both, double contact_ratio,
-                                       int harmonics);
+  static MeshStiffness fourier_of_step(double single, double both, double contact_ratio, int harmonics);
   /// Phases in [0, 1) ascending, stiffnesses [N/m].
   static MeshStiffness table(std::vector<double> phases, std::vector<double> stiffnesses);
 

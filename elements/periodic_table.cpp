@@ -7,8 +7,7 @@
 
 namespace drev {
 
-PeriodicTable::PeriodicTable(std::vector<double> arguments, std::vector<double> values,
-                             double period)
+PeriodicTable::PeriodicTable(std::vector<double> arguments, std::vector<double> values, double period)
     : period_(period), inverse_period_(1.0 / period) {
   auto points = std::make_shared<Points>(Points{std::move(arguments), std::move(values), {}});
   points_ = points;
@@ -23,8 +22,7 @@ PeriodicTable::PeriodicTable(std::vector<double> arguments, std::vector<double> 
     const double step = (last ? u[0] + period_ : u[i + 1]) - u[i];
     points->slopes.push_back((v[last ? 0 : i + 1] - v[i]) / step);
     // Loose enough for angles written down with a few digits: segment() corrects by one.
-    even = even && std::abs(u[i] - u[0] - static_cast<double>(i) * spacing) <
-                       0.25 * spacing;
+    even = even && std::abs(u[i] - u[0] - static_cast<double>(i) * spacing) < 0.25 * spacing;
   }
   if (even) inverse_spacing_ = 1.0 / spacing;
 }
@@ -71,12 +69,8 @@ TableStretch PeriodicTable::stretch(double argument, double direction) const {
   double steepest = 0.0;
   for (const double s : {p.slopes.front(), slope, p.slopes.back()})
     steepest = std::max(steepest, std::abs(s));
-  const auto same = [&](std::size_t j) {
-    return std::abs(p.slopes[j] - slope) <= kSameSlope * steepest;
-  };
-  const auto knot = [&](std::size_t j, double turns) {
-    return base + turns * period_ + p.arguments[j];
-  };
+  const auto same = [&](std::size_t j) { return std::abs(p.slopes[j] - slope) <= kSameSlope * steepest; };
+  const auto knot = [&](std::size_t j, double turns) { return base + turns * period_ + p.arguments[j]; };
   TableStretch s{value, slope, 0.0, 0.0};
   std::size_t low = i, high = i, steps = 0;
   double turns_low = 0.0, turns_high = 0.0;
@@ -111,8 +105,7 @@ double PeriodicTable::mean() const {
 void PeriodicTable::check(ParameterCheck& check, const std::string& parameter,
                           const std::string& argument_unit, const std::string& value_unit) const {
   const std::size_t n = arguments().size();
-  if (n < 2)
-    check.fail(parameter, std::to_string(n), "points", "a periodic table needs at least 2");
+  if (n < 2) check.fail(parameter, std::to_string(n), "points", "a periodic table needs at least 2");
   if (values().size() != n)
     check.fail(parameter, std::to_string(values().size()) + " values", "",
                "must be as many as the arguments, " + std::to_string(n));

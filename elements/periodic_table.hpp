@@ -6,8 +6,8 @@
 /// The slope is that of the segment to the right of u. Points need not be evenly spaced and need
 /// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
 /// in constant time, others by bisection.
-#include <string>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/error.hpp"

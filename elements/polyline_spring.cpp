@@ -25,16 +25,15 @@ bool PolylineSpring::usable() const {
   return true;
 }
 
-PolylineSpring::Params PolylineSpring::dead_band(double stiffness, double half_gap,
-                                                 double damping) {
+PolylineSpring::Params PolylineSpring::dead_band(double stiffness, double half_gap, double damping) {
   if (half_gap == 0.0) return {.x = {-1.0, 1.0}, .y = {-stiffness, stiffness}, .damping = damping};
   return {.x = {-2.0 * half_gap, -half_gap, half_gap, 2.0 * half_gap},
           .y = {-stiffness * half_gap, 0.0, 0.0, stiffness * half_gap},
           .damping = damping};
 }
 
-PolylineSpring::Params PolylineSpring::with_stops(double stiffness, double travel,
-                                                  double stop_stiffness, double damping) {
+PolylineSpring::Params PolylineSpring::with_stops(double stiffness, double travel, double stop_stiffness,
+                                                  double damping) {
   const double at_stop = stiffness * travel, beyond = at_stop + stop_stiffness * travel;
   return {.x = {-2.0 * travel, -travel, travel, 2.0 * travel},
           .y = {-beyond, -at_stop, at_stop, beyond},
@@ -75,11 +74,7 @@ void PolylineSpring::find_pieces() {
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const Segment& s = segments_[i];
     const double y_0 = s.y - s.slope * s.x;
-    LawPiece piece{.y_0 = y_0,
-                   .k = s.slope,
-                   .c = params_.damping,
-                   .elastic_0 = y_0,
-                   .elastic_k = s.slope};
+    LawPiece piece{.y_0 = y_0, .k = s.slope, .c = params_.damping, .elastic_0 = y_0, .elastic_k = s.slope};
     const int own = static_cast<int>(i);
     if (i > 0) piece.bounds.push_back({-params_.x[i], 1.0, 0.0, own - 1});
     if (i + 1 < segments_.size()) piece.bounds.push_back({params_.x[i + 1], -1.0, 0.0, own + 1});
@@ -117,9 +112,7 @@ double PolylineSpring::closed_stiffness() const {
   return 0.5 * (low + high);
 }
 
-std::span<const double> PolylineSpring::kinks() const {
-  return {params_.x.data() + 1, params_.x.size() - 2};
-}
+std::span<const double> PolylineSpring::kinks() const { return {params_.x.data() + 1, params_.x.size() - 2}; }
 
 void PolylineSpring::check(ParameterCheck& check) const {
   const auto &x = params_.x, &y = params_.y;

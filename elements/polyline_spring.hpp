@@ -28,8 +28,7 @@ class PolylineSpring final : public Element, public ScalarForce {
   /// Free within +-half_gap, k beyond: y = k (x -+ half_gap).
   static Params dead_band(double stiffness, double half_gap, double damping = 0.0);
   /// k within +-travel, stop_stiffness beyond (slope of the whole, not added to k).
-  static Params with_stops(double stiffness, double travel, double stop_stiffness,
-                           double damping = 0.0);
+  static Params with_stops(double stiffness, double travel, double stop_stiffness, double damping = 0.0);
 
   const Params& params() const { return params_; }
   std::string_view type() const override { return "polyline spring"; }

@@ -17,14 +17,12 @@ RayleighDamping::Params RayleighDamping::from_two_modes(double omega_1, double x
   ParameterCheck check("Rayleigh damping from two modes", findings);
   check_mode(check, "_1", omega_1, xi_1);
   check_mode(check, "_2", omega_2, xi_2);
-  if (omega_1 == omega_2)
-    check.fail("omega_2", to_text(omega_2), "rad/s", "must differ from omega_1");
+  if (omega_1 == omega_2) check.fail("omega_2", to_text(omega_2), "rad/s", "must differ from omega_1");
   if (!findings.empty()) throw ModelError(std::move(findings));
 
   const double difference = (omega_2 - omega_1) * (omega_2 + omega_1);
-  const Params p{
-      .alpha_mass = 2.0 * omega_1 * omega_2 * (xi_1 * omega_2 - xi_2 * omega_1) / difference,
-      .beta_stiffness = 2.0 * (xi_2 * omega_2 - xi_1 * omega_1) / difference};
+  const Params p{.alpha_mass = 2.0 * omega_1 * omega_2 * (xi_1 * omega_2 - xi_2 * omega_1) / difference,
+                 .beta_stiffness = 2.0 * (xi_2 * omega_2 - xi_1 * omega_1) / difference};
   const char* range = "must be >= 0; xi_2/xi_1 must lie between omega_1/omega_2 and its inverse";
   if (p.alpha_mass < 0.0) check.fail("alpha_mass", to_text(p.alpha_mass), "1/s", range);
   if (p.beta_stiffness < 0.0) check.fail("beta_stiffness", to_text(p.beta_stiffness), "s", range);

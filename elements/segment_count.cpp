@@ -19,15 +19,18 @@ double segment_frequency_error(SegmentMass mass, double theta, double ends) {
   // 1 - cos theta = 2 sin^2(theta/2)
   const double lumped = 2.0 * std::sin(0.5 * theta) / theta;
   switch (mass) {
-    case SegmentMass::lumped: return lumped - 1.0 - of_ends;
-    case SegmentMass::consistent: return lumped * std::sqrt(3.0 / (2.0 + std::cos(theta))) - 1.0 - of_ends;
-    case SegmentMass::averaged: return lumped * std::sqrt(6.0 / (5.0 + std::cos(theta))) - 1.0 - of_ends;
+    case SegmentMass::lumped:
+      return lumped - 1.0 - of_ends;
+    case SegmentMass::consistent:
+      return lumped * std::sqrt(3.0 / (2.0 + std::cos(theta))) - 1.0 - of_ends;
+    case SegmentMass::averaged:
+      return lumped * std::sqrt(6.0 / (5.0 + std::cos(theta))) - 1.0 - of_ends;
   }
   return 0.0;
 }
 
-int segments_for(double length, double wave_speed, double accuracy, double up_to_Hz,
-                 SegmentMass mass, double ends) {
+int segments_for(double length, double wave_speed, double accuracy, double up_to_Hz, SegmentMass mass,
+                 double ends) {
   std::vector<Finding> findings;
   ParameterCheck check("segments_for", findings);
   check.positive("length", length, "m");

@@ -23,8 +23,7 @@ class TimeTable {
   const std::vector<double>& times() const { return times_; }
   const std::vector<double>& values() const { return values_; }
   std::vector<double> breakpoints() const;  ///< the knots, each once [s]
-  void check(ParameterCheck& check, const std::string& parameter,
-             const std::string& value_unit) const;
+  void check(ParameterCheck& check, const std::string& parameter, const std::string& value_unit) const;
 
  private:
   std::vector<double> times_, values_;

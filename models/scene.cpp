@@ -8,8 +8,8 @@
 namespace drev {
 
 const std::vector<SceneEntry>& scenes() {
-  static const std::vector<SceneEntry> all{two_inertia_entry(), two_mass_backlash_entry(),
-                                           gear_drive_entry(), camshaft_entry()};
+  static const std::vector<SceneEntry> all{two_inertia_entry(), two_mass_backlash_entry(), gear_drive_entry(),
+                                           camshaft_entry()};
   return all;
 }
 

@@ -12,9 +12,9 @@ namespace drev {
 
 struct Scene {
   Model model;
-  double duration = 1.0;      ///< s
-  double default_step = 1e-4; ///< s; the model's header says why
-  std::string note = {};      ///< e.g. that the data are a reconstruction; shown with every result
+  double duration = 1.0;       ///< s
+  double default_step = 1e-4;  ///< s; the model's header says why
+  std::string note = {};       ///< e.g. that the data are a reconstruction; shown with every result
   /// Channels whose largest |value| is reported as the deflection (may be empty) and as the torques.
   std::string deflection = {};
   std::vector<std::string> torques = {};

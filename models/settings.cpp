@@ -26,7 +26,8 @@ std::string Setting::range() const {
     case Kind::choice:
       for (const std::string& c : choices) text += (text.empty() ? "" : " | ") + c;
       return text;
-    case Kind::order: return "every number from 1 once, e.g. 1-5-3-6-2-4, or default";
+    case Kind::order:
+      return "every number from 1 once, e.g. 1-5-3-6-2-4, or default";
   }
   return text;
 }
@@ -71,16 +72,15 @@ void Settings::set(const std::string& name, const std::string& value) {
   } else {
     double number = 0.0;
     if (!read_number(value, number)) {
-      findings_.push_back({place, name, value, "", "is not a number; must be " + s.range() +
-                                                       (s.unit.empty() ? "" : " " + s.unit)});
+      findings_.push_back({place, name, value, "",
+                           "is not a number; must be " + s.range() + (s.unit.empty() ? "" : " " + s.unit)});
       return;
     }
     if (!(number >= s.low && number <= s.high) ||
         (s.kind == Setting::Kind::integer && number != std::floor(number))) {
-      findings_.push_back({place, name, value, s.unit,
-                           (s.kind == Setting::Kind::integer ? "must be a whole number, "
-                                                             : "must be ") +
-                               s.range()});
+      findings_.push_back(
+          {place, name, value, s.unit,
+           (s.kind == Setting::Kind::integer ? "must be a whole number, " : "must be ") + s.range()});
       return;
     }
   }

@@ -23,9 +23,9 @@ constexpr double kRounding = 1e-14;       // relative, before growth
 constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
 constexpr double kTightening = 1e-3;      // of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
-constexpr double kTighteningSteps = 0.1;       // of the tolerance of controlled steps from run to run
-constexpr double kLeastOfSteps = 1e-12;        // of their tolerance
-constexpr double kChaos = 1e6;  // growth past which tightening moves the horizon only
+constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
+constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
+constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
 constexpr int kBatches = 20, kOrders = 5;
 constexpr double kSettled = 0.1;  // of the run: left out of time averages
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
@@ -33,8 +33,7 @@ constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
 /// Everything watched in one run.
 struct Watched {
   Watched(const System& system, const AccuracyOptions& o, const std::string& followed, double every)
-      : deflection(o.deflection.empty() ? std::vector<Channel>{}
-                                        : find_channels(system, {o.deflection})),
+      : deflection(o.deflection.empty() ? std::vector<Channel>{} : find_channels(system, {o.deflection})),
         torque(find_channels(system, o.torques)),
         edges(system),
         batches(system, find_channels(system, {followed}), kSettled * o.t_end, o.t_end, kBatches),
@@ -73,18 +72,17 @@ class AccurateRun {
   AccuracyResult run() {
     Method method = o_.method;
     if (method.exact())
-      method.tolerance =
-          std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
+      method.tolerance = std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
     else if (method.controlled())
       method.tolerance = std::clamp(o_.accuracy, 10 * kLeastOfSteps, 1e-2);
     else
       method.step = every_ / std::ceil(every_ / method.step);  // halves as it is asked to
     Method for_growth = method;
     if (method.exact()) for_growth.tolerance = 1e-13;
-    result_.growth = measure_growth(
-        system_, {.method = for_growth, .t_end = o_.t_end, .progress = [this](double p) {
-                    return going_on(0.2 * p);
-                  }});
+    result_.growth =
+        measure_growth(system_, {.method = for_growth, .t_end = o_.t_end, .progress = [this](double p) {
+                                   return going_on(0.2 * p);
+                                 }});
     if (result_.growth.status != RunStatus::success) {
       result_.summary.status = result_.growth.status;
       result_.summary.reason = result_.growth.reason;
@@ -115,8 +113,7 @@ class AccurateRun {
   /// Samples four times as often as the fastest mode swings, if that is not too many; whole numbers a cycle.
   void choose_sampling() {
     const double rate = fastest_rate(system_);
-    const double wanted =
-        std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
+    const double wanted = std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
     double count = std::min(wanted, static_cast<double>(kMostSamples));
     if (!o_.method.exact() && !o_.method.controlled())
       count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
@@ -129,8 +126,7 @@ class AccurateRun {
     const std::clock_t start = std::clock();
     w->summary = run_method(
         system_, method,
-        {.t_end = o_.t_end,
-         .progress = [&](double part) { return going_on(begin + (end - begin) * part); }},
+        {.t_end = o_.t_end, .progress = [&](double part) { return going_on(begin + (end - begin) * part); }},
         w->observers());
     w->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     // An energy balance that is off is an error of the figures like any other.
@@ -158,8 +154,8 @@ class AccurateRun {
   }
 
   /// A figure at time t, from both runs.
-  void add(const std::string& name, const std::string& unit, double coarse, double fine,
-           double scale, double t) {
+  void add(const std::string& name, const std::string& unit, double coarse, double fine, double scale,
+           double t) {
     double error = error_of(coarse, fine, scale, t);
     if (!result_.fine.exact()) {
       double& before = differences_[name];
@@ -178,16 +174,16 @@ class AccurateRun {
     result_.figures.clear();
     find_horizon(a, b);
     if (!b.deflection.empty())
-      add("peak deflection", b.deflection.channel().unit(), a.deflection.value(),
-          b.deflection.value(), b.deflection.value(), b.deflection.time());
+      add("peak deflection", b.deflection.channel().unit(), a.deflection.value(), b.deflection.value(),
+          b.deflection.value(), b.deflection.time());
     if (!b.torque.empty())
-      add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(),
-          b.torque.value(), b.torque.time());
+      add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(), b.torque.value(),
+          b.torque.time());
     compare_edges(a.edges.passed(), b.edges.passed());
     if (!o_.deflection.empty()) compare_orders(a, b);
-    result_.reached = result_.horizon > o_.t_end &&
-                      std::all_of(result_.figures.begin(), result_.figures.end(),
-                                  [&](const Figure& f) { return f.keeps(o_.accuracy); });
+    result_.reached =
+        result_.horizon > o_.t_end && std::all_of(result_.figures.begin(), result_.figures.end(),
+                                                  [&](const Figure& f) { return f.keeps(o_.accuracy); });
   }
 
   void find_horizon(const Watched& a, const Watched& b) {
@@ -211,18 +207,15 @@ class AccurateRun {
            error_of(a[same].t, b[same].t, b[same].t, b[same].t) <= o_.accuracy * b[same].t)
       ++same;
     const double count = static_cast<double>(same);
-    result_.figures.push_back(
-        {"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
+    result_.figures.push_back({"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
     if (same > 0) {
       add("first contact change", "s", a[0].t, b[0].t, b[0].t, b[0].t);
-      add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t,
-          b[same - 1].t);
+      add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t, b[same - 1].t);
     }
     if (result_.horizon <= o_.t_end) return;
     const double all = static_cast<double>(b.size());
     result_.figures.push_back({"contact changes", "", all,
-                               kSafety * std::abs(all - static_cast<double>(a.size())),
-                               std::max(1.0, all)});
+                               kSafety * std::abs(all - static_cast<double>(a.size())), std::max(1.0, all)});
   }
 
   /// Whole cycles at the end of the run, as many as fit into its last half or else into the run.
@@ -237,8 +230,7 @@ class AccurateRun {
     return {steps - cycles * per_cycle, steps, cycles};
   }
 
-  static std::vector<double> part(const std::vector<double>& all, std::size_t begin,
-                                  std::size_t end) {
+  static std::vector<double> part(const std::vector<double>& all, std::size_t begin, std::size_t end) {
     return {all.begin() + static_cast<std::ptrdiff_t>(begin),
             all.begin() + static_cast<std::ptrdiff_t>(end + 1)};
   }
@@ -273,16 +265,15 @@ class AccurateRun {
       else
         name << "amplitude at " << fine.frequency_Hz[k] << " Hz";
       orders_[name.str()] = k / r.cycles;
-      add(name.str(), unit_of_deflection(), coarse.amplitude[k], fine.amplitude[k],
-          b.deflection.value(), o_.t_end);
+      add(name.str(), unit_of_deflection(), coarse.amplitude[k], fine.amplitude[k], b.deflection.value(),
+          o_.t_end);
     }
   }
 
   std::string unit_of_deflection() const { return find_channel(system_, o_.deflection).unit(); }
 
   void add_statistic(const std::string& name, const std::string& unit, const MeanInterval& m) {
-    result_.figures.push_back(
-        {name, unit, m.mean, m.half_width, std::abs(m.mean), Figure::Kind::interval});
+    result_.figures.push_back({name, unit, m.mean, m.half_width, std::abs(m.mean), Figure::Kind::interval});
   }
 
   /// Replaces what cannot be compared by statistics, and adds the time averages.
@@ -360,8 +351,8 @@ class AccurateRun {
     for (const int percent : {1, 99}) {
       std::vector<double> each;
       for (std::size_t b = 0; b < kBatches; ++b)
-        each.push_back(quantile(part(samples, first + b * count, first + (b + 1) * count - 1),
-                                percent / 100.0));
+        each.push_back(
+            quantile(part(samples, first + b * count, first + (b + 1) * count - 1), percent / 100.0));
       add_statistic(std::to_string(percent) + " % quantile of " + of.channel, of.unit,
                     batch_mean(each, kBatches));
     }
@@ -373,9 +364,8 @@ class AccurateRun {
     text.precision(3);
     if (result_.horizon < o_.t_end) {
       text << "from t = " << result_.horizon << " s on two runs differ by more than " << o_.accuracy
-           << " (a small difference of the state has grown by "
-           << result_.growth.factor(result_.horizon) << " there, by "
-           << result_.growth.factor(o_.t_end)
+           << " (a small difference of the state has grown by " << result_.growth.factor(result_.horizon)
+           << " there, by " << result_.growth.factor(o_.t_end)
            << " at the end): what depends on it is given as a statistic with its 95 % confidence "
               "interval";
     } else {
@@ -393,16 +383,14 @@ class AccurateRun {
   std::string followed_;
   double every_ = 0.0;
   AccuracyResult result_;
-  std::map<std::string, double>
-      differences_;  // of the last two runs with constant steps, by figure
+  std::map<std::string, double> differences_;  // of the last two runs with constant steps, by figure
   std::map<std::string, std::size_t> orders_;  // figure, line of one cycle's spectrum
 };
 
 }  // namespace
 
 const Figure* AccuracyResult::find(const std::string& name) const {
-  auto found =
-      std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
+  auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
   if (found == figures.end())
     found = std::find_if(figures.begin(), figures.end(),
                          [&](const Figure& f) { return f.name.starts_with(name); });
@@ -416,10 +404,8 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   check.positive("t_end", o.t_end, "s");
   check.non_negative("cycle", o.cycle, "s");
   check.positive("most_seconds", o.most_seconds, "s");
-  if (o.ensemble < 2)
-    check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
-  if (!o.method.exact() && !o.method.controlled())
-    check.positive("method.step", o.method.step, "s");
+  if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
+  if (!o.method.exact() && !o.method.controlled()) check.positive("method.step", o.method.step, "s");
   if (o.method.exact())
     if (const auto why = why_not_exact(system)) check.fail("method", "exact", "", *why);
   if (system.size() == 0) check.fail("unknowns", "0", "", "must be at least one");

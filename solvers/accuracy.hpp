@@ -12,9 +12,9 @@
 ///      confidence interval: time averages by the means of 20 batches, peaks over the run by runs that start
 ///      1e-9 beside the first.
 ///
-/// The estimate is one: it is honest where tightening reduces the error by a factor of 3 or more (second order:
-/// 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a method
-/// with constant steps.
+/// The estimate is one: it is honest where tightening reduces the error by a factor of 3 or more (second
+/// order: 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a
+/// method with constant steps.
 #include <limits>
 #include <string>
 #include <vector>

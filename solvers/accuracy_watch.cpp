@@ -58,9 +58,8 @@ void PeakWatch::refine(const System& system, const Method& method) {
   Stops stops(begin, distance);
   State state = before_;
   const Method again = method.exact() ? method : Method{.name = method.name, .step = distance};
-  const RunSummary run =
-      run_method(system, again, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300},
-                 state, {&close, &stops});
+  const RunSummary run = run_method(
+      system, again, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300}, state, {&close, &stops});
   if (run.ok()) value_ = close.value(), time_ = close.time();
 }
 
@@ -94,8 +93,8 @@ void BatchWatch::Sum::add(double y_0, double r_0, double y_1, double r_1, double
   square += 0.5 * h * (y_0 * y_0 + y_1 * y_1) + h * h / 6.0 * (y_0 * r_0 - y_1 * r_1);
 }
 
-BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, double begin,
-                       double end, int batches)
+BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end,
+                       int batches)
     : channels_(std::move(channels)),
       begin_(begin),
       length_((end - begin) / batches),
@@ -136,8 +135,7 @@ void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const S
     forces_[i].add(a.y, a.dy_dx * from.inputs[j].x_dot, b.y, b.dy_dx * to.inputs[j].x_dot, h);
   }
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const auto r_0 = channels_[c].rate(assembler, from.state),
-               r_1 = channels_[c].rate(assembler, to.state);
+    const auto r_0 = channels_[c].rate(assembler, from.state), r_1 = channels_[c].rate(assembler, to.state);
     values_[c].add(channels_[c].evaluate(assembler, from.state), r_0.value_or(0.0),
                    channels_[c].evaluate(assembler, to.state), r_1.value_or(0.0), h);
   }

@@ -53,8 +53,7 @@ class EdgeWatch final : public Observer {
 /// Time averages in equal batches over [begin, end]; steps end where batches do.
 class BatchWatch final : public Observer {
  public:
-  BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end,
-             int batches);
+  BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end, int batches);
   void start(const Assembler& assembler, const StepPoint& point) override;
   void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
   double next_stop(double t) const override;

@@ -1,8 +1,7 @@
 #include "solvers/arpack_shift_invert.hpp"
 
-#include <arpack.h>
-
 #include <algorithm>
+#include <arpack.h>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -59,8 +58,8 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
       std::copy_n(x, n, y);
   };
   for (;;) {
-    dsaupd_c(&ido, "G", n, "LM", k, 0.0, residual.data(), ncv, basis.data(), n, iparam, ipntr,
-             workd.data(), workl.data(), lworkl, &info);
+    dsaupd_c(&ido, "G", n, "LM", k, 0.0, residual.data(), ncv, basis.data(), n, iparam, ipntr, workd.data(),
+             workl.data(), lworkl, &info);
     if (ido == 99) break;
     const double* in = workd.data() + ipntr[0] - 1;
     double* out = workd.data() + ipntr[1] - 1;
@@ -84,9 +83,8 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
   Vector lambda(k);
   Eigen::MatrixXd vectors(n, k);
   std::vector<a_int> select(at(ncv));
-  dseupd_c(1, "A", select.data(), lambda.data(), vectors.data(), n, problem.sigma, "G", n, "LM", k,
-           0.0, residual.data(), ncv, basis.data(), n, iparam, ipntr, workd.data(), workl.data(),
-           lworkl, &info);
+  dseupd_c(1, "A", select.data(), lambda.data(), vectors.data(), n, problem.sigma, "G", n, "LM", k, 0.0,
+           residual.data(), ncv, basis.data(), n, iparam, ipntr, workd.data(), workl.data(), lworkl, &info);
   if (info != 0) {
     result.status = ArpackStatus::failed;
     result.reason = "dseupd: info = " + std::to_string(info);

@@ -15,12 +15,11 @@ Vector vector(std::initializer_list<double> values) {
 }
 
 /// Rows of the lower triangle; c_i are their sums.
-ButcherTableau tableau(std::string name, int order,
-                       std::initializer_list<std::initializer_list<double>> rows, Vector b,
-                       Vector e) {
+ButcherTableau tableau(std::string name, int order, std::initializer_list<std::initializer_list<double>> rows,
+                       Vector b, Vector e) {
   const auto s = static_cast<Eigen::Index>(rows.size());
-  ButcherTableau t{std::move(name), order, Eigen::MatrixXd::Zero(s, s), std::move(b),
-                   Vector::Zero(s), std::move(e)};
+  ButcherTableau t{std::move(name), order,           Eigen::MatrixXd::Zero(s, s),
+                   std::move(b),    Vector::Zero(s), std::move(e)};
   Eigen::Index i = 0;
   for (const auto& row : rows) {
     Eigen::Index j = 0;
@@ -63,16 +62,16 @@ ButcherTableau rk4_tableau() {
 }
 
 ButcherTableau dormand_prince_tableau() {
-  return tableau("dormand_prince", 5,
-                 {{0.0},
-                  {1.0 / 5, 0.0},
-                  {3.0 / 40, 9.0 / 40, 0.0},
-                  {44.0 / 45, -56.0 / 15, 32.0 / 9, 0.0},
-                  {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0.0},
-                  {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0.0}},
-                 vector({35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}),
-                 vector({71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200,
-                         22.0 / 525, -1.0 / 40}));
+  return tableau(
+      "dormand_prince", 5,
+      {{0.0},
+       {1.0 / 5, 0.0},
+       {3.0 / 40, 9.0 / 40, 0.0},
+       {44.0 / 45, -56.0 / 15, 32.0 / 9, 0.0},
+       {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0.0},
+       {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0.0}},
+      vector({35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}),
+      vector({71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40}));
 }
 
 }  // namespace drev

@@ -61,8 +61,7 @@ bool CholmodFactor::same_pattern(const SparseMatrix& pattern) const {
 }
 
 FactorStatus CholmodFactor::analyse(const SparseMatrix& pattern) {
-  if (pattern.rows() != pattern.cols() || !pattern.isCompressed())
-    return FactorStatus::pattern_changed;
+  if (pattern.rows() != pattern.cols() || !pattern.isCompressed()) return FactorStatus::pattern_changed;
   cholmod_sparse a = view(pattern, nullptr, 1);
   common_.method[0].ordering = CHOLMOD_NATURAL;
   common_.postorder = 0;
@@ -92,8 +91,7 @@ FactorStatus CholmodFactor::factorize(const SparseMatrix& pattern, const Vector&
   } else if (!same_pattern(pattern)) {
     return FactorStatus::pattern_changed;
   }
-  if (static_cast<std::size_t>(values.size()) != inner_.size())
-    return FactorStatus::pattern_changed;
+  if (static_cast<std::size_t>(values.size()) != inner_.size()) return FactorStatus::pattern_changed;
   if (!values.allFinite()) return FactorStatus::not_finite;
   // The triangle that CHOLMOD need not transpose (natural order) or transposes once.
   const int triangle = factor_->ordering == CHOLMOD_NATURAL ? 1 : -1;
@@ -113,13 +111,10 @@ bool CholmodFactor::solve(const Vector& b, Vector& x) {
   cholmod_dense rhs = view(const_cast<double*>(b.data()), size_);
   cholmod_dense result = view(x.data(), size_);
   cholmod_dense* result_handle = &result;
-  return cholmod_solve2(CHOLMOD_A, factor_, &rhs, nullptr, &result_handle, nullptr, &y_, &e_,
-                        &common_) != 0;
+  return cholmod_solve2(CHOLMOD_A, factor_, &rhs, nullptr, &result_handle, nullptr, &y_, &e_, &common_) != 0;
 }
 
-int CholmodFactor::row(int j) const {
-  return factor_->Perm ? static_cast<const int*>(factor_->Perm)[j] : j;
-}
+int CholmodFactor::row(int j) const { return factor_->Perm ? static_cast<const int*>(factor_->Perm)[j] : j; }
 
 std::vector<int> CholmodFactor::order() const {
   std::vector<int> rows(static_cast<std::size_t>(size_));

@@ -2,7 +2,6 @@
 /// Shared by the factorisations of this folder only: the one place that includes cholmod.h.
 /// Holds CHOLMOD's settings, the analysed factor and the pattern it was analysed for. Silent.
 #include <cholmod.h>
-
 #include <vector>
 
 #include "solvers/sparse_cholesky.hpp"

@@ -35,8 +35,7 @@ double sum(const std::vector<Entry>& entries, const Vector& q) {
 
 }  // namespace
 
-ContactLocator::ContactLocator(const System& system)
-    : system_(system), zero_(Vector::Zero(system.size())) {
+ContactLocator::ContactLocator(const System& system) : system_(system), zero_(Vector::Zero(system.size())) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     if (auto pieces = LawPieces::of(term, term.force->product_pieces()); pieces.size() > 1)
@@ -50,8 +49,7 @@ std::vector<Entry> ContactLocator::of_phase(const ScalarTerm& term) const {
   return system_.row_of(term.phase_node);
 }
 
-ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State& state,
-                                            double angle) const {
+ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State& state, double angle) const {
   const NodeMap& map = system_.node_map(term.phase_node);
   double rate = sum(of_phase(term), state.v);
   if (map.prescribed >= 0)
@@ -78,10 +76,8 @@ std::pair<double, double> ContactLocator::distance(const Crossing& c, const Step
   return {value(b, x.value, x.rate), b.b_x * x.rate + bend};
 }
 
-std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& law,
-                                                                     const ScalarInput& from,
-                                                                     const Coefficients& x,
-                                                                     double h) const {
+std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& law, const ScalarInput& from,
+                                                                     const Coefficients& x, double h) const {
   std::optional<Crossing> best;
   for (const LawBound& b : law.pieces[at(LawPieces::holding(law.pieces, from))].bounds) {
     Coefficients g;
@@ -128,8 +124,7 @@ std::optional<ContactLocator::Crossing> ContactLocator::first_knot(std::size_t l
 }
 
 std::optional<ContactLocator::Crossing> ContactLocator::first(const StepPolynomial& motion,
-                                                              const StepPoint& from,
-                                                              const StepPoint& to,
+                                                              const StepPoint& from, const StepPoint& to,
                                                               Assembler& assembler) const {
   std::optional<Crossing> best;
   const auto take = [&](const std::optional<Crossing>& c) {
@@ -142,8 +137,7 @@ std::optional<ContactLocator::Crossing> ContactLocator::first(const StepPolynomi
   return best;
 }
 
-std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint& point,
-                                                                double h) const {
+std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint& point, double h) const {
   std::optional<Crossing> best;
   const auto take = [&](const std::optional<Crossing>& c) {
     if (c && (!best || c->s < best->s)) best = c;
@@ -158,14 +152,13 @@ std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint&
   }
   for (const std::size_t j : phased_) {
     const ScalarTerm& term = system_.scalars()[j];
-    take(first_knot(j, along(angle(term, point.state, point.inputs[j].angle),
-                             sum(of_phase(term), point.state.a))));
+    take(first_knot(
+        j, along(angle(term, point.state, point.inputs[j].angle), sum(of_phase(term), point.state.a))));
   }
   return best;
 }
 
-StepPolynomial::Coefficients ContactLocator::deflection(std::size_t law,
-                                                        const StepPolynomial& motion,
+StepPolynomial::Coefficients ContactLocator::deflection(std::size_t law, const StepPolynomial& motion,
                                                         const StepPoint& from, const StepPoint& to,
                                                         Assembler& assembler) const {
   const ScalarTerm& term = system_.scalars()[law];

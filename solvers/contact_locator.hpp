@@ -24,8 +24,8 @@ class ContactLocator {
 
   /// First crossing in the step, at 0 if the motion leaves a bound to the side it was not evaluated on. Moves
   /// the assembler's time.
-  std::optional<Crossing> first(const StepPolynomial& motion, const StepPoint& from,
-                                const StepPoint& to, Assembler& assembler) const;
+  std::optional<Crossing> first(const StepPolynomial& motion, const StepPoint& from, const StepPoint& to,
+                                Assembler& assembler) const;
   /// First crossing if the accelerations at a point stayed: z + v t + a t^2/2, up to h.
   std::optional<Crossing> predict(const StepPoint& point, double h) const;
   /// The bound's value, > 0 on the side it comes from, and its rate.

@@ -15,17 +15,21 @@ constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
 const char* to_text(NewtonStatus status) {
   switch (status) {
-    case NewtonStatus::converged: return "converged";
-    case NewtonStatus::no_root: return "a force that jumps leaves the step without a solution";
-    case NewtonStatus::too_many_steps: return "the iteration limit was reached";
-    case NewtonStatus::not_finite: return "a force is not finite";
-    case NewtonStatus::singular: return "the tangent is singular or not positive definite";
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::no_root:
+      return "a force that jumps leaves the step without a solution";
+    case NewtonStatus::too_many_steps:
+      return "the iteration limit was reached";
+    case NewtonStatus::not_finite:
+      return "a force is not finite";
+    case NewtonStatus::singular:
+      return "the tangent is singular or not positive definite";
   }
   return "unknown";
 }
 
-ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, double kappa_x,
-                             double kappa_v)
+ContactNewton::ContactNewton(const System& system, Eigen::MatrixXd compliance, double kappa_x, double kappa_v)
     : compliance_(std::move(compliance)),
       kappa_x_(kappa_x),
       kappa_v_(kappa_v),
@@ -61,9 +65,8 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
     const double residual = residual_.data()[j] = r.y - force[j];
     if (std::abs(residual) <= limit) continue;
     // What rounding of x and x' alone does to the force of a stiff contact is no error of Newton's.
-    const double rounding =
-        kRounding * (std::abs(r.dy_dx) * (std::abs(in.x) + std::abs(in_0.x)) +
-                     std::abs(r.dy_dx_dot) * (std::abs(in.x_dot) + std::abs(in_0.x_dot)));
+    const double rounding = kRounding * (std::abs(r.dy_dx) * (std::abs(in.x) + std::abs(in_0.x)) +
+                                         std::abs(r.dy_dx_dot) * (std::abs(in.x_dot) + std::abs(in_0.x_dot)));
     const double excess = std::abs(residual) - rounding;
     if (!(excess <= size)) size = excess;  // NaN included
   }
@@ -73,8 +76,8 @@ double ContactNewton::evaluate(const std::vector<ScalarInput>& free, const Vecto
 void ContactNewton::expect(const std::vector<ScalarInput>& free, Vector& lambda) {
   const std::size_t m = laws_.size();
   for (std::size_t j = 0; j < m; ++j)
-    residual_.data()[j] += slopes_[j].dy_dx * (free[j].x - last_[j].x) +
-                           slopes_[j].dy_dx_dot * (free[j].x_dot - last_[j].x_dot);
+    residual_.data()[j] +=
+        slopes_[j].dy_dx * (free[j].x - last_[j].x) + slopes_[j].dy_dx_dot * (free[j].x_dot - last_[j].x_dot);
   find_direction();
   for (std::size_t j = 0; j < m; ++j) lambda.data()[j] = last_[j].lambda + direction_.data()[j];
 }
@@ -149,8 +152,7 @@ NewtonResult ContactNewton::solve(const std::vector<ScalarInput>& free, double f
     find_direction();
     for (std::size_t j = 0; j < m; ++j) x_start_[j] = inputs_[j].x;
     const double g_0 = options.line_search ? descent() : 0.0;
-    for (std::size_t j = 0; j < m; ++j)
-      trial_.data()[j] = lambda.data()[j] + direction_.data()[j];
+    for (std::size_t j = 0; j < m; ++j) trial_.data()[j] = lambda.data()[j] + direction_.data()[j];
     size = evaluate(free, trial_, limit);
     if (size <= limit || !(g_0 < 0.0)) {
       lambda.swap(trial_);
@@ -176,8 +178,8 @@ double ContactNewton::descent() {
   return g_0;
 }
 
-NewtonStatus ContactNewton::search_line(const std::vector<ScalarInput>& free, double force_scale,
-                                        double g_0, Vector& lambda) {
+NewtonStatus ContactNewton::search_line(const std::vector<ScalarInput>& free, double force_scale, double g_0,
+                                        Vector& lambda) {
   // The kinks that x_j(alpha) = x_j - alpha kappa_x (G d)_j runs over.
   kinks_.clear();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
@@ -192,8 +194,7 @@ NewtonStatus ContactNewton::search_line(const std::vector<ScalarInput>& free, do
     return -g_direction_.dot(residual_);
   };
   direction_ *= exact_line_search(slope, g_0, kinks_);
-  if (direction_.lpNorm<Eigen::Infinity>() <=
-      1e-15 * std::max(force_scale, lambda.lpNorm<Eigen::Infinity>()))
+  if (direction_.lpNorm<Eigen::Infinity>() <= 1e-15 * std::max(force_scale, lambda.lpNorm<Eigen::Infinity>()))
     return NewtonStatus::no_root;
   lambda += direction_;
   return NewtonStatus::converged;

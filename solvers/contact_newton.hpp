@@ -51,8 +51,8 @@ class ContactNewton {
 
   /// free[j]: what law j would see if all contact forces were zero (time and phase included).
   /// lambda: start in, solution out. force_scale [N or N m] > 0 makes the tolerance relative.
-  NewtonResult solve(const std::vector<ScalarInput>& free, double force_scale,
-                     const Options& options, Vector& lambda);
+  NewtonResult solve(const std::vector<ScalarInput>& free, double force_scale, const Options& options,
+                     Vector& lambda);
 
   /// Swaps the laws' inputs and responses at the last lambda evaluated with these vectors; what is left here
   /// means nothing until the next solve().

@@ -60,8 +60,7 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
   record.impact_energy += 0.5 * equivalent_mass * square;
 }
 
-ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
-    : inside_steps_(inside_steps) {
+ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : inside_steps_(inside_steps) {
   const std::vector<double> masses = equivalent_masses(system);
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
@@ -82,8 +81,7 @@ void ContactStatistics::start(const Assembler& /*assembler*/, const StepPoint& p
   }
 }
 
-void ContactStatistics::step(const Assembler& /*assembler*/, const StepPoint& from,
-                             const StepPoint& to) {
+void ContactStatistics::step(const Assembler& /*assembler*/, const StepPoint& from, const StepPoint& to) {
   const double h = to.state.t - from.state.t;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const std::size_t j = terms_[i];

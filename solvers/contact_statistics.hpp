@@ -10,10 +10,10 @@ namespace drev {
 
 struct ContactRecord {
   std::string element;
-  long front_impacts = 0;        ///< times the gap closed on the front flank, x rising through its high edge
-  long back_impacts = 0;         ///< times it closed on the back flank
-  double time_apart = 0.0;       ///< s, with both flanks open
-  double largest_force = 0.0;    ///< N or N m, |y|
+  long front_impacts = 0;      ///< times the gap closed on the front flank, x rising through its high edge
+  long back_impacts = 0;       ///< times it closed on the back flank
+  double time_apart = 0.0;     ///< s, with both flanks open
+  double largest_force = 0.0;  ///< N or N m, |y|
   double largest_force_time = 0.0;  ///< s
   /// Impact speeds |x'| as the gap closes [m/s or rad/s]: as many as impacts.
   Distribution front_speed = {}, back_speed = {};
@@ -51,8 +51,8 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record);
 
 /// Every law that has a gap. Crossings inside a step are placed by linear interpolation of x, the speed there
-/// by that of x'^2 over x (exact propagation ends its steps at crossings: both are exact); a flank touched and
-/// left inside one step is not seen.
+/// by that of x'^2 over x (exact propagation ends its steps at crossings: both are exact); a flank touched
+/// and left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
   bool needs_acceleration() const override { return false; }

@@ -16,8 +16,7 @@ struct CubicPeak {
 };
 
 /// None where the rates at the ends have the same sign.
-inline std::optional<CubicPeak> cubic_peak(double y_0, double rate_0, double y_1, double rate_1,
-                                           double h) {
+inline std::optional<CubicPeak> cubic_peak(double y_0, double rate_0, double y_1, double rate_1, double h) {
   if (!(rate_0 * rate_1 < 0.0)) return std::nullopt;
   const double d_0 = rate_0 * h, d_1 = rate_1 * h, rise = y_1 - y_0;
   const double b = 3 * rise - 2 * d_0 - d_1, a = d_0 + d_1 - 2 * rise;

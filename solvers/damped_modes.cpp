@@ -43,8 +43,8 @@ void check_rigid(const System& system, const Matrix& k, const Matrix& v, int rig
   int found = 0;
   while (found < system.size() && (k * v.col(found)).norm() <= kRounding * k.norm()) ++found;
   if (found != rigid)
-    throw SolverError("damped modes of " + system.name() + ": the model has " +
-                      std::to_string(rigid) + " parts free to turn, but " + std::to_string(found) +
+    throw SolverError("damped modes of " + system.name() + ": the model has " + std::to_string(rigid) +
+                      " parts free to turn, but " + std::to_string(found) +
                       " motions without a restoring torque beside the stiffest element's rounding");
 }
 
@@ -101,9 +101,8 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
     if (lambda.imag() > 0.0) oscillating.push_back(j);
   }
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
-  std::sort(oscillating.begin(), oscillating.end(), [&](int i, int j) {
-    return std::abs(eigen.values[i]) < std::abs(eigen.values[j]);
-  });
+  std::sort(oscillating.begin(), oscillating.end(),
+            [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
   set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
   for (std::size_t j = 0; j < oscillating.size(); ++j) {
     set.modes.push_back(to_mode(eigen.values[oscillating[j]]));

@@ -40,7 +40,7 @@ struct DampedMode {
 
 struct DampedModeSet {
   Contact contact = Contact::closed;
-  int rigid_modes = 0;  ///< lambda = 0 that belong to the angles of free parts, left out below
+  int rigid_modes = 0;            ///< lambda = 0 that belong to the angles of free parts, left out below
   std::vector<DampedMode> modes;  ///< by natural frequency, ascending
   /// Real lambda [1/s], descending (slowest decay first): overdamped modes, and one for each
   /// rigid-body motion's rate (0 where nothing drags on it).

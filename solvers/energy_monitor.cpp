@@ -17,8 +17,8 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
 }
 
 double EnergyMonitor::stored(const StepPoint& point) const {
-  double sum = 0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) +
-               point.general_energy;
+  double sum =
+      0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) + point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }
@@ -40,16 +40,13 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
     // Known part of the deflection: prescribed ends and transmission error do work on the law.
     if (partly_known) {
       double by_unknowns = 0.0;
-      for (const Entry& e : term.z)
-        by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
+      for (const Entry& e : term.z) by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
       input += 0.5 * (r0.y + r1.y) * (in1.x - in0.x - by_unknowns);
     }
     // A law that varies: its energy changes at constant x too; mean over both orders of changing.
     if (term.varies) {
-      const double v01 =
-          term.force->evaluate({in0.x, in0.x_dot, in1.t, in1.angle}).stored_energy;
-      const double v10 =
-          term.force->evaluate({in1.x, in1.x_dot, in0.t, in0.angle}).stored_energy;
+      const double v01 = term.force->evaluate({in0.x, in0.x_dot, in1.t, in1.angle}).stored_energy;
+      const double v10 = term.force->evaluate({in1.x, in1.x_dot, in0.t, in0.angle}).stored_energy;
       input += 0.5 * ((v01 - r0.stored_energy) + (r1.stored_energy - v10));
     }
   }

@@ -15,11 +15,11 @@
 namespace drev {
 
 struct EnergyBalance {
-  double kinetic = 0.0;       ///< J, at the end
-  double stored = 0.0;        ///< J, at the end
-  double input = 0.0;         ///< J, since the start
-  double dissipated = 0.0;    ///< J, since the start
-  double imbalance = 0.0;     ///< J, at the end: > 0 energy from nothing
+  double kinetic = 0.0;          ///< J, at the end
+  double stored = 0.0;           ///< J, at the end
+  double input = 0.0;            ///< J, since the start
+  double dissipated = 0.0;       ///< J, since the start
+  double imbalance = 0.0;        ///< J, at the end: > 0 energy from nothing
   double worst_imbalance = 0.0;  ///< J, largest in size over the run
   double worst_time = 0.0;       ///< s
   double given = 0.0;            ///< J, largest of |input|, dissipated and the start's energy over the run

@@ -25,10 +25,10 @@ constexpr double kBeforeEnd = 0.98;        // of the step: a knot that its nodes
 constexpr int kMaxPasses = 20;             // of projected loads
 constexpr int kMaxCuts = 20;
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
-constexpr double kRetreat = 1.0 / 16.0;    // of the step where the series overflowed
-constexpr double kSameTime = 1e-14;        // relative to the run's times
-constexpr double kNoProgress = 1e-12;      // relative to the largest step
-constexpr double kLeastTolerance = 1e-16;  // a step's own: below it is rounding
+constexpr double kRetreat = 1.0 / 16.0;                             // of the step where the series overflowed
+constexpr double kSameTime = 1e-14;                                 // relative to the run's times
+constexpr double kNoProgress = 1e-12;                               // relative to the largest step
+constexpr double kLeastTolerance = 1e-16;                           // a step's own: below it is rounding
 constexpr long kProgressSteps = 100;
 
 class ExactRun {
@@ -117,8 +117,7 @@ class ExactRun {
     series_.evaluate(s, to.z, to.v);
     if (!to.z.allFinite() || !to.v.allFinite()) return not_finite(to);
     const bool ahead_of_break = at_break && t_new == stop;
-    evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity())
-                                   : t_new);
+    evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity()) : t_new);
     const SmoothLaws::Work smooth = smooth_.work(series_, s);
     energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
                   series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated);
@@ -211,8 +210,8 @@ class ExactRun {
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter.
   double expand(double h) {
     for (;;) {
-      const double share = std::max(
-          options_.tolerance * h / (options_.t_end - options_.t_start), kLeastTolerance);
+      const double share =
+          std::max(options_.tolerance * h / (options_.t_end - options_.t_start), kLeastTolerance);
       to_knot_ = false;
       const double got = try_step(h, share);
       if (to_knot_) {
@@ -223,8 +222,7 @@ class ExactRun {
       if (got == h) return h;
       growing_step_ = got > 0.0 ? got : kRetreat * h;
       if (growing_step_ <= kNoProgress * largest_step_)
-        throw SolverError(where(now_.state.t) +
-                          "the series does not converge; is a load not finite?");
+        throw SolverError(where(now_.state.t) + "the series does not converge; is a load not finite?");
       if (got > 0.0 && !known_.projects() && smooth_.empty()) {
         known_.shorten(got / h);
         return got;
@@ -310,8 +308,8 @@ class ExactRun {
     if (std::abs(b.relative_error()) <= options_.energy_tolerance) return;
     std::ostringstream text;
     text << "the energy balance is off by " << b.relative_error()
-         << " of the energy, worst at t = " << b.worst_time << " s; at most "
-         << options_.energy_tolerance << " passes: ask for a smaller tolerance";
+         << " of the energy, worst at t = " << b.worst_time << " s; at most " << options_.energy_tolerance
+         << " passes: ask for a smaller tolerance";
     summary_.status = RunStatus::energy_error;
     summary_.reason = text.str();
   }
@@ -349,7 +347,8 @@ class ExactRun {
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
   bool to_knot_ = false;  // try_step()'s answer leads to a law's knot
-  double gain_ = 1.0, projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
+  double gain_ = 1.0,
+         projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
   int changes_here_ = 0, change_limit_ = 0;
 };
 

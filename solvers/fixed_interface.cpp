@@ -87,8 +87,8 @@ Matrix FixedInterface::basis(int modes, double up_to_Hz) {
       find_modes(static_cast<int>(std::min<Eigen::Index>(n, 2 * lambda_.size())));
     modes_ = modes > 0 ? std::min(n, modes) : below();
   }
-  first_left_out_Hz_ = modes_ < n ? to_hz(std::sqrt(lambda_[modes_]))
-                                  : std::numeric_limits<double>::infinity();
+  first_left_out_Hz_ =
+      modes_ < n ? to_hz(std::sqrt(lambda_[modes_])) : std::numeric_limits<double>::infinity();
   Matrix basis = Matrix::Zero(system_.size(), b + modes_);
   for (Eigen::Index j = 0; j < b; ++j) basis(kept_[static_cast<std::size_t>(j)], j) = 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {

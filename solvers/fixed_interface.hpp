@@ -26,8 +26,8 @@ class FixedInterface {
   const System& system_;
   std::vector<int> kept_, inside_;
   SparseMatrix stiffness_, mass_, boundary_stiffness_;  // K_ii, M_ii on one pattern, K_ib
-  SparseCholesky factor_;    // of K_ii
-  Vector lambda_;            // the lowest, of the unknowns inside
+  SparseCholesky factor_;                               // of K_ii
+  Vector lambda_;                                       // the lowest, of the unknowns inside
   Eigen::MatrixXd vectors_;
   int modes_ = 0;
   double first_left_out_Hz_ = 0.0;

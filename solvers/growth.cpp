@@ -92,10 +92,10 @@ Growth measure_growth(const System& system, const GrowthOptions& o) {
   double part = 0.0;  // done
   const auto run_piece = [&](State& state, double begin, double end,
                              const std::vector<Observer*>& observers) {
-    const MethodRunOptions piece{.t_start = begin,
-                                 .t_end = end,
-                                 .energy_tolerance = 1e300,
-                                 .progress = [&](double) { return !o.progress || o.progress(part); }};
+    const MethodRunOptions piece{
+        .t_start = begin, .t_end = end, .energy_tolerance = 1e300, .progress = [&](double) {
+          return !o.progress || o.progress(part);
+        }};
     const RunSummary run = run_method(system, method, piece, state, observers);
     if (!run.ok()) result.status = run.status, result.reason = run.reason;
     steps = run.steps;

@@ -21,8 +21,7 @@ struct InertiaCounter::Impl {
   void count_cholmod(double s, InertiaCount& count);
 };
 
-InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness,
-                               const Vector& mass,
+InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness, const Vector& mass,
                                std::shared_ptr<const LowFillPattern> analysed)
     : impl_(new Impl{.pattern = pattern,
                      .stiffness = stiffness,
@@ -84,8 +83,7 @@ void InertiaCounter::Impl::count_cholmod(double s, InertiaCount& count) {
     const double d = x[begin[j]];
     if (d < 0.0) ++count.below;
     row_sum[j] += std::abs(d);
-    for (int e = begin[j] + 1; e < begin[j] + entries[j]; ++e)
-      row_sum[rows[e]] += x[e] * x[e] * std::abs(d);
+    for (int e = begin[j] + 1; e < begin[j] + entries[j]; ++e) row_sum[rows[e]] += x[e] * x[e] * std::abs(d);
   }
   for (int j = 0; j < n; ++j) note(cholmod->row(j), s, row_sum[j], count);
 }

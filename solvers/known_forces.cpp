@@ -111,14 +111,12 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
         p(1, static_cast<int>(it.row())) -= it.value() * u.acceleration * h;
       }
       for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
-        for (int i = 0; i < 3; ++i)
-          p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
+        for (int i = 0; i < 3; ++i) p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
     }
   }
   for (const Linear& l : loads_) {
     const LoadStretch& s = l.stretch;
-    p(0, l.row) += l.coeff * (s.torque + s.time_slope * (t_ - l.t_0) +
-                              s.angle_slope * (l.angle - l.angle_0));
+    p(0, l.row) += l.coeff * (s.torque + s.time_slope * (t_ - l.t_0) + s.angle_slope * (l.angle - l.angle_0));
     p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
     p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
   }
@@ -169,8 +167,7 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
     for (;;) {
       const double bound = rises ? l.ahead.high : l.ahead.low;
       if (rises ? end <= bound : end >= bound) break;
-      const LoadStretch next =
-          l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+      const LoadStretch next = l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
       const bool moves = rises ? next.high > bound : next.low < bound;
       if (!moves || next.time_slope != l.ahead.time_slope) {
         l.watched = true;
@@ -217,8 +214,7 @@ double KnownForces::project_smooth(const TaylorSeries& series) {
 KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws, bool first,
                                          double tolerance) {
   if (first) {
-    for (int k = 0; k < 3; ++k)
-      std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
+    for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
   } else {
     std::swap(last_, projection_);
@@ -256,8 +252,7 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
   projected_ = true;
   with_laws_ = !laws.empty();
   degree_ = kProjectionDegree;
-  for (int k = 0; k < 3; ++k)
-    std::copy_n(base_.data() + k * stride_, stride_, series.right_side(k));
+  for (int k = 0; k < 3; ++k) std::copy_n(base_.data() + k * stride_, stride_, series.right_side(k));
   projection_.add_powers(3, series.right_side(0));
   series.set_right_degree(kProjectionDegree);
   return change;

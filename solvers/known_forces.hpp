@@ -37,8 +37,8 @@ class KnownForces {
     double gain = 0.0;  ///< of that which comes back by the next projection: below 1 it settles
     double rest = 0.0;  ///< of the motion, by what no polynomial of the projection's degree holds
   };
-  /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side. first: the step is new.
-  /// tolerance: relative, of the kinks' moments.
+  /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
+  /// first: the step is new. tolerance: relative, of the kinks' moments.
   Change project(TaylorSeries& series, SmoothLaws& laws, bool first, double tolerance);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
@@ -67,11 +67,11 @@ class KnownForces {
   };
   struct Linear : Place {
     LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;           // where `stretch` gives its torque
-    double ahead_angle_0 = 0.0;                // the same of `ahead`
+    double t_0 = 0.0, angle_0 = 0.0;                   // where `stretch` gives its torque
+    double ahead_angle_0 = 0.0;                        // the same of `ahead`
     double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
-    double gain = 0.0;     // of its kinks in this step: Change::gain
-    bool watched = false;  // its angle may turn back in this step
+    double gain = 0.0;                                 // of its kinks in this step: Change::gain
+    bool watched = false;                              // its angle may turn back in this step
   };
   struct Smooth : Place {
     double torque = 0.0;  // at the step's start
@@ -90,9 +90,9 @@ class KnownForces {
   std::vector<Linear> loads_;
   std::vector<Smooth> smooth_;
   int stride_;
-  std::vector<double> p_;  // by powers of s, without the loads' slopes: kProjectionTerms columns
-  std::vector<double> base_;  // of the series' right side, degrees 0 to 2, before projection
-  int degree_ = 2;            // of p_
+  std::vector<double> p_;         // by powers of s, without the loads' slopes: kProjectionTerms columns
+  std::vector<double> base_;      // of the series' right side, degrees 0 to 2, before projection
+  int degree_ = 2;                // of p_
   Projection projection_, last_;  // of this pass, and the last
   Projection of_loads_;           // of this pass, where there are laws too
   KinkMoments kinks_;

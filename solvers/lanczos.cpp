@@ -75,8 +75,7 @@ double twisted_vector(const Vector& d, const Vector& e, double theta, double tin
   Vector down(n), up(n);
   const auto pivot = [tiny](double p) { return std::abs(p) < tiny ? std::copysign(tiny, p) : p; };
   down[0] = pivot(d[0] - theta);
-  for (Eigen::Index i = 1; i < n; ++i)
-    down[i] = pivot(d[i] - theta - e[i - 1] * e[i - 1] / down[i - 1]);
+  for (Eigen::Index i = 1; i < n; ++i) down[i] = pivot(d[i] - theta - e[i - 1] * e[i - 1] / down[i - 1]);
   up[n - 1] = pivot(d[n - 1] - theta);
   for (Eigen::Index i = n - 1; i-- > 0;) up[i] = pivot(d[i] - theta - e[i] * e[i] / up[i + 1]);
   Eigen::Index twist = 0;
@@ -128,7 +127,8 @@ DREV_WIDEST void project(const double* q, int n, int count, const double* a, con
   }
 }
 
-/// [a b] -= Q h. a may be a column of Q beyond count. Backwards: what project() read last is in the cache yet.
+/// [a b] -= Q h. a may be a column of Q beyond count. Backwards: what project() read last is in the cache
+/// yet.
 DREV_WIDEST void subtract(const double* q, int n, int count, const double* h, double* a, double* b) {
   const std::ptrdiff_t next = n;
   for (int start = (n - 1) / kLongStrip * kLongStrip; start >= 0; start -= kLongStrip) {
@@ -164,14 +164,13 @@ DREV_WIDEST void combine(double* q, int n, int count, const double* s, int outs)
       for (; i + 3 < count; i += 4) {
         const double* c = q + i * next + start;
         for (int k = 0; k < rows; ++k)
-          to[k] += f[i] * c[k] + f[i + 1] * c[k + next] + f[i + 2] * c[k + 2 * next] +
-                   f[i + 3] * c[k + 3 * next];
+          to[k] +=
+              f[i] * c[k] + f[i + 1] * c[k + next] + f[i + 2] * c[k + 2 * next] + f[i + 3] * c[k + 3 * next];
       }
       for (; i < count; ++i)
         for (int k = 0; k < rows; ++k) to[k] += f[i] * q[i * next + start + k];
     }
-    for (int o = 0; o < outs; ++o)
-      std::copy_n(strip.data() + o * kShortStrip, rows, q + o * next + start);
+    for (int o = 0; o < outs; ++o) std::copy_n(strip.data() + o * kShortStrip, rows, q + o * next + start);
   }
 }
 

@@ -231,8 +231,7 @@ void LaneFactor::factorize(const LaneArray& values) {
     ok_[lane] = true;
     for (std::size_t k = 0; k < pivot_.size(); ++k) {
       const double left = pivot_[k].v[lane] / diagonal[k].v[lane];
-      if (!(diagonal[k].v[lane] > 0.0) ||
-          !(left > (10 + n_) * std::numeric_limits<double>::epsilon()))
+      if (!(diagonal[k].v[lane] > 0.0) || !(left > (10 + n_) * std::numeric_limits<double>::epsilon()))
         ok_[lane] = false;
     }
   }

@@ -4,8 +4,8 @@
 /// Ordered from both ends of the unknowns' own order, in that order, or by AMD: the first that fills least.
 #include <vector>
 
-#include "core/system.hpp"
 #include "core/lanes.hpp"
+#include "core/system.hpp"
 
 namespace drev {
 
@@ -39,7 +39,7 @@ class LaneFactor {
 
   int n_ = 0;
   std::vector<int> column_begin_, row_of_, unknown_of_;  // L by columns: places below the diagonal
-  std::vector<int> row_slot_, left_unknown_;               // by rows: slots, unknowns to the left
+  std::vector<int> row_slot_, left_unknown_;             // by rows: slots, unknowns to the left
   std::vector<Step> rows_, columns_;
   std::vector<int> pattern_slot_, pattern_target_;  // where A's lower triangle enters L; < 0: -1 - row of D
   std::vector<int> update_target_;                  // of every pair of rows of every column

@@ -16,15 +16,13 @@ std::span<const LawPiece> pieces_of(const ScalarTerm& term) {
 }
 
 bool holds(const LawPiece& piece, double x, double x_dot) {
-  return std::all_of(piece.bounds.begin(), piece.bounds.end(), [&](const LawBound& b) {
-    return b.a + b.b_x * x + b.b_v * x_dot >= 0.0;
-  });
+  return std::all_of(piece.bounds.begin(), piece.bounds.end(),
+                     [&](const LawBound& b) { return b.a + b.b_x * x + b.b_v * x_dot >= 0.0; });
 }
 
 }  // namespace
 
-LaneLaws::LaneLaws(const std::array<const System*, kLanes>& systems)
-    : laws_(systems[0]->scalars().size()) {
+LaneLaws::LaneLaws(const std::array<const System*, kLanes>& systems) : laws_(systems[0]->scalars().size()) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     Law& law = laws_[j];
     const ScalarTerm& first = systems[0]->scalars()[j];
@@ -100,8 +98,8 @@ void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneM
       if (node < 0) continue;
       const Assembler& assembler = assemblers[at(lane)];
       const NodeMap& map = assembler.system().node_map(node);
-      const double q = map.unknown >= 0 ? motion.z(map.unknown, lane)
-                                        : assembler.prescribed(map.prescribed).value;
+      const double q =
+          map.unknown >= 0 ? motion.z(map.unknown, lane) : assembler.prescribed(map.prescribed).value;
       to.angle[j].v[lane] = assembler.system().ratio(node) * assembler.nominal().value + map.coeff * q;
     }
 }
@@ -128,8 +126,8 @@ void LaneLaws::set_compliance(const LaneArray& w, double kappa_x, double kappa_v
 void LaneLaws::find_piece(Law& law, int lane, double x, double x_dot) {
   const ScalarForce& force = *law.terms[at(lane)]->force;
   const auto pieces = force.product_pieces();
-  auto found = std::find_if(pieces.begin(), pieces.end(),
-                            [&](const LawPiece& p) { return holds(p, x, x_dot); });
+  auto found =
+      std::find_if(pieces.begin(), pieces.end(), [&](const LawPiece& p) { return holds(p, x, x_dot); });
   if (found == pieces.end()) found = pieces.begin();  // not finite: Newton will not converge
   Piece& p = law.piece;
   p.y_0.v[lane] = found->y_0;
@@ -296,14 +294,10 @@ void LaneLaws::add_extra_input(const LanePointLaws& from, const LaneRow* z_0, co
     for (int lane = 0; lane < kLanes; ++lane) {
       const ScalarForce& force = *law.terms[at(lane)]->force;
       if (!force.varies()) continue;
-      const double v01 = force
-                             .evaluate({from.x[j].v[lane], from.x_dot[j].v[lane], to.t,
-                                        to.angle[j].v[lane]})
-                             .stored_energy;
-      const double v10 = force
-                             .evaluate({to.x[j].v[lane], to.x_dot[j].v[lane], from.t,
-                                        from.angle[j].v[lane]})
-                             .stored_energy;
+      const double v01 =
+          force.evaluate({from.x[j].v[lane], from.x_dot[j].v[lane], to.t, to.angle[j].v[lane]}).stored_energy;
+      const double v10 =
+          force.evaluate({to.x[j].v[lane], to.x_dot[j].v[lane], from.t, from.angle[j].v[lane]}).stored_energy;
       input.v[lane] += 0.5 * ((v01 - from.energy[j].v[lane]) + (to.energy[j].v[lane] - v10));
     }
   }

@@ -85,7 +85,7 @@ class LaneLaws {
                        LaneRow& y, LaneRow& dy_dx, LaneRow& dy_dx_dot);
 
   std::vector<Law> laws_;
-  std::vector<int> rows_;                          // with laws, ascending
+  std::vector<int> rows_;  // with laws, ascending
   bool phased_ = false, has_known_ = false, varies_ = false;
   LaneArray compliance_;  // row by row
   double kappa_x_ = 0.0, kappa_v_ = 0.0;

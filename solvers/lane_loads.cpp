@@ -22,8 +22,7 @@ double closest(const LoadTable& table) {
 
 }  // namespace
 
-LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems)
-    : base_(at(systems[0]->size())) {
+LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(at(systems[0]->size())) {
   const System& first = *systems[0];
   std::vector<std::size_t> order;  // of the loads, by row
   const auto row_of = [&](std::size_t i) { return first.node_map(first.loads()[i].node).unknown; };
@@ -104,8 +103,7 @@ void LaneLoads::set_time(const std::vector<Assembler>& assemblers) {
   if (!base && base_is_zero_) return;
   for (int lane = 0; lane < kLanes; ++lane) {
     assemblers[at(lane)].external_of_motions(motions_);
-    for (std::size_t i = 0; i < base_.size(); ++i)
-      base_[i].v[lane] = motions_[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < base_.size(); ++i) base_[i].v[lane] = motions_[static_cast<Eigen::Index>(i)];
   }
   base_is_zero_ = !base;
 }
@@ -114,8 +112,7 @@ void LaneLoads::set_time(const std::vector<Assembler>& assemblers) {
 bool LaneLoads::take_nearest(std::size_t table, int lane, const LaneMotion& motion) {
   const Factors<LaneRow>& f = factors_[table];
   Knot& k = knots_[table];
-  const double angle =
-      f.ratio.v[lane] * phi_.v[lane] + f.gain.v[lane] * motion.z(table_row_[table], lane);
+  const double angle = f.ratio.v[lane] * phi_.v[lane] + f.gain.v[lane] * motion.z(table_row_[table], lane);
   const std::size_t entry = table * kLanes + at(lane);
   const bool serves = std::abs(angle - k.angle.v[lane]) <= reach_[entry];
   const TableLoads::Nearest found = tables_.nearest(static_cast<int>(entry), angle);

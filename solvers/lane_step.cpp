@@ -173,8 +173,8 @@ void LanePoint::set(int lane, const StepPoint& point) {
 }
 
 EnergyBalance LaneEnergy::get(int lane) const {
-  return {kinetic.v[lane],   stored.v[lane],     input.v[lane], dissipated.v[lane], imbalance.v[lane],
-          worst.v[lane], worst_time.v[lane], given.v[lane], scale.v[lane]};
+  return {kinetic.v[lane], stored.v[lane],     input.v[lane], dissipated.v[lane], imbalance.v[lane],
+          worst.v[lane],   worst_time.v[lane], given.v[lane], scale.v[lane]};
 }
 
 void LaneEnergy::set(int lane, const EnergyBalance& b) {
@@ -216,8 +216,7 @@ template <bool kAtEnd, class Stiffness, class Matrix>
 }
 template <class T>
 [[gnu::always_inline]] inline void predict_with(const LaneMatrices& m, const StepScheme& c, double h,
-                                                const LanePoint& from, LaneArray& right_side,
-                                                LanePoint& to) {
+                                                const LanePoint& from, LaneArray& right_side, LanePoint& to) {
   const Product<T> mass = product<T>(m, m.mass, m.mass_diagonal),
                    damping = product<T>(m, m.damping, m.damping_diagonal);
   const DiagonalProduct<T> lumped{mass.diagonal}, dashpots{damping.diagonal};

@@ -56,8 +56,8 @@ void largest_difference(const LaneArray& x, const LaneArray& y, LaneRow& out);
 /// Everything else at the step's end: to has its a, p and laws, and the motion with a = 0; by: B y. In the
 /// lanes that are good, enters the step, ending at t, into the balance, with extra input [J] of the laws, and
 /// the forces into the largest so far. Lanes with a number that is not finite are taken from good.
-void finish(const LaneMatrices& matrices, const StepScheme& scheme, double h, double t,
-            const LanePoint& from, const LaneForces& by, const LaneRow& extra_input, LanePoint& to,
-            LaneMask& good, LaneEnergy& energy, LaneRow& force_scale);
+void finish(const LaneMatrices& matrices, const StepScheme& scheme, double h, double t, const LanePoint& from,
+            const LaneForces& by, const LaneRow& extra_input, LanePoint& to, LaneMask& good,
+            LaneEnergy& energy, LaneRow& force_scale);
 
 }  // namespace drev

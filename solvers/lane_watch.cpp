@@ -101,10 +101,16 @@ struct LaneWatchKernels {
 void LaneWatch::value(const Watched& c, const std::vector<Assembler>& assemblers, const LanePoint& point,
                       double t, LaneRow& out) const {
   switch (c.kind) {
-    case Watched::Kind::linear: return LaneWatchKernels::sum(c, point, out);
-    case Watched::Kind::force: out = point.laws.y[at(c.law)]; return;
-    case Watched::Kind::deflection: out = point.laws.x[at(c.law)]; return;
-    case Watched::Kind::other: break;
+    case Watched::Kind::linear:
+      return LaneWatchKernels::sum(c, point, out);
+    case Watched::Kind::force:
+      out = point.laws.y[at(c.law)];
+      return;
+    case Watched::Kind::deflection:
+      out = point.laws.x[at(c.law)];
+      return;
+    case Watched::Kind::other:
+      break;
   }
   StepPoint of_lane;
   for (int lane = 0; lane < kLanes; ++lane) {

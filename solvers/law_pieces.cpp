@@ -32,9 +32,7 @@ double work_of(const std::vector<double>& a, const std::vector<double>& b, doubl
 bool opposite(const LawBound& a, const LawBound& b) {
   const double size_a = std::max({std::abs(a.a), std::abs(a.b_x), std::abs(a.b_v)});
   const double size_b = std::max({std::abs(b.a), std::abs(b.b_x), std::abs(b.b_v)});
-  const auto cancels = [&](double p, double q) {
-    return std::abs(p / size_a + q / size_b) <= kParallel;
-  };
+  const auto cancels = [&](double p, double q) { return std::abs(p / size_a + q / size_b) <= kParallel; };
   return cancels(a.a, b.a) && cancels(a.b_x, b.b_x) && cancels(a.b_v, b.b_v);
 }
 
@@ -121,8 +119,7 @@ void LawPieces::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-void LawPieces::expand(const TaylorSeries& series, const KnownForces& known,
-                       const SmoothLaws& smooth) {
+void LawPieces::expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
@@ -157,8 +154,7 @@ void LawPieces::bound_series(const Law& law, const LawBound& b, std::vector<doub
   g.resize(terms);
   for (std::size_t k = 0; k < terms; ++k) {
     g[k] = b.b_x * law.x[k];
-    if (b.b_v != 0.0 && k + 1 < terms)
-      g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
+    if (b.b_v != 0.0 && k + 1 < terms) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
   }
   g[0] += b.a;
 }

@@ -59,16 +59,14 @@ class LawPieces {
 
  private:
   struct Law {
-    std::vector<LawPiece> pieces;             // the law's own, or the stretches between its kinks
+    std::vector<LawPiece> pieces;  // the law's own, or the stretches between its kinks
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part
     std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
     std::vector<std::vector<double>> bounds;  // series of the piece's bounds
   };
-  const LawPiece& current(std::size_t j) const {
-    return laws_[j].pieces[at(laws_[j].piece)];
-  }
+  const LawPiece& current(std::size_t j) const { return laws_[j].pieces[at(laws_[j].piece)]; }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   bool falls_at_once(Law& law, const LawBound& bound, int index);
   void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;

@@ -153,9 +153,7 @@ void LeftOutModes::watch(const Assembler& assembler, const StepPoint& point) {
 
 std::vector<ReductionErrorEstimate> LeftOutModes::estimates() const {
   const double factor = watched_.size() > asked_ ? kOfContacts : kOfLinear;
-  const auto error = [&](const Watched& w) {
-    return factor * (w.all + (all_followed_ ? 0.0 : w.upper));
-  };
+  const auto error = [&](const Watched& w) { return factor * (w.all + (all_followed_ ? 0.0 : w.upper)); };
   // Forces of laws by the roots of their energies, F^2/k.
   double worst = 0.0, largest = 0.0;
   for (std::size_t i = asked_; i < watched_.size(); ++i) {

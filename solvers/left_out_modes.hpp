@@ -28,7 +28,8 @@ struct ReductionErrorEstimate {
 };
 
 /// Shares of modes, columns over the unknowns, in a channel: value = sum z_j e_j + v_j e_j', for a law's
-/// force times its slopes. False for channels that are no deviation, rate, shaft's torque, force or deflection.
+/// force times its slopes. False for channels that are no deviation, rate, shaft's torque, force or
+/// deflection.
 bool modal_shares(const System& system, const Channel& channel, const Eigen::MatrixXd& modes, Vector& z,
                   Vector& v);
 /// What is said of those.
@@ -61,7 +62,7 @@ class LeftOutModes final : public Observer {
 
   const System& full_;
   const Eigen::MatrixXd& basis_;
-  Assembler assembler_;  // of the full system
+  Assembler assembler_;                                     // of the full system
   Eigen::MatrixXd modes_, by_mass_, by_damping_, by_laws_;  // psi, psi' M R, what of C is left, psi' b
   Vector lambda_, damping_, z_, v_, force_;
   std::vector<Watched> watched_;

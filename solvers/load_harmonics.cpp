@@ -71,8 +71,8 @@ LoadHarmonics::LoadHarmonics(const System& system) : system_(system) {
   }
 }
 
-void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q,
-                            const Eigen::MatrixXd& v, Eigen::MatrixXd& mu) const {
+void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
+                            Eigen::MatrixXd& mu) const {
   const LoadTerm& term = system_.loads()[at(load)];
   const auto cells = static_cast<int>(q.cols());
   const double dt = kTwoPi / (w * cells), ratio = system_.ratio(term.node);

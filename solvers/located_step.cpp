@@ -6,15 +6,15 @@
 namespace drev {
 
 namespace {
-constexpr double kLanding = 1e-6;  // of the step
+constexpr double kLanding = 1e-6;    // of the step
 constexpr double kLeastHop = 1e-12;  // of the step: who starts on a bound at t = 0 leaves it, too
 constexpr int kMaxTries = 30;
 constexpr int kMaxHops = 10;
 constexpr double kBeyond = 1e-6, kFarther = 8.0;  // first part of a hop added where it falls short; growth
 }  // namespace
 
-LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_new,
-                                      double t_evaluate, StepPoint& to) {
+LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_new, double t_evaluate,
+                                      StepPoint& to) {
   const double landing = kLanding * h;
   Assembler& assembler = stepper_.equation().assembler();
   const int order = stepper_.equation().scheme().order();

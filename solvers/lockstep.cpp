@@ -17,8 +17,7 @@ constexpr double kSameStep = 1e-10;  // as in step_equation.cpp
 /// Up to kLanes variants; the last one fills what is left.
 std::array<const System*, kLanes> fill(const std::vector<const System*>& systems) {
   std::array<const System*, kLanes> all;
-  for (std::size_t lane = 0; lane < kLanes; ++lane)
-    all[lane] = systems[std::min(lane, systems.size() - 1)];
+  for (std::size_t lane = 0; lane < kLanes; ++lane) all[lane] = systems[std::min(lane, systems.size() - 1)];
   return all;
 }
 
@@ -229,10 +228,9 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
   laws_.forces(next_.laws.y, by_);
   LaneRow extra;
   if (laws_.extra_input())
-    laws_.add_extra_input(now_.laws, now_.z.data(), next_.laws,
-                          {next_.z.data(), next_.v.data(), next_.a.data(), scheme_.beta * h * h,
-                           scheme_.gamma * h},
-                          extra);
+    laws_.add_extra_input(
+        now_.laws, now_.z.data(), next_.laws,
+        {next_.z.data(), next_.v.data(), next_.a.data(), scheme_.beta * h * h, scheme_.gamma * h}, extra);
   finish(matrices_, scheme_, h, t_new, now_, by_, extra, next_, good, energy_, force_scale_);
   watch_.step(assemblers_, now_, next_, h, t_new, good);
   if (const LaneMask alone = alive_ & ~good; any(alone))

@@ -11,8 +11,8 @@ namespace drev {
 
 namespace {
 
-constexpr long kProducts = 32;   // a column of L on average, above which CHOLMOD is left to it
-constexpr long kSmall = 1000;    // products that are always accepted
+constexpr long kProducts = 32;  // a column of L on average, above which CHOLMOD is left to it
+constexpr long kSmall = 1000;   // products that are always accepted
 constexpr int kShortestRun = 8, kLongestRun = 4096;
 
 using Run = LowFillPattern::Run;
@@ -109,8 +109,7 @@ void find_runs(LowFillPattern& s) {
   int target = 0;
   const auto append = [&](int begin, int end, int step) {
     if (step > 0 && end - begin < kShortestRun) step = 0;
-    if (!s.runs.empty() && s.runs.back().stride == 0 && step == 0 &&
-        end - s.runs.back().begin <= kLongestRun)
+    if (!s.runs.empty() && s.runs.back().stride == 0 && step == 0 && end - s.runs.back().begin <= kLongestRun)
       s.runs.back().end = end;
     else
       s.runs.push_back({begin, end, step, target, end});
@@ -316,9 +315,7 @@ DREV_WIDEST void gather(const double* from, const int* index, std::size_t count,
 }  // namespace
 
 LowFillFactor::LowFillFactor(std::shared_ptr<const LowFillPattern> pattern)
-    : pattern_(std::move(pattern)),
-      d_(pattern_->size),
-      l_(static_cast<Eigen::Index>(pattern_->rows.size())) {
+    : pattern_(std::move(pattern)), d_(pattern_->size), l_(static_cast<Eigen::Index>(pattern_->rows.size())) {
   prefer_huge_pages(d_);
   prefer_huge_pages(l_);
 }
@@ -350,8 +347,7 @@ void LowFillFactor::solve(const Vector& b, Vector& x) {
                d_.data(),      l_.data(),      y_.data()};
   int taken = 0;  // not further ahead than needed: it is still in the cache then
   for (const Run& run : s.runs) {
-    if (run.reach > taken)
-      gather(b.data(), s.order.data() + taken, at(run.reach - taken), y_.data() + taken);
+    if (run.reach > taken) gather(b.data(), s.order.data() + taken, at(run.reach - taken), y_.data() + taken);
     taken = std::max(taken, run.reach);
     solve_down(v, run);
   }
@@ -360,8 +356,7 @@ void LowFillFactor::solve(const Vector& b, Vector& x) {
 
 void LowFillFactor::solve_in_order(const double* b, double* x) {
   const LowFillPattern& s = *pattern_;
-  const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(),
-               d_.data(),      l_.data(),      x};
+  const View v{s.order.data(), s.begin.data(), s.rows.data(), s.target.data(), d_.data(), l_.data(), x};
   int taken = b == x ? s.size : 0;
   for (const Run& run : s.runs) {
     if (run.reach > taken) std::copy(b + taken, b + run.reach, x + taken);

@@ -28,12 +28,12 @@ struct LowFillPattern {
   };
   int size = 0;
   Ordering ordering = Ordering::from_leaves;
-  std::vector<int> outer, inner; ///< the matrix's pattern
-  std::vector<int> order;        ///< row of the matrix at each place
-  std::vector<int> begin, rows;  ///< columns of L below the diagonal, places
-  std::vector<int> diagonal;     ///< slots of A's values by place
-  std::vector<int> slot;         ///< and by entry of L; -1: fill
-  std::vector<int> target;       ///< entry of L that the product of two entries of a column goes to
+  std::vector<int> outer, inner;  ///< the matrix's pattern
+  std::vector<int> order;         ///< row of the matrix at each place
+  std::vector<int> begin, rows;   ///< columns of L below the diagonal, places
+  std::vector<int> diagonal;      ///< slots of A's values by place
+  std::vector<int> slot;          ///< and by entry of L; -1: fill
+  std::vector<int> target;        ///< entry of L that the product of two entries of a column goes to
   std::vector<Run> runs;
 
   bool same(const SparseMatrix& pattern) const;

@@ -15,11 +15,11 @@ constexpr int kPowerSteps = 20;
 // Measured on chains of 2 to 1000 unknowns: 24 products in a step of 3/omega (as many more for each contact
 // change, which no one knows before), 1.2 to 3.2 ns each times unknowns and contacts; an evaluation of
 // dormand_prince costs about 10. Where the fastest modes are excited, accuracy bounds its steps instead.
-constexpr double kRateTimesStep = 3.0;     // of exact propagation, and where dormand_prince is stable
-constexpr double kProductsInStep = 25.0;   // of exact propagation
-constexpr double kProductsOfStages = 70.0; // what 7 evaluations of dormand_prince cost
-constexpr double kMostWork = 1.5e10;       // products times what one costs: half a minute
-constexpr double kUnknownsOfStep = 20.0;  // what a step costs beside its products
+constexpr double kRateTimesStep = 3.0;      // of exact propagation, and where dormand_prince is stable
+constexpr double kProductsInStep = 25.0;    // of exact propagation
+constexpr double kProductsOfStages = 70.0;  // what 7 evaluations of dormand_prince cost
+constexpr double kMostWork = 1.5e10;        // products times what one costs: half a minute
+constexpr double kUnknownsOfStep = 20.0;    // what a step costs beside its products
 constexpr double kUnknownsOfContact = 10.0;
 
 /// Size of the largest eigenvalue of M^-1 A, A on the system's pattern.
@@ -53,9 +53,8 @@ std::string counted(long n, const std::string& thing) {
 }  // namespace
 
 long contact_count(const System& system) {
-  return std::count_if(system.scalars().begin(), system.scalars().end(), [](const ScalarTerm& s) {
-    return s.force->gap() || s.force->pieces().size() > 1;
-  });
+  return std::count_if(system.scalars().begin(), system.scalars().end(),
+                       [](const ScalarTerm& s) { return s.force->gap() || s.force->pieces().size() > 1; });
 }
 
 double fastest_rate(const System& system) {
@@ -72,8 +71,7 @@ double fastest_rate(const System& system) {
     fill(Weights{.c = 1.0});
     return std::max(elastic, largest_of(assembler, mass, values));
   };
-  double rate = largest(
-      [&](const Weights& w) { assembler.contact_values(w, Contact::closed, values); });
+  double rate = largest([&](const Weights& w) { assembler.contact_values(w, Contact::closed, values); });
   if (!system.generals().empty()) {
     const State start = State::initial(system);
     rate = std::max(rate, largest([&](const Weights& w) {
@@ -91,13 +89,11 @@ std::string to_text(const Method& method) {
   return text.str();
 }
 
-RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o,
-                      State& state, const std::vector<Observer*>& observers) {
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o, State& state,
+                      const std::vector<Observer*>& observers) {
   if (method.exact()) {
-    ExactOptions options{.tolerance = method.tolerance,
-                         .t_start = o.t_start,
-                         .t_end = o.t_end,
-                         .progress = o.progress};
+    ExactOptions options{
+        .tolerance = method.tolerance, .t_start = o.t_start, .t_end = o.t_end, .progress = o.progress};
     if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
     return propagate(system, options, state, observers);
   }
@@ -151,8 +147,7 @@ MethodChoice choose_method(const System& system, double duration, double step) {
             model + ": exact between located changes",
             exact_work};
   text << "would cost exact propagation " << kProductsInStep * steps << " products: controlled steps";
-  return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str(),
-          exact_work};
+  return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str(), exact_work};
 }
 
 }  // namespace drev

@@ -56,8 +56,7 @@ void products(const double* x, const double* y, int n, int count, double* g) {
   for (int start = 0; start < n; start += kShortStrip) {
     const int rows = std::min(kShortStrip, n - start);
     for (int j = 0; j < count; ++j)
-      for (int i = 0; i <= j; ++i)
-        g[i + j * count] += dot(rows, x + i * next + start, y + j * next + start);
+      for (int i = 0; i <= j; ++i) g[i + j * count] += dot(rows, x + i * next + start, y + j * next + start);
   }
 }
 
@@ -116,8 +115,7 @@ void ModalProblem::factor(double sigma) {
   const double limit = std::max(100.0 * lambda_max_, 100.0);
   for (; - sigma <= limit; sigma *= 100.0) {
     ++summary_.factorizations;
-    if (shifted_.factorize(system_.pattern(), stiffness_ - sigma * mass_) ==
-        FactorStatus::success) {
+    if (shifted_.factorize(system_.pattern(), stiffness_ - sigma * mass_) == FactorStatus::success) {
       summary_.shift = sigma;
       lanczos_.reset();
       if (weight_.size() > 0) shifted_.low_fill_factor()->weigh(weight_);
@@ -125,8 +123,7 @@ void ModalProblem::factor(double sigma) {
     }
   }
   const int column = shifted_.failed_column();
-  throw SolverError("modes of " + system_.name() + ": K - sigma M is " +
-                    to_text(shifted_.status()) +
+  throw SolverError("modes of " + system_.name() + ": K - sigma M is " + to_text(shifted_.status()) +
                     (column >= 0 ? " at node " + system_.unknown_name(column) : std::string()) +
                     " even with a shift far below zero: the mass matrix is not positive definite");
 }

@@ -68,7 +68,7 @@ class ModalProblem {
   // Where M is diagonal and L hardly fills, vectors are iterated in the order of elimination, scaled so that
   // M = I: 1 / sqrt(M_ii) in that order, else empty.
   Vector weight_;
-  std::vector<int> place_;  // of each unknown in that order
+  std::vector<int> place_;   // of each unknown in that order
   double lambda_max_ = 0.0;  // scale, from row sums
   ModesSummary& summary_;
   SparseCholesky shifted_;

@@ -47,13 +47,13 @@ void check_rigid(const System& system, Contact contact, const ModalProblem& prob
   if (found == expected) return;
   std::string names;
   for (const std::string& part : parts) names += (names.empty() ? "" : ", ") + part;
-  throw SolverError(
-      "modes of " + system.name() + ": " + std::to_string(found) +
-      " modes store no elastic energy, but the model has " + std::to_string(expected) +
-      " parts free to turn" + (names.empty() ? "" : " (with node " + names + ")") +
-      (found > expected ? ": an element that should connect has stiffness 0 in this contact state, "
-                          "or one too small beside the others"
-                        : ": an element ties a part to ground without saying so in its closures"));
+  throw SolverError("modes of " + system.name() + ": " + std::to_string(found) +
+                    " modes store no elastic energy, but the model has " + std::to_string(expected) +
+                    " parts free to turn" + (names.empty() ? "" : " (with node " + names + ")") +
+                    (found > expected
+                         ? ": an element that should connect has stiffness 0 in this contact state, "
+                           "or one too small beside the others"
+                         : ": an element ties a part to ground without saying so in its closures"));
 }
 
 /// First index beyond the modes [0, total) that lies above the one before it by more than `apart`,
@@ -156,9 +156,8 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
       cut = next_distinct(pairs.lambda, cut + 1, kClusterEnd);  // behind the cluster that it was inside of
     }
     if (surplus < 0 || (surplus > 0 && pairs.count() == n))
-      throw SolverError("modes of " + system.name() + ": " + std::to_string(cut) +
-                        " modes found below " + to_text(summary.sturm_point) +
-                        " (rad/s)^2, but the Sturm count is " +
+      throw SolverError("modes of " + system.name() + ": " + std::to_string(cut) + " modes found below " +
+                        to_text(summary.sturm_point) + " (rad/s)^2, but the Sturm count is " +
                         std::to_string(summary.sturm_count) +
                         ": the matrices are too badly scaled to separate modes there");
     if (surplus == 0 && (cut >= 0 || pairs.count() == n)) {
@@ -176,9 +175,8 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
     }
     ask = std::min(n, ask + more);
   }
-  throw SolverError("modes of " + system.name() +
-                    ": modes found and Sturm count did not agree after " + std::to_string(kRounds) +
-                    " rounds");
+  throw SolverError("modes of " + system.name() + ": modes found and Sturm count did not agree after " +
+                    std::to_string(kRounds) + " rounds");
 }
 
 }  // namespace drev

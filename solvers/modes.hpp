@@ -63,7 +63,7 @@ struct ModeSet {
   /// Column j: mode j over all nodes, with those that ideal gears eliminate and zero where
   /// prescribed. The entry of largest magnitude is positive.
   Eigen::MatrixXd shapes;
-  Eigen::MatrixXd vectors;  ///< the same over the unknowns; x' M x = 1
+  Eigen::MatrixXd vectors;        ///< the same over the unknowns; x' M x = 1
   Eigen::MatrixXd rigid_vectors;  ///< beside elastic modes: the rigid ones over the unknowns, x' M x = 1
   ModesSummary summary;
 

@@ -16,9 +16,7 @@ class Observer {
   virtual void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) = 0;
   /// The next time after t that must be seen exactly [s]: constant steps end there, controlled ones are
   /// interpolated to the method's order.
-  virtual double next_stop(double /*t*/) const {
-    return std::numeric_limits<double>::infinity();
-  }
+  virtual double next_stop(double /*t*/) const { return std::numeric_limits<double>::infinity(); }
   /// Whether it reads accelerations, or loads and forces of the whole system (p, kz, cv, total). Where no
   /// observer does, points inside a step of exact propagation have none: a is not a number there.
   virtual bool needs_acceleration() const { return true; }

@@ -36,16 +36,14 @@ void Peaks::start(const Assembler& assembler, const StepPoint& point) {
 void Peaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     Watched& w = watched_[c];
-    const double value =
-        w.two_entries ? w.sum(to.state.z) : channels_[c].evaluate(assembler, to.state);
+    const double value = w.two_entries ? w.sum(to.state.z) : channels_[c].evaluate(assembler, to.state);
     const double higher = std::max(value, w.last), lower = std::min(value, w.last);
     w.last = value;
     if (higher <= w.high && lower >= w.low) continue;
     Peak& p = peaks_[c];
     const double near = kNear * (p.max - p.min);
     p.note(value, to.state.t);
-    if (inside_steps_ && (higher > p.max - near || lower < p.min + near))
-      look_inside(c, assembler, from, to);
+    if (inside_steps_ && (higher > p.max - near || lower < p.min + near)) look_inside(c, assembler, from, to);
     set_bounds(c);
   }
 }

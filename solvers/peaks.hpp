@@ -36,8 +36,7 @@ class Peaks final : public Observer {
   std::size_t largest() const;
 
  private:
-  void look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from,
-                   const StepPoint& to);
+  void look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from, const StepPoint& to);
 
   /// What a step needs of a channel, close together: there are many steps and few new peaks.
   struct Watched {

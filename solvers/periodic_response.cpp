@@ -33,8 +33,10 @@ Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& 
   Assembler assembler(system);
   State state = State::initial(system);
   Level level;
-  if (channels.empty()) level.values = q;
-  else level.values.resize(static_cast<Eigen::Index>(channels.size()), samples);
+  if (channels.empty())
+    level.values = q;
+  else
+    level.values.resize(static_cast<Eigen::Index>(channels.size()), samples);
   std::vector<int> side(system.scalars().size(), 0);
   for (int s = 0; s < samples; ++s) {
     state.t = period * s / samples;
@@ -90,8 +92,7 @@ double difference(const Level& coarse, const Level& fine) {
     double of_channel = 0.0;
     for (Eigen::Index s = 0; s < coarse.values.cols(); ++s)
       of_channel = std::max(of_channel, std::abs(fine.values(c, 2 * s) - coarse.values(c, s)));
-    if (of_channel > 0.0)
-      largest = std::max(largest, of_channel / fine.values.row(c).cwiseAbs().maxCoeff());
+    if (of_channel > 0.0) largest = std::max(largest, of_channel / fine.values.row(c).cwiseAbs().maxCoeff());
   }
   return largest;
 }

@@ -7,7 +7,7 @@ namespace drev {
 
 namespace {
 
-constexpr int kMaxKinkTerms = 33;   // coefficients of theta
+constexpr int kMaxKinkTerms = 33;  // coefficients of theta
 constexpr int kMaxNewton = 30;
 constexpr double kSettled = 1e-14;  // last Newton step in s
 
@@ -104,8 +104,7 @@ void kink_moments(const double* const* theta, std::size_t terms, std::size_t fir
     for (std::size_t k = terms - 1; k-- > p;) d[k] += d[k + 1] * s;
     last = static_cast<int>(p);
     bool counts = false;
-    for (int l = 0; l < kLanes; ++l)
-      counts |= std::abs(d[p][l]) > tolerance * std::abs(d[p > 0][l]);
+    for (int l = 0; l < kLanes; ++l) counts |= std::abs(d[p][l]) > tolerance * std::abs(d[p > 0][l]);
     small = counts ? 0 : small + 1;
   }
   // J_p,j = int_s^1 (u - s)^p/p! L_j du = (J_p-1,j-1 - J_p-1,j+1)/(2 (2j + 1)), J_-1,j = L_j(s).

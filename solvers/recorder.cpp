@@ -29,9 +29,7 @@ void Recorder::step(const Assembler& assembler, const StepPoint& /*from*/, const
   if (to.state.t >= next_stop(0.0) - kSameTime * every_) record(assembler, to);
 }
 
-double Recorder::next_stop(double /*t*/) const {
-  return start_ + static_cast<double>(next_) * every_;
-}
+double Recorder::next_stop(double /*t*/) const { return start_ + static_cast<double>(next_) * every_; }
 
 bool Recorder::needs_acceleration() const {
   return std::any_of(channels_.begin(), channels_.end(),
@@ -39,8 +37,7 @@ bool Recorder::needs_acceleration() const {
 }
 
 void Recorder::record(const Assembler& assembler, const StepPoint& point) {
-  for (std::size_t c = 0; c < channels_.size(); ++c)
-    row_[c] = channels_[c].evaluate(assembler, point.state);
+  for (std::size_t c = 0; c < channels_.size(); ++c) row_[c] = channels_[c].evaluate(assembler, point.state);
   ++next_;
   if (sink_) {
     sink_(point.state.t, row_);

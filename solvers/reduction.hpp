@@ -31,23 +31,23 @@ namespace drev {
 
 struct ReductionOptions {
   enum class Kind { modal, craig_bampton } kind = Kind::modal;
-  int modes = 0;           ///< elastic modes, or modes with nodes held; 0: those up to up_to_Hz
-  double up_to_Hz = 0.0;   ///< Hz; either this or modes
+  int modes = 0;          ///< elastic modes, or modes with nodes held; 0: those up to up_to_Hz
+  double up_to_Hz = 0.0;  ///< Hz; either this or modes
   /// Nodes kept as coordinates, craig_bampton only; those of laws, their phases and general elements always
   /// are.
   std::vector<std::string> keep = {};
-  bool static_correction = true;   ///< modal: with X, else with Phi alone
-  double static_accuracy = 1e-3;   ///< of the static shapes of loads, 1e-12 to 1
+  bool static_correction = true;  ///< modal: with X, else with Phi alone
+  double static_accuracy = 1e-3;  ///< of the static shapes of loads, 1e-12 to 1
 };
 
 struct Reduction {
   System system;
-  int modes = 0;                  ///< elastic modes kept, or modes with the kept nodes held
-  int static_shapes = 0;          ///< columns of X, or nodes kept
-  double first_left_out_Hz = 0.0; ///< infinite where none is left out
-  double static_error = 0.0;      ///< reached under the sampled loads, in the energy norm; modal only
-  Eigen::MatrixXd basis = {};     ///< R: a row for each unknown of the full system
-  std::string what = {};          ///< one sentence for a summary, without full stop
+  int modes = 0;                   ///< elastic modes kept, or modes with the kept nodes held
+  int static_shapes = 0;           ///< columns of X, or nodes kept
+  double first_left_out_Hz = 0.0;  ///< infinite where none is left out
+  double static_error = 0.0;       ///< reached under the sampled loads, in the energy norm; modal only
+  Eigen::MatrixXd basis = {};      ///< R: a row for each unknown of the full system
+  std::string what = {};           ///< one sentence for a summary, without full stop
 };
 
 /// Throws ModelError for options out of range and for what project() refuses, SolverError as solve_modes()

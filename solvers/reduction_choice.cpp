@@ -37,8 +37,7 @@ class Predictor {
  public:
   Predictor(const System& system, const ModeSet& modes, double duration)
       : system_(system), modes_(modes), length_(spectrum_length(system, duration)) {
-    const Eigen::MatrixXd loads =
-        modes.vectors.transpose() * sampled_loads(system, length_, kSamples);
+    const Eigen::MatrixXd loads = modes.vectors.transpose() * sampled_loads(system, length_, kSamples);
     Eigen::FFT<double> fft;
     std::vector<double> samples(kSamples);
     for (Eigen::Index j = 0; loads.cols() > 0 && j < loads.rows(); ++j) {
@@ -147,8 +146,7 @@ ReductionChoice choose_reduction(const System& system, double within,
   }
   const double contacts = contact_frequency(system) / std::pow(within, 0.25);
   int keep = 1;
-  while (keep <= modes.count() / 2 &&
-         (errors[at(keep)] > within || modes.frequency_Hz[at(keep)] < contacts))
+  while (keep <= modes.count() / 2 && (errors[at(keep)] > within || modes.frequency_Hz[at(keep)] < contacts))
     ++keep;
   std::ostringstream text;
   text.precision(2);

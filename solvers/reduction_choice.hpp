@@ -23,9 +23,9 @@ namespace drev {
 
 struct ReductionChoice {
   std::optional<Reduction> reduction = {};  ///< only where the gain is above 1.5
-  double gain = 0.0;       ///< predicted; 0 where nothing could be predicted
-  double error = 0.0;      ///< estimated, relative, the largest of the channels'
-  std::string reason = {}; ///< one sentence without full stop
+  double gain = 0.0;                        ///< predicted; 0 where nothing could be predicted
+  double error = 0.0;                       ///< estimated, relative, the largest of the channels'
+  std::string reason = {};                  ///< one sentence without full stop
 };
 
 /// within: relative, of the channels' peaks, 1e-6 to 0.5. channels: as LeftOutModes takes them, at least one.

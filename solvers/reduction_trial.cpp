@@ -48,8 +48,7 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
     return trial;
   }
   const System& reduced = choice.reduction->system;
-  const Method method =
-      o.any_method ? choose_method(reduced, o.duration, o.method.step).method : o.method;
+  const Method method = o.any_method ? choose_method(reduced, o.duration, o.method.step).method : o.method;
   try {
     LeftOutModes left_out(system, *choice.reduction, o.channels);
     const RunSummary run =
@@ -59,15 +58,12 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
     trial.error = 0.0;
     for (const ReductionErrorEstimate& e : left_out.estimates())
       if (e.relative() >= *trial.error) trial.error = e.relative(), trial.channel = e.channel;
-    const bool pieces = std::any_of(system.scalars().begin(), system.scalars().end(), [](const auto& s) {
-      return s.force->pieces().size() != 1;
-    });
+    const bool pieces = std::any_of(system.scalars().begin(), system.scalars().end(),
+                                    [](const auto& s) { return s.force->pieces().size() != 1; });
     double growth = 1.0;
     if (pieces && !(method.exact() && run.contact_changes == 0)) {
-      const Growth grown = measure_growth(reduced, {.method = method,
-                                                    .t_end = o.duration,
-                                                    .pieces = kGrowthPieces,
-                                                    .progress = o.progress});
+      const Growth grown = measure_growth(
+          reduced, {.method = method, .t_end = o.duration, .pieces = kGrowthPieces, .progress = o.progress});
       if (grown.status != RunStatus::success) return refuse("its trial: " + grown.reason);
       growth = grown.factor(o.duration);
       *trial.error *= growth;

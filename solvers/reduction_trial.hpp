@@ -28,8 +28,8 @@ struct ReductionTrial {
   std::optional<Reduction> reduction = {};  ///< only where the error is within
   Method method = {};                       ///< to run it with
   std::optional<double> error = {};  ///< estimated, relative, the largest of the channels'; none: no trial
-  std::string channel = {};                 ///< whose it is
-  std::string reason = {};                  ///< one sentence without full stop
+  std::string channel = {};          ///< whose it is
+  std::string reason = {};           ///< one sentence without full stop
 };
 
 /// Throws ModelError for bad options and unknown channels.

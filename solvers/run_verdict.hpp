@@ -16,8 +16,7 @@ void end_growing_run(RunSummary& summary, const std::string& system, double t, c
 inline void check_growth(RunSummary& summary, const std::string& system, double t,
                          const EnergyBalance& balance, double growth_limit) {
   const bool grew = balance.imbalance > growth_limit * balance.given && balance.given > 0.0;
-  if (grew || !std::isfinite(balance.imbalance))
-    end_growing_run(summary, system, t, balance, growth_limit);
+  if (grew || !std::isfinite(balance.imbalance)) end_growing_run(summary, system, t, balance, growth_limit);
 }
 /// The verdict on summary.energy of a run that came to its end.
 void judge_energy(RunSummary& summary, double tolerance);

@@ -20,8 +20,8 @@ void RungeKutta::combine(const StepPoint& from, double h, const double* weights,
   }
 }
 
-NewtonResult RungeKutta::step(const StepPoint& from, double h, double t_new, double t_evaluate,
-                              StepPoint& to, bool accept_jump) {
+NewtonResult RungeKutta::step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
+                              bool accept_jump) {
   equation_.clock().enter(Phase::linear);
   Assembler& assembler = equation_.assembler();
   const double g = tableau_.diagonal();
@@ -77,8 +77,7 @@ NewtonResult RungeKutta::step(const StepPoint& from, double h, double t_new, dou
   return result;
 }
 
-void RungeKutta::estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
-                          Vector& e_v) {
+void RungeKutta::estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) {
   if (tableau_.e.size() == 0) {
     estimate_by_quadrature(from, to, h, e_z, e_v);
   } else {

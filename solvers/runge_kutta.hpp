@@ -11,8 +11,7 @@ class RungeKutta final : public Stepper {
                     bool accept_jump = false) override;
   /// By the embedded formula; its own error if it is of lower order than the method. Where there is none, by
   /// quadrature. Implicit: filtered (Hosea and Shampine 1996), or fast modes at rest would count.
-  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
-                Vector& e_v) override;
+  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) override;
 
  private:
   /// z_0 + h sum_j w_j v_j, v_0 + h sum_j w_j a_j over the first `count` stages.

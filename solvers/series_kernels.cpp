@@ -12,8 +12,8 @@ constexpr int kMostTerms = 128;  // of a product of two series
 
 DREV_WIDEST
 double series_term(int stride, std::span<const DiagonalView> k, std::span<const DiagonalView> c,
-                   double c_factor, const double* p, const double* x_0, const double* x_1,
-                   const double* w, double factor, double* next) {
+                   double c_factor, const double* p, const double* x_0, const double* x_1, const double* w,
+                   double factor, double* next) {
   Lanes largest{}, not_finite{};
   for (int i = 0; i < stride; i += kLanes) {
     Lanes sum, a, b;

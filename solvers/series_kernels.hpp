@@ -14,8 +14,8 @@ struct DiagonalView {
 /// next = factor w (p - K x_0 - c_factor C x_1), row by row with the scaling w; returns the largest |next|,
 /// or NaN if any is not finite.
 double series_term(int stride, std::span<const DiagonalView> k, std::span<const DiagonalView> c,
-                   double c_factor, const double* p, const double* x_0, const double* x_1,
-                   const double* w, double factor, double* next);
+                   double c_factor, const double* p, const double* x_0, const double* x_1, const double* w,
+                   double factor, double* next);
 
 /// z = sum Z_k s^k and v = sum k Z_k s^(k-1) from columns Z_k at z_0 + k stride.
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v);

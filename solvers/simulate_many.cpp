@@ -75,8 +75,8 @@ class Many {
  public:
   using Progress = std::function<bool(double)>;
   /// Runs the systems given, some of a block; go_on as in Lockstep::run.
-  using Runner = std::function<std::vector<VariantResult>(const std::vector<const System*>&,
-                                                          const Progress& go_on)>;
+  using Runner =
+      std::function<std::vector<VariantResult>(const std::vector<const System*>&, const Progress& go_on)>;
 
   Many(std::size_t count, const VariantBuilder& build, const ManyOptions& options, const Progress& progress)
       : count_(count), build_(build), options_(options), progress_(progress) {}
@@ -144,8 +144,7 @@ class Many {
           indices.push_back(variants[j]);
         }
       const auto size = static_cast<double>(together.size());
-      run_together(together, indices, runner,
-                   [&](double part) { return report(thread, run + part * size); });
+      run_together(together, indices, runner, [&](double part) { return report(thread, run + part * size); });
       run += size;
     }
     parts_[thread] = 0.0;
@@ -285,12 +284,13 @@ ManyResult simulate_many(std::size_t count, const VariantBuilder& build, const T
     why_not = why_not_lockstep(*first, options);
   }
   if (!many.lockstep) why_not = "not wanted";
-  ManyResult result = run.run(std::move(first), why_not ? 1 : kLanes,
-                 [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
-                   if (why_not || why_not_lockstep(*systems.front(), options))
-                     return one_by_one(systems, options, many.channels, go_on);
-                   return Lockstep(systems, options, many.channels).run(go_on);
-                 });
+  ManyResult result =
+      run.run(std::move(first), why_not ? 1 : kLanes,
+              [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
+                if (why_not || why_not_lockstep(*systems.front(), options))
+                  return one_by_one(systems, options, many.channels, go_on);
+                return Lockstep(systems, options, many.channels).run(go_on);
+              });
   result.why_not_lockstep = why_not.value_or("");
   return result;
 }
@@ -301,10 +301,11 @@ ManyResult propagate_many(std::size_t count, const VariantBuilder& build, const 
   Many run(count, build, many, options.progress);
   std::optional<System> first = build_first(build, many);
   if (first) find_channels(*first, many.channels);
-  ManyResult result = run.run(std::move(first), 1,
-                 [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
-                   return one_by_one(systems, options, many.channels, go_on);
-                 });
+  ManyResult result =
+      run.run(std::move(first), 1,
+              [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
+                return one_by_one(systems, options, many.channels, go_on);
+              });
   result.why_not_lockstep = "contact changes differ between variants";
   return result;
 }

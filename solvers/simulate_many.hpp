@@ -2,10 +2,10 @@
 /// Many variants of one topology: parameter studies.
 ///
 /// Variants differ in any parameter (speeds, backlash, stiffness, damping, firing order, tables), not in
-/// their unknowns, elements and connections. Constant steps of the generalized-alpha family are made by kLanes
-/// variants in lockstep, one in each lane of the processor's vectors, block by block over threads; anything
-/// else by one variant at a time, over threads. Results are those of single runs to rounding, and do not
-/// depend on which variants share a block or on the number of threads.
+/// their unknowns, elements and connections. Constant steps of the generalized-alpha family are made by
+/// kLanes variants in lockstep, one in each lane of the processor's vectors, block by block over threads;
+/// anything else by one variant at a time, over threads. Results are those of single runs to rounding, and do
+/// not depend on which variants share a block or on the number of threads.
 ///
 /// A step that a variant cannot make with the others (Newton needs its line search, or the step must be
 /// halved) it makes by itself, as a single run would.

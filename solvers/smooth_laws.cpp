@@ -91,15 +91,15 @@ double SmoothLaws::project(const TaylorSeries& series, Projection& projection) {
     for (const Law& law : laws_) {
       const ScalarTerm& term = *law.term;
       const ScalarResponse r = assembler_.respond(term, z_, v_);
-      const double difference = r.y - law.y - law.k * (along(term, z_) - law.x) -
-                                law.c * (along(term, v_) - law.x_dot);
+      const double difference =
+          r.y - law.y - law.k * (along(term, z_) - law.x) - law.c * (along(term, v_) - law.x_dot);
       double mobility = 0.0;
       for (const Entry& e : term.z) {
         mobility += e.coeff * e.coeff * series.mobility(e.index);
         projection.add_node(q, e.index, -e.coeff * difference);
       }
-      gain = std::max(gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) +
-                                        h_ * std::abs(r.dy_dx_dot - law.c)));
+      gain = std::max(
+          gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) + h_ * std::abs(r.dy_dx_dot - law.c)));
     }
   }
   return gain;
@@ -119,8 +119,7 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
     add_known(system_.ratio(law.term->phase_node), assembler_.nominal());
     if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
     for (const Entry& e : law.phase_row)
-      for (int k = 1; k <= series.degree(); ++k)
-        g_[at(k)] += e.coeff * series.coefficient(k, e.index);
+      for (int k = 1; k <= series.degree(); ++k) g_[at(k)] += e.coeff * series.coefficient(k, e.index);
     for (const double side : {1.0, -1.0}) {
       const std::optional<double> knot = law.term->force->next_knot(law.angle, side);
       if (!knot) continue;

@@ -53,16 +53,13 @@ struct SparseCholesky::Impl {
 };
 
 SparseCholesky::SparseCholesky() : impl_(std::make_unique<Impl>()) {}
-SparseCholesky::SparseCholesky(const SparseMatrix& pattern) : SparseCholesky() {
-  impl_->analyse(pattern);
-}
+SparseCholesky::SparseCholesky(const SparseMatrix& pattern) : SparseCholesky() { impl_->analyse(pattern); }
 SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 FactorStatus SparseCholesky::Impl::analyse(const SparseMatrix& pattern) {
-  if (pattern.rows() != pattern.cols() || !pattern.isCompressed())
-    return FactorStatus::pattern_changed;
+  if (pattern.rows() != pattern.cols() || !pattern.isCompressed()) return FactorStatus::pattern_changed;
   if (std::shared_ptr<const LowFillPattern> low_fill = analyse_low_fill(pattern)) {
     flat.emplace(std::move(low_fill));
     return FactorStatus::success;
@@ -91,8 +88,7 @@ FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const 
   if (!values.allFinite()) return FactorStatus::not_finite;
   if (flat->factorize(values, true)) return FactorStatus::success;
   failed_column = flat->pattern().order[at(flat->failed_place())];
-  return std::isnan(flat->failed_pivot()) ? FactorStatus::not_finite
-                                          : FactorStatus::not_positive_definite;
+  return std::isnan(flat->failed_pivot()) ? FactorStatus::not_finite : FactorStatus::not_positive_definite;
 }
 
 bool SparseCholesky::Impl::factorize_diagonal(const SparseMatrix& pattern, const Vector& values) {
@@ -162,8 +158,8 @@ void SparseCholesky::solve(const Vector& b, Vector& x) {
   if (s.status != FactorStatus::success)
     throw SolverError(std::string("Cholesky: solve without a factor: ") + to_text(s.status));
   if (b.size() != s.size())
-    throw SolverError("Cholesky: right-hand side has " + std::to_string(b.size()) +
-                      " entries, the matrix " + std::to_string(s.size()) + " rows");
+    throw SolverError("Cholesky: right-hand side has " + std::to_string(b.size()) + " entries, the matrix " +
+                      std::to_string(s.size()) + " rows");
   if (s.is_diagonal()) {
     x = b.cwiseProduct(s.inverse_diagonal);
     return;
@@ -183,8 +179,7 @@ double SparseCholesky::reciprocal_condition() const {
 Ordering SparseCholesky::ordering() const {
   const Impl& s = *impl_;
   if (s.flat) return s.flat->pattern().ordering;
-  return s.cholmod && s.cholmod->factor().ordering == CHOLMOD_AMD ? Ordering::amd
-                                                                  : Ordering::natural;
+  return s.cholmod && s.cholmod->factor().ordering == CHOLMOD_AMD ? Ordering::amd : Ordering::natural;
 }
 
 std::shared_ptr<const LowFillPattern> SparseCholesky::low_fill() const {

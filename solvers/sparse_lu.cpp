@@ -1,8 +1,7 @@
 #include "solvers/sparse_lu.hpp"
 
-#include <klu.h>
-
 #include <algorithm>
+#include <klu.h>
 #include <limits>
 #include <string>
 #include <vector>
@@ -34,8 +33,7 @@ struct SparseLu::Impl {
 };
 
 FactorStatus SparseLu::Impl::analyse(const SparseMatrix& pattern) {
-  if (pattern.rows() != pattern.cols() || !pattern.isCompressed())
-    return FactorStatus::pattern_changed;
+  if (pattern.rows() != pattern.cols() || !pattern.isCompressed()) return FactorStatus::pattern_changed;
   size = static_cast<int>(pattern.rows());
   outer.assign(pattern.outerIndexPtr(), pattern.outerIndexPtr() + size + 1);
   inner.assign(pattern.innerIndexPtr(), pattern.innerIndexPtr() + pattern.nonZeros());
@@ -61,8 +59,7 @@ FactorStatus SparseLu::Impl::factorize() {
   // The old pivot order is kept while growth stays small: |U| no more than 1e6 times |A|.
   constexpr double kSmallestGrowthRatio = 1e-6;
   const auto refactored = [&] {
-    return numeric &&
-           klu_refactor(outer.data(), inner.data(), values.data(), symbolic, numeric, &common) &&
+    return numeric && klu_refactor(outer.data(), inner.data(), values.data(), symbolic, numeric, &common) &&
            common.status == KLU_OK &&
            klu_rgrowth(outer.data(), inner.data(), values.data(), symbolic, numeric, &common) &&
            common.rgrowth >= kSmallestGrowthRatio;
@@ -106,8 +103,8 @@ void SparseLu::solve(const Vector& b, Vector& x) {
   if (s.status != FactorStatus::success)
     throw SolverError(std::string("LU: solve without a factor: ") + to_text(s.status));
   if (b.size() != s.size)
-    throw SolverError("LU: right-hand side has " + std::to_string(b.size()) +
-                      " entries, the matrix " + std::to_string(s.size) + " rows");
+    throw SolverError("LU: right-hand side has " + std::to_string(b.size()) + " entries, the matrix " +
+                      std::to_string(s.size) + " rows");
   if (&x != &b) x = b;
   if (!klu_solve(s.symbolic, s.numeric, s.size, 1, x.data(), &s.common))
     throw SolverError("LU: KLU could not solve");

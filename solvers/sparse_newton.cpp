@@ -23,13 +23,11 @@ SparseNewton::SparseNewton(const System& system)
     lu_ = std::make_unique<SparseLu>();
 }
 
-double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProblem& p,
-                              const Vector& w, Vector& history_new) {
+double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProblem& p, const Vector& w,
+                              Vector& history_new) {
   // Also keeps the largest force in it, and what rounding alone contributes.
   scale_ = 0.0;
-  const auto note = [this](const Vector& part) {
-    scale_ = std::max(scale_, part.lpNorm<Eigen::Infinity>());
-  };
+  const auto note = [this](const Vector& part) { scale_ = std::max(scale_, part.lpNorm<Eigen::Infinity>()); };
   z_ = *p.z_0 + p.kappa_z * w;
   v_ = *p.v_0 + p.kappa_v * w;
   const SparseMatrix& pattern = system_.pattern();
@@ -61,8 +59,7 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
       part_[e.index] += e.coeff * r.y;
       x += std::abs(e.coeff * z_[e.index]);
     }
-    for (const Entry& e : term.z)
-      largest = std::max(largest, std::abs(e.coeff * r.dy_dx) * x);
+    for (const Entry& e : term.z) largest = std::max(largest, std::abs(e.coeff * r.dy_dx) * x);
   }
   assembler.add_general_forces(z_, v_, *p.history, part_, history_new);
   note(part_);
@@ -78,8 +75,7 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
   }
   if (p.r_0) r_ += *p.r_0;
   rounding_ = 16 * kEpsilon * largest;
-  return r_.allFinite() ? r_.lpNorm<Eigen::Infinity>()
-                        : std::numeric_limits<double>::quiet_NaN();
+  return r_.allFinite() ? r_.lpNorm<Eigen::Infinity>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool SparseNewton::same_tangent(const Weights& w, double shift) {
@@ -115,16 +111,15 @@ NewtonStatus SparseNewton::direction(const Assembler& assembler, const SparseNew
         const ScalarTerm& term = system_.scalars()[j];
         std::size_t s = 0;
         for (const Entry& row : term.z)
-          for (const Entry& col : term.z)
-            values_[term.slots[s++]] += slopes_[j] * row.coeff * col.coeff;
+          for (const Entry& col : term.z) values_[term.slots[s++]] += slopes_[j] * row.coeff * col.coeff;
       }
     } else {
       assembler.tangent_values(weights, z_, v_, history, with_loads, values_);
     }
     if (p.shift != 0.0) values_ += p.shift * system_.mass_values();
     ++factorizations_;
-    const FactorStatus status = lu_ ? lu_->factorize(system_.pattern(), values_)
-                                    : cholesky_->factorize(system_.pattern(), values_);
+    const FactorStatus status =
+        lu_ ? lu_->factorize(system_.pattern(), values_) : cholesky_->factorize(system_.pattern(), values_);
     tangent_kept_ = status == FactorStatus::success;
     if (tangent_kept_) return solve();
     if (lu_ || only_laws_vary_) break;

@@ -22,9 +22,9 @@ struct SparseNewtonProblem {
   double mu = 0.0, phi = 1.0, kappa_z = 1.0, kappa_v = 0.0;
   const Vector* z_0 = nullptr;
   const Vector* v_0 = nullptr;
-  const Vector* r_0 = nullptr;       ///< may be null: 0
-  const Vector* history = nullptr;   ///< of the last accepted state
-  double shift = 0.0;                ///< added as shift * M to the tangent alone (static solves)
+  const Vector* r_0 = nullptr;      ///< may be null: 0
+  const Vector* history = nullptr;  ///< of the last accepted state
+  double shift = 0.0;               ///< added as shift * M to the tangent alone (static solves)
 };
 
 class SparseNewton {
@@ -39,8 +39,8 @@ class SparseNewton {
 
   /// w: start in, solution out. The assembler must stand at the time of evaluation. history_new: of the
   /// general elements at the solution.
-  NewtonResult solve(const Assembler& assembler, const SparseNewtonProblem& problem,
-                     const Options& options, Vector& w, Vector& history_new);
+  NewtonResult solve(const Assembler& assembler, const SparseNewtonProblem& problem, const Options& options,
+                     Vector& w, Vector& history_new);
   /// Swaps the laws' inputs and responses at the last w evaluated with these vectors; what is left here means
   /// nothing until the next solve().
   void hand_over_laws(std::vector<ScalarInput>& inputs, std::vector<ScalarResponse>& responses) {

@@ -32,9 +32,7 @@ std::vector<double> window_terms(Window window) {
 double window_response(const std::vector<double>& terms, double x) {
   const auto nearest = static_cast<std::size_t>(std::lround(std::abs(x)));
   if (std::abs(std::abs(x) - static_cast<double>(nearest)) < 1e-9)
-    return nearest == 0             ? 1.0
-           : nearest < terms.size() ? 0.5 * std::abs(terms[nearest]) / terms[0]
-                                    : 0.0;
+    return nearest == 0 ? 1.0 : nearest < terms.size() ? 0.5 * std::abs(terms[nearest]) / terms[0] : 0.0;
   double sum = terms[0];
   for (std::size_t m = 1; m < terms.size(); ++m)
     sum += terms[m] * x * x / (x * x - static_cast<double>(m * m));
@@ -97,8 +95,7 @@ Spectrum spectrum(const std::vector<double>& samples, double dt, const SpectrumO
   return result;
 }
 
-std::vector<SpectrumPeak> spectrum_peaks(const Spectrum& spectrum, int count,
-                                         double min_separation_Hz) {
+std::vector<SpectrumPeak> spectrum_peaks(const Spectrum& spectrum, int count, double min_separation_Hz) {
   std::vector<Finding> findings;
   ParameterCheck check("spectrum peaks", findings);
   if (count < 1) check.fail("count", std::to_string(count), "", "must be >= 1");
@@ -113,12 +110,10 @@ std::vector<SpectrumPeak> spectrum_peaks(const Spectrum& spectrum, int count,
     if (!(a[k] > a[k - 1] && a[k] >= a[k + 1])) continue;
     const bool upward = a[k + 1] >= a[k - 1];
     const double x = distance_from_line(terms, (upward ? a[k + 1] : a[k - 1]) / a[k]);
-    found.push_back(
-        {spectrum.frequency_Hz[k] + (upward ? x : -x) * step, a[k] / window_response(terms, x)});
+    found.push_back({spectrum.frequency_Hz[k] + (upward ? x : -x) * step, a[k] / window_response(terms, x)});
   }
-  std::stable_sort(found.begin(), found.end(), [](const SpectrumPeak& x, const SpectrumPeak& y) {
-    return x.amplitude > y.amplitude;
-  });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const SpectrumPeak& x, const SpectrumPeak& y) { return x.amplitude > y.amplitude; });
   std::vector<SpectrumPeak> kept;
   for (const SpectrumPeak& peak : found) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&](const SpectrumPeak& other) {

@@ -41,8 +41,7 @@ struct Spectrum {
 };
 
 /// samples: at least 4 that are used, finite. dt: s, > 0. Throws ModelError otherwise.
-Spectrum spectrum(const std::vector<double>& samples, double dt,
-                  const SpectrumOptions& options = {});
+Spectrum spectrum(const std::vector<double>& samples, double dt, const SpectrumOptions& options = {});
 
 /// A local maximum of a spectrum.
 struct SpectrumPeak {
@@ -56,7 +55,6 @@ struct SpectrumPeak {
 /// long record; what other tones leak there (with the rectangular window about 1 / (pi distance in
 /// lines)) is the error. Lines at zero and Nyquist frequency are no peaks. Throws ModelError for
 /// count < 1 or min_separation_Hz < 0.
-std::vector<SpectrumPeak> spectrum_peaks(const Spectrum& spectrum, int count,
-                                         double min_separation_Hz = 0.0);
+std::vector<SpectrumPeak> spectrum_peaks(const Spectrum& spectrum, int count, double min_separation_Hz = 0.0);
 
 }  // namespace drev

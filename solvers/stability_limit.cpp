@@ -59,8 +59,8 @@ class Linearised {
 };
 
 /// Ritz values; residual: |A u - theta u| of the one of largest size.
-std::vector<Complex> arnoldi(const std::function<void(const Vector&, Vector&)>& apply,
-                             Eigen::Index size, double& residual) {
+std::vector<Complex> arnoldi(const std::function<void(const Vector&, Vector&)>& apply, Eigen::Index size,
+                             double& residual) {
   const Eigen::Index steps = std::min(size, kKrylov);
   Eigen::MatrixXd q(size, steps + 1), h = Eigen::MatrixXd::Zero(steps + 1, steps);
   for (Eigen::Index i = 0; i < size; ++i) q(i, 0) = 1.0 + std::sin(3.0 * static_cast<double>(i + 1));
@@ -100,8 +100,8 @@ std::vector<Complex> arnoldi(const std::function<void(const Vector&, Vector&)>& 
 /// Largest omega^2 of M^-1 K.
 double largest_stiffness(Linearised& motion, Eigen::Index n) {
   double residual = 0.0, largest = 0.0;
-  for (const Complex& value : arnoldi(
-           [&](const Vector& x, Vector& out) { motion.stiffness(x, out); }, n, residual))
+  for (const Complex& value :
+       arnoldi([&](const Vector&x, Vector&out) { motion.stiffness(x, out); }, n, residual))
     largest = std::max(largest, value.real());
   return largest + residual;
 }
@@ -120,9 +120,7 @@ Complex growth(const ButcherTableau& t, Complex x) {
 
 /// Largest r such that |R(rho e^(i phi))| <= 1 for all rho <= r.
 double stable_radius(const ButcherTableau& t, Complex direction) {
-  const auto stable = [&](double r) {
-    return std::abs(growth(t, r * direction)) <= 1.0 + kGrowth;
-  };
+  const auto stable = [&](double r) { return std::abs(growth(t, r * direction)) <= 1.0 + kGrowth; };
   double low = 0.0, high = 0.02;
   for (; stable(high) && high < kLargestAngle; high += 0.02) low = high;
   while (high - low > 1e-12 * high) (stable(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
@@ -170,8 +168,7 @@ double stability_limit(const System& system, const StepScheme& scheme) {
     return limit;
   }
   const double gap = 0.5 * scheme.gamma - scheme.beta;
-  if (scheme.tableau || scheme.alpha_f != 0.0 || scheme.alpha_m != 0.0 || !(gap > 1e-12))
-    return limit;
+  if (scheme.tableau || scheme.alpha_f != 0.0 || scheme.alpha_m != 0.0 || !(gap > 1e-12)) return limit;
   Linearised motion(system);
   const double omega = std::sqrt(largest_stiffness(motion, system.size()));
   if (!(omega > 0.0)) return limit;

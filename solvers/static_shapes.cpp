@@ -17,10 +17,10 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 constexpr int kSamples = 128;
-constexpr double kShift = 1e-3;       // of the first eigenvalue
-constexpr int kRefinements = 5;       // each takes the shift's error down by kShift at least
-constexpr double kSamePattern = 1e-6; // of the largest load pattern
-constexpr double kDependent = 1e-10;  // in energy, of shapes
+constexpr double kShift = 1e-3;        // of the first eigenvalue
+constexpr int kRefinements = 5;        // each takes the shift's error down by kShift at least
+constexpr double kSamePattern = 1e-6;  // of the largest load pattern
+constexpr double kDependent = 1e-10;   // in energy, of shapes
 
 /// K^+ of the modes left out, contacts closed.
 class Residual {
@@ -98,8 +98,7 @@ Matrix independent(const Matrix& energies, double least) {
   const Vector& e = eigen.values;
   const auto count = (e.array() > least * e[e.size() - 1]).count();
   if (!(e[e.size() - 1] > 0.0)) return Matrix(energies.rows(), 0);
-  return eigen.vectors.rightCols(count) *
-         e.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+  return eigen.vectors.rightCols(count) * e.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 Matrix beside(const Matrix& a, const Matrix& b) {
@@ -113,8 +112,8 @@ Matrix beside(const Matrix& a, const Matrix& b) {
 KeptModes kept_modes(const System& system, int count, double up_to_Hz) {
   const int all = system.elastic_mode_count();
   if (all < 1)
-    throw ModelError({{system.name() + "/reduction", "system", "no elastic mode", "",
-                       "there is nothing to leave out"}});
+    throw ModelError(
+        {{system.name() + "/reduction", "system", "no elastic mode", "", "there is nothing to leave out"}});
   // One more than is kept, where there is one: the first left out.
   int ask = std::min(all, count > 0 ? count + 1 : 10);
   ModeSet modes = solve_modes(system, {.count = ask});
@@ -180,8 +179,7 @@ StaticShapes static_shapes(const System& system, const KeptModes& modes, double 
     Matrix of_loads = residual.solve(loads);
     const double whole = kept_energies(loads).sum() + loads.cwiseProduct(of_loads).sum();
     if (taken.cols() > 0) of_loads -= taken * (taken.transpose() * residual.stiffness(of_loads));
-    const SymmetricEigen eigen =
-        symmetric_eigen(of_loads.transpose() * residual.stiffness(of_loads));
+    const SymmetricEigen eigen = symmetric_eigen(of_loads.transpose() * residual.stiffness(of_loads));
     const Vector energies = eigen.values.cwiseMax(0.0);
     const auto all = energies.size();
     double rest = energies.sum();

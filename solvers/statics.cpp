@@ -12,14 +12,12 @@ constexpr double kShift = 1e-10;
 
 }  // namespace
 
-StaticSolver::StaticSolver(const System& system)
-    : system_(system), assembler_(system), newton_(system) {
+StaticSolver::StaticSolver(const System& system) : system_(system), assembler_(system), newton_(system) {
   const std::vector<std::string> floating = system.floating_parts(Contact::closed);
   if (!floating.empty()) {
     std::string names;
     for (const std::string& name : floating) names += (names.empty() ? "" : ", ") + name;
-    throw SolverError(system.name() + ": no static equilibrium: " +
-                      std::to_string(floating.size()) +
+    throw SolverError(system.name() + ": no static equilibrium: " + std::to_string(floating.size()) +
                       " part(s) of the model float freely (with " + names +
                       "); hold a node of each or tie it to ground");
   }
@@ -67,8 +65,8 @@ StaticResult solve_static(const System& system, const StaticOptions& options) {
   return StaticSolver(system).solve(options);
 }
 
-std::vector<Peak> static_sweep(const System& system, const std::vector<Channel>& channels,
-                               double angle_0, double angle_1, int count) {
+std::vector<Peak> static_sweep(const System& system, const std::vector<Channel>& channels, double angle_0,
+                               double angle_1, int count) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/static sweep", findings);
   check.finite("angle_0", angle_0, "rad");

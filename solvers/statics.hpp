@@ -15,7 +15,7 @@ struct StaticOptions {
 };
 
 struct StaticResult {
-  State state;         ///< z of the equilibrium; rates zero
+  State state;  ///< z of the equilibrium; rates zero
   int iterations = 0;
 };
 
@@ -44,7 +44,7 @@ StaticResult solve_static(const System& system, const StaticOptions& options = {
 
 /// Largest and smallest static values of channels while the reference shaft turns from angle_0 to angle_1
 /// [rad] in `count` >= 1 equal parts; Peak::max_time and min_time are then the angles.
-std::vector<Peak> static_sweep(const System& system, const std::vector<Channel>& channels,
-                               double angle_0, double angle_1, int count);
+std::vector<Peak> static_sweep(const System& system, const std::vector<Channel>& channels, double angle_0,
+                               double angle_1, int count);
 
 }  // namespace drev

@@ -12,8 +12,8 @@ constexpr double kLeastFactor = 0.2, kLargestFactor = 4.0;
 constexpr double kFailureFactor = 0.25;
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // of v_1 - v_0
-constexpr double kTooShort = 0.05;  // E with which the step grows
-constexpr double kLeastError = 1e-6;  // as far as the controller looks
+constexpr double kTooShort = 0.05;                                        // E with which the step grows
+constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
 }  // namespace
 
 StepControl::StepControl(const System& system, const Options& options)
@@ -64,19 +64,16 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
     beyond_rounding = std::max(beyond_rounding, (e - rounding) / scale);
   };
   for (Eigen::Index i = 0; i < e_z.size(); ++i) {
-    if (!std::isfinite(e_z[i]) || !std::isfinite(e_v[i]))
-      return std::numeric_limits<double>::infinity();
+    if (!std::isfinite(e_z[i]) || !std::isfinite(e_v[i])) return std::numeric_limits<double>::infinity();
     double force = 0.0;  // of z, and of (z_1 - z_0)/h as a rate
     for (int k = outer[i]; k < outer[i + 1]; ++k)
-      force += (std::abs(system_.stiffness_values()[k]) +
-                2.0 / h * std::abs(system_.damping_values()[k])) *
+      force += (std::abs(system_.stiffness_values()[k]) + 2.0 / h * std::abs(system_.damping_values()[k])) *
                std::abs(end.z[inner[k]]);
     const auto unknown = static_cast<std::size_t>(i);
     const double inertia = system_.mass_values()[system_.diagonal_slots()[unknown]];
     const auto kind = static_cast<std::size_t>(kind_[unknown]);
     take(std::abs(e_z[i]), kRounding * std::abs(end.z[i]), s.z[kind]);
-    take(std::abs(e_v[i]), kRateRounding * std::abs(end.v[i]) + kRounding * h * force / inertia,
-         s.v[kind]);
+    take(std::abs(e_v[i]), kRateRounding * std::abs(end.v[i]) + kRounding * h * force / inertia, s.v[kind]);
   }
   return worst > share && beyond_rounding <= share ? kTooShort : worst / share;
 }

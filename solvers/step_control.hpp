@@ -15,10 +15,10 @@ namespace drev {
 class StepControl {
  public:
   struct Options {
-    double tolerance = 0.0;  ///< [-]
-    double duration = 0.0;   ///< s, T
+    double tolerance = 0.0;             ///< [-]
+    double duration = 0.0;              ///< s, T
     double first = 0.0, largest = 0.0;  ///< s
-    int order = 2;           ///< q
+    int order = 2;                      ///< q
     bool on_grid = false;
   };
   StepControl(const System& system, const Options& options);

@@ -6,15 +6,14 @@
 
 namespace drev {
 
-std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoint& from,
-                                           const StepPoint& to, double h) {
+std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoint& from, const StepPoint& to,
+                                           double h) {
   struct Node {
     double s, weight;
   };
   // Three points, exact to degree 5.
-  static const Node nodes[] = {{0.5 - std::sqrt(0.15), 5.0 / 18},
-                               {0.5, 8.0 / 18},
-                               {0.5 + std::sqrt(0.15), 5.0 / 18}};
+  static const Node nodes[] = {
+      {0.5 - std::sqrt(0.15), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + std::sqrt(0.15), 5.0 / 18}};
   Assembler& assembler = equation.assembler();
   const System& system = assembler.system();
   const StepPolynomial motion(from.state, to.state, h, equation.scheme().order());
@@ -43,8 +42,7 @@ std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoi
     dissipated += h * node.weight * loss;
   }
   for (std::size_t j = 0; j < system.scalars().size(); ++j)
-    if (system.scalars()[j].varies)
-      input += to.responses[j].stored_energy - from.responses[j].stored_energy;
+    if (system.scalars()[j].varies) input += to.responses[j].stored_energy - from.responses[j].stored_energy;
   return {input, dissipated};
 }
 

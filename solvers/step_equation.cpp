@@ -11,8 +11,8 @@ namespace drev {
 namespace {
 constexpr double kSameStep = 1e-10;  // relative: one factor serves steps that differ by rounding
 constexpr std::size_t kMaxFactors = 16;
-constexpr int kPhasePasses = 4;  // each brings the mesh phase two orders of h nearer
-constexpr int kUsedOften = 4;    // solves for each unknown: what the inverse costs is earned back
+constexpr int kPhasePasses = 4;       // each brings the mesh phase two orders of h nearer
+constexpr int kUsedOften = 4;         // solves for each unknown: what the inverse costs is earned back
 constexpr double kInvertible = 1e-8;  // reciprocal condition: what the inverse loses stays small
 }  // namespace
 
@@ -45,22 +45,20 @@ StepEquation::Factor& StepEquation::find_factor(double h) {
       return *factors_.back();
     }
   if (factors_.size() == kMaxFactors) factors_.erase(factors_.begin());
-  auto f = std::make_unique<Factor>(
-      Factor{h, SparseCholesky(), ContactNewton(), Eigen::MatrixXd(), 0, {}});
+  auto f = std::make_unique<Factor>(Factor{h, SparseCholesky(), ContactNewton(), Eigen::MatrixXd(), 0, {}});
   const Weights weights = scheme_.weights(h);
   assembler_.linear_values(weights, values_);
   ++factorizations_;
   if (f->cholesky.factorize(system_.pattern(), values_) != FactorStatus::success)
-    throw SolverError(system_.name() + ": the step matrix of " + scheme_.name + " at h = " +
-                      to_text(h) + " s is not positive definite; is a stiffness negative?");
+    throw SolverError(system_.name() + ": the step matrix of " + scheme_.name + " at h = " + to_text(h) +
+                      " s is not positive definite; is a stiffness negative?");
   const auto m = static_cast<Eigen::Index>(system_.scalars().size());
   f->w.resize(system_.size(), m);
   Eigen::MatrixXd compliance(m, m);
   Vector column(system_.size()), solved(system_.size());
   for (Eigen::Index j = 0; j < m; ++j) {
     column.setZero();
-    for (const Entry& e : system_.scalars()[at(static_cast<int>(j))].z)
-      column[e.index] += e.coeff;
+    for (const Entry& e : system_.scalars()[at(static_cast<int>(j))].z) column[e.index] += e.coeff;
     f->cholesky.solve(column, solved);
     f->w.col(j) = solved;
   }
@@ -175,8 +173,8 @@ double StepEquation::correct(const Problem& problem, StepPoint& to) const {
   if (to.state.z.size() != n) to.state.z.setZero(n);  // its change is taken
   to.state.v.resize(n);
   return correct_motion(n, scheme_.beta * problem.h * problem.h, scheme_.gamma * problem.h,
-                        problem.z_0.data(), problem.v_0.data(), to.state.a.data(),
-                        to.state.z.data(), to.state.v.data());
+                        problem.z_0.data(), problem.v_0.data(), to.state.a.data(), to.state.z.data(),
+                        to.state.v.data());
 }
 
 NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
@@ -254,9 +252,8 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     change = correct(problem, to);
     const bool phases_left = pass < phase_passes;
     // A motion that is not finite ends the passes too.
-    if (!phases_left &&
-        (!system_.loads_depend_on_motion() ||
-         !(assembler_.load_steepness() * change > options_.load_tolerance * scale)))
+    if (!phases_left && (!system_.loads_depend_on_motion() ||
+                         !(assembler_.load_steepness() * change > options_.load_tolerance * scale)))
       break;
     clock_.enter(Phase::loads);
     const bool known_steepness = std::isfinite(assembler_.load_steepness());
@@ -281,8 +278,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   if (m > 0) {
     f.contact.hand_over_laws(to.inputs, to.responses);
     if (problem.accept_jump)
-      for (std::size_t j = 0; j < m; ++j)
-        to.responses[j].y = lambda_[static_cast<Eigen::Index>(j)];
+      for (std::size_t j = 0; j < m; ++j) to.responses[j].y = lambda_[static_cast<Eigen::Index>(j)];
   }
   return result;
 }

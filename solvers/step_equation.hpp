@@ -43,11 +43,11 @@ class StepEquation {
   StepEquation(const System& system, StepScheme scheme, StepOptions options);
 
   struct Problem {
-    double h = 0.0;                      ///< s
-    Vector z_0, v_0;                     ///< motion with a = 0
-    const Vector* known = nullptr;       ///< right side; null: 0
-    const Vector* a_start = nullptr;     ///< where loads, phase and Newton start
-    const Vector* history = nullptr;     ///< of the general elements before the step
+    double h = 0.0;                   ///< s
+    Vector z_0, v_0;                  ///< motion with a = 0
+    const Vector* known = nullptr;    ///< right side; null: 0
+    const Vector* a_start = nullptr;  ///< where loads, phase and Newton start
+    const Vector* history = nullptr;  ///< of the general elements before the step
     /// A force that jumps and leaves no root: take the value inside the jump at which the law stands on
     /// its edge. Only with few laws.
     bool accept_jump = false;
@@ -92,7 +92,7 @@ class StepEquation {
     ContactNewton contact;
     Eigen::MatrixXd w;  // S^-1 B
     long used = 0;
-    Vector inverse;     // columns of S^-1, padded to whole lanes
+    Vector inverse;  // columns of S^-1, padded to whole lanes
   };
   void invert(Factor& f);
   /// x = S^-1 b; inverts S when this has been asked for often enough.
@@ -113,8 +113,8 @@ class StepEquation {
   StepScheme scheme_;
   StepOptions options_;
   bool dense_ = true;
-  bool phases_ = false;  // a law follows the angle of a node
-  bool moves_ = false;   // loads or phases look at the motion
+  bool phases_ = false;                           // a law follows the angle of a node
+  bool moves_ = false;                            // loads or phases look at the motion
   std::vector<std::unique_ptr<Factor>> factors_;  // used last, last
   SparseCholesky mass_;
   MatrixProduct mass_product_, damping_, stiffness_;

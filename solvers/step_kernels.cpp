@@ -35,11 +35,12 @@ struct Largest {
 template <class Value>
 [[gnu::always_inline]] inline double largest_of(int n, const Value& value) {
   Largest largest;
-  for_blocks(n, [&](int i) __attribute__((always_inline)) {
-    Lanes x;
-    value(i, x);
-    largest.note(x);
-  });
+  for_blocks(
+      n, [&](int i) __attribute__((always_inline)) {
+        Lanes x;
+        value(i, x);
+        largest.note(x);
+      });
   return largest.result();
 }
 
@@ -59,8 +60,8 @@ struct Difference {
 
 /// The sums of a product stay in registers.
 template <int kBlocks>
-[[gnu::always_inline]] inline void product_blocks(int n, int stride, const double* columns,
-                                                  const double* x, double* out) {
+[[gnu::always_inline]] inline void product_blocks(int n, int stride, const double* columns, const double* x,
+                                                  double* out) {
   Lanes sum[kBlocks] = {}, a;
   for (int j = 0; j < n; ++j, columns += stride)
     for (int b = 0; b < kBlocks; ++b) {
@@ -103,25 +104,26 @@ template <bool kAdds>
     for (int i = low; i < high; ++i) one(i, true, true);
     return;
   }
-  for_blocks(high - low, [&](int j) __attribute__((always_inline)) {
-    const int i = low + j;
-    Lanes sum, a, b;
-    load(d + i, a);
-    load(x + i, b);
-    sum = a * b;
-    load(e + i, a);
-    load(x + i + k, b);
-    sum += a * b;
-    load(e + i - k, a);
-    load(x + i - k, b);
-    sum += a * b;
-    sum *= factor;
-    if (kAdds) {
-      load(y + i, a);
-      sum += a;
-    }
-    store(sum, out + i);
-  });
+  for_blocks(
+      high - low, [&](int j) __attribute__((always_inline)) {
+        const int i = low + j;
+        Lanes sum, a, b;
+        load(d + i, a);
+        load(x + i, b);
+        sum = a * b;
+        load(e + i, a);
+        load(x + i + k, b);
+        sum += a * b;
+        load(e + i - k, a);
+        load(x + i - k, b);
+        sum += a * b;
+        sum *= factor;
+        if (kAdds) {
+          load(y + i, a);
+          sum += a;
+        }
+        store(sum, out + i);
+      });
 }
 
 [[gnu::always_inline]] inline void add_band(int first, int last, double factor, const double* __restrict d,
@@ -130,9 +132,9 @@ template <bool kAdds>
 }
 
 template <bool kDamped>
-[[gnu::always_inline]] inline StepWork work_of(int n, const double* z_0, const double* z_1,
-                                               const double* p_0, const double* p_1, const double* cv_0,
-                                               const double* cv_1, const double* kz_1) {
+[[gnu::always_inline]] inline StepWork work_of(int n, const double* z_0, const double* z_1, const double* p_0,
+                                               const double* p_1, const double* cv_0, const double* cv_1,
+                                               const double* kz_1) {
   Lanes input{}, dissipated{}, stored{}, a, b, dz;
   int i = 0;
   for (; i + kLanes <= n; i += kLanes) {
@@ -178,21 +180,22 @@ void predict_motion(int n, double h, double c_z, double c_v, const double* __res
 }
 
 DREV_WIDEST
-double correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0,
-                      const double* a, double* z, double* v) {
+double correct_motion(int n, double c_z, double c_v, const double* z_0, const double* v_0, const double* a,
+                      double* z, double* v) {
   Largest change;
-  for_blocks(n, [&](int i) __attribute__((always_inline)) {
-    Lanes rate, start, old;
-    load(a + i, rate);
-    load(z_0 + i, start);
-    start += c_z * rate;
-    load(z + i, old);
-    change.note(start - old);
-    store(start, z + i);
-    load(v_0 + i, start);
-    start += c_v * rate;
-    store(start, v + i);
-  });
+  for_blocks(
+      n, [&](int i) __attribute__((always_inline)) {
+        Lanes rate, start, old;
+        load(a + i, rate);
+        load(z_0 + i, start);
+        start += c_z * rate;
+        load(z + i, old);
+        change.note(start - old);
+        store(start, z + i);
+        load(v_0 + i, start);
+        start += c_v * rate;
+        store(start, v + i);
+      });
   return change.result();
 }
 
@@ -222,33 +225,41 @@ double largest_size(int n, const double* x) { return largest_of(n, Itself{x}); }
 DREV_WIDEST
 double largest_of_both(int n, const double* x, const double* y) {
   Largest largest;
-  for_blocks(n, [&](int i) __attribute__((always_inline)) {
-    Lanes a;
-    load(x + i, a);
-    largest.note(a);
-    load(y + i, a);
-    largest.note(a);
-  });
+  for_blocks(
+      n, [&](int i) __attribute__((always_inline)) {
+        Lanes a;
+        load(x + i, a);
+        largest.note(a);
+        load(y + i, a);
+        largest.note(a);
+      });
   return largest.result();
 }
 
 DREV_WIDEST
-double largest_difference(int n, const double* x, const double* y) {
-  return largest_of(n, Difference{x, y});
-}
+double largest_difference(int n, const double* x, const double* y) { return largest_of(n, Difference{x, y}); }
 
 DREV_WIDEST
 void dense_product(int n, int stride, const double* columns, const double* x, double* out) {
   switch (stride / kLanes) {
-    case 1: return product_blocks<1>(n, stride, columns, x, out);
-    case 2: return product_blocks<2>(n, stride, columns, x, out);
-    case 3: return product_blocks<3>(n, stride, columns, x, out);
-    case 4: return product_blocks<4>(n, stride, columns, x, out);
-    case 5: return product_blocks<5>(n, stride, columns, x, out);
-    case 6: return product_blocks<6>(n, stride, columns, x, out);
-    case 7: return product_blocks<7>(n, stride, columns, x, out);
-    case 8: return product_blocks<8>(n, stride, columns, x, out);
-    default: return;
+    case 1:
+      return product_blocks<1>(n, stride, columns, x, out);
+    case 2:
+      return product_blocks<2>(n, stride, columns, x, out);
+    case 3:
+      return product_blocks<3>(n, stride, columns, x, out);
+    case 4:
+      return product_blocks<4>(n, stride, columns, x, out);
+    case 5:
+      return product_blocks<5>(n, stride, columns, x, out);
+    case 6:
+      return product_blocks<6>(n, stride, columns, x, out);
+    case 7:
+      return product_blocks<7>(n, stride, columns, x, out);
+    case 8:
+      return product_blocks<8>(n, stride, columns, x, out);
+    default:
+      return;
   }
 }
 

@@ -163,8 +163,8 @@ inline double band_energy(int n, const std::vector<Band>& bands, const double* x
   return energy;
 }
 
-inline StepWork step_work(int n, const double* z_0, const double* z_1, const double* p_0,
-                          const double* p_1, const double* cv_0, const double* cv_1, const double* kz_1) {
+inline StepWork step_work(int n, const double* z_0, const double* z_1, const double* p_0, const double* p_1,
+                          const double* cv_0, const double* cv_1, const double* kz_1) {
   if (n >= kLanes) return wide::step_work(n, z_0, z_1, p_0, p_1, cv_0, cv_1, kz_1);
   StepWork work;
   for (int i = 0; i < n; ++i) {

@@ -11,13 +11,13 @@ struct StepPoint {
   State state;
   /// s; generalized-alpha's own a is of a time (alpha_m - alpha_f) times this later. 0: a is of state.t.
   double a_step = 0.0;
-  Vector p;            ///< loads and known motions, right side
-  Vector kz, cv;       ///< K z, C v
-  Vector total;        ///< C v + K z + B y + general - p
-  std::vector<ScalarInput> inputs;        ///< per scalar term
+  Vector p;                         ///< loads and known motions, right side
+  Vector kz, cv;                    ///< K z, C v
+  Vector total;                     ///< C v + K z + B y + general - p
+  std::vector<ScalarInput> inputs;  ///< per scalar term
   std::vector<ScalarResponse> responses;
-  double general_energy = 0.0;            ///< J, stored in general elements
-  double general_power = 0.0;             ///< W, dissipated there
+  double general_energy = 0.0;  ///< J, stored in general elements
+  double general_power = 0.0;   ///< W, dissipated there
 };
 
 /// Zeros for n unknowns where a vector has no entries yet.

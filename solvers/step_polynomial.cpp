@@ -5,8 +5,7 @@ namespace drev {
 void StepPolynomial::at(double s, State& inside) const {
   // Weights of z_0, v_0, a_0, z_1, v_1, a_1 from the unit polynomials.
   Coefficients unit[6];
-  for (int i = 0; i < 6; ++i)
-    unit[i] = through(i == 0, i == 1, i == 2, i == 3, i == 4, i == 5);
+  for (int i = 0; i < 6; ++i) unit[i] = through(i == 0, i == 1, i == 2, i == 3, i == 4, i == 5);
   std::array<double, kTerms> power{1.0};
   for (std::size_t k = 1; k < kTerms; ++k) power[k] = power[k - 1] * s;
   double w[3][6] = {};

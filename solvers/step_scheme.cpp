@@ -53,8 +53,7 @@ StepScheme generalized_alpha(double rho_inf) {
   throw_if_any(findings);
   const double alpha_m = (2 * rho_inf - 1) / (rho_inf + 1), alpha_f = rho_inf / (rho_inf + 1);
   const double g = 1 - alpha_m + alpha_f;
-  return {"generalized_alpha:" + to_text(rho_inf), alpha_m, alpha_f, 0.25 * g * g,
-          0.5 - alpha_m + alpha_f};
+  return {"generalized_alpha:" + to_text(rho_inf), alpha_m, alpha_f, 0.25 * g * g, 0.5 - alpha_m + alpha_f};
 }
 
 StepScheme runge_kutta(ButcherTableau tableau) {
@@ -76,9 +75,17 @@ int StepScheme::order() const {
 }
 
 const std::vector<std::string>& step_scheme_names() {
-  static const std::vector<std::string> names{
-      "average_acceleration", "linear_acceleration", "central_difference", "newmark",
-      "hht",  "generalized_alpha", "bathe", "tr_bdf2", "sdirk4", "rk4", "dormand_prince"};
+  static const std::vector<std::string> names{"average_acceleration",
+                                              "linear_acceleration",
+                                              "central_difference",
+                                              "newmark",
+                                              "hht",
+                                              "generalized_alpha",
+                                              "bathe",
+                                              "tr_bdf2",
+                                              "sdirk4",
+                                              "rk4",
+                                              "dormand_prince"};
   return names;
 }
 
@@ -91,7 +98,7 @@ StepScheme step_scheme(const std::string& text) {
     if (p.size() < low || p.size() > high)
       throw ModelError({{"method", "parameters", text, "",
                          name + " takes " +
-                             (high == 0  ? std::string("no numbers")
+                             (high == 0     ? std::string("no numbers")
                               : low == high ? std::to_string(low) + " numbers"
                                             : "one number or none")}});
   };

@@ -4,14 +4,13 @@
 
 namespace drev {
 
-NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, double t_evaluate,
-                              StepPoint& to, bool accept_jump) {
+NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
+                              bool accept_jump) {
   const StepScheme& c = equation_.scheme();
   equation_.clock().enter(Phase::linear);
   equation_.assembler().set_time(t_evaluate);
   const double shift = c.alpha_m - c.alpha_f;
-  const bool carries_over =
-      shift != 0.0 && equation_.options().varying_steps && from.a_step != h;
+  const bool carries_over = shift != 0.0 && equation_.options().varying_steps && from.a_step != h;
   NewtonResult result;
   if (carries_over) {
     equation_.acceleration(from.total, a_0_);
@@ -64,8 +63,7 @@ NewtonResult StepSolver::step_from(const Vector& a, const StepPoint& from, doubl
   return result;
 }
 
-void StepSolver::estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
-                          Vector& e_v) {
+void StepSolver::estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) {
   estimate_by_quadrature(from, to, h, e_z, e_v);
   equation_.filter(h, e_z, e_v);
 }

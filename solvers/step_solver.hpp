@@ -16,12 +16,10 @@ class StepSolver final : public Stepper {
   using Stepper::Stepper;
   NewtonResult step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
                     bool accept_jump = false) override;
-  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
-                Vector& e_v) override;
+  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) override;
 
  private:
-  NewtonResult step_from(const Vector& a, const StepPoint& from, double h, StepPoint& to,
-                         bool accept_jump);
+  NewtonResult step_from(const Vector& a, const StepPoint& from, double h, StepPoint& to, bool accept_jump);
 
   StepEquation::Problem problem_;
   Vector known_, scratch_, a_0_, a_1_, a_shifted_;

@@ -18,14 +18,14 @@ void Stepper::start(StepPoint& point) {
   equation_.update_scale(point);
 }
 
-void Stepper::estimate_by_quadrature(const StepPoint& from, const StepPoint& to, double h,
-                                     Vector& e_z, Vector& e_v) {
+void Stepper::estimate_by_quadrature(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
+                                     Vector& e_v) {
   struct Node {
     double s, weight;
   };
   static const std::array<Node, 1> simpson{{{0.5, 4.0 / 6}}};
-  static const std::array<Node, 2> lobatto{{{0.5 - 0.5 / std::sqrt(5.0), 5.0 / 12},
-                                            {0.5 + 0.5 / std::sqrt(5.0), 5.0 / 12}}};
+  static const std::array<Node, 2> lobatto{
+      {{0.5 - 0.5 / std::sqrt(5.0), 5.0 / 12}, {0.5 + 0.5 / std::sqrt(5.0), 5.0 / 12}}};
   const bool high = equation_.scheme().order() > 2;
   const double end_weight = high ? 1.0 / 12 : 1.0 / 6;
   // Accelerations that satisfy the equation of motion; those of generalized-alpha are of another time.

@@ -14,15 +14,14 @@ constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values a
 constexpr int kPowerIterations = 60;
 constexpr double kEigenvalueMargin = 1.1;
 constexpr double kEnergyPart = 0.01;  // of the tolerance: terms that energies do without, 1e-13 to 1e-9
-constexpr double kShorten = 0.9;       // of the step at which the last terms are just small enough
+constexpr double kShorten = 0.9;      // of the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
     : system_(system), n_(system.size()), solve_in_(n_), solve_out_(n_) {
   find_storage();
   const auto fill = [&](const Vector& values, std::vector<double>& out) {
-    for (Eigen::Index s = 0; s < values.size(); ++s)
-      out[position_[static_cast<std::size_t>(s)]] = values[s];
+    for (Eigen::Index s = 0; s < values.size(); ++s) out[position_[static_cast<std::size_t>(s)]] = values[s];
   };
   fill(system.stiffness_values(), k_base_);
   fill(system.damping_values(), c_base_);
@@ -86,9 +85,8 @@ void TaylorSeries::find_storage() {
   position_.resize(entries);
   for (int row = 0; row < n_; ++row)
     for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
-      position_[at(s)] = diagonals_.empty()
-                             ? at(s)
-                             : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + at(row);
+      position_[at(s)] =
+          diagonals_.empty() ? at(s) : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + at(row);
   const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * at(stride_);
   k_base_.assign(length, 0.0);
   c_base_.assign(length, 0.0);
@@ -218,8 +216,7 @@ void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
   const auto tail = [&](const double* x) { return Eigen::Map<const Vector>(x + n_, m); };
   row_forces_ = tail(p) - row_slopes_.cwiseProduct(tail(x_0));
   std::copy_n(p, n_, with_rows_.data());
-  Eigen::Map<Vector>(with_rows_.data(), n_).noalias() +=
-      system_.rows().topRows(m).transpose() * row_forces_;
+  Eigen::Map<Vector>(with_rows_.data(), n_).noalias() += system_.rows().topRows(m).transpose() * row_forces_;
 }
 
 TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
@@ -234,10 +231,12 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
   if (!diagonals_.empty() && diagonal_mass_) {
     std::span<const DiagonalView> c(c_views_);
-    if (!damped_) c = {};
-    else if (main_damping_) c = c.subspan(at(main_), 1);
-    const double largest = series_term(stride_, k_views_, c, c_factor, p, x_0, x_1,
-                                       inverse_mass_.data(), factor, next);
+    if (!damped_)
+      c = {};
+    else if (main_damping_)
+      c = c.subspan(at(main_), 1);
+    const double largest =
+        series_term(stride_, k_views_, c, c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
     rows_of(next);
     return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
   }
@@ -283,10 +282,8 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
     if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
     const double last = excess(k);
-    const double first =
-        k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
-    const double second =
-        k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
+    const double first = k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
+    const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     if (first <= 1.0 && second <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.

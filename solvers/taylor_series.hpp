@@ -65,9 +65,7 @@ class TaylorSeries {
   int size() const { return n_; }
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
   int stride() const { return stride_; }
-  static int stride(const System& system) {
-    return whole_lanes(system.size() + system.loaded_rows());
-  }
+  static int stride(const System& system) { return whole_lanes(system.size() + system.loaded_rows()); }
   const double* coefficients(int k) const { return z_.data() + at(pad_ + k * stride_); }
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
@@ -100,8 +98,8 @@ class TaylorSeries {
     std::size_t values;
   };
   void find_storage();
-  void subtract_product(const std::vector<double>& values, bool main_only, const double* x,
-                        double factor, double* out) const;
+  void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
+                        double* out) const;
   double largest_eigenvalue(const std::vector<double>& values);
   Norm next_term(int k, double h);
   void find_rows();
@@ -135,7 +133,7 @@ class TaylorSeries {
   mutable std::vector<double> sums_;
   Vector solve_in_, solve_out_;
   std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
-  std::vector<int> kinds_;  // of the unknowns, if the system has both
+  std::vector<int> kinds_;                    // of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
   double h_ = 0.0, energy_part_ = 0.0;

@@ -16,13 +16,13 @@ namespace drev {
 namespace {
 
 constexpr long kProgressSteps = 100;
-constexpr double kSameTime = 1e-9;  // relative to the step
-constexpr double kChosenStep = 0.1;      // first step times the fastest eigenvalue
-constexpr double kLargestStep = 0.05;    // of the run
-constexpr double kLeastStep = 1e-9;      // of the run: not rejected for its error
-constexpr double kStanding = 1e-3;       // of a step: changes within it are counted together
-constexpr double kCoarseSteps = 200;    // of the run that finds the scales
-constexpr double kLeastShare = 1e-3;     // of the energy error for one step
+constexpr double kSameTime = 1e-9;     // relative to the step
+constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
+constexpr double kLargestStep = 0.05;  // of the run
+constexpr double kLeastStep = 1e-9;    // of the run: not rejected for its error
+constexpr double kStanding = 1e-3;     // of a step: changes within it are counted together
+constexpr double kCoarseSteps = 200;   // of the run that finds the scales
+constexpr double kLeastShare = 1e-3;   // of the energy error for one step
 constexpr int kEnergyTries = 3;
 
 /// One run: the loop over stops, the steps between them, and what is kept about it.
@@ -193,8 +193,7 @@ class Run {
       status = result.status;
     }
     if (status == NewtonStatus::not_finite) return fail(RunStatus::not_finite, to_text(status));
-    fail(RunStatus::no_convergence,
-         std::string(to_text(status)) + " even with h = " + to_text(h) + " s");
+    fail(RunStatus::no_convergence, std::string(to_text(status)) + " even with h = " + to_text(h) + " s");
   }
 
   /// A controlled step, or one that ends at a contact change, or both.
@@ -379,9 +378,9 @@ void check_options(const System& system, const TransientOptions& o, const State&
   if (findings.empty() && !controlled) {
     const double limit = stability_limit(system, o.scheme);
     if (o.step > limit * (1.0 + 1e-9))
-      check.fail("step", to_text(o.step), "s",
-                 "is above the stability limit of " + o.scheme.name + " for this system, " +
-                     to_text(limit) + " s");
+      check.fail(
+          "step", to_text(o.step), "s",
+          "is above the stability limit of " + o.scheme.name + " for this system, " + to_text(limit) + " s");
   }
   if (!findings.empty()) throw ModelError(findings);
 }
@@ -405,12 +404,18 @@ void check_state(const System& system, const State& state, ParameterCheck& check
 
 const char* to_text(RunStatus status) {
   switch (status) {
-    case RunStatus::success: return "success";
-    case RunStatus::energy_error: return "energy_error";
-    case RunStatus::unstable: return "unstable";
-    case RunStatus::no_convergence: return "no_convergence";
-    case RunStatus::not_finite: return "not_finite";
-    case RunStatus::interrupted: return "interrupted";
+    case RunStatus::success:
+      return "success";
+    case RunStatus::energy_error:
+      return "energy_error";
+    case RunStatus::unstable:
+      return "unstable";
+    case RunStatus::no_convergence:
+      return "no_convergence";
+    case RunStatus::not_finite:
+      return "not_finite";
+    case RunStatus::interrupted:
+      return "interrupted";
   }
   return "unknown";
 }

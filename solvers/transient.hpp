@@ -25,8 +25,8 @@ struct TransientOptions {
   /// method of higher order than 2 loses that order at every contact change, and a force that jumps
   /// (MeshDamping::contact_only) reduces every method to order 1.
   std::optional<bool> locate_contacts = {};
-  double t_start = 0.0;    ///< s
-  double t_end = 0.0;      ///< s, > t_start
+  double t_start = 0.0;  ///< s
+  double t_end = 0.0;    ///< s, > t_start
   StepOptions newton = {};
   /// A step that does not converge is shortened up to this many times; then the run ends with an error. A
   /// force that jumps and still leaves no solution is taken inside its jump, and counted (fallbacks).
@@ -42,31 +42,31 @@ struct TransientOptions {
 
 enum class RunStatus {
   success,
-  energy_error,  ///< it ran, but the balance is off by more than the tolerance: do not trust it
-  unstable,      ///< stopped: energy grew from nothing
-  no_convergence,///< stopped: a step could not be solved however small
-  not_finite,    ///< stopped: a state or force is NaN or infinite
-  interrupted    ///< stopped by the caller
+  energy_error,    ///< it ran, but the balance is off by more than the tolerance: do not trust it
+  unstable,        ///< stopped: energy grew from nothing
+  no_convergence,  ///< stopped: a step could not be solved however small
+  not_finite,      ///< stopped: a state or force is NaN or infinite
+  interrupted      ///< stopped by the caller
 };
 const char* to_text(RunStatus status);
 
 struct RunSummary {
   RunStatus status = RunStatus::success;
-  std::string reason;        ///< a sentence: what went wrong, when and where; empty on success
+  std::string reason;  ///< a sentence: what went wrong, when and where; empty on success
   std::string scheme;
-  double step = 0.0;         ///< s, as asked for; 0: the method's own
-  double tolerance = 0.0;    ///< as asked for; 0: constant steps
-  double t_end = 0.0;        ///< s, reached
-  long steps = 0;            ///< accepted
-  long halved = 0;           ///< steps that did not converge and were shortened
-  long rejected = 0;         ///< controlled steps whose error or energy was too large
-  long solves = 0;           ///< linear solves with a step or mass matrix: the work
-  long located = 0;          ///< passed kinks of laws that a step ended at
-  long fallbacks = 0;        ///< steps with a force inside its jump
+  double step = 0.0;       ///< s, as asked for; 0: the method's own
+  double tolerance = 0.0;  ///< as asked for; 0: constant steps
+  double t_end = 0.0;      ///< s, reached
+  long steps = 0;          ///< accepted
+  long halved = 0;         ///< steps that did not converge and were shortened
+  long rejected = 0;       ///< controlled steps whose error or energy was too large
+  long solves = 0;         ///< linear solves with a step or mass matrix: the work
+  long located = 0;        ///< passed kinks of laws that a step ended at
+  long fallbacks = 0;      ///< steps with a force inside its jump
   /// Controlled steps of 1e-9 of the run, accepted although their error is above its share: a jump inside
   /// that is no contact change nor breakpoint (a stepped mesh stiffness).
   long forced = 0;
-  long iterations = 0;       ///< Newton
+  long iterations = 0;  ///< Newton
   long load_passes = 0;
   long factorizations = 0;
   long contact_changes = 0;  ///< located changes of a law's piece (exact propagation)

@@ -6,7 +6,8 @@ namespace drev {
 std::optional<std::string> why_not_exact(const System& system) {
   const auto name = [&](ElementId e) { return system.placements()[at(index(e))].name; };
   for (const GeneralTerm& g : system.generals())
-    return name(g.element) + " is a general element, whose force and history the series does not know; take an implicit method";
+    return name(g.element) +
+           " is a general element, whose force and history the series does not know; take an implicit method";
   if (system.reference() && !system.reference()->piecewise_quadratic)
     return "the reference motion is an unknown function; constant_speed and run_up are known";
   for (int k = 0; k < system.prescribed_count(); ++k)

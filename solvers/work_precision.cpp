@@ -45,8 +45,7 @@ double difference(const Samples& a, const Samples& b) {
 
 /// NAME of NAME@tolerance; empty: not that.
 std::string controlled(const std::string& name) {
-  return name.ends_with(kControlled) ? name.substr(0, name.size() - kControlled.size())
-                                     : std::string();
+  return name.ends_with(kControlled) ? name.substr(0, name.size() - kControlled.size()) : std::string();
 }
 
 class Measurement {
@@ -55,9 +54,8 @@ class Measurement {
       : system_(system), options_(options), channels_(options.channels) {
     if (channels_.empty())
       for (int i = 0; i < system.node_count(); ++i)
-        channels_.push_back(
-            system.node_names()[at(i)] +
-            (system.node_kind(i) == NodeKind::rotational ? ".angle_rad" : ".position_m"));
+        channels_.push_back(system.node_names()[at(i)] +
+                            (system.node_kind(i) == NodeKind::rotational ? ".angle_rad" : ".position_m"));
     result_.t_end = options.samples * options.sample_interval;
     result_.unit = find_channels(system, channels_).front().unit();
   }

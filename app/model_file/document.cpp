@@ -128,7 +128,8 @@ class DocumentReader {
 
   void read_parameters(const Value& table) {
     if (table.entries.size() > kMostParameters)
-      return refuse(table.at, "parameters", "a file may have " + std::to_string(kMostParameters) + " at most");
+      return refuse(table.at, "parameters",
+                    "a file may have " + std::to_string(kMostParameters) + " at most");
     for (const Entry& entry : table.entries) {
       const std::string where = "parameters." + entry.key;
       if (!is_identifier(entry.key) || entry.key == "pi" || entry.key == "position") {

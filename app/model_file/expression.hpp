@@ -8,9 +8,9 @@
 ///
 /// NAME is a parameter or a counter of a repeat; LIST one of [lists], counted from 1; position() is the place
 /// of a number in a list; {sum} in a name is replaced by its value first. Numbers are as written, in the unit
-/// that a parameter's name ends in; that unit goes with the value as far as it can be followed: sums need like
-/// units, a plain number takes any, the quotient of like units has none, and a product of two units is not
-/// followed further.
+/// that a parameter's name ends in; that unit goes with the value as far as it can be followed: sums need
+/// like units, a plain number takes any, the quotient of like units has none, and a product of two units is
+/// not followed further.
 #include <map>
 #include <string>
 #include <vector>

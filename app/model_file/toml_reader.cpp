@@ -1,7 +1,7 @@
 // The only source that knows toml++.
 //
-// toml++ 3.3 asserts, and where NDEBUG is defined lets the compiler assume, that a key of an inline table begins
-// as keys do; a file need not do so. Without the assumption the parser finds the error that it is.
+// toml++ 3.3 asserts, and where NDEBUG is defined lets the compiler assume, that a key of an inline table
+// begins as keys do; a file need not do so. Without the assumption the parser finds the error that it is.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
 

@@ -13,8 +13,7 @@ namespace drev {
 void add_camshaft(Model& m, const CamshaftParams& p) {
   const CamshaftData& data = camshaft_data();
   const CamTorques& torques = cam_torques();
-  const std::vector<int> order =
-      p.firing_order.empty() ? default_firing_order(p.cylinders) : p.firing_order;
+  const std::vector<int> order = p.firing_order.empty() ? default_firing_order(p.cylinders) : p.firing_order;
   std::string last;
   const auto station = [&](const std::string& name, double inertia) {
     m.add_node(name);
@@ -52,8 +51,7 @@ void add_camshaft(Model& m, const CamshaftParams& p) {
   station("end", camshaft_end_inertia(p.cylinders));
   section(last, "end", last_stiffness);
   if (p.rayleigh_a > 0.0 || p.rayleigh_b > 0.0)
-    m.add<RayleighDamping>("rayleigh", {},
-                           {.alpha_mass = p.rayleigh_a, .beta_stiffness = p.rayleigh_b});
+    m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = p.rayleigh_a, .beta_stiffness = p.rayleigh_b});
 }
 
 Scene build_camshaft(Settings s) {
@@ -62,8 +60,8 @@ Scene build_camshaft(Settings s) {
   if (s.text("firing_order") != "default") {
     p.firing_order = s.order("firing_order");
     if (static_cast<int>(p.firing_order.size()) != cylinders)
-      s.refuse("firing_order", "must name each of the " + std::to_string(cylinders) +
-                                   " cylinders once; set cylinders too");
+      s.refuse("firing_order",
+               "must name each of the " + std::to_string(cylinders) + " cylinders once; set cylinders too");
   }
   s.check();
   const RayleighCase rayleigh = rayleigh_case(s.text("damping"), cylinders);
@@ -91,8 +89,7 @@ Scene build_camshaft(Settings s) {
   // held (docs/validation.md).
   // Stiffer meshes make faster modes.
   scene.default_step = 1e-5;
-  if (drive == "gears")
-    scene.default_step /= std::sqrt(std::max(1.0, s.number("mesh_stiffness_factor")));
+  if (drive == "gears") scene.default_step /= std::sqrt(std::max(1.0, s.number("mesh_stiffness_factor")));
   scene.note =
       "The camshaft's inertias, stiffnesses and cam torques are a reconstruction from published results, "
       "not the builder's data.";
@@ -100,8 +97,8 @@ Scene build_camshaft(Settings s) {
   for (const Placement& placement : scene.model.placements())
     if (placement.name.starts_with("shaft_")) scene.torques.push_back(placement.name + ".torque_Nm");
   scene.static_turn = (drive == "gears" ? 2.0 : 1.0) * kTwoPi;
-  scene.channels = {scene.deflection, "fuel_1.angle_rad", "inlet_" + n + ".angle_rad",
-                    "end.angle_rad", "shaft_gear.torque_Nm"};
+  scene.channels = {scene.deflection, "fuel_1.angle_rad", "inlet_" + n + ".angle_rad", "end.angle_rad",
+                    "shaft_gear.torque_Nm"};
   if (drive == "gears") {
     scene.channels.push_back("mesh_1.force_N");
     scene.channels.push_back("mesh_2.force_N");
@@ -112,24 +109,52 @@ Scene build_camshaft(Settings s) {
 const SceneEntry& camshaft_entry() {
   using Kind = Setting::Kind;
   static const SceneEntry entry = [] {
-    std::vector<Setting> settings{
-        {"cylinders", Kind::integer, "9", "", 6, 10, {}, "number of cylinders"},
-        {"drive", Kind::choice, "gears", "", 0, 0, {"gears", "held", "free"},
-         "gear drive with backlash, gear at constant speed, or nothing held"}};
+    std::vector<Setting> settings{{"cylinders", Kind::integer, "9", "", 6, 10, {}, "number of cylinders"},
+                                  {"drive",
+                                   Kind::choice,
+                                   "gears",
+                                   "",
+                                   0,
+                                   0,
+                                   {"gears", "held", "free"},
+                                   "gear drive with backlash, gear at constant speed, or nothing held"}};
     for (Setting& setting : gear_drive_settings()) settings.push_back(std::move(setting));
-    settings.push_back({"damping", Kind::choice, "case_1", "", 0, 0,
+    settings.push_back({"damping",
+                        Kind::choice,
+                        "case_1",
+                        "",
+                        0,
+                        0,
                         {"undamped", "case_1", "case_2", "case_3", "case_3_corrected"},
                         "Rayleigh damping of the source, as printed or corrected"});
-    settings.push_back({"loads", Kind::choice, "actual", "", 0, 0, {"actual", "source"},
+    settings.push_back({"loads",
+                        Kind::choice,
+                        "actual",
+                        "",
+                        0,
+                        0,
+                        {"actual", "source"},
                         "cam torques at the actual angle, or at the nominal one as in the source"});
-    settings.push_back({"firing_order", Kind::order, "default", "", 0, 0, {},
+    settings.push_back({"firing_order",
+                        Kind::order,
+                        "default",
+                        "",
+                        0,
+                        0,
+                        {},
                         "cylinders in firing order; default: the source's"});
-    settings.push_back({"engine_rpm", Kind::number, "750", "rpm", 1, 5000, {},
+    settings.push_back({"engine_rpm",
+                        Kind::number,
+                        "750",
+                        "rpm",
+                        1,
+                        5000,
+                        {},
                         "crankshaft speed; the camshaft turns at half of it"});
     settings.push_back({"duration_s", Kind::number, "5", "s", 1e-9, 1e4, {}, "simulated time"});
-    return SceneEntry{"camshaft",
-                      "marine diesel camshaft with its two-stage gear drive (reconstructed data): the main job",
-                      settings, build_camshaft};
+    return SceneEntry{
+        "camshaft", "marine diesel camshaft with its two-stage gear drive (reconstructed data): the main job",
+        settings, build_camshaft};
   }();
   return entry;
 }

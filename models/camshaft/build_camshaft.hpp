@@ -12,11 +12,11 @@
 namespace drev {
 
 struct CamshaftParams {
-  int cylinders = 9;                ///< 6 to 10
+  int cylinders = 9;                   ///< 6 to 10
   std::vector<int> firing_order = {};  ///< empty: the default one
-  bool twist_feedback = true;       ///< false: the source's loads, at the nominal angle
-  double rayleigh_a = 0.0;          ///< 1/s
-  double rayleigh_b = 0.0;          ///< s
+  bool twist_feedback = true;          ///< false: the source's loads, at the nominal angle
+  double rayleigh_a = 0.0;             ///< 1/s
+  double rayleigh_b = 0.0;             ///< s
 };
 
 /// Adds the shaft from node "gear" to node "end" with its loads; nothing is prescribed.

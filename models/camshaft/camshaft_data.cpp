@@ -1,3 +1,5 @@
+#include "models/camshaft/camshaft_data.hpp"
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -6,13 +8,12 @@
 
 #include "core/units.hpp"
 #include "elements/rayleigh_damping.hpp"
-#include "models/camshaft/camshaft_data.hpp"
 #include "models/settings.hpp"
 
 namespace drev::data {
 extern const std::string_view camshaft_cam_torque;  // models/camshaft/data/cam_torque.csv
 extern const std::string_view camshaft_camshaft;    // models/camshaft/data/camshaft.toml
-}
+}  // namespace drev::data
 
 namespace drev {
 
@@ -52,8 +53,7 @@ const std::vector<double>& numbers(const std::string& name) {
 
 std::size_t row(int cylinders) {
   if (cylinders < kFewest || cylinders > kFewest + 4)
-    throw ModelError({{"camshaft", "cylinders", std::to_string(cylinders), "",
-                       "must be between 6 and 10"}});
+    throw ModelError({{"camshaft", "cylinders", std::to_string(cylinders), "", "must be between 6 and 10"}});
   return static_cast<std::size_t>(cylinders - kFewest);
 }
 
@@ -75,8 +75,8 @@ CamTorques read_cam_torques() {
       const std::size_t comma = std::min(line.find(','), line.size());
       double value = 0.0;
       if (!read_number(std::string(line.substr(0, comma)), value))
-        throw ModelError({{"cam_torque.csv", "row", std::to_string(columns[0].size() + 2), "",
-                           "must hold four numbers"}});
+        throw ModelError(
+            {{"cam_torque.csv", "row", std::to_string(columns[0].size() + 2), "", "must hold four numbers"}});
       columns[c].push_back(value);
       line.remove_prefix(std::min(comma + 1, line.size()));
     }
@@ -93,17 +93,16 @@ CamTorques read_cam_torques() {
 const CamshaftData& camshaft_data() {
   const auto inertia = [](const std::string& of) { return numbers(of + "_inertia_kg_m2").front(); };
   const auto stiffness = [](const std::string& of) { return numbers(of + "_stiffness_Nm_per_rad").front(); };
-  static const CamshaftData data{
-      .gear_inertia = inertia("gear"),
-      .journal_inertia = inertia("journal"),
-      .fuel_inertia = inertia("fuel"),
-      .exhaust_inertia = inertia("exhaust"),
-      .inlet_inertia = inertia("inlet"),
-      .gear_stiffness = stiffness("gear"),
-      .journal_stiffness = stiffness("journal"),
-      .fuel_stiffness = stiffness("fuel"),
-      .exhaust_stiffness = stiffness("exhaust"),
-      .inlet_stiffness = stiffness("inlet")};
+  static const CamshaftData data{.gear_inertia = inertia("gear"),
+                                 .journal_inertia = inertia("journal"),
+                                 .fuel_inertia = inertia("fuel"),
+                                 .exhaust_inertia = inertia("exhaust"),
+                                 .inlet_inertia = inertia("inlet"),
+                                 .gear_stiffness = stiffness("gear"),
+                                 .journal_stiffness = stiffness("journal"),
+                                 .fuel_stiffness = stiffness("fuel"),
+                                 .exhaust_stiffness = stiffness("exhaust"),
+                                 .inlet_stiffness = stiffness("inlet")};
   return data;
 }
 

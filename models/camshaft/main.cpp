@@ -31,10 +31,11 @@ int main() {
     Peaks peaks(sections);
     const RunSummary run = simulate(system, {.step = 5e-5, .t_end = 5.0}, {&peaks});
     const double torque = peaks.peaks()[peaks.largest()].amplitude();
-    std::printf("%d cylinders: first mode %.2f Hz, largest torque %.0f N m in %s, static %.0f N m, "
-                "amplification %.2f\n",
-                cylinders, solve_modes(system, {.count = 1}).frequency_Hz[0], torque,
-                sections[peaks.largest()].name().c_str(), static_torque, torque / static_torque);
+    std::printf(
+        "%d cylinders: first mode %.2f Hz, largest torque %.0f N m in %s, static %.0f N m, "
+        "amplification %.2f\n",
+        cylinders, solve_modes(system, {.count = 1}).frequency_Hz[0], torque,
+        sections[peaks.largest()].name().c_str(), static_torque, torque / static_torque);
     if (!run.ok()) std::printf("  %s\n", run.brief_report().c_str());
   }
 }

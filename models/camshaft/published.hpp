@@ -5,8 +5,8 @@
 
 namespace drev::published {
 
-inline constexpr double kStep = 1e-3;      ///< s, of every run in time
-inline constexpr double kDuration = 5.0;   ///< s
+inline constexpr double kStep = 1e-3;     ///< s, of every run in time
+inline constexpr double kDuration = 5.0;  ///< s
 inline constexpr double kEngineRpm = 750;
 
 /// Tables 5.1 to 5.4: torsional frequencies [Hz] of the free camshaft, multibody and finite elements.
@@ -94,8 +94,7 @@ struct GearDrive {
   double deflection, torque;
 };
 inline constexpr std::array<GearDrive, 2> kGearDrive{
-    {{"5.11", 2327, 2284, 20977, 2.602, 1.847e5},
-     {"5.12", 2139, 2049, 21141, 1.186, 5.620e4}}};
+    {{"5.11", 2327, 2284, 20977, 2.602, 1.847e5}, {"5.12", 2139, 2049, 21141, 1.186, 5.620e4}}};
 
 /// Table 5.13: backlash [mm], deflection [deg].
 struct Backlash {
@@ -114,7 +113,6 @@ struct Stiffness {
   int iterations;
   double deflection, torque;
 };
-inline constexpr std::array<Stiffness, 2> kStiffness{
-    {{14596, 1.0433, 1.585e4}, {14594, 1.0494, 1.615e4}}};
+inline constexpr std::array<Stiffness, 2> kStiffness{{{14596, 1.0433, 1.585e4}, {14594, 1.0494, 1.615e4}}};
 
 }  // namespace drev::published

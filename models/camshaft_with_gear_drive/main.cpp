@@ -24,11 +24,10 @@ int main() {
   ContactStatistics contacts(system);
   Peaks peaks({find_channel(system, "inlet_9-fuel_1.twist_rad")});
   const RunSummary run = simulate(system, {.step = 1e-5, .t_end = 1.0}, {&contacts, &peaks});
-  std::printf("largest deflection from first to last cam: %.3f deg\n",
-              to_deg(peaks.peaks()[0].amplitude()));
+  std::printf("largest deflection from first to last cam: %.3f deg\n", to_deg(peaks.peaks()[0].amplitude()));
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart);
+    std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time\n", c.element.c_str(),
+                c.front_impacts, c.back_impacts, 100 * c.time_apart);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

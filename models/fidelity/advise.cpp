@@ -16,8 +16,8 @@ namespace {
 constexpr double kAccuracy = 0.05;       // of a figure's own error, over what is allowed
 constexpr double kEnoughSeconds = 0.01;  // of processor time measured
 constexpr int kRepeats = 3;
-constexpr double kMostCost = 3.0;  // of a rung over the full model; dearer ones are given up
-constexpr double kDear = 0.5;      // cost of few modes over that of all, with their static shapes
+constexpr double kMostCost = 3.0;     // of a rung over the full model; dearer ones are given up
+constexpr double kDear = 0.5;         // cost of few modes over that of all, with their static shapes
 constexpr double kStaticPart = 0.25;  // of the static shapes of loads, over what is allowed
 constexpr int kSteadyTurns = 2;
 constexpr double kSteadyPart = 0.2;
@@ -52,9 +52,8 @@ class Ladder {
     std::vector<std::vector<Rung>> tried;
     std::vector<bool> stands;  // by level: it can be left out of
     for (const Level& level : levels) {
-      const bool supported =
-          level.from.empty() || std::any_of(level.from.begin(), level.from.end(),
-                                            [&](std::size_t i) { return stands[i]; });
+      const bool supported = level.from.empty() || std::any_of(level.from.begin(), level.from.end(),
+                                                               [&](std::size_t i) { return stands[i]; });
       tried.push_back(climb(level, supported));
       const Rung& whole = tried.back().back();
       stands.push_back(whole.holds || (!whole.unsuitable.empty() && supported));
@@ -91,8 +90,7 @@ class Ladder {
            "variation of the mesh stiffness", *mean, false, true});
     if (closed) {
       last = {0};
-      add({mean ? "no backlash, varying mesh stiffness" : "no backlash", "backlash", *closed, true,
-           false});
+      add({mean ? "no backlash, varying mesh stiffness" : "no backlash", "backlash", *closed, true, false});
     }
     if (closed && mean) {
       last = {1, 2};
@@ -110,9 +108,8 @@ class Ladder {
   /// holds; without one, this one could hold by chance only.
   std::vector<Rung> climb(const Level& level, bool supported) {
     const bool full = level.from.empty();
-    Rung whole =
-        full ? full_rung_
-             : measure({level.name, level.leaves_out}, {.model = level.model, .figure = figure_});
+    Rung whole = full ? full_rung_
+                      : measure({level.name, level.leaves_out}, {.model = level.model, .figure = figure_});
     if (!full && whole.unsuitable.empty())
       whole.evidence = evidence_.of_level(level.gap, level.variation, full_estimate_.watched);
     if (whole.holds && !supported) {
@@ -121,8 +118,7 @@ class Ladder {
     }
     std::vector<Rung> rungs;
     if (whole.holds) {
-      const std::string in = full ? "" : level.name + ", ",
-                        and_out = full ? "" : level.leaves_out + "; ";
+      const std::string in = full ? "" : level.name + ", ", and_out = full ? "" : level.leaves_out + "; ";
       if (figure_.from > 0.0) steady(level.model, in, and_out, rungs);
       modes(level.model, in, and_out, whole.cost, rungs);
       shafts(level.model, in, and_out, rungs);
@@ -146,14 +142,13 @@ class Ladder {
     if (finest == 0) return;
     const std::size_t first = rungs.size();
     const auto lumped = with_lumped_shafts(model);
-    rungs.push_back(measure({in + "lumped shafts", and_out + "distribution of the shafts' inertia"},
-                            recipe_of(*lumped)));
+    rungs.push_back(
+        measure({in + "lumped shafts", and_out + "distribution of the shafts' inertia"}, recipe_of(*lumped)));
     for (int n = 1; n < finest && !confirmed(rungs, first); n *= 2) {
       const auto coarser = with_coarser_shafts(model, n);
-      rungs.push_back(
-          measure({in + "shafts of " + std::to_string(n) + (n == 1 ? " segment" : " segments"),
-                   and_out + "finer segments of the shafts"},
-                  recipe_of(*coarser)));
+      rungs.push_back(measure({in + "shafts of " + std::to_string(n) + (n == 1 ? " segment" : " segments"),
+                               and_out + "finer segments of the shafts"},
+                              recipe_of(*coarser)));
     }
     settle(rungs, first);
   }
@@ -166,14 +161,14 @@ class Ladder {
       const std::size_t first = rungs.size();
       for (int n = 1; n <= unknowns / 2 && !confirmed(rungs, first); n *= 2) {
         const std::string name = std::to_string(n) + (n == 1 ? " mode" : " modes");
-        rungs.push_back(measure(
-            {in + name + (shapes ? "" : " alone"),
-             and_out + (shapes ? "the inertia of the modes above" : "the modes above")},
-            {.model = model,
-             .figure = figure_,
-             .reduction = ReductionOptions{.modes = n,
-                                           .static_correction = shapes,
-                                           .static_accuracy = kStaticPart * options_.within}}));
+        rungs.push_back(
+            measure({in + name + (shapes ? "" : " alone"),
+                     and_out + (shapes ? "the inertia of the modes above" : "the modes above")},
+                    {.model = model,
+                     .figure = figure_,
+                     .reduction = ReductionOptions{.modes = n,
+                                                   .static_correction = shapes,
+                                                   .static_accuracy = kStaticPart * options_.within}}));
         if (!rungs.back().unsuitable.empty()) break;
       }
       settle(rungs, first);
@@ -195,8 +190,8 @@ class Ladder {
         rungs[i].holds = false;
         rungs[i].evidence = "within the limit by chance: the next finer one is not";
       } else if (i + 1 < rungs.size() && rungs[i].unsuitable.empty()) {
-        rungs[i].evidence = "the next finer one differs from it by " +
-                            percent(rungs[i + 1].difference - rungs[i].difference);
+        rungs[i].evidence =
+            "the next finer one differs from it by " + percent(rungs[i + 1].difference - rungs[i].difference);
       }
       finer = holds;
     }
@@ -272,8 +267,7 @@ class Ladder {
   void choose() {
     advice_.chosen = advice_.rungs.size() - 1;
     for (std::size_t i = 0; i < advice_.rungs.size(); ++i)
-      if (advice_.rungs[i].holds && advice_.rungs[i].seconds < advice_.best().seconds)
-        advice_.chosen = i;
+      if (advice_.rungs[i].holds && advice_.rungs[i].seconds < advice_.best().seconds) advice_.chosen = i;
     advice_.sentence = evidence_.sentence(advice_);
   }
 
@@ -289,8 +283,7 @@ class Ladder {
 
 }  // namespace
 
-FigureOptions figure_options(const Scene& scene, const System& system,
-                             const AdviseOptions& options) {
+FigureOptions figure_options(const Scene& scene, const System& system, const AdviseOptions& options) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/advise", findings);
   check.within("within", options.within, 1e-4, 0.5, "");
@@ -312,17 +305,14 @@ FigureOptions figure_options(const Scene& scene, const System& system,
   else if (channel.find('.') != std::string::npos)
     figure.channels = {channel};
   else
-    check.fail(
-        "figure", options.figure, "",
-        "must be 'peak deflection', 'peak torque' (where the model has one) or 'peak CHANNEL', "
-        "each also with 'steady ' before it");
+    check.fail("figure", options.figure, "",
+               "must be 'peak deflection', 'peak torque' (where the model has one) or 'peak CHANNEL', "
+               "each also with 'steady ' before it");
   if (!findings.empty()) throw ModelError(findings);
   find_channels(system, figure.channels);
   return figure;
 }
 
-Advice advise(const Scene& scene, const AdviseOptions& options) {
-  return Ladder(scene, options).run();
-}
+Advice advise(const Scene& scene, const AdviseOptions& options) { return Ladder(scene, options).run(); }
 
 }  // namespace drev

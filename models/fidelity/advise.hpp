@@ -6,8 +6,8 @@
 ///               distributed ones; for figures of the steady state the periodic response in place of a run
 ///
 /// Promise of a rung that holds:  |figure - figure of the full model| <= within |figure of the full model|,
-/// with the errors of both figures counted against it. Of a scene whose runs depend on the last digit of their
-/// start the errors are the intervals that hold a single run in 95 % of all cases.
+/// with the errors of both figures counted against it. Of a scene whose runs depend on the last digit of
+/// their start the errors are the intervals that hold a single run in 95 % of all cases.
 ///
 /// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
@@ -43,18 +43,16 @@ struct Rung {
 struct Advice {
   std::string figure = {}, unit = {};
   double within = 0.0;
-  bool statistic = false;  ///< the full model's figure has an interval instead of an error
-  std::vector<Rung> rungs =
-      {};                  ///< every one tried, cheap levels first; the full model is the last
-  std::size_t chosen = 0;  ///< the cheapest that holds
+  bool statistic = false;        ///< the full model's figure has an interval instead of an error
+  std::vector<Rung> rungs = {};  ///< every one tried, cheap levels first; the full model is the last
+  std::size_t chosen = 0;        ///< the cheapest that holds
   std::string sentence = {};
   const Rung& best() const { return rungs[chosen]; }
   const Rung& full() const { return rungs.back(); }
 };
 
 /// What the figure counts, in the names of the scene's model. Throws ModelError for one that cannot be.
-FigureOptions figure_options(const Scene& scene, const System& system,
-                             const AdviseOptions& options);
+FigureOptions figure_options(const Scene& scene, const System& system, const AdviseOptions& options);
 
 /// Throws ModelError for a figure or limit that cannot be, SolverError where the full model cannot be run.
 Advice advise(const Scene& scene, const AdviseOptions& options);

@@ -34,23 +34,20 @@ std::string percent(double part) { return number(100.0 * part, "%.2g") + " %"; }
 Evidence::Evidence(const System& system) : system_(system), flanks_(flanks_at_start(system)) {
   const std::vector<Channel> all = all_channels(system);
   for (const Channel& c : all)
-    if (c.force_of() >= 0 && system.scalars()[at(c.force_of())].force->gap())
-      channels_.push_back(c.name());
+    if (c.force_of() >= 0 && system.scalars()[at(c.force_of())].force->gap()) channels_.push_back(c.name());
 }
 
 std::string Evidence::contacts(const std::vector<Peak>& forces) const {
   std::string text;
   const std::vector<Channel> found = find_channels(system_, channels_);
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    const std::string range =
-        number(forces[i].min) + " to " + number(forces[i].max) + " " + found[i].unit();
+    const std::string range = number(forces[i].min) + " to " + number(forces[i].max) + " " + found[i].unit();
     if (forces[i].min > 0.0 || forces[i].max < 0.0)
-      append(text,
-             "the force in " + element_of(channels_[i]) + " never falls to zero (" + range +
-                 "): its flank never parts" +
-                 (flanks_.at(element_of(channels_[i])) != 0
-                      ? ", and the run starts on it: the equations are the same without the gap"
-                      : ""));
+      append(text, "the force in " + element_of(channels_[i]) + " never falls to zero (" + range +
+                       "): its flank never parts" +
+                       (flanks_.at(element_of(channels_[i])) != 0
+                            ? ", and the run starts on it: the equations are the same without the gap"
+                            : ""));
     else if (forces[i].min < 0.0 && forces[i].max > 0.0)
       append(text, "the force in " + element_of(channels_[i]) + " reverses (" + range + ")");
     else
@@ -75,8 +72,7 @@ std::string Evidence::parametric() const {
     const Placement& p = system_.placements()[at(index(term.element))];
     const auto* mesh = dynamic_cast<const GearMesh*>(p.element.get());
     if (mesh == nullptr || !mesh->params().stiffness.varies()) continue;
-    const double tooth =
-        to_hz(mesh->params().teeth_1 * std::abs(system_.ratio(term.phase_node)) * speed);
+    const double tooth = to_hz(mesh->params().teeth_1 * std::abs(system_.ratio(term.phase_node)) * speed);
     double nearest = 0.0;
     std::string which;
     for (std::size_t i = 0; i < f.size(); ++i)
@@ -88,9 +84,8 @@ std::string Evidence::parametric() const {
       }
     if (which.empty() || !(tooth > 0.0)) continue;
     append(text, "the teeth of " + p.name + " pass at " + number(tooth) +
-                     " Hz, the nearest parametric resonance " + which + " is at " +
-                     number(nearest) + " Hz, " + percent(std::abs(nearest - tooth) / tooth) +
-                     " away");
+                     " Hz, the nearest parametric resonance " + which + " is at " + number(nearest) +
+                     " Hz, " + percent(std::abs(nearest - tooth) / tooth) + " away");
   }
   return text;
 }
@@ -116,14 +111,13 @@ std::string Evidence::sentence(const Advice& a) const {
   if (a.chosen + 1 == a.rungs.size()) {
     std::string text = "Use the full model: " + a.figure + " is " + value(full);
     if (a.statistic) text += " in 95 of 100 runs that start beside each other";
-    return text + ", and none of the simpler ones tried is cheaper and keeps it within " +
-           percent(a.within) + ".";
+    return text + ", and none of the simpler ones tried is cheaper and keeps it within " + percent(a.within) +
+           ".";
   }
-  return "Use " + best.name + ", without " + best.leaves_out + ": " + a.figure + " is " +
-         value(best) + ", with the full model " + value(full) +
-         (a.statistic ? " (95 of 100 runs)" : "") + ". The difference, " +
-         percent(best.difference) + " +- " + percent(best.difference_error) + ", is within " +
-         percent(a.within) + ", at " + number(best.cost, "%.2g") + " of the processor time.";
+  return "Use " + best.name + ", without " + best.leaves_out + ": " + a.figure + " is " + value(best) +
+         ", with the full model " + value(full) + (a.statistic ? " (95 of 100 runs)" : "") +
+         ". The difference, " + percent(best.difference) + " +- " + percent(best.difference_error) +
+         ", is within " + percent(a.within) + ", at " + number(best.cost, "%.2g") + " of the processor time.";
 }
 
 }  // namespace drev

@@ -18,8 +18,8 @@ constexpr double kFirstOfExact = 1e-2,
 constexpr double kTighterSteps = 0.1;
 constexpr double kLeastTolerance = 1e-12;
 constexpr int kLevels = 4, kLevelsOfSteps = 8;
-constexpr double kFirstSteps = 500.0;  // in the run
-constexpr double kLeastOrder = 0.25;   // of a difference of constant steps over the one before
+constexpr double kFirstSteps = 500.0;    // in the run
+constexpr double kLeastOrder = 0.25;     // of a difference of constant steps over the one before
 constexpr double kSecondsOfWork = 2e-9;  // of MethodChoice::exact_work
 constexpr double kWorthAsking = 5e-3;    // s of exact propagation beyond which stepping may be cheaper
 constexpr double kSensitive = 0.01;      // relative difference of the last states: another trajectory
@@ -71,9 +71,7 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
       {.t_end = o.t_end,
        .energy_tolerance = 1e300,
        .progress =
-           [&](double) {
-             return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < most_seconds;
-           }},
+           [&](double) { return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < most_seconds; }},
       state, observers);
   if (!summary.ok()) run.failure = summary.reason;
   if (summary.status == RunStatus::interrupted)
@@ -103,8 +101,7 @@ Method tighter(Method m) {
 double largest(const Vector& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
 bool apart(const State& a, const State& b) {
-  return largest(a.z - b.z) > kSensitive * largest(b.z) ||
-         largest(a.v - b.v) > kSensitive * largest(b.v);
+  return largest(a.z - b.z) > kSensitive * largest(b.z) || largest(a.v - b.v) > kSensitive * largest(b.v);
 }
 
 /// Mean and prediction interval over neighbouring runs.
@@ -140,8 +137,7 @@ FigureEstimate estimate_with(const System& system, const Method& first, const Fi
       e.value = coarse.value;
       e.watched = coarse.watched;
       const double difference = std::abs(coarse.value - fine.value);
-      e.error =
-          kSafety * std::max(difference, kLeastOrder * before) + e.method.tolerance * coarse.value;
+      e.error = kSafety * std::max(difference, kLeastOrder * before) + e.method.tolerance * coarse.value;
       before = difference;
       const bool uncertain = contacts && apart(coarse.end, fine.end);
       const bool enough = e.error <= o.accuracy * e.value && (!constant || level > 1);
@@ -171,11 +167,9 @@ FigureEstimate estimate_figure(const System& system, const FigureOptions& o) {
   }
   // Implicit steps that leave the fastest modes aside.
   if (const double seconds = kSecondsOfWork * choice.exact_work; seconds > kWorthAsking) {
-    const FigureEstimate stepped =
-        estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o,
-                      std::min(seconds, o.most_seconds));
-    if (stepped.failure.empty() && !stepped.statistic &&
-        stepped.error <= o.accuracy * stepped.value)
+    const FigureEstimate stepped = estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o,
+                                                 std::min(seconds, o.most_seconds));
+    if (stepped.failure.empty() && !stepped.statistic && stepped.error <= o.accuracy * stepped.value)
       return stepped;
   }
   method.tolerance = std::clamp(kFirstOfExact * o.accuracy, kLeastTolerance, 1e-4);

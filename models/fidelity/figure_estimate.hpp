@@ -24,8 +24,7 @@ struct FigureOptions {
   double accuracy = 1e-3;          ///< relative, aimed at
   /// Processor time of one run beyond which there is no estimate [s].
   double most_seconds = std::numeric_limits<double>::infinity();
-  std::vector<std::string> watch =
-      {};  ///< further channels, of which the range over the run is noted
+  std::vector<std::string> watch = {};  ///< further channels, of which the range over the run is noted
 };
 
 struct FigureEstimate {

@@ -13,8 +13,8 @@ struct SteadyPeak {
 };
 
 SteadyPeak steady_peak(const System& system, const FigureOptions& figure, double turns) {
-  const PeriodicResponse response = solve_periodic(
-      system, {.tolerance = figure.accuracy, .channels = figure.channels, .turns = turns});
+  const PeriodicResponse response =
+      solve_periodic(system, {.tolerance = figure.accuracy, .channels = figure.channels, .turns = turns});
   if (!response.found) throw SolverError(response.reason);
   SteadyPeak steady;
   for (const Peak& peak : response.peaks) steady.value = std::max(steady.value, peak.amplitude());
@@ -24,9 +24,7 @@ SteadyPeak steady_peak(const System& system, const FigureOptions& figure, double
 
 }  // namespace
 
-System Recipe::build() const {
-  return reduction ? reduce(model.build(), *reduction).system : model.build();
-}
+System Recipe::build() const { return reduction ? reduce(model.build(), *reduction).system : model.build(); }
 
 double Recipe::run() const {
   const System system = build();

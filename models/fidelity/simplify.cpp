@@ -43,8 +43,7 @@ Model copy(const Model& model, const Place& place, const std::set<std::string>& 
   const auto is_gone = [&](const std::string& name) { return gone.contains(name); };
   for (const Placement& p : model.placements()) {
     const std::vector<std::string> nodes = names_of(model, p);
-    if (std::none_of(nodes.begin(), nodes.end(), is_gone))
-      place(to, p, {nodes.begin(), nodes.end()});
+    if (std::none_of(nodes.begin(), nodes.end(), is_gone)) place(to, p, {nodes.begin(), nodes.end()});
   }
   for (const Model::Prescription& p : model.prescriptions()) {
     const std::string node = model.name_of(p.node);
@@ -116,8 +115,7 @@ double turning(const System& system, int node) {
 }
 
 /// Turns a part as a rigid body, so that `node` starts at q, v.
-void turn_part(const System& system, const std::vector<int>& part, int node, Start to,
-               Starts& starts) {
+void turn_part(const System& system, const std::vector<int>& part, int node, Start to, Starts& starts) {
   const Start from = starts.at(system.node_names()[at(node)]);
   for (int i = 0; i < system.node_count(); ++i) {
     if (part[at(i)] != part[at(node)]) continue;
@@ -128,8 +126,7 @@ void turn_part(const System& system, const std::vector<int>& part, int node, Sta
 }
 
 /// The copy in which `change` replaces elements (null: left as they are); nothing if it replaces none.
-std::optional<Model> replace(const Model& model,
-                             const std::function<ElementPtr(const Placement&)>& change) {
+std::optional<Model> replace(const Model& model, const std::function<ElementPtr(const Placement&)>& change) {
   bool any = false;
   Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
     const ElementPtr changed = change(p);
@@ -137,8 +134,7 @@ std::optional<Model> replace(const Model& model,
     m.add(p.name, nodes, changed ? changed : p.element);
   });
   if (!any) return {};
-  for (const Model::Initial& i : model.initials())
-    to.set_initial(model.name_of(i.node), i.deviation, i.rate);
+  for (const Model::Initial& i : model.initials()) to.set_initial(model.name_of(i.node), i.deviation, i.rate);
   return to;
 }
 
@@ -165,10 +161,8 @@ ElementPtr closed_polyline(const PolylineSpring& spring, int flank) {
 /// Nodes whose motion is given.
 std::vector<int> driven_nodes(const Model& model, const System& system) {
   std::vector<int> nodes;
-  for (const Model::Prescription& p : model.prescriptions())
-    nodes.push_back(system.node_of(p.node));
-  for (const auto& [node, motion] : model.references())
-    nodes.push_back(system.node_of(node));
+  for (const Model::Prescription& p : model.prescriptions()) nodes.push_back(system.node_of(p.node));
+  for (const auto& [node, motion] : model.references()) nodes.push_back(system.node_of(node));
   return nodes;
 }
 
@@ -185,9 +179,7 @@ Flanks flanks_at_start(const System& system) {
     const auto gap = term.force->gap();
     if (!gap) continue;
     const double x = assembler.input(term, state.z, state.v).x;
-    flanks[system.placements()[at(index(term.element))].name] = x >= gap->high  ? 1
-                                                                : x <= gap->low ? -1
-                                                                                : 0;
+    flanks[system.placements()[at(index(term.element))].name] = x >= gap->high ? 1 : x <= gap->low ? -1 : 0;
   }
   return flanks;
 }
@@ -230,15 +222,13 @@ std::optional<Model> with_rigid_meshes(const Model& model) {
   };
   Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
     if (!is_mesh(p)) return place_same(m, p, nodes);
-    m.add(p.name, nodes,
-          std::make_shared<const IdealGear>(IdealGear::Params{.ratio = ratio_of(p)}));
+    m.add(p.name, nodes, std::make_shared<const IdealGear>(IdealGear::Params{.ratio = ratio_of(p)}));
   });
   Starts starts = starts_of(model);
   if (starts.empty()) return to;
   // What the meshes' compliance and gaps had turned, part by part from what is driven.
   const System system = model.build();
-  const std::vector<int> part =
-      parts_of(model, system, [&](const Placement& p) { return !is_mesh(p); });
+  const std::vector<int> part = parts_of(model, system, [&](const Placement& p) { return !is_mesh(p); });
   std::set<int> settled;
   for (const int node : driven_nodes(model, system)) settled.insert(part[at(node)]);
   if (settled.empty()) settled.insert(part.front());
@@ -289,9 +279,8 @@ std::optional<Model> with_drive_held(const Model& model, const std::vector<std::
         parts_of(model, system, [&](const Placement& p) { return &p != &model.placements()[cut]; });
     const int kept = part[at(system.node(wanted.front()))];
     const auto inside = [&](int node) { return part[at(node)] == kept; };
-    const bool all_wanted = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& node) {
-      return inside(system.node(node));
-    });
+    const bool all_wanted = std::all_of(wanted.begin(), wanted.end(),
+                                        [&](const std::string& node) { return inside(system.node(node)); });
     if (!all_wanted || std::any_of(driven.begin(), driven.end(), inside)) continue;
     const std::vector<std::string> ends = names_of(model, model.placements()[cut]);
     const int a = system.node(ends[0]), b = system.node(ends[1]);
@@ -383,8 +372,7 @@ std::optional<RenamedModel> with_lumped_shafts(const Model& model) {
               ShaftSpring::Params{.stiffness = shaft->segment_stiffness() / n}));
     for (const std::size_t end : {0, 1})
       m.add(p.name + (end == 0 ? "_inertia_a" : "_inertia_b"), {nodes[end]},
-            std::make_shared<const Inertia>(
-                Inertia::Params{.inertia = 0.5 * n * shaft->segment_inertia()}));
+            std::make_shared<const Inertia>(Inertia::Params{.inertia = 0.5 * n * shaft->segment_inertia()}));
     for (int k = 1; k <= n; ++k) renamed[torque_of(p.name, k)] = p.name + ".torque_Nm";
   });
   if (renamed.empty()) return {};

@@ -58,13 +58,37 @@ void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveP
 
 std::vector<Setting> gear_drive_settings() {
   using Kind = Setting::Kind;
-  return {{"backlash_mm", Kind::number, "0.15", "mm", 0, 10, {},
+  return {{"backlash_mm",
+           Kind::number,
+           "0.15",
+           "mm",
+           0,
+           10,
+           {},
            "total normal backlash of each mesh, along the line of action"},
-          {"mesh_stiffness", Kind::choice, "mean", "", 0, 0, {"mean", "step", "fourier"},
+          {"mesh_stiffness",
+           Kind::choice,
+           "mean",
+           "",
+           0,
+           0,
+           {"mean", "step", "fourier"},
            "constant mean, square wave of contact ratio 1.5, or its Fourier series"},
-          {"mesh_stiffness_factor", Kind::number, "1", "", 1e-6, 1e6, {},
+          {"mesh_stiffness_factor",
+           Kind::number,
+           "1",
+           "",
+           1e-6,
+           1e6,
+           {},
            "stiffness of both meshes over the source's"},
-          {"mesh_damping_Ns_per_m", Kind::number, "0", "N s/m", 0, 1e9, {},
+          {"mesh_damping_Ns_per_m",
+           Kind::number,
+           "0",
+           "N s/m",
+           0,
+           1e9,
+           {},
            "of each mesh, in contact only, growing with penetration"}};
 }
 
@@ -86,8 +110,7 @@ Scene build_gear_drive(Settings s) {
   m.add_node("gear");
   add_gear_drive(m, "gear", gear_drive_params(s));
   m.add<Inertia>("J_gear", {"gear"}, {.inertia = kCamshaftGearInertia});
-  m.add<EngineOrderTorque>("cam_load", {"gear"},
-                           {.harmonics = {{order, swing, 0.0}}, .mean = mean});
+  m.add<EngineOrderTorque>("cam_load", {"gear"}, {.harmonics = {{order, swing, 0.0}}, .mean = mean});
   m.constant_speed("crank_gear", rpm(s.number("engine_rpm")));
   return {.model = std::move(m),
           .duration = s.number("duration_s"),
@@ -104,16 +127,27 @@ const SceneEntry& gear_drive_entry() {
   static const SceneEntry entry = [] {
     std::vector<Setting> settings = gear_drive_settings();
     settings.push_back({"engine_rpm", Kind::number, "750", "rpm", 1, 5000, {}, "crankshaft speed"});
-    settings.push_back({"torque_mean_Nm", Kind::number, "-2000", "N m", -1e7, 1e7, {},
+    settings.push_back({"torque_mean_Nm",
+                        Kind::number,
+                        "-2000",
+                        "N m",
+                        -1e7,
+                        1e7,
+                        {},
                         "mean torque on the camshaft gear; negative brakes it"});
-    settings.push_back({"torque_amplitude_Nm", Kind::number, "6000", "N m", 0, 1e7, {},
+    settings.push_back({"torque_amplitude_Nm",
+                        Kind::number,
+                        "6000",
+                        "N m",
+                        0,
+                        1e7,
+                        {},
                         "amplitude of the cyclic torque on the camshaft gear"});
     settings.push_back(
         {"torque_order", Kind::number, "9", "", 0.5, 100, {}, "cycles per camshaft revolution"});
     settings.push_back({"duration_s", Kind::number, "1", "s", 1e-9, 1e4, {}, "simulated time"});
-    return SceneEntry{"gear_drive",
-                      "two-stage gear drive with backlash, hammered by a cyclic torque", settings,
-                      build_gear_drive};
+    return SceneEntry{"gear_drive", "two-stage gear drive with backlash, hammered by a cyclic torque",
+                      settings, build_gear_drive};
   }();
   return entry;
 }

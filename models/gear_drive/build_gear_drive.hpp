@@ -17,8 +17,8 @@ enum class MeshVariation { mean, step, fourier };
 struct GearDriveParams {
   double normal_backlash = 0.15e-3;  ///< m, total, in each mesh
   MeshVariation variation = MeshVariation::mean;
-  double stiffness_factor = 1.0;     ///< stiffness of both meshes over the source's
-  double mesh_damping = 0.0;         ///< N s/m, in each mesh
+  double stiffness_factor = 1.0;  ///< stiffness of both meshes over the source's
+  double mesh_damping = 0.0;      ///< N s/m, in each mesh
 };
 
 /// Adds crank_gear, idler, mesh_1 and mesh_2 to a model that has the node `camshaft_gear`, whose inertia

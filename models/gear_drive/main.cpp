@@ -2,11 +2,10 @@
 // Shows: gear meshes with backlash, constant speed at the crank, modes in two contact states.
 // Run:   build/release/bin/example_gear_drive
 // Read first: two_mass_backlash.
-#include "models/gear_drive/build_gear_drive.hpp"
-
 #include <cstdio>
 
 #include "core/system.hpp"
+#include "models/gear_drive/build_gear_drive.hpp"
 #include "solvers/contact_statistics.hpp"
 #include "solvers/modes.hpp"
 #include "solvers/transient.hpp"
@@ -23,12 +22,11 @@ int main() {
   std::printf("with both open %d parts move freely\n", system.rigid_mode_count(Contact::open));
 
   ContactStatistics contacts(system);
-  const RunSummary run =
-      simulate(system, {.step = scene.default_step, .t_end = scene.duration}, {&contacts});
+  const RunSummary run = simulate(system, {.step = scene.default_step, .t_end = scene.duration}, {&contacts});
   for (const ContactRecord& c : contacts.records())
     std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time, at most %.0f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts,
-                100 * c.time_apart / scene.duration, c.largest_force);
+                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart / scene.duration,
+                c.largest_force);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

@@ -48,11 +48,21 @@ void add_train(Model& m, bool rigid, double backlash) {
   // [meshes]
   const double alpha = 20.0 * std::numbers::pi / 180.0;
   m.add<GearMesh>("stage_1", {"pinion", "middle"},
-                  {.module = 3e-3, .teeth_1 = 21, .teeth_2 = 83, .pressure_angle = alpha,
-                   .stiffness = 4e8, .normal_backlash = backlash, .damping = 2e3});
+                  {.module = 3e-3,
+                   .teeth_1 = 21,
+                   .teeth_2 = 83,
+                   .pressure_angle = alpha,
+                   .stiffness = 4e8,
+                   .normal_backlash = backlash,
+                   .damping = 2e3});
   m.add<GearMesh>("stage_2", {"middle", "output"},
-                  {.module = 4e-3, .teeth_1 = 19, .teeth_2 = 77, .pressure_angle = alpha,
-                   .stiffness = 5e8, .normal_backlash = backlash, .damping = 4e3});
+                  {.module = 4e-3,
+                   .teeth_1 = 19,
+                   .teeth_2 = 77,
+                   .pressure_angle = alpha,
+                   .stiffness = 5e8,
+                   .normal_backlash = backlash,
+                   .damping = 4e3});
   // [meshes]
 }
 
@@ -68,8 +78,7 @@ int main() {
   Model first("compressor");
   add_compressor(first);
   print_modes("shaft alone", first.build(), Contact::closed);
-  std::printf("closed form: %.2f Hz\n",
-              std::sqrt(4.2e5 * (1 / 0.9 + 1 / 6.5)) / (2 * std::numbers::pi));
+  std::printf("closed form: %.2f Hz\n", std::sqrt(4.2e5 * (1 / 0.9 + 1 / 6.5)) / (2 * std::numbers::pi));
   // [shaft]
 
   Model with_ratio("rigid gears");
@@ -83,20 +92,18 @@ int main() {
   add_train(train, false, 0.12e-3);
   train.add<EngineOrderTorque>(
       "gas", {"compressor"},
-      {.harmonics = {{.order = 2, .amplitude = 700.0}, {.order = 4, .amplitude = 250.0}},
-       .mean = -600.0});
+      {.harmonics = {{.order = 2, .amplitude = 700.0}, {.order = 4, .amplitude = 250.0}}, .mean = -600.0});
   const System system = train.build();
   print_modes("teeth in contact", system, Contact::closed);
   print_modes("teeth apart", system, Contact::open);
   // [backlash]
 
   // [run]
-  const AccuracyResult result = run_to_accuracy(
-      system, {.accuracy = 1e-4,
-               .t_end = 1.0,
-               .deflection = "compressor-output.twist_rad",
-               .torques = {"coupling.torque_Nm", "shaft.torque_Nm"},
-               .method = {.name = "exact", .tolerance = 1e-8}});
+  const AccuracyResult result = run_to_accuracy(system, {.accuracy = 1e-4,
+                                                         .t_end = 1.0,
+                                                         .deflection = "compressor-output.twist_rad",
+                                                         .torques = {"coupling.torque_Nm", "shaft.torque_Nm"},
+                                                         .method = {.name = "exact", .tolerance = 1e-8}});
   for (const Figure& f : result.figures)
     std::printf("%-28s %12.6g %-4s +- %.1e%s\n", f.name.c_str(), f.value, f.unit.c_str(), f.error,
                 f.kind == Figure::Kind::interval ? " (95 % interval)" : "");
@@ -106,12 +113,10 @@ int main() {
 
   // [contacts]
   ContactStatistics contacts(system);
-  const RunSummary run =
-      run_method(system, result.fine, {.t_end = 1.0}, {&contacts});
+  const RunSummary run = run_method(system, result.fine, {.t_end = 1.0}, {&contacts});
   for (const ContactRecord& c : contacts.records())
     std::printf("%s: %ld impacts in front, %ld behind, apart %.1f %% of the time, at most %.0f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart,
-                c.largest_force);
+                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart, c.largest_force);
   // [contacts]
   return run.ok() ? 0 : 1;
 }

@@ -17,9 +17,9 @@ Scene build_two_inertia(Settings s) {
   m.add_node("load");
   m.add<Inertia>("J_motor", {"motor"}, {.inertia = s.number("inertia_1_kg_m2")});
   m.add<Inertia>("J_load", {"load"}, {.inertia = s.number("inertia_2_kg_m2")});
-  m.add<ShaftSpring>("shaft", {"motor", "load"},
-                     {.stiffness = s.number("stiffness_Nm_per_rad"),
-                      .damping = s.number("damping_Nms_per_rad")});
+  m.add<ShaftSpring>(
+      "shaft", {"motor", "load"},
+      {.stiffness = s.number("stiffness_Nm_per_rad"), .damping = s.number("damping_Nms_per_rad")});
   AppliedTorque::Params drive;  // a sine
   if (frequency > 0.0)
     drive.harmonics = {{frequency, amplitude, -kPi / 2}};
@@ -27,8 +27,7 @@ Scene build_two_inertia(Settings s) {
     drive.table = TimeTable({0.0}, {0.0});
   m.add<AppliedTorque>("drive", {"motor"}, drive);
   const double j_1 = s.number("inertia_1_kg_m2"), j_2 = s.number("inertia_2_kg_m2");
-  const double omega =
-      std::sqrt(s.number("stiffness_Nm_per_rad") * (j_1 + j_2) / (j_1 * j_2));
+  const double omega = std::sqrt(s.number("stiffness_Nm_per_rad") * (j_1 + j_2) / (j_1 * j_2));
   return {.model = std::move(m),
           .duration = s.number("duration_s"),
           // 200 steps in a period of the mode and of the torque: the mode's period is off by 8e-5.

@@ -15,7 +15,7 @@ int main() {
   using namespace drev;
   Model m("motor and load");
   const auto motor = m.add_node("motor"), load = m.add_node("load");
-  m.add<Inertia>("J_motor", {motor}, {.inertia = 0.012});                       // kg m^2
+  m.add<Inertia>("J_motor", {motor}, {.inertia = 0.012});  // kg m^2
   m.add<Inertia>("J_load", {load}, {.inertia = 0.035});
   m.add<ShaftSpring>("shaft", {motor, load}, {.stiffness = 8.5e3, .damping = 0.5});  // N m/rad, N m s/rad
   m.add<AppliedTorque>("drive", {motor}, {.torque = [](double t) { return 20 * std::sin(251.3 * t); }});

@@ -20,12 +20,10 @@ Scene build_two_mass_backlash(Settings s) {
   m.add_node("mass_2", NodeKind::translational);
   m.add<Inertia>("m_1", {"mass_1"}, {.inertia = s.number("mass_1_kg")});
   m.add<Inertia>("m_2", {"mass_2"}, {.inertia = s.number("mass_2_kg")});
-  m.add<PolylineSpring>(
-      "spring_1", {"mass_1"},
-      PolylineSpring::dead_band(s.number("k_1_N_per_m"), s.number("half_gap_1_m")));
-  m.add<PolylineSpring>(
-      "spring_2", {"mass_1", "mass_2"},
-      PolylineSpring::dead_band(s.number("k_2_N_per_m"), s.number("half_gap_2_m")));
+  m.add<PolylineSpring>("spring_1", {"mass_1"},
+                        PolylineSpring::dead_band(s.number("k_1_N_per_m"), s.number("half_gap_1_m")));
+  m.add<PolylineSpring>("spring_2", {"mass_1", "mass_2"},
+                        PolylineSpring::dead_band(s.number("k_2_N_per_m"), s.number("half_gap_2_m")));
   m.add<AppliedTorque>("force", {"mass_2"},
                        {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, force, force, 0.0})});
   return {.model = std::move(m),

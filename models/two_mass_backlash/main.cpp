@@ -2,11 +2,10 @@
 // Shows: translational nodes, PolylineSpring with a dead band, a table with a jump, contact statistics.
 // Run:   build/release/bin/example_two_mass_backlash
 // Read first: two_inertia.
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-
 #include <cstdio>
 
 #include "core/system.hpp"
+#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
 #include "solvers/contact_statistics.hpp"
 #include "solvers/recorder.hpp"
 #include "solvers/transient.hpp"
@@ -19,16 +18,15 @@ int main() {
 
   Recorder recorder(system, {"mass_1.position_m", "mass_2.position_m"}, 0.5);
   ContactStatistics contacts(system);
-  const RunSummary run = simulate(
-      system, {.step = scene.default_step, .t_end = scene.duration}, {&recorder, &contacts});
+  const RunSummary run =
+      simulate(system, {.step = scene.default_step, .t_end = scene.duration}, {&recorder, &contacts});
 
   std::printf("   t s      x_1 m      x_2 m\n");
   for (std::size_t i = 0; i < recorder.times().size(); ++i)
-    std::printf("%6.2f %10.6f %10.6f\n", recorder.times()[i], recorder.samples(0)[i],
-                recorder.samples(1)[i]);
+    std::printf("%6.2f %10.6f %10.6f\n", recorder.times()[i], recorder.samples(0)[i], recorder.samples(1)[i]);
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, %.3f s apart, at most %.1f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, c.time_apart, c.largest_force);
+    std::printf("%s: %ld impacts in front, %ld behind, %.3f s apart, at most %.1f N\n", c.element.c_str(),
+                c.front_impacts, c.back_impacts, c.time_apart, c.largest_force);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

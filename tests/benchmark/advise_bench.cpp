@@ -18,12 +18,12 @@ namespace {
 double times_cheaper(const Scene& scene, const std::string& name, bool rungs) {
   const Advice a = advise(scene, {.figure = "peak deflection", .within = 0.02});
   std::printf("%-46s %4d %9.2f ms  %6.1f times by %s, off by %.2g +- %.2g %%\n", name.c_str(),
-              scene.model.build().size(), 1e3 * a.full().seconds, 1.0 / a.best().cost,
-              a.best().name.c_str(), 100 * a.best().difference, 100 * a.best().difference_error);
+              scene.model.build().size(), 1e3 * a.full().seconds, 1.0 / a.best().cost, a.best().name.c_str(),
+              100 * a.best().difference, 100 * a.best().difference_error);
   for (const Rung& r : a.rungs)
     if (rungs)
-      std::printf("    %-46s %+9.3f +- %.3f %%  cost %.3f%s  %s %s\n", r.name.c_str(),
-                  100 * r.difference, 100 * r.difference_error, r.cost, r.holds ? ", holds" : "",
+      std::printf("    %-46s %+9.3f +- %.3f %%  cost %.3f%s  %s %s\n", r.name.c_str(), 100 * r.difference,
+                  100 * r.difference_error, r.cost, r.holds ? ", holds" : "",
                   to_text(r.recipe.method).c_str(), r.unsuitable.c_str());
   std::fflush(stdout);
   return 1.0 / a.best().cost;

@@ -29,12 +29,14 @@ System gear_train(int meshes) {
     }
     m.add<ShaftSpring>("shaft_" + n, {last, a}, {.stiffness = 1e6, .damping = 50.0});
     m.add<GearMesh>("mesh_" + n, {a, b},
-                    {.base_radius_1 = 0.2, .base_radius_2 = 0.2, .stiffness = 5e8,
-                     .normal_backlash = 1e-4, .damping = 2e3});
+                    {.base_radius_1 = 0.2,
+                     .base_radius_2 = 0.2,
+                     .stiffness = 5e8,
+                     .normal_backlash = 1e-4,
+                     .damping = 2e3});
     last = b;
   }
-  m.add<AppliedTorque>("drive", {"start"},
-                       {.torque = [](double t) { return 3000.0 * std::sin(200.0 * t); }});
+  m.add<AppliedTorque>("drive", {"start"}, {.torque = [](double t) { return 3000.0 * std::sin(200.0 * t); }});
   m.add<Dashpot>("drag", {last}, {.damping = 5.0});
   return m.build();
 }

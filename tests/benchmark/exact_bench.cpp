@@ -34,8 +34,7 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
   std::printf(
       "| drive, loads | exact [s] | steps | us a step | average acceleration [s] | ratio | "
       "error of exact | of average acceleration |\n");
-  for (const auto& [drive, loads] :
-       {std::pair{"held", "source"}, {"held", "actual"}, {"gears", "actual"}}) {
+  for (const auto& [drive, loads] : {std::pair{"held", "source"}, {"held", "actual"}, {"gears", "actual"}}) {
     Settings s("camshaft", camshaft_entry().settings);
     s.set("drive", drive);
     s.set("loads", loads);
@@ -48,21 +47,19 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
       ContactStatistics contacts(system);
       return run(std::vector<Observer*>{&torque, &deflection, &contacts});
     };
-    const double t_exact = fastest_seconds([&] {
-      exact = observed([&](const auto& o) { return propagate(system, {.t_end = 5.0}, o); });
-    });
-    const double t_steps = fastest_seconds([&] {
-      observed([&](const auto& o) { return simulate(system, {.step = 1e-5, .t_end = 5.0}, o); });
-    });
+    const double t_exact = fastest_seconds(
+        [&] { exact = observed([&](const auto& o) { return propagate(system, {.t_end = 5.0}, o); }); });
+    const double t_steps = fastest_seconds(
+        [&] { observed([&](const auto& o) { return simulate(system, {.step = 1e-5, .t_end = 5.0}, o); }); });
     CHECK(exact.ok());
     State at_default = State::initial(system), tight = at_default, stepped = at_default;
     propagate(system, {.t_end = 0.05}, at_default);
     propagate(system, {.tolerance = 1e-14, .t_end = 0.05}, tight);
     simulate(system, {.step = 1e-5, .t_end = 0.05}, stepped);
     const double peak = tight.z.lpNorm<Eigen::Infinity>();
-    std::printf("| %s, %s | %.2f | %ld | %.2f | %.2f | %.2f | %.0e | %.0e |\n", drive, loads,
-                t_exact, exact.steps, 1e6 * t_exact / static_cast<double>(exact.steps), t_steps,
-                t_steps / t_exact, (at_default.z - tight.z).lpNorm<Eigen::Infinity>() / peak,
+    std::printf("| %s, %s | %.2f | %ld | %.2f | %.2f | %.2f | %.0e | %.0e |\n", drive, loads, t_exact,
+                exact.steps, 1e6 * t_exact / static_cast<double>(exact.steps), t_steps, t_steps / t_exact,
+                (at_default.z - tight.z).lpNorm<Eigen::Infinity>() / peak,
                 (stepped.z - tight.z).lpNorm<Eigen::Infinity>() / peak);
   }
 }

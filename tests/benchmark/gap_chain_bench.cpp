@@ -40,8 +40,7 @@ System gap_chain(int masses) {
       m.add<PolylineSpring>("spring_" + n, {last, node}, spring);
     last = node;
   }
-  m.add<AppliedTorque>("force", {last},
-                       {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, 100.0, 100.0, 0.0})});
+  m.add<AppliedTorque>("force", {last}, {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, 100.0, 100.0, 0.0})});
   return m.build();
 }
 

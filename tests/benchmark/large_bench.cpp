@@ -124,14 +124,13 @@ TEST_CASE("Large models: build, factor, solve, step", "[steps]") {
       assembler.contact_values({1.0, 0.0, 1e-8}, Contact::closed, values);
       note("analyse", seconds([&] { SparseCholesky fresh(system->pattern()); }));
       SparseCholesky cholesky;
-      note("factor", seconds([&] { REQUIRE(cholesky.factorize(system->pattern(), values) ==
-                                           FactorStatus::success); }));
+      note("factor",
+           seconds([&] { REQUIRE(cholesky.factorize(system->pattern(), values) == FactorStatus::success); }));
       const Vector b = Vector::Ones(system->size());
       Vector x;
       note("solve", seconds([&] { cholesky.solve(b, x); }));
       std::vector<double> rounds;
-      for (int i = 0; i < 3; ++i)
-        rounds.push_back(step_seconds(*system, std::clamp(3000000 / n, 20, 10000)));
+      for (int i = 0; i < 3; ++i) rounds.push_back(step_seconds(*system, std::clamp(3000000 / n, 20, 10000)));
       note("step", median(rounds));
     }
 }

@@ -7,12 +7,11 @@
 ///   branched  the same with a branch of 4 inertias at every sixth of its trunk
 ///   looped    two such chains side by side, geared together at every tenth inertia by meshes without
 ///             backlash
-#include <malloc.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <malloc.h>
 #include <string>
 
 #include "core/system.hpp"
@@ -86,8 +85,7 @@ class LargeModel {
 };
 
 inline double chain_frequency(int n, int mode) {
-  return 2.0 * std::sqrt(kStiffness / kInertia) * std::sin((2 * mode - 1) * kPi / (4.0 * n + 2.0)) /
-         kTwoPi;
+  return 2.0 * std::sqrt(kStiffness / kInertia) * std::sin((2 * mode - 1) * kPi / (4.0 * n + 2.0)) / kTwoPi;
 }
 
 /// "VmRSS:" or "VmHWM:" of this process [B]; 0 where /proc is not there.

@@ -36,14 +36,12 @@ TEST_CASE("Main job: time per step and share by phase") {
   std::sort(times.begin(), times.end());
   const auto steps = static_cast<double>(summary.steps);
   std::printf("%d unknowns, %ld steps, %ld contact iterations, %ld load passes, %ld factorisations\n",
-              system.size(), summary.steps, summary.iterations, summary.load_passes,
-              summary.factorizations);
+              system.size(), summary.steps, summary.iterations, summary.load_passes, summary.factorizations);
   std::printf("median %.3f s = %.2f us a step (fastest %.2f, slowest %.2f)\n", times[2],
               1e6 * times[2] / steps, 1e6 * times.front() / steps, 1e6 * times.back() / steps);
   const auto phases = run(true).phases;
   double sum = 0.0;
   for (const auto& [name, seconds] : phases) sum += seconds;
   for (const auto& [name, seconds] : phases)
-    std::printf("| %s | %.2f us | %.0f %% |\n", name.c_str(), 1e6 * seconds / steps,
-                100.0 * seconds / sum);
+    std::printf("| %s | %.2f us | %.0f %% |\n", name.c_str(), 1e6 * seconds / steps, 100.0 * seconds / sum);
 }

@@ -30,9 +30,7 @@ System variant(double part) {
 struct Clock {
   std::clock_t processor = std::clock();
   std::chrono::steady_clock::time_point wall = std::chrono::steady_clock::now();
-  double processor_seconds() const {
-    return static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
-  }
+  double processor_seconds() const { return static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC; }
   double wall_seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   }
@@ -73,11 +71,12 @@ void compare(std::size_t variants, double duration, double step, int turns) {
     lanes_wall.push_back(clock.wall_seconds() / steps);
   }
   const double s = median(single), p = median(lanes_processor), w = median(lanes_wall);
-  std::printf("h = %g s: %zu variants, %.0f steps in all, %ld of them alone; us a step and variant: "
-              "single %.3f, lockstep %.4f of processor time, %.4f of the wall's on %u processors\n"
-              "throughput over that of single runs on one core: %.1f a core, %.1f on all\n",
-              step, variants, steps, alone, 1e6 * s, 1e6 * p, 1e6 * w,
-              std::thread::hardware_concurrency(), s / p, s / w);
+  std::printf(
+      "h = %g s: %zu variants, %.0f steps in all, %ld of them alone; us a step and variant: "
+      "single %.3f, lockstep %.4f of processor time, %.4f of the wall's on %u processors\n"
+      "throughput over that of single runs on one core: %.1f a core, %.1f on all\n",
+      step, variants, steps, alone, 1e6 * s, 1e6 * p, 1e6 * w, std::thread::hardware_concurrency(), s / p,
+      s / w);
 }
 
 }  // namespace

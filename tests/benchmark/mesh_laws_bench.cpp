@@ -71,16 +71,18 @@ Outcome run(MeshDamping law, double xi, double step, double t_end) {
 TEST_CASE("Damping laws of a gear mesh") {
   const double t_end = 0.05;
   for (const double xi : {0.05, 0.3}) {
-    std::printf("xi = %g\n| law | halved steps | pulls [N] | in the gap [N] | jump in a step [N] | "
-                "error at 8 us [rad] | 4 us | 2 us | 1 us | energy error at 2 us |\n", xi);
+    std::printf(
+        "xi = %g\n| law | halved steps | pulls [N] | in the gap [N] | jump in a step [N] | "
+        "error at 8 us [rad] | 4 us | 2 us | 1 us | energy error at 2 us |\n",
+        xi);
     for (const auto& [name, law] : {std::pair{"proportional", MeshDamping::proportional},
                                     {"limited", MeshDamping::limited},
                                     {"contact_only", MeshDamping::contact_only},
                                     {"always", MeshDamping::always}}) {
       const double exact = run(law, xi, 2e-8, t_end).angle;
       const Outcome o = run(law, xi, 2e-6, t_end);
-      std::printf("| %s | %ld | %.3g | %.3g | %.3g |", name, o.run.halved, o.faults.pull,
-                  o.faults.in_gap, o.faults.jump);
+      std::printf("| %s | %ld | %.3g | %.3g | %.3g |", name, o.run.halved, o.faults.pull, o.faults.in_gap,
+                  o.faults.jump);
       for (const double h : {8e-6, 4e-6, 2e-6, 1e-6})
         std::printf(" %.1e |", std::abs(run(law, xi, h, t_end).angle - exact));
       std::printf(" %.1e |\n", o.run.energy.relative_error());

@@ -122,8 +122,8 @@ TEST_CASE("Modes of chains") {
       modes = solve_modes(system, {.count = kCount});
       own.push_back(processor_seconds() - start);
       std::istringstream text(output_of(python + peer_file("modes.py") + folder / "chain.bin" + " " +
-                                        std::to_string(n) + " " + std::to_string(kCount) + " " +
-                                        to_text(modes.summary.shift),
+                                            std::to_string(n) + " " + std::to_string(kCount) + " " +
+                                            to_text(modes.summary.shift),
                                         folder));
       text >> peer.emplace_back();
       for (double& omega : omegas) text >> omega;

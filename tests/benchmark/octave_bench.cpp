@@ -51,8 +51,8 @@ void measure(const char* drive, double compared) {
                       static_cast<double>(r.steps));
       }
       std::istringstream text(output_of(octave + " --norc --quiet" + peer_file("camshaft.m") + folder.text() +
-                                        " " + look_up + " " + calls + " " + to_text(kStep) + " " +
-                                        to_text(duration),
+                                            " " + look_up + " " + calls + " " + to_text(kStep) + " " +
+                                            to_text(duration),
                                         folder));
       double seconds = 0.0, angle = 0.0;
       long steps = 0;

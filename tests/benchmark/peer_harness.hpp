@@ -67,9 +67,8 @@ struct Cam {
   const char* name;
   PulseTorque::Params pulse;
 };
-constexpr Cam kCams[] = {{"fuel", {-1.0e4, -1.59, 1.94}},
-                         {"exhaust", {-1.4e3, -3.32, 1.17}},
-                         {"inlet", {-2.2e3, -5.18, 1.57}}};
+constexpr Cam kCams[] = {
+    {"fuel", {-1.0e4, -1.59, 1.94}}, {"exhaust", {-1.4e3, -3.32, 1.17}}, {"inlet", {-2.2e3, -5.18, 1.57}}};
 
 inline double firing_phase(int cylinder) {
   const auto order = default_firing_order(9);
@@ -120,8 +119,7 @@ inline Chain make_chain(const System& s, bool smooth) {
     }
   for (const ScalarTerm& term : s.scalars()) {
     const auto gap = term.force->gap();
-    need(gap && term.u.size() + term.z.size() == 2 && term.force->closed_damping() == 0.0,
-         "such law");
+    need(gap && term.u.size() + term.z.size() == 2 && term.force->closed_damping() == 0.0, "such law");
     peers::Mesh m{.k = term.force->closed_stiffness(), .half_gap = gap->high};
     m.a = term.z[0].index, m.arm_a = term.z[0].coeff;
     m.push_a = m.arm_a / inertia[row(m.a)];
@@ -214,8 +212,7 @@ class EndAngle final : public Observer {
   void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
     const double t = to.state.t, angle = to.state.z[end_];
     if (times_.empty()) return sampler_.see(t, angle, samples);
-    while (next_ < times_.size() && t >= times_[next_] - 1e-13)
-      samples.push_back({times_[next_++], angle});
+    while (next_ < times_.size() && t >= times_[next_] - 1e-13) samples.push_back({times_[next_++], angle});
   }
   double next_stop(double t) const override {
     const auto next = std::upper_bound(times_.begin(), times_.end(), t + 1e-13);
@@ -281,8 +278,8 @@ class Drev {
 
   double seconds(double tolerance) const {
     const std::clock_t start = std::clock();
-    const RunSummary r = propagate(
-        p_.system, {.tolerance = tolerance, .t_end = p_.duration, .energy_tolerance = 1.0});
+    const RunSummary r =
+        propagate(p_.system, {.tolerance = tolerance, .t_end = p_.duration, .energy_tolerance = 1.0});
     const double time = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     INFO(r.reason);
     CHECK(r.ok());
@@ -292,16 +289,13 @@ class Drev {
     auto& known = errors_[tolerance];
     if (!known.empty()) return known;
     EndAngle end(p_, kSamples);
-    propagate(p_.system, {.tolerance = tolerance, .t_end = p_.horizon(), .energy_tolerance = 1.0},
-              {&end});
+    propagate(p_.system, {.tolerance = tolerance, .t_end = p_.horizon(), .energy_tolerance = 1.0}, {&end});
     return known = errors(p_, end.samples);
   }
   /// The loosest of 1e-3, 3e-4, 1e-4, ... whose error is no larger, and whose tighter neighbour's is
   /// not either (or none: 0).
   double loosest(const std::vector<double>& limit) {
-    const auto tolerance = [](int i) {
-      return (i % 2 ? 3.0 : 1.0) * std::pow(10.0, -3 - (i + 1) / 2);
-    };
+    const auto tolerance = [](int i) { return (i % 2 ? 3.0 : 1.0) * std::pow(10.0, -3 - (i + 1) / 2); };
     for (int i = 0; i < 22; ++i)
       if (no_larger(error(tolerance(i)), limit) && no_larger(error(tolerance(i + 1)), limit))
         return tolerance(i);
@@ -318,7 +312,10 @@ inline void report(const std::string& problem, const std::string& peer, double o
                    const std::string& remark) {
   const double ratio = other / own;
   std::printf("ratio| %s | %s | %.3g | %.3g | %.*f | %s |\n", problem.c_str(), peer.c_str(), own, other,
-              ratio < 10.0 ? 3 : ratio < 100.0 ? 1 : 0, ratio, remark.c_str());
+              ratio < 10.0    ? 3
+              : ratio < 100.0 ? 1
+                              : 0,
+              ratio, remark.c_str());
   std::fflush(stdout);
 }
 
@@ -329,8 +326,7 @@ struct Row {
 };
 
 inline void print_header(const Problem& p) {
-  std::printf("\n%s: %d unknowns, %.0f s; errors over 0 to", p.name.c_str(), p.system.size(),
-              p.duration);
+  std::printf("\n%s: %d unknowns, %.0f s; errors over 0 to", p.name.c_str(), p.system.size(), p.duration);
   for (const double h : p.horizons) std::printf(" %.1f", h);
   std::printf(
       " s\n| program | rtol | time [s] | steps | evaluations | changes | error | drev's tolerance "
@@ -340,8 +336,7 @@ inline void print_header(const Problem& p) {
 
 /// One program at one rtol beside drev: `run(t_end, samples)`. Times by turns, medians of `runs`.
 template <class Run>
-Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, int runs,
-            const Run& run) {
+Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, int runs, const Run& run) {
   const std::vector<double> peer_error = errors(p, run(p.horizon(), kSamples).samples);
   const double tolerance = drev.loosest(peer_error);
   std::vector<double> peer, own;
@@ -352,8 +347,8 @@ Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, 
     if (tolerance > 0.0) own.push_back(drev.seconds(tolerance));
     if (last.t_end < p.duration) break;
   }
-  std::printf("| %s | %.0e | %.4f | %ld | %ld | %ld | %s |", what.c_str(), rtol, median(peer),
-              last.steps, last.evaluations, last.changes, join(peer_error).c_str());
+  std::printf("| %s | %.0e | %.4f | %ld | %ld | %ld | %s |", what.c_str(), rtol, median(peer), last.steps,
+              last.evaluations, last.changes, join(peer_error).c_str());
   Row row{what, rtol, own.empty() ? 0.0 : median(peer) / median(own)};
   if (last.t_end < p.duration) {
     std::printf(" cut at %.2f s simulated |||", last.t_end);
@@ -368,8 +363,8 @@ Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, 
   else
     std::printf(" |\n");
   if (row.ratio > 0.0)
-    report(to_text(p.duration) + " s, " + p.name, what + ", rtol " + to_text(rtol), median(own),
-           median(peer), "errors " + join(drev.error(tolerance)) + " beside " + join(peer_error));
+    report(to_text(p.duration) + " s, " + p.name, what + ", rtol " + to_text(rtol), median(own), median(peer),
+           "errors " + join(drev.error(tolerance)) + " beside " + join(peer_error));
   std::fflush(stdout);
   return row;
 }
@@ -378,11 +373,9 @@ Row compare(const Problem& p, Drev& drev, const std::string& what, double rtol, 
 inline void print_best(const std::vector<Row>& rows) {
   std::map<double, Row, std::greater<>> best;
   for (const Row& row : rows)
-    if (row.ratio > 0.0 && (!best.count(row.rtol) || row.ratio < best[row.rtol].ratio))
-      best[row.rtol] = row;
+    if (row.ratio > 0.0 && (!best.count(row.rtol) || row.ratio < best[row.rtol].ratio)) best[row.rtol] = row;
   for (const auto& [rtol, row] : best)
-    std::printf("best at rtol %.0e: %s, drev is %.1f times as fast\n", rtol, row.what.c_str(),
-                row.ratio);
+    std::printf("best at rtol %.0e: %s, drev is %.1f times as fast\n", rtol, row.what.c_str(), row.ratio);
 }
 
 /// drev's reference beside RK5 in extended precision, with every contact change and knot located.
@@ -399,8 +392,7 @@ inline void check_reference(const Problem& p) {
       "%s\n",
       kReferenceTolerance, tight.rtol, r.steps, r.seconds, join(off).c_str());
   CHECK(r.t_end == p.horizon());
-  for (const double e : off)
-    CHECK(e < 1e-7);  // an ulp in one stiffness: 3e-9 after 0.2 s of rattle
+  for (const double e : off) CHECK(e < 1e-7);  // an ulp in one stiffness: 3e-9 after 0.2 s of rattle
 }
 
 }  // namespace drev::benchmark

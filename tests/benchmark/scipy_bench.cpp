@@ -18,7 +18,7 @@ TEST_CASE("SciPy held") {
   for (const auto& [method, rtol] : {std::pair{"LSODA", 1e-7}, {"DOP853", 1e-6}}) {
     const auto run = [&, m = method, r = rtol](double t_end, int) {
       std::istringstream text(output_of(python + peer_file("solve_ivp.py") + folder.text() + " " + m + " " +
-                                        to_text(r) + " " + to_text(t_end),
+                                            to_text(r) + " " + to_text(t_end),
                                         folder));
       peers::PeerRun result;
       result.t_end = t_end;

@@ -5,9 +5,8 @@
 //   build/release/bin/bench_step
 //   build/release/bin/bench_step "Step held*"      one drive
 //   build/release/bin/bench_step "Whole process*"  the command `drev run` beside the same loop
-#include <sys/resource.h>
-
 #include <cstdlib>
+#include <sys/resource.h>
 
 #include "solvers/transient.hpp"
 #include "tests/benchmark/peer_harness.hpp"
@@ -20,7 +19,7 @@ using peers::FloorRun;
 namespace {
 
 constexpr double kDuration = 5.0;  // s
-constexpr double kTight = 1e-12;  // closer, and rounding of the angles keeps the loads from settling
+constexpr double kTight = 1e-12;   // closer, and rounding of the angles keeps the loads from settling
 constexpr double kSteps[] = {1e-3, 1e-4, 1e-5};
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -53,13 +52,14 @@ void report_times(const std::string& problem, double own, double floor, int want
 
 void measure(const char* drive, double compared) {
   const Problem p = make_problem(drive, false);
-  std::printf("\n%s: %d unknowns, average acceleration over %.0f s\n"
-              "| step [s] | drev [ns a step] | floor [ns a step] | ratio | load passes a step "
-              "| difference after %g s |\n|---|---|---|---|---|---|\n",
-              p.name.c_str(), p.system.size(), kDuration, compared);
+  std::printf(
+      "\n%s: %d unknowns, average acceleration over %.0f s\n"
+      "| step [s] | drev [ns a step] | floor [ns a step] | ratio | load passes a step "
+      "| difference after %g s |\n|---|---|---|---|---|---|\n",
+      p.name.c_str(), p.system.size(), kDuration, compared);
   for (const double h : kSteps) {
-    const double difference = off(drev_run(p, h, compared, kTight),
-                                  run_step_floor(p.chain, h, compared, kTight));
+    const double difference =
+        off(drev_run(p, h, compared, kTight), run_step_floor(p.chain, h, compared, kTight));
     std::vector<double> own, floor;
     FloorRun last;
     for (int i = 0; i < runs(h); ++i) {

@@ -33,8 +33,8 @@ void measure(const std::string& drive, bool smooth, const std::vector<Choice>& c
       const auto run = [&, i = integrator, r = roots](double t_end, int samples) {
         return run_sundials(p.chain, {i, rtol, t_end, r, samples});
       };
-      rows.push_back(compare(p, drev, std::string(name(integrator)) + (roots ? ", roots" : ""),
-                             rtol, runs, run));
+      rows.push_back(
+          compare(p, drev, std::string(name(integrator)) + (roots ? ", roots" : ""), rtol, runs, run));
     }
   print_best(rows);
 }

@@ -45,8 +45,7 @@ void print_row(const std::string& name, const Numbers& expected, const Numbers& 
   std::printf(" |");
   for (std::size_t i = 0; i < expected.size(); ++i) std::printf(" %.*f", digits + 2, found[i]);
   double worst = 0.0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    worst = std::max(worst, std::abs(found[i] - expected[i]));
+  for (std::size_t i = 0; i < expected.size(); ++i) worst = std::max(worst, std::abs(found[i] - expected[i]));
   std::printf(" | %.1e |\n", worst);
 }
 
@@ -69,8 +68,9 @@ TEST_CASE("Free camshaft against the reconstruction's values and the thesis") {
                                       {7, {147.30, 356.95, 573.81, 782.14, 971.07}},
                                       {8, {136.86, 329.13, 530.64, 730.20, 918.00}},
                                       {9, {120.58, 284.06, 456.11, 626.09, 788.97}}};
-  std::printf("| cylinders | mode | drev [Hz] | target [Hz] | thesis MBS [Hz] | drev to MBS | "
-              "thesis FEM [Hz] | drev to FEM |\n|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| cylinders | mode | drev [Hz] | target [Hz] | thesis MBS [Hz] | drev to MBS | "
+      "thesis FEM [Hz] | drev to FEM |\n|---|---|---|---|---|---|---|---|\n");
   double worst = 0.0, squares = 0.0, largest = 0.0;
   for (const auto& [n, expected] : target) {
     const ModeSet modes = camshaft_modes(n, "free", 5);
@@ -83,15 +83,15 @@ TEST_CASE("Free camshaft against the reconstruction's values and the thesis") {
         const double to_mbs = f / mbs.at(n)[j] - 1.0, to_fem = f / fem.at(n)[j] - 1.0;
         squares += to_mbs * to_mbs / 20.0;
         largest = std::max(largest, std::abs(to_mbs));
-        std::printf(" %.2f | %+.2f %% | %.2f | %+.2f %% |\n", mbs.at(n)[j], 100 * to_mbs,
-                    fem.at(n)[j], 100 * to_fem);
+        std::printf(" %.2f | %+.2f %% | %.2f | %+.2f %% |\n", mbs.at(n)[j], 100 * to_mbs, fem.at(n)[j],
+                    100 * to_fem);
       } else {
         std::printf(" - | - | - | - |\n");
       }
     }
   }
-  std::printf("largest difference from the target %.4f Hz; from MBS rms %.3f %%, largest %.3f %%\n",
-              worst, 100 * std::sqrt(squares), 100 * largest);
+  std::printf("largest difference from the target %.4f Hz; from MBS rms %.3f %%, largest %.3f %%\n", worst,
+              100 * std::sqrt(squares), 100 * largest);
   CHECK(worst <= 0.00501);
 }
 
@@ -104,8 +104,8 @@ TEST_CASE("Held camshaft against the reconstruction's values") {
   double worst = 0.0;
   for (const auto& [n, expected] : target) {
     const ModeSet modes = camshaft_modes(n, "held", 3);
-    std::printf("| %d | %.4f %.4f %.4f | %.3f %.3f %.3f |\n", n, modes.frequency_Hz[0],
-                modes.frequency_Hz[1], modes.frequency_Hz[2], expected[0], expected[1], expected[2]);
+    std::printf("| %d | %.4f %.4f %.4f | %.3f %.3f %.3f |\n", n, modes.frequency_Hz[0], modes.frequency_Hz[1],
+                modes.frequency_Hz[2], expected[0], expected[1], expected[2]);
     for (std::size_t j = 0; j < 3; ++j)
       worst = std::max(worst, std::abs(modes.frequency_Hz[j] - expected[j]));
   }
@@ -126,9 +126,10 @@ TEST_CASE("Published cases 1 to 6 and 10 to 12") {
   geared.add<IdealGear>("gear", {"n1", "n2"}, {.ratio = -1.0});
   print_row("2", {425.3595, 634.0728, 3247.1924}, solve_modes(geared.build()).frequency_Hz, 4);
 
-  print_row("3", {81.2076, 141.2141, 378.9530, 536.3633},
-            solve_modes(chain({3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05}, {12e3, 12e3, 14e3, 10e3}).build())
-                .frequency_Hz, 4);
+  print_row(
+      "3", {81.2076, 141.2141, 378.9530, 536.3633},
+      solve_modes(chain({3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05}, {12e3, 12e3, 14e3, 10e3}).build()).frequency_Hz,
+      4);
 
   Model branched = chain({3200, 200, 200, 800, 800, 450, 450}, {68e9 * polar(0.20) / 2.5});
   const double k = 68e9 * polar(0.25) / 3.5;
@@ -146,11 +147,15 @@ TEST_CASE("Published cases 1 to 6 and 10 to 12") {
   for (const auto& [segments, expected] : drill) {
     Model m = chain({200, 10}, {});
     m.add<DistributedShaft>("pipe", {"n0", "n1"},
-                            {.shear_modulus = 75e9, .density = 8000.0, .outer_diameter = 0.78,
-                             .inner_diameter = 0.65, .length = 800.0, .segments = segments});
+                            {.shear_modulus = 75e9,
+                             .density = 8000.0,
+                             .outer_diameter = 0.78,
+                             .inner_diameter = 0.65,
+                             .length = 800.0,
+                             .segments = segments});
     const bool continuum = segments == 2000;
-    print_row("5, " + (continuum ? "continuum, by 2000" : std::to_string(segments)) + " segments",
-              expected, solve_modes(m.build(), {.count = 4}).frequency_Hz, continuum ? 5 : 4);
+    print_row("5, " + (continuum ? "continuum, by 2000" : std::to_string(segments)) + " segments", expected,
+              solve_modes(m.build(), {.count = 4}).frequency_Hz, continuum ? 5 : 4);
   }
 
   const ModeSet windmill = solve_modes(chain({1e7, 5770, 97030}, {3.67e8, 5.496e9}).build());
@@ -167,17 +172,21 @@ TEST_CASE("Published cases 1 to 6 and 10 to 12") {
   print_row("11, 62/62 teeth", {1.7897798668}, {ratio}, 10);
   const double rb_1 = 0.5086, rb_2 = 0.03567, c = std::cos(deg(22.5));
   print_row("11, 328/23 teeth", {1.6377334309511222},
-            {involute_contact_ratio({.base_radius_1 = rb_1, .tip_radius_1 = rb_1 / c * (1 + 2.0 / 328),
-                                     .base_radius_2 = rb_2, .tip_radius_2 = rb_2 / c * (1 + 2.0 / 23),
-                                     .centre_distance = (rb_1 + rb_2) / c, .teeth_1 = 328})}, 14);
+            {involute_contact_ratio({.base_radius_1 = rb_1,
+                                     .tip_radius_1 = rb_1 / c * (1 + 2.0 / 328),
+                                     .base_radius_2 = rb_2,
+                                     .tip_radius_2 = rb_2 / c * (1 + 2.0 / 23),
+                                     .centre_distance = (rb_1 + rb_2) / c,
+                                     .teeth_1 = 328})},
+            14);
 
   Model rotor("rotor");
   for (std::size_t i = 0; i < 7; ++i) {
     rotor.add_node(numbered("n", i));
     if (i > 0)
-      rotor.add<DistributedShaft>(numbered("s", i), {numbered("n", i - 1), numbered("n", i)},
-                                  {.shear_modulus = 81.2e9, .density = 7810.0,
-                                   .outer_diameter = 0.05, .length = 0.25});
+      rotor.add<DistributedShaft>(
+          numbered("s", i), {numbered("n", i - 1), numbered("n", i)},
+          {.shear_modulus = 81.2e9, .density = 7810.0, .outer_diameter = 0.05, .length = 0.25});
   }
   rotor.add<Inertia>("disc 2", {"n2"}, {.inertia = 0.329564});
   rotor.add<Inertia>("disc 4", {"n4"}, {.inertia = 0.329564});

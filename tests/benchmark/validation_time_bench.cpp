@@ -37,8 +37,7 @@ System two_masses(const TwoMasses& c) {
     m.add<Inertia>(std::string("m_") + name, {name}, {.inertia = 10.0});
   }
   m.add<PolylineSpring>("spring_1", {"mass_1"}, PolylineSpring::dead_band(c.k_1, c.half_gap_1));
-  m.add<PolylineSpring>("spring_2", {"mass_1", "mass_2"},
-                        PolylineSpring::dead_band(c.k_2, c.half_gap_2));
+  m.add<PolylineSpring>("spring_2", {"mass_1", "mass_2"}, PolylineSpring::dead_band(c.k_2, c.half_gap_2));
   m.add<AppliedTorque>("force", {"mass_2"},
                        {.table = TimeTable({0.0, 1.0, c.release, c.released}, {0, 100, 100, 0})});
   return m.build();
@@ -50,13 +49,11 @@ struct Deviations {
   double largest_position = 0.0;
 };
 
-Deviations deviations(const std::string& name, const TwoMasses& c, const StepScheme& scheme,
-                      double step) {
+Deviations deviations(const std::string& name, const TwoMasses& c, const StepScheme& scheme, double step) {
   const System system = two_masses(c);
   Recorder r(system, {"mass_1.position_m", "mass_2.position_m"}, 0.5);
   Deviations d;
-  d.run = simulate(system, {.scheme = scheme, .step = step, .t_end = 10.0, .energy_tolerance = 10},
-                   {&r});
+  d.run = simulate(system, {.scheme = scheme, .step = step, .t_end = 10.0, .energy_tolerance = 10}, {&r});
   double worst = 0.0;
   for (const auto& row : read_csv("case_" + name + "_100N.csv")) {
     const double t = std::stod(row[0]);
@@ -83,14 +80,13 @@ TEST_CASE("Published cases 7 to 9") {
                                   {0.5, -0.3099580355, -17.2284257},
                                   {1.0, -0.1555814136, -7.0229373}}) {
     const auto i = static_cast<std::size_t>(std::lround(t / 0.05));
-    std::printf("| %.2f | %.10f | %.10f | %.7f | %.7f |\n", t, phi, r.samples(0)[i], w,
-                r.samples(1)[i]);
+    std::printf("| %.2f | %.10f | %.10f | %.7f | %.7f |\n", t, phi, r.samples(0)[i], w, r.samples(1)[i]);
   }
   const System no_gap = backlash_oscillator(50.0, 0.0);
   Recorder n(no_gap, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.1);
   simulate(no_gap, {.step = 1e-6, .t_end = 0.1}, {&n});
-  std::printf("without a gap: | 0.10 | 0.9541444033 | %.10f | -1.3039986217 | %.10f |\n",
-              n.samples(0)[1], n.samples(1)[1]);
+  std::printf("without a gap: | 0.10 | 0.9541444033 | %.10f | -1.3039986217 | %.10f |\n", n.samples(0)[1],
+              n.samples(1)[1]);
 
   const System undamped = backlash_oscillator(0.0, kPi / 4);
   Reversals reversals;
@@ -106,8 +102,10 @@ TEST_CASE("Published cases 7 to 9") {
   m.add<IdealGear>("gear", {"first", "second"}, {.ratio = -0.1});
   m.add<AppliedTorque>("drive", {"first"}, {.torque = [](double) { return 6.0; }});
   const System geared = m.build();
-  Recorder g(geared, {"first.acceleration_rad_per_s2", "second.acceleration_rad_per_s2",
-                      "first.angle_rad", "first.speed_rad_per_s"}, 0.5);
+  Recorder g(geared,
+             {"first.acceleration_rad_per_s2", "second.acceleration_rad_per_s2", "first.angle_rad",
+              "first.speed_rad_per_s"},
+             0.5);
   simulate(geared, {.step = 1e-3, .t_end = 0.5}, {&g});
   std::printf("case 9: 0.5454545455 %.10f | -0.0545454545 %.10f | 0.0681818 %.10f | 0.2727273 %.10f\n",
               g.samples(0)[1], g.samples(1)[1], g.samples(2)[1], g.samples(3)[1]);
@@ -117,8 +115,8 @@ TEST_CASE("Two masses: deviations from the exact curves") {
   std::printf("| case | h [s] | release | up to 2 s | 5 s | 10 s |\n");
   const auto print = [](const std::string& name, TwoMasses c, double h, const char* how) {
     const Deviations d = deviations(name, c, average_acceleration(), h);
-    std::printf("| %s | %g | %s | %.2e | %.2e | %.2e |\n", name.c_str(), h, how, d.up_to.at(2),
-                d.up_to.at(5), d.up_to.at(10));
+    std::printf("| %s | %g | %s | %.2e | %.2e | %.2e |\n", name.c_str(), h, how, d.up_to.at(2), d.up_to.at(5),
+                d.up_to.at(10));
   };
   for (const auto& [name, c] : kCases) print(name, c, 1e-3, "exact");
   for (auto [name, c] : kCases) {
@@ -132,9 +130,8 @@ TEST_CASE("Two masses: deviations from the exact curves") {
 TEST_CASE("Two masses: observed orders, from h = 0.5 ms and 0.25 ms") {
   std::printf("| method | A at 2.5 s | B at 2 s |\n");
   for (const std::string method :
-       {"average_acceleration", "linear_acceleration", "newmark:0.3,0.5", "hht:0.05", "hht:0.1",
-        "hht:0.3", "generalized_alpha:0.9", "generalized_alpha:0.8", "generalized_alpha:0.5",
-        "generalized_alpha:0"}) {
+       {"average_acceleration", "linear_acceleration", "newmark:0.3,0.5", "hht:0.05", "hht:0.1", "hht:0.3",
+        "generalized_alpha:0.9", "generalized_alpha:0.8", "generalized_alpha:0.5", "generalized_alpha:0"}) {
     std::printf("| %s |", method.c_str());
     for (const auto& [name, time] : {std::pair<std::string, double>{"A", 2.5}, {"B", 2.0}}) {
       const double coarse = deviations(name, kCases.at(name), step_scheme(method), 5e-4).at.at(time);
@@ -146,10 +143,13 @@ TEST_CASE("Two masses: observed orders, from h = 0.5 ms and 0.25 ms") {
 }
 
 TEST_CASE("Two masses: energy") {
-  std::printf("| case | method | h [s] | status | input [J] | worst imbalance [J] | relative | largest position [m] |\n");
+  std::printf(
+      "| case | method | h [s] | status | input [J] | worst imbalance [J] | relative | largest position [m] "
+      "|\n");
   const auto print = [](const char* name, const TwoMasses& c, const std::string& method, double h) {
     Deviations d = deviations("B", c, step_scheme(method), h);
-    const RunSummary judged = simulate(two_masses(c), {.scheme = step_scheme(method), .step = h, .t_end = 10.0});
+    const RunSummary judged =
+        simulate(two_masses(c), {.scheme = step_scheme(method), .step = h, .t_end = 10.0});
     const EnergyBalance& e = judged.energy;
     std::printf("| %s | %s | %g | %s | %.6g | %.2e | %.2e | %.3g |\n", name, method.c_str(), h,
                 to_text(judged.status), e.input, e.worst_imbalance, e.relative_error(), d.largest_position);
@@ -163,8 +163,9 @@ TEST_CASE("Two masses: energy") {
 }
 
 TEST_CASE("Held camshaft: 36 targets") {
-  std::printf("| cylinders | damping | h [ms] | deflection [deg] | target | torque [N m] | target | "
-              "static [N m] | target | amplification | target |\n");
+  std::printf(
+      "| cylinders | damping | h [ms] | deflection [deg] | target | torque [N m] | target | "
+      "static [N m] | target | amplification | target |\n");
   double worst[4] = {};
   for (const auto& row : read_csv("camshaft_transient_targets.csv")) {
     Settings s("camshaft", camshaft_entry().settings);

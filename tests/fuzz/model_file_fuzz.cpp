@@ -1,12 +1,10 @@
 // Spoils model files at random and reads them: fuzz_model_file FIRST COUNT FOLDER ...
 //
-// Every .toml below the folders is a seed; input k (from FIRST on) is made of one of them by one to four mutations
-// that depend on k alone, so that a finding can be repeated. An input must be refused by ModelError whose
-// every line names the file, a line and a column, or accepted (and then, every fourth one, written and read
-// back as the same); within kSlow seconds; and memory must not grow. Anything else is printed with the input,
-// and the exit code is 1.
-#include <sys/resource.h>
-
+// Every .toml below the folders is a seed; input k (from FIRST on) is made of one of them by one to four
+// mutations that depend on k alone, so that a finding can be repeated. An input must be refused by ModelError
+// whose every line names the file, a line and a column, or accepted (and then, every fourth one, written and
+// read back as the same); within kSlow seconds; and memory must not grow. Anything else is printed with the
+// input, and the exit code is 1.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 #include "app/model_file/export.hpp"
@@ -253,7 +252,8 @@ std::string take(const std::string& text, const std::string& path, long& accepte
     if (++accepted % 4 == 0) return write_again(file, settings, scene);
   } catch (const ModelError& error) {
     for (const Finding& finding : error.findings())
-      if (!placed(finding.place) || finding.range.empty()) return "a finding without place: " + finding.text();
+      if (!placed(finding.place) || finding.range.empty())
+        return "a finding without place: " + finding.text();
   } catch (const std::exception& error) {
     return std::string("another exception: ") + error.what();
   }

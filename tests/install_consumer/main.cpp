@@ -23,7 +23,7 @@ int main() {
   for (int i = 0; i < modes.count(); ++i) std::printf(", omega %.12g rad/s", modes.omega(i));
   std::printf(" (closed form %.12g)\n", expected);
   // Two unknowns, all eigenpairs: a few roundings, far below 1e-12.
-  const bool right = modes.rigid_modes == 1 && modes.count() == 1 &&
-                     std::abs(modes.omega(0) / expected - 1.0) < 1e-12;
+  const bool right =
+      modes.rigid_modes == 1 && modes.count() == 1 && std::abs(modes.omega(0) / expected - 1.0) < 1e-12;
   return right ? 0 : 1;
 }

@@ -92,8 +92,8 @@ class AdviceModelMaker {
                    .static_turn = kTwoPi / ratio};
   }
 
-  void mesh(Model& m, const std::string& name, const std::string& a, const std::string& b,
-            double ratio, Random& random) {
+  void mesh(Model& m, const std::string& name, const std::string& a, const std::string& b, double ratio,
+            Random& random) {
     const double k = tooth_k_, swing = random(0.1, 0.3), contact_ratio = random(1.3, 1.7);
     const bool stepped = kind_ == 4 || kind_ == 5;
     m.add<GearMesh>(
@@ -103,16 +103,14 @@ class AdviceModelMaker {
          .teeth_1 = kTeeth,
          .stiffness = !stepped ? MeshStiffness(k)
                       : seed_ % 2
-                          ? MeshStiffness::fourier_of_step((1 - swing) * k, (1 + swing) * k,
-                                                           contact_ratio, 3)
+                          ? MeshStiffness::fourier_of_step((1 - swing) * k, (1 + swing) * k, contact_ratio, 3)
                           : MeshStiffness::step((1 - swing) * k, (1 + swing) * k, contact_ratio),
          .normal_backlash = random(0.5e-4, 2e-4),
          .damping = kind_ == 3 || seed_ == 0 ? 0.02 * std::sqrt(k * 50.0) : 0.0,
          .damping_law = MeshDamping::limited});
   }
 
-  std::vector<std::string> distributed(Model& m, std::vector<std::string>& torques,
-                                       Random& random) {
+  std::vector<std::string> distributed(Model& m, std::vector<std::string>& torques, Random& random) {
     m.add_node("mid");
     m.add_node("end");
     const int n = kind_ == 0 ? 20 + 35 * seed_ : 20 + 15 * seed_;
@@ -142,8 +140,7 @@ class AdviceModelMaker {
     for (int i = 1; i <= stations; ++i) {
       const std::string node = i == stations ? "end" : "station_" + std::to_string(i);
       m.add_node(node);
-      m.add<Inertia>("J_" + node, {node},
-                     {.inertia = 2.0 * inertia_ / stations * random(0.5, 1.5)});
+      m.add<Inertia>("J_" + node, {node}, {.inertia = 2.0 * inertia_ / stations * random(0.5, 1.5)});
       m.add<ShaftSpring>("shaft_" + std::to_string(i), {last, node},
                          {.stiffness = stiffness_ * stations * random(0.6, 1.6)});
       torques.push_back("shaft_" + std::to_string(i) + ".torque_Nm");
@@ -163,17 +160,15 @@ class AdviceModelMaker {
           x.push_back(kTwoPi * k / 90.0);
           y.push_back(torque * (k < 30 ? std::sin(kTwoPi * k / 30.0) : 0.0));
         }
-        m.add<CamTorque>(
-            "cam_" + nodes[i], {nodes[i]},
-            {.angle_table = PeriodicTable(x, y, kTwoPi), .phase = 2.4 * static_cast<double>(i)});
+        m.add<CamTorque>("cam_" + nodes[i], {nodes[i]},
+                         {.angle_table = PeriodicTable(x, y, kTwoPi), .phase = 2.4 * static_cast<double>(i)});
         continue;
       }
       const double order = std::max(0.5, 0.5 * std::round(2.0 * orders * random(0.2, 0.7)));
-      m.add<EngineOrderTorque>(
-          "load_" + nodes[i], {nodes[i]},
-          {.harmonics = {{order, swing * share * torque, random(0.0, 6.0)},
-                         {2.0 * order, 0.4 * swing * share * torque, random(0.0, 6.0)}},
-           .mean = -mean * share * torque});
+      m.add<EngineOrderTorque>("load_" + nodes[i], {nodes[i]},
+                               {.harmonics = {{order, swing * share * torque, random(0.0, 6.0)},
+                                              {2.0 * order, 0.4 * swing * share * torque, random(0.0, 6.0)}},
+                                .mean = -mean * share * torque});
     }
   }
 
@@ -184,8 +179,7 @@ class AdviceModelMaker {
     for (int i = 0; i < system.node_count(); ++i) {
       const NodeMap& map = system.node_map(i);
       if (map.unknown >= 0)
-        scene_.model.set_initial(system.node_names()[at(i)], map.coeff * rest.state.z[map.unknown],
-                                 0.0);
+        scene_.model.set_initial(system.node_names()[at(i)], map.coeff * rest.state.z[map.unknown], 0.0);
     }
   }
 

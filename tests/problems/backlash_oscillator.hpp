@@ -15,10 +15,10 @@ inline drev::System backlash_oscillator(double damping, double gap) {
   m.add<drev::Inertia>("J", {"disc"}, {.inertia = 5.0});
   m.add<drev::LawElement<TwistBacklash>>(
       "stop", {"disc"},
-      TwistBacklash{drev::BacklashLaw({.normal_backlash = gap,
-                                       .damping = damping,
-                                       .damping_law = drev::MeshDamping::limited}),
-                    2e4});
+      TwistBacklash{
+          drev::BacklashLaw(
+              {.normal_backlash = gap, .damping = damping, .damping_law = drev::MeshDamping::limited}),
+          2e4});
   m.set_initial("disc", drev::kPi / 2, 0.0);
   return m.build();
 }
@@ -33,11 +33,9 @@ inline constexpr double kCase7[4][3] = {{0.1, 0.2498358550, 52.8937186},
 class Reversals final : public drev::Observer {
  public:
   void start(const drev::Assembler&, const drev::StepPoint&) override {}
-  void step(const drev::Assembler&, const drev::StepPoint& from,
-            const drev::StepPoint& to) override {
+  void step(const drev::Assembler&, const drev::StepPoint& from, const drev::StepPoint& to) override {
     const double v0 = from.state.v[0], v1 = to.state.v[0];
-    if (v0 * v1 < 0.0)
-      times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
+    if (v0 * v1 < 0.0) times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
   }
   std::vector<double> times;
 };

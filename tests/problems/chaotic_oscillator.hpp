@@ -14,8 +14,8 @@ inline drev::System chaotic_oscillator() {
   m.add<drev::Dashpot>("c", {"hub", "x"}, {.damping = 0.1});
   m.add<drev::PolylineSpring>("stop", {"hub", "x"}, drev::PolylineSpring::dead_band(1.0, 1.0));
   // The hub turns at 1 rad/s, so that the angle of x is the time.
-  m.add<drev::EngineOrderTorque>(
-      "load", {"x"}, {.harmonics = {{1.0, 0.5, 0.0}}, .mean = 0.1, .twist_feedback = false});
+  m.add<drev::EngineOrderTorque>("load", {"x"},
+                                 {.harmonics = {{1.0, 0.5, 0.0}}, .mean = 0.1, .twist_feedback = false});
   m.constant_speed("hub", 1.0);
   return m.build();
 }

@@ -16,11 +16,9 @@ inline Eigen::MatrixXd dense(const System& system, const Vector& values) {
 }
 
 /// K z + C v + laws + general elements - loads: everything but the inertia.
-inline Vector forces(const Assembler& assembler, const Vector& z, const Vector& v,
-                     const Vector& history) {
+inline Vector forces(const Assembler& assembler, const Vector& z, const Vector& v, const Vector& history) {
   const System& system = assembler.system();
-  Vector f = dense(system, system.stiffness_values()) * z +
-             dense(system, system.damping_values()) * v;
+  Vector f = dense(system, system.stiffness_values()) * z + dense(system, system.damping_values()) * v;
   Vector p, history_new(history.size());
   assembler.add_scalar_forces(z, v, f);
   assembler.add_general_forces(z, v, history, f, history_new);

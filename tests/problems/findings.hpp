@@ -25,8 +25,7 @@ inline bool contains(const std::string& text, const std::string& part) {
 }
 
 /// How many of the texts hold every part.
-inline long count_with(const std::vector<std::string>& texts,
-                       const std::vector<std::string>& parts) {
+inline long count_with(const std::vector<std::string>& texts, const std::vector<std::string>& parts) {
   return std::count_if(texts.begin(), texts.end(), [&](const std::string& text) {
     return std::all_of(parts.begin(), parts.end(),
                        [&](const std::string& part) { return contains(text, part); });

@@ -49,8 +49,7 @@ class Maxwell final : public HistoryElement {
              double& slope) const override {
     const double a = 0.5 * (t - before[0]) * p_.stiffness / p_.damping;
     slope = p_.stiffness / (1.0 + a);
-    const double y =
-        ((1.0 - a) * before[2] + p_.stiffness * (x - before[1])) / (1.0 + a);
+    const double y = ((1.0 - a) * before[2] + p_.stiffness * (x - before[1])) / (1.0 + a);
     after[0] = t, after[1] = x, after[2] = y;
     return y;
   }
@@ -96,9 +95,7 @@ class Circulatory final : public Element, public GeneralForce {
   explicit Circulatory(Params p) : p_(p) {}
   std::string_view type() const override { return "circulatory coupling"; }
   int min_nodes() const override { return 2; }
-  void check(ParameterCheck& check) const override {
-    check.finite("coupling", p_.coupling, "N m/rad");
-  }
+  void check(ParameterCheck& check) const override { check.finite("coupling", p_.coupling, "N m/rad"); }
   void describe(int, Terms& terms) const override { terms.generals.push_back(this); }
   bool symmetric_tangent() const override { return false; }
   void evaluate(const LocalState& s, LocalResponse& r) const override {

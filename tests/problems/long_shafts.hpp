@@ -25,14 +25,11 @@ inline System long_shafts(int segments, bool mesh, double omega) {
   m.add<DistributedShaft>("s1", {"a", "b"}, shaft);
   m.add<DistributedShaft>("s2", {"c", "d"}, shaft);
   if (mesh)
-    m.add<GearMesh>("mesh", {"b", "c"}, {.base_radius_1 = 0.1,
-                                         .base_radius_2 = 0.1,
-                                         .stiffness = 1e8,
-                                         .normal_backlash = 1e-4});
+    m.add<GearMesh>("mesh", {"b", "c"},
+                    {.base_radius_1 = 0.1, .base_radius_2 = 0.1, .stiffness = 1e8, .normal_backlash = 1e-4});
   else
     m.add<ShaftSpring>("mesh", {"b", "c"}, {.stiffness = 1e6});
-  m.add<AppliedTorque>("drive", {"a"},
-                       {.torque = [omega](double t) { return 2000 * std::sin(omega * t); }});
+  m.add<AppliedTorque>("drive", {"a"}, {.torque = [omega](double t) { return 2000 * std::sin(omega * t); }});
   m.add<AppliedTorque>("load", {"d"}, {.torque = [](double t) { return 500 * std::sin(90 * t); }});
   return m.build();
 }

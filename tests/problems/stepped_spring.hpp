@@ -21,9 +21,7 @@ struct SteppedSpring {
     const auto passed = std::upper_bound(jumps.begin(), jumps.end(), in.t) - jumps.begin();
     const double k = passed % 2 == 0 ? both : single;
     const double p = in.x - std::clamp(in.x, -half_gap, half_gap);
-    return {.y = k * p,
-            .dy_dx = p != 0.0 || half_gap == 0.0 ? k : 0.0,
-            .stored_energy = 0.5 * k * p * p};
+    return {.y = k * p, .dy_dx = p != 0.0 || half_gap == 0.0 ? k : 0.0, .stored_energy = 0.5 * k * p * p};
   }
 };
 
@@ -35,16 +33,14 @@ struct SteppedOscillator {
 
   System build() const {
     std::vector<double> jumps;
-    for (int i = 0; i < periods; ++i)
-      jumps.push_back((i + duty) * period), jumps.push_back((i + 1) * period);
+    for (int i = 0; i < periods; ++i) jumps.push_back((i + duty) * period), jumps.push_back((i + 1) * period);
     Model m("stepped spring");
     m.add_node("m", NodeKind::translational);
     m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
     m.add<LawElement<SteppedSpring>>("k", {"m"}, {both, single, half_gap, jumps});
     m.add<Dashpot>("c", {"m"}, {.damping = damping});
     const double force = load;
-    m.add<AppliedTorque>("load", {"m"},
-                         {.torque = [force](double) { return force; }, .breakpoints = jumps});
+    m.add<AppliedTorque>("load", {"m"}, {.torque = [force](double) { return force; }, .breakpoints = jumps});
     return m.build();
   }
 };

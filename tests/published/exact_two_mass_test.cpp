@@ -29,20 +29,19 @@ System build_exact_case(const std::string& name) {
 TEST_CASE("Exact propagation, two masses with backlash: curves and contact changes to 1e-11") {
   for (const std::string name : {"case_A", "case_A2", "case_B"}) {
     const System system = build_exact_case(name);
-    Recorder recorder(system,
-                      {"mass_1.position_m", "mass_2.position_m", "mass_1.velocity_m_per_s",
-                       "mass_2.velocity_m_per_s"},
-                      0.5);
+    Recorder recorder(
+        system,
+        {"mass_1.position_m", "mass_2.position_m", "mass_1.velocity_m_per_s", "mass_2.velocity_m_per_s"},
+        0.5);
     ContactStatistics contacts(system);
     std::vector<ContactChange> changes;
     // A2 multiplies a deviation by 2.6e4 in 10 s: the tolerance is near rounding.
-    const RunSummary run =
-        propagate(system,
-                  {.tolerance = 1e-15,
-                   .t_end = 10.0,
-                   .energy_tolerance = 1e-11,
-                   .on_change = [&](const ContactChange& c) { changes.push_back(c); }},
-                  {&recorder, &contacts});
+    const RunSummary run = propagate(system,
+                                     {.tolerance = 1e-15,
+                                      .t_end = 10.0,
+                                      .energy_tolerance = 1e-11,
+                                      .on_change = [&](const ContactChange& c) { changes.push_back(c); }},
+                                     {&recorder, &contacts});
     INFO(name << ": " << run.brief_report());
     CHECK(run.ok());
     CHECK(run.scheme == "exact");
@@ -52,9 +51,8 @@ TEST_CASE("Exact propagation, two masses with backlash: curves and contact chang
     double worst = 0.0;
     for (std::size_t i = 0; i < curve.size(); ++i)
       for (std::size_t c = 0; c < 4; ++c)
-        worst =
-            std::max(worst, std::abs(recorder.samples(c)[i + 1] - std::stod(curve[i][c + 1])) *
-                                (c < 2 ? 1.0 : 0.1));  // velocities in m/s are 10 times as large
+        worst = std::max(worst, std::abs(recorder.samples(c)[i + 1] - std::stod(curve[i][c + 1])) *
+                                    (c < 2 ? 1.0 : 0.1));  // velocities in m/s are 10 times as large
     CHECK(worst < 1e-11);
 
     // Every change of the table and no other, in its order; pieces 0, 1, 2: behind, in the gap, in

@@ -72,9 +72,8 @@ TEST_CASE("Geared pair of ratio 1 (Friswell, in openTorsion's tests)", "[publish
 }
 
 TEST_CASE("Five discs (Friswell 9.7.1)", "[published][modes]") {
-  check_free(
-      solve_modes(chain({3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05}, {12e3, 12e3, 14e3, 10e3}).build()),
-      {81.2076, 141.2141, 378.9530, 536.3633}, 0.5e-4);
+  check_free(solve_modes(chain({3.5e-3, 3.5e-3, 3.5e-3, 0.15, 0.05}, {12e3, 12e3, 14e3, 10e3}).build()),
+             {81.2076, 141.2141, 378.9530, 536.3633}, 0.5e-4);
 }
 
 TEST_CASE("Branched and geared (Friswell 9.6.3)", "[published][modes]") {
@@ -119,8 +118,7 @@ TEST_CASE("Drill string with distributed inertia (Friswell 9.9)", "[published][m
   const double exact[] = {1.91033, 3.82066, 5.73100, 7.64133};
   const ModeSet coarse = solve(100), fine = solve(200), finest = solve(2000);
   for (std::size_t j = 0; j < 4; ++j) {
-    CHECK(std::abs(finest.frequency_Hz[j] - exact[j]) <
-          2e-5);  // 1e-5 of rounding, 1e-5 of 2000 segments
+    CHECK(std::abs(finest.frequency_Hz[j] - exact[j]) < 2e-5);  // 1e-5 of rounding, 1e-5 of 2000 segments
     const double order = std::log2((coarse.frequency_Hz[j] - finest.frequency_Hz[j]) /
                                    (fine.frequency_Hz[j] - finest.frequency_Hz[j]));
     CHECK(order == Approx(2.0).margin(0.02));
@@ -164,12 +162,10 @@ namespace {
 /// The thesis' camshaft of N cylinders, gear to free end, with parameters reconstructed from its
 /// printed frequencies (not the builder's data).
 Model camshaft(int cylinders) {
-  const std::map<int, double> end = {
-      {6, 0.4382}, {7, 0.3015}, {8, 0.04305}, {9, 0.2854}, {10, 0.3417}};
+  const std::map<int, double> end = {{6, 0.4382}, {7, 0.3015}, {8, 0.04305}, {9, 0.2854}, {10, 0.3417}};
   std::vector<double> inertias = {6.461}, stiffnesses = {8.75e7};  // gear
   for (int i = 0; i < cylinders; ++i) {
-    inertias.insert(inertias.end(),
-                    {0.5204, 0.1546, 0.1009, 0.1098});  // journal, fuel, exhaust, inlet
+    inertias.insert(inertias.end(), {0.5204, 0.1546, 0.1009, 0.1098});  // journal, fuel, exhaust, inlet
     stiffnesses.insert(stiffnesses.end(), {5.90e7, 3.553e7, 3.193e7, 4.050e7});
   }
   inertias.push_back(end.at(cylinders));
@@ -202,8 +198,7 @@ TEST_CASE("Camshaft, free and with its gear held: an independent solver's freque
     const ModeSet modes = solve_modes(model.build(), {.count = 3});
     CHECK(modes.rigid_modes == 0);
     CHECK(modes.summary.sturm_count == 3);
-    for (std::size_t j = 0; j < 3; ++j)
-      CHECK(std::abs(modes.frequency_Hz[j] - expected[j]) <= 0.000501);
+    for (std::size_t j = 0; j < 3; ++j) CHECK(std::abs(modes.frequency_Hz[j] - expected[j]) <= 0.000501);
   }
 }
 
@@ -211,11 +206,10 @@ TEST_CASE("Camshaft against the thesis' tables 5.1 to 5.4", "[published][modes]"
   // Multibody values as printed, except mode 5 of 9 cylinders: 788.97 and 802.28 are swapped there
   // (the printed difference of +1.66 % says so). The reconstruction is a fit to these twenty
   // values: rms 0.42 %, largest 0.95 %.
-  const std::map<int, std::vector<double>> printed = {
-      {6, {167.10, 412.70, 659.60, 886.00, 1075.30}},
-      {7, {149.71, 361.48, 584.16, 800.53, 996.76}},
-      {8, {138.20, 331.56, 535.70, 737.20, 927.68}},
-      {9, {122.66, 287.15, 461.77, 635.45, 802.28}}};
+  const std::map<int, std::vector<double>> printed = {{6, {167.10, 412.70, 659.60, 886.00, 1075.30}},
+                                                      {7, {149.71, 361.48, 584.16, 800.53, 996.76}},
+                                                      {8, {138.20, 331.56, 535.70, 737.20, 927.68}},
+                                                      {9, {122.66, 287.15, 461.77, 635.45, 802.28}}};
   double squares = 0.0, largest = 0.0;
   for (const auto& [cylinders, expected] : printed) {
     const ModeSet modes = solve_modes(camshaft(cylinders).build(), {.count = 5});

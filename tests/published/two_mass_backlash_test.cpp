@@ -15,8 +15,7 @@ using namespace drev;
 
 namespace {
 
-System build_case(const std::string& name, const std::string& k_1 = "2000",
-                  const std::string& k_2 = "") {
+System build_case(const std::string& name, const std::string& k_1 = "2000", const std::string& k_2 = "") {
   const bool b = name == "case_B";
   Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
   s.set("k_1_N_per_m", k_1);
@@ -33,12 +32,11 @@ struct Deviations {
   double largest_position = 0.0;
 };
 
-Deviations deviations(const std::string& name, const System& system, const StepScheme& scheme,
-                      double step) {
+Deviations deviations(const std::string& name, const System& system, const StepScheme& scheme, double step) {
   Recorder recorder(system, {"mass_1.position_m", "mass_2.position_m"}, 0.5);
   Deviations d;
-  d.run = simulate(system, {.scheme = scheme, .step = step, .t_end = 10.0, .energy_tolerance = 1.0},
-                   {&recorder});
+  d.run =
+      simulate(system, {.scheme = scheme, .step = step, .t_end = 10.0, .energy_tolerance = 1.0}, {&recorder});
   double worst = 0.0;
   for (const auto& row : read_csv(name + "_100N.csv")) {
     const double t = std::stod(row[0]);
@@ -50,8 +48,8 @@ Deviations deviations(const std::string& name, const System& system, const StepS
     d.up_to[t] = worst;
   }
   for (std::size_t i = 0; i < recorder.times().size(); ++i)
-    d.largest_position = std::max({d.largest_position, std::abs(recorder.samples(0)[i]),
-                                   std::abs(recorder.samples(1)[i])});
+    d.largest_position =
+        std::max({d.largest_position, std::abs(recorder.samples(0)[i]), std::abs(recorder.samples(1)[i])});
   return d;
 }
 
@@ -87,13 +85,11 @@ TEST_CASE("Two masses with backlash: every implicit method is of order 2.00 +- 0
   // Up to 2 s case B has two contact changes; A is linear, with the jump of the load at 2 s behind it at
   // 2.5 s. Later in B, A2 the deviations are amplified and lose their regular decrease.
   for (const std::string method :
-       {"average_acceleration", "linear_acceleration", "newmark:0.3,0.5", "hht:0.05", "hht:0.1",
-        "hht:0.3", "generalized_alpha:0.9", "generalized_alpha:0.8", "generalized_alpha:0.5",
-        "generalized_alpha:0"}) {
+       {"average_acceleration", "linear_acceleration", "newmark:0.3,0.5", "hht:0.05", "hht:0.1", "hht:0.3",
+        "generalized_alpha:0.9", "generalized_alpha:0.8", "generalized_alpha:0.5", "generalized_alpha:0"}) {
     INFO(method);
     const StepScheme scheme = step_scheme(method);
-    for (const auto& [name, time] :
-         {std::pair<std::string, double>{"case_A", 2.5}, {"case_B", 2.0}}) {
+    for (const auto& [name, time] : {std::pair<std::string, double>{"case_A", 2.5}, {"case_B", 2.0}}) {
       const System system = build_case(name);
       const double coarse = deviations(name, system, scheme, 5e-4).at.at(time);
       const double fine = deviations(name, system, scheme, 2.5e-4).at.at(time);

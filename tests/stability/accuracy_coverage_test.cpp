@@ -26,8 +26,7 @@ System random_chain(unsigned seed, bool contacts) {
     m.add_node(n);
     m.add<Inertia>("J" + n, {n}, {.inertia = random(0.5, 3.0)});
     const double k = random(20.0, 300.0);
-    const std::vector<NodeRef> ends =
-        i == 0 ? std::vector<NodeRef>{n} : std::vector<NodeRef>{last, n};
+    const std::vector<NodeRef> ends = i == 0 ? std::vector<NodeRef>{n} : std::vector<NodeRef>{last, n};
     if (contacts && (i == 0 || engine() % 2))
       m.add("spring" + n, ends,
             std::make_shared<PolylineSpring>(PolylineSpring::dead_band(k, random(0.005, 0.05))));
@@ -52,8 +51,7 @@ TEST_CASE("Accuracy: the stated error covers the true one on 80 random models") 
   for (unsigned seed = 1; seed <= 80; ++seed) {
     const System system = random_chain(seed, seed % 2 == 0);
     const std::string last = system.node_names().back();
-    AccuracyOptions o{
-        .t_end = 3.0, .deflection = last + ".angle_rad", .torques = {"springn0.torque_Nm"}};
+    AccuracyOptions o{.t_end = 3.0, .deflection = last + ".angle_rad", .torques = {"springn0.torque_Nm"}};
     o.method = {.name = "exact"};
     o.accuracy = 1e-10;
     const AccuracyResult truth = run_to_accuracy(system, o);

@@ -25,22 +25,19 @@ Method another(const Method& method) {
 void check_promise(const Scene& scene, const Advice& a) {
   INFO(scene.model.name() << ": " << a.sentence);
   for (const Rung& rung : a.rungs)
-    UNSCOPED_INFO(rung.name << ": " << rung.value << " +- " << rung.error
-                            << (rung.holds ? " holds" : "") << "; " << rung.unsuitable
-                            << rung.evidence);
+    UNSCOPED_INFO(rung.name << ": " << rung.value << " +- " << rung.error << (rung.holds ? " holds" : "")
+                            << "; " << rung.unsuitable << rung.evidence);
   const Rung& full = a.full();
   const System system = scene.model.build();
   const double truth = figure_of_run(system, another(full.recipe.method), full.recipe.figure);
-  if (a.chosen + 1 == a.rungs.size() &&
-      a.statistic) {  // runs of the full model itself differ by more
+  if (a.chosen + 1 == a.rungs.size() && a.statistic) {  // runs of the full model itself differ by more
     CHECK(std::abs(full.value - truth) <= 2.0 * full.error);
     return;
   }
   CHECK(std::abs(a.best().recipe.run() - truth) <= kWithin * std::abs(truth));
   // Nor does any other rung that is said to hold.
   for (const Rung& rung : a.rungs)
-    if (rung.holds && !a.statistic)
-      CHECK(std::abs(rung.value - truth) <= kWithin * std::abs(truth));
+    if (rung.holds && !a.statistic) CHECK(std::abs(rung.value - truth) <= kWithin * std::abs(truth));
 }
 
 Settings camshaft(int cylinders, double engine_rpm, const char* drive) {
@@ -63,8 +60,7 @@ double worst_speed(int cylinders) {
     const Scene scene = build_camshaft(camshaft(cylinders, speed, "held"));
     const PeriodicResponse r =
         solve_periodic(scene.model.build(), {.tolerance = 0.02, .channels = {scene.deflection}});
-    if (r.found && r.peaks[0].amplitude() > largest)
-      largest = r.peaks[0].amplitude(), worst = speed;
+    if (r.found && r.peaks[0].amplitude() > largest) largest = r.peaks[0].amplitude(), worst = speed;
   }
   return worst;
 }
@@ -74,8 +70,8 @@ void check_models(int begin, int end) {
   for (int i = begin; i < end; ++i) {
     const Scene scene = test::advice_model(i);
     // One in four for the torques.
-    const Advice a = advise(
-        scene, {.figure = i % 4 == 3 ? "peak torque" : "peak deflection", .within = kWithin});
+    const Advice a =
+        advise(scene, {.figure = i % 4 == 3 ? "peak torque" : "peak deflection", .within = kWithin});
     check_promise(scene, a);
     simpler += a.chosen + 1 < a.rungs.size();
   }

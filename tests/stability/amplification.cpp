@@ -17,8 +17,8 @@ System unit_frequency(double xi) {
   return m.build();
 }
 
-std::vector<Eigen::Vector3d> run_steps(const System& system, const std::string& method,
-                                       double h, double z, double v, int count) {
+std::vector<Eigen::Vector3d> run_steps(const System& system, const std::string& method, double h, double z,
+                                       double v, int count) {
   class Keep final : public Observer {
    public:
     void start(const Assembler&, const StepPoint& p) override { keep(p); }

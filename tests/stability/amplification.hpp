@@ -20,8 +20,8 @@ namespace drev::problems {
 System unit_frequency(double xi);
 
 /// (z, v, a) after 0, 1 ... count steps of h.
-std::vector<Eigen::Vector3d> run_steps(const System& system, const std::string& method, double h,
-                                       double z, double v, int count);
+std::vector<Eigen::Vector3d> run_steps(const System& system, const std::string& method, double h, double z,
+                                       double v, int count);
 
 /// omega h and xi -> A.
 Eigen::MatrixXd amplification(const std::string& method, double omega_h, double xi = 0.0);

@@ -15,8 +15,7 @@ using namespace drev::problems;
 namespace {
 
 System rattle(double x = 0.0) {
-  return DrivenGear{
-      .half_gap = 1.0, .damping = 0.1, .mean = 0.1, .harmonics = {{1.0, 0.5, 0.0}}, .x = x}
+  return DrivenGear{.half_gap = 1.0, .damping = 0.1, .mean = 0.1, .harmonics = {{1.0, 0.5, 0.0}}, .x = x}
       .build();
 }
 
@@ -63,8 +62,7 @@ Statistics statistics(const std::vector<double>& x, std::size_t first) {
 /// Within three standard errors of 5000 periods by a separate program (exact pieces).
 void check(const Statistics& s) {
   const auto compare = [](const char* what, Figure got, double value, double error) {
-    INFO(what << ": " << got.value << " +- " << got.error << ", expected " << value << " +- "
-              << error);
+    INFO(what << ": " << got.value << " +- " << got.error << ", expected " << value << " +- " << error);
     CHECK(std::abs(got.value - value) < 3.0 * std::hypot(got.error, error));
     CHECK(got.error < 3.0 * error);
   };
@@ -80,11 +78,9 @@ void check(const Statistics& s) {
 TEST_CASE("Chaotic rattle: statistics of 5000 periods by exact propagation") {
   const System system = rattle();
   Recorder r(system, {"wheel.angle_rad"}, kTwoPi / kSamples);
-  const RunSummary run = propagate(system,
-                                   {.tolerance = 1e-8,
-                                    .t_end = (kBatches * kPeriods + 100.5) * kTwoPi,
-                                    .energy_tolerance = 1e-4},
-                                   {&r});
+  const RunSummary run = propagate(
+      system, {.tolerance = 1e-8, .t_end = (kBatches * kPeriods + 100.5) * kTwoPi, .energy_tolerance = 1e-4},
+      {&r});
   INFO(run.brief_report());
   CHECK(run.ok());
   check(statistics(r.samples(0), 100 * kSamples));
@@ -93,11 +89,10 @@ TEST_CASE("Chaotic rattle: statistics of 5000 periods by exact propagation") {
 TEST_CASE("Chaotic rattle: statistics by average acceleration with 50 steps a period") {
   const System system = rattle();
   Recorder r(system, {"wheel.angle_rad"}, kTwoPi / kSamples);
-  const RunSummary run = simulate(system,
-                                  {.step = kTwoPi / kSamples,
-                                   .t_end = (kBatches * kPeriods + 100.5) * kTwoPi,
-                                   .energy_tolerance = 1.0},
-                                  {&r});
+  const RunSummary run = simulate(
+      system,
+      {.step = kTwoPi / kSamples, .t_end = (kBatches * kPeriods + 100.5) * kTwoPi, .energy_tolerance = 1.0},
+      {&r});
   INFO(run.brief_report());
   check(statistics(r.samples(0), 100 * kSamples));
 }
@@ -117,8 +112,7 @@ TEST_CASE("Chaotic rattle: a deviation of 1e-12 reaches 0.05 after some 35 perio
     propagate(system, options, second, {&b});
     double parted = 0.0;
     for (std::size_t i = 0; i < a.times().size() && parted == 0.0; ++i)
-      if (std::abs(a.samples(0)[i] - b.samples(0)[i]) > 0.05)
-        parted = (a.times()[i] - start) / kTwoPi;
+      if (std::abs(a.samples(0)[i] - b.samples(0)[i]) > 0.05) parted = (a.times()[i] - start) / kTwoPi;
     INFO("deviation " << deviation << " parted after " << parted);
     CHECK(parted > low);
     CHECK(parted < high);

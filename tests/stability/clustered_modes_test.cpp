@@ -35,8 +35,7 @@ double lambda(const ModeSet& modes, int j) { return modes.omega(j) * modes.omega
 
 }  // namespace
 
-TEST_CASE("Branches that differ by little: one mode between each two of their own frequencies",
-          "[modes]") {
+TEST_CASE("Branches that differ by little: one mode between each two of their own frequencies", "[modes]") {
   // Cauchy's interlacing: with the hub held, branch i has (3 -+ sqrt 5)/2 (1 + i d); letting one
   // freedom go puts exactly one eigenvalue between each two of them.
   const double low = (3.0 - std::sqrt(5.0)) / 2.0, high = (3.0 + std::sqrt(5.0)) / 2.0;
@@ -53,8 +52,7 @@ TEST_CASE("Branches that differ by little: one mode between each two of their ow
           CHECK(lambda(modes, first + j) <= own * (1.0 + (j + 1) * mistuning + rounding));
         }
       // A count that ends inside the cluster returns its lowest members.
-      const ModeSet some =
-          solve_modes(hub(branches, mistuning), {.count = 3, .dense_limit = limit});
+      const ModeSet some = solve_modes(hub(branches, mistuning), {.count = 3, .dense_limit = limit});
       for (int j = 0; j < 3; ++j) CHECK(lambda(some, j) == Approx(lambda(modes, j)).epsilon(2e-12));
     }
 }
@@ -66,8 +64,7 @@ TEST_CASE("Modes too close to count between them, yet apart: counted behind thei
     for (const double mistuning : {1e-6, 1e-7, 1e-8, 1e-9})
       for (const int limit : {kAlwaysLanczos, kAlwaysDense}) {
         INFO(branches << " branches, " << mistuning << (limit == kAlwaysDense ? ", dense" : ", Lanczos"));
-        const ModeSet modes =
-            solve_modes(hub(branches, mistuning), {.count = 2, .dense_limit = limit});
+        const ModeSet modes = solve_modes(hub(branches, mistuning), {.count = 2, .dense_limit = limit});
         for (int j = 0; j < 2; ++j) {
           CHECK(lambda(modes, j) >= low * (1.0 + j * mistuning - 1e-12));
           CHECK(lambda(modes, j) <= low * (1.0 + (j + 1) * mistuning + 1e-12));
@@ -75,8 +72,7 @@ TEST_CASE("Modes too close to count between them, yet apart: counted behind thei
       }
 }
 
-TEST_CASE("Inertias and stiffnesses over twelve decades in one chain: closed form to 1e-12",
-          "[modes]") {
+TEST_CASE("Inertias and stiffnesses over twelve decades in one chain: closed form to 1e-12", "[modes]") {
   // J_i = s r^i, k_i = s r^i between i and i + 1: lambda_j = 1 + 1/r - 2/sqrt r cos(j pi/n), j = 1 ... n - 1,
   // from the recurrence of the shaft torques, whose coefficients are constant.
   for (const double scale : {1e-6, 1.0, 1e6})
@@ -88,8 +84,7 @@ TEST_CASE("Inertias and stiffnesses over twelve decades in one chain: closed for
         model.add_node(name("n", i));
         model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = factor});
         if (i > 0)
-          model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)},
-                                 {.stiffness = factor / r});
+          model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)}, {.stiffness = factor / r});
       }
       const System system = model.build();
       for (const int limit : {kAlwaysLanczos, kAlwaysDense}) {

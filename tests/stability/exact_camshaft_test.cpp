@@ -22,9 +22,7 @@ System camshaft(const std::string& drive, const std::string& loads, const std::s
   return camshaft_entry().build(s).model.build();
 }
 
-double largest_difference(const Vector& a, const Vector& b) {
-  return (a - b).lpNorm<Eigen::Infinity>();
-}
+double largest_difference(const Vector& a, const Vector& b) { return (a - b).lpNorm<Eigen::Infinity>(); }
 
 }  // namespace
 
@@ -60,8 +58,7 @@ TEST_CASE("Exact propagation, camshaft with gear drive: as far as the trajectory
   const double end = 0.05;
   State exact = State::initial(system), tight = exact, fine = exact, stepped = exact;
   ContactStatistics contacts(system), stepped_contacts(system);
-  const RunSummary run =
-      propagate(system, {.t_end = end, .energy_tolerance = 1e-10}, exact, {&contacts});
+  const RunSummary run = propagate(system, {.t_end = end, .energy_tolerance = 1e-10}, exact, {&contacts});
   INFO(run.brief_report());
   CHECK(run.ok());
   CHECK(run.contact_changes > 10);
@@ -70,9 +67,8 @@ TEST_CASE("Exact propagation, camshaft with gear drive: as far as the trajectory
   CHECK(simulate(system, {.step = 1e-6, .t_end = end}, stepped, {&stepped_contacts}).ok());
   const double peak = exact.z.lpNorm<Eigen::Infinity>();
   INFO("gears: Runge-Kutta 2.5e-7, average acceleration 1e-6, tolerance 1e-14 differ by "
-       << largest_difference(exact.z, fine.z) / peak << ", "
-       << largest_difference(exact.z, stepped.z) / peak << ", "
-       << largest_difference(exact.z, tight.z) / peak);
+       << largest_difference(exact.z, fine.z) / peak << ", " << largest_difference(exact.z, stepped.z) / peak
+       << ", " << largest_difference(exact.z, tight.z) / peak);
   CHECK(largest_difference(exact.z, tight.z) < 1e-8 * peak);
   CHECK(largest_difference(exact.z, fine.z) < 1e-6 * peak);
   CHECK(largest_difference(exact.z, stepped.z) < 1e-3 * peak);

@@ -108,8 +108,7 @@ class PieceCheck final : public Observer {
           x_dot += e.coeff * y[n + e.index] / h;
         }
         for (const LawBound& b : system_.scalars()[j].force->pieces()[at(pieces_[j])].bounds) {
-          const double scale =
-              std::abs(b.a) + std::abs(b.b_x) * z_scale_ + std::abs(b.b_v) * v_scale_;
+          const double scale = std::abs(b.a) + std::abs(b.b_x) * z_scale_ + std::abs(b.b_v) * v_scale_;
           worst_bound = std::max(worst_bound, -(b.a + b.b_x * x + b.b_v * x_dot) / scale);
         }
       }
@@ -230,10 +229,10 @@ TEST_CASE("Exact propagation, 400 random models with what is not linear in piece
     const RandomModel model = random_model(seed, {.decades = 6.0, .varying = true, .duration = 60.0});
     INFO("seed " << seed);
     int calls = 0;
-    ExactOptions options{.tolerance = 1e-12,
-                         .t_end = model.t_end,
-                         .energy_tolerance = 1e-9,
-                         .progress = [&](double) { return ++calls < kMostCalls; }};
+    ExactOptions options{
+        .tolerance = 1e-12, .t_end = model.t_end, .energy_tolerance = 1e-9, .progress = [&](double) {
+          return ++calls < kMostCalls;
+        }};
     State state = State::initial(model.system), in_legs = state, moved = state;
     const RunSummary run = propagate(model.system, options, state);
     INFO(run.brief_report());

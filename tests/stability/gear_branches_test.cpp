@@ -53,11 +53,10 @@ Orbit run(double w, double x, double v, int periods) {
   // Stops between, so that the peaks inside steps are exact to 1e-9.
   Recorder stops(system, {"wheel.angle_rad"}, period / 200);
   Peaks peaks({find_channel(system, "wheel.angle_rad")}, true);
-  REQUIRE(
-      propagate(system,
-                {.tolerance = 1e-13, .t_start = (periods - 1) * period, .t_end = periods * period},
-                state, {&stops, &peaks})
-          .ok());
+  REQUIRE(propagate(system,
+                    {.tolerance = 1e-13, .t_start = (periods - 1) * period, .t_end = periods * period}, state,
+                    {&stops, &peaks})
+              .ok());
   return {state.z[0], state.v[0], peaks.peaks()[0].min, peaks.peaks()[0].max};
 }
 
@@ -148,8 +147,7 @@ TEST_CASE("Gear with backlash and stepped stiffness: orbits of one and two mesh 
     State s = State::initial(system);
     s.z[0] = row.x, s.v[0] = row.v;
     Peaks peaks({find_channel(system, "m.position_m")}, true);
-    simulate(system,
-             {.step = period / 8000, .t_end = row.periods * period, .energy_tolerance = 10.0}, s,
+    simulate(system, {.step = period / 8000, .t_end = row.periods * period, .energy_tolerance = 10.0}, s,
              {&peaks});
     INFO("w = " << row.w << ", " << row.periods << " periods");
     // Average acceleration at 8000 steps: (w h)^2/12 = 5e-8 of the phase.

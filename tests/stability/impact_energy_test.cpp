@@ -48,9 +48,8 @@ struct Result {
 Result run(const std::string& method, double omega_h, int steps, double speed = 10.0) {
   Result result;
   const double h = omega_h / 100.0;
-  result.run =
-      simulate(between_stops(speed), {.scheme = step_scheme(method), .step = h, .t_end = steps * h},
-               {&result.energy});
+  result.run = simulate(between_stops(speed), {.scheme = step_scheme(method), .step = h, .t_end = steps * h},
+                        {&result.energy});
   return result;
 }
 
@@ -100,8 +99,8 @@ TEST_CASE("Numerical damping is no cure for coarse impacts; what it gains or los
     const Growth annihilating = growth("generalized_alpha:0", omega_h);
     CHECK(annihilating.largest <= 1.0 + 1e-12);
     CHECK(annihilating.never_passed);
-    for (const char* method : {"hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0.5",
-                               "bathe:0.8", "bathe:0", "sdirk4"})
+    for (const char* method :
+         {"hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0.5", "bathe:0.8", "bathe:0", "sdirk4"})
       CHECK(growth(method, omega_h, 5).never_passed);
   }
   CHECK(growth("generalized_alpha:0.8", 3.0).median > 100.0);

@@ -70,8 +70,7 @@ double worst_release(double h, bool stated) {
 
 }  // namespace
 
-TEST_CASE(
-    "A load let go of between two steps: first order unseen, second where the time is stated") {
+TEST_CASE("A load let go of between two steps: first order unseen, second where the time is stated") {
   // Worst over where in the step it happens, by a separate program.
   CHECK(-std::cos(kTwoPi * 2.25) + std::cos(kTwoPi * (2.25 - 1 / std::sqrt(2.0) - 0.8)) ==
         Approx(-0.04463838552478572).margin(1e-14));
@@ -85,8 +84,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "Stepped mesh stiffness: second order with the jumps on steps that are told, first without") {
+TEST_CASE("Stepped mesh stiffness: second order with the jumps on steps that are told, first without") {
   // k_double/k_single = 1.5 for 0.6 of the period, mean 1, w = 1.3, zeta = .03, load 1, from rest:
   // exact after ten periods from the closed forms of the pieces.
   const double x = 1.133776757881699, v = .3420058131547483, w = 1.3, period = kTwoPi / w;
@@ -109,11 +107,10 @@ TEST_CASE(
   CHECK(told(480) == Approx(8.20e-5).epsilon(0.01));
 
   const auto gear = [&](int steps) {
-    const System system = DrivenGear{.speed = w,
-                                     .stiffness = MeshStiffness::step(single, both, 1.6),
-                                     .damping = 0.06,
-                                     .mean = 1.0}
-                              .build();
+    const System system =
+        DrivenGear{
+            .speed = w, .stiffness = MeshStiffness::step(single, both, 1.6), .damping = 0.06, .mean = 1.0}
+            .build();
     State s = State::initial(system);
     simulate(system, {.step = period / steps, .t_end = 10 * period, .energy_tolerance = 10.0}, s);
     return error(s);
@@ -164,12 +161,11 @@ TEST_CASE("A damper that is switched on by contact: exact propagation to roundin
 
   // The catalogue's law never pulls: out where k x + c x' = 0, at tan w t = -w/490, and no slower from there.
   const double gap = 0.1;
-  const System clipped =
-      thrown(TwistBacklash{BacklashLaw({.normal_backlash = 2 * gap,
-                                        .damping = 20.0,
-                                        .damping_law = MeshDamping::contact_only}),
-                           1e4},
-             0.0);
+  const System clipped = thrown(TwistBacklash{BacklashLaw({.normal_backlash = 2 * gap,
+                                                           .damping = 20.0,
+                                                           .damping_law = MeshDamping::contact_only}),
+                                              1e4},
+                                0.0);
   const double out = (kPi - std::atan(w / 490.0)) / w, decay = std::exp(-10.0 * out);
   const double v_out = decay * (std::cos(w * out) - 10.0 / w * std::sin(w * out));
   const double x_out = decay * std::sin(w * out) / w;

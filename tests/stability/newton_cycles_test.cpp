@@ -35,9 +35,8 @@ struct Gaps {
     }
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       const Contact& c = contacts[j];
-      const std::vector<NodeRef> ends = c.first < 0
-                                            ? std::vector<NodeRef>{node(c.second)}
-                                            : std::vector<NodeRef>{node(c.first), node(c.second)};
+      const std::vector<NodeRef> ends = c.first < 0 ? std::vector<NodeRef>{node(c.second)}
+                                                    : std::vector<NodeRef>{node(c.first), node(c.second)};
       m.add("gap" + std::to_string(j), ends,
             std::make_shared<PolylineSpring>(PolylineSpring::dead_band(c.stiffness, c.half_gap)));
     }
@@ -78,9 +77,8 @@ class Problem {
     std::vector<ScalarInput> free(gaps_.contacts.size());
     const Vector x = b_.transpose() * u_free_;
     for (std::size_t j = 0; j < free.size(); ++j) free[j].x = x[static_cast<Eigen::Index>(j)];
-    const NewtonResult result =
-        contacts_.solve(free, 10.0, {.max_iterations = 100, .line_search = line_search, .expects = false},
-                        lambda);
+    const NewtonResult result = contacts_.solve(
+        free, 10.0, {.max_iterations = 100, .line_search = line_search, .expects = false}, lambda);
     u = u_free_ - w_ * lambda;
     return result;
   }
@@ -135,8 +133,7 @@ TEST_CASE(
   Problem problem(kCycles);
   Vector u = Vector::Zero(3);
   CHECK(problem.sparse(false, u).status == NewtonStatus::too_many_steps);
-  CHECK(problem.on_contacts(false, problem.zero_forces(), u).status ==
-        NewtonStatus::too_many_steps);
+  CHECK(problem.on_contacts(false, problem.zero_forces(), u).status == NewtonStatus::too_many_steps);
   int most = 0;
   for (int pattern = 0; pattern < 27; ++pattern) {
     // Deflections of twice the half gap forward, backward, or none.
@@ -169,9 +166,8 @@ TEST_CASE("Random gaps in a pair, chain, loop and star: ours converges from any 
     int problems;
     bool plain_can_cycle;  // Ben Gharbia, Gilbert, INRIA RR-7160, and by trial
   };
-  for (const Row& row :
-       {Row{Layout::pair, "pair", 1000, false}, Row{Layout::chain, "chain", 6000, true},
-        Row{Layout::loop, "loop", 3000, true}, Row{Layout::star, "star", 2000, false}}) {
+  for (const Row& row : {Row{Layout::pair, "pair", 1000, false}, Row{Layout::chain, "chain", 6000, true},
+                         Row{Layout::loop, "loop", 3000, true}, Row{Layout::star, "star", 2000, false}}) {
     std::mt19937 random(17);
     std::uniform_real_distribution<double> sign(-1.0, 1.0);
     int plain_fails = 0, most = 0;
@@ -204,8 +200,7 @@ TEST_CASE("Random gaps in a pair, chain, loop and star: ours converges from any 
   }
 }
 
-TEST_CASE(
-    "A spring that softens: plain Newton cycles beyond the closed-form threshold, ours never") {
+TEST_CASE("A spring that softens: plain Newton cycles beyond the closed-form threshold, ours never") {
   // Slope a + 10 within +-1, a + 1 beyond: from x = 3 the iterates run 3, -9/(a + 1), 9/(a + 1), ...
   // for ever if they stay outside, that is if a + 10 > 2 (a + 1): a < 8.
   for (const double a : {1.0, 7.99, 8.01, 20.0}) {

@@ -31,20 +31,16 @@ Eigen::MatrixXd monodromy(const System& system, double period, int steps,
   for (int i = 0; i < 2 * n; ++i) {
     State s = State::initial(system);
     (i < n ? s.z[i] : s.v[i - n]) = unit;
-    simulate(system,
-             {.scheme = scheme, .step = period / steps, .t_end = period, .energy_tolerance = 1e9},
-             s);
+    simulate(system, {.scheme = scheme, .step = period / steps, .t_end = period, .energy_tolerance = 1e9}, s);
     m.col(i) << s.z / unit, s.v / unit;
   }
   return m;
 }
 
 /// Natural frequency 1, mesh frequency w, damping ratio zeta.
-Eigen::MatrixXd pair_monodromy(const MeshStiffness& stiffness, double zeta, double w,
-                               int steps = 2000) {
+Eigen::MatrixXd pair_monodromy(const MeshStiffness& stiffness, double zeta, double w, int steps = 2000) {
   const System system =
-      DrivenGear{
-          .speed = w, .stiffness = stiffness, .damping = 2.0 * zeta, .mesh_phase = 0.5 / steps}
+      DrivenGear{.speed = w, .stiffness = stiffness, .damping = 2.0 * zeta, .mesh_phase = 0.5 / steps}
           .build();
   return monodromy(system, kTwoPi / w, steps);
 }
@@ -126,8 +122,7 @@ TEST_CASE("Mesh with stepped stiffness: damping narrows the primary tongue and c
     }
 }
 
-TEST_CASE(
-    "Mesh with stepped stiffness: multipliers at w = 2 and the damping that closes the tongue") {
+TEST_CASE("Mesh with stepped stiffness: multipliers at w = 2 and the damping that closes the tongue") {
   const Eigen::MatrixXd m = pair_monodromy(meissner(1.5), 0.0, 2.0);
   CHECK(spectral_radius(m) == Approx(1.22089514416751).epsilon(1e-5));
   CHECK(m.trace() == Approx(-1.22089514416751 - .81907115838508).epsilon(1e-6));
@@ -136,8 +131,7 @@ TEST_CASE(
     const auto largest = [&](double zeta) {
       double most = 0.0;
       for (double w = 1.97; w < 2.03; w += 0.005)
-        most = std::max(most,
-                        spectral_radius(pair_monodromy(meissner(contact_ratio), zeta, w, 1000)));
+        most = std::max(most, spectral_radius(pair_monodromy(meissner(contact_ratio), zeta, w, 1000)));
       return most;
     };
     INFO("contact ratio " << contact_ratio);
@@ -179,8 +173,7 @@ TEST_CASE("Two meshes in a train: their phase decides which tongues are there") 
     m.add<GearMesh>("mesh_2", {"c", "b"}, mesh(phase));
     m.set_reference("a", constant_speed(w));
     // The stiffness follows the actual angles: small deviations, so that the phase is that of the speed.
-    return spectral_radius(
-        monodromy(m.build(), kTwoPi / w, steps, average_acceleration(), 1e-7));
+    return spectral_radius(monodromy(m.build(), kTwoPi / w, steps, average_acceleration(), 1e-7));
   };
   const double primary_1 = 2.0, sum = 1.0 + std::sqrt(3.0), primary_2 = 2.0 * std::sqrt(3.0);
   struct Row {

@@ -23,10 +23,10 @@ struct Random {
 };
 
 struct ModelRanges {
-  int masses = 12, gaps = 6;   ///< at most
-  double decades = 8.0;        ///< of stiffness, at most
-  bool varying = false;        ///< cams, engine orders, functions, gear mesh by phase, smooth laws
-  double duration = 300.0;     ///< in units of 1/fastest
+  int masses = 12, gaps = 6;  ///< at most
+  double decades = 8.0;       ///< of stiffness, at most
+  bool varying = false;       ///< cams, engine orders, functions, gear mesh by phase, smooth laws
+  double duration = 300.0;    ///< in units of 1/fastest
 };
 
 struct RandomModel {
@@ -88,19 +88,16 @@ class RandomModelMaker {
     const double end = ranges_.duration / fastest;
     for (int l = random_.below(3); l > 0; --l) {
       const double torque = load();
-      model_.add<drev::AppliedTorque>(
-          "load" + std::to_string(l), {any_node()},
-          {.table = drev::TimeTable({0.1 * end, 0.3 * end, 0.6 * end, 0.6 * end},
-                                    {torque, -torque, 0.5 * torque, 0.0})});
+      model_.add<drev::AppliedTorque>("load" + std::to_string(l), {any_node()},
+                                      {.table = drev::TimeTable({0.1 * end, 0.3 * end, 0.6 * end, 0.6 * end},
+                                                                {torque, -torque, 0.5 * torque, 0.0})});
     }
     if (ranges_.varying && random_.below(2)) {
       const double torque = load(), frequency = fastest * random_.decade(-2.0, -0.5);
-      model_.add<drev::AppliedTorque>(
-          "function", {any_node()},
-          {.torque = [=](double t) { return torque * std::sin(frequency * t); }});
+      model_.add<drev::AppliedTorque>("function", {any_node()},
+                                      {.torque = [=](double t) { return torque * std::sin(frequency * t); }});
     }
-    if (turns_)
-      model_.set_reference(node(0), drev::constant_speed(fastest * random_.decade(-2.0, 0.0)));
+    if (turns_) model_.set_reference(node(0), drev::constant_speed(fastest * random_.decade(-2.0, 0.0)));
     const double speed = fastest * random_.decade(-2.0, 0.0);
     for (int i = 0; i < masses_; ++i)
       model_.set_initial(node(i), random_(-1.0, 1.0), random_(-1.0, 1.0) * speed);
@@ -130,9 +127,8 @@ class RandomModelMaker {
     const std::string other = node(random_.below(i));
     model_.add<drev::ShaftSpring>("shaft" + node(i), {other, node(i)}, {.stiffness = k});
     if (damped_ && random_.below(2))
-      model_.add<drev::Dashpot>(
-          "dashpot" + node(i), {other, node(i)},
-          {.damping = random_(0.0, 0.1) * std::sqrt(k * inertia_[drev::at(i)])});
+      model_.add<drev::Dashpot>("dashpot" + node(i), {other, node(i)},
+                                {.damping = random_(0.0, 0.1) * std::sqrt(k * inertia_[drev::at(i)])});
   }
 
   std::vector<drev::NodeRef> ends() {
@@ -154,13 +150,13 @@ class RandomModelMaker {
                  std::make_shared<PolylineSpring>(PolylineSpring::with_stops(0.1 * k, half + 0.1, k, c)));
     else
       model_.add(name, ends(),
-                 std::make_shared<drev::LawElement<TwistBacklash>>(TwistBacklash{
-                     drev::BacklashLaw({.normal_backlash = 2 * half,
-                                        .damping = c,
-                                        .damping_law = kind == 2   ? MeshDamping::always
-                                                       : kind == 3 ? MeshDamping::contact_only
-                                                                   : MeshDamping::limited}),
-                     k}));
+                 std::make_shared<drev::LawElement<TwistBacklash>>(
+                     TwistBacklash{drev::BacklashLaw({.normal_backlash = 2 * half,
+                                                      .damping = c,
+                                                      .damping_law = kind == 2   ? MeshDamping::always
+                                                                     : kind == 3 ? MeshDamping::contact_only
+                                                                                 : MeshDamping::limited}),
+                                   k}));
   }
 
   void add_varying(const std::string& n) {
@@ -199,14 +195,13 @@ class RandomModelMaker {
       };
       const int teeth_1 = 1 + random_.below(12), teeth_2 = teeth_1 + random_.below(12);
       add_mass(pinion);
-      model_.add<drev::GearMesh>(
-          "mesh" + n, {pinion, any_node()},
-          {.base_radius_1 = 1.0,
-           .base_radius_2 = static_cast<double>(teeth_2) / teeth_1,
-           .teeth_1 = teeth_1,
-           .teeth_2 = teeth_2,
-           .stiffness = random_.below(2) ? stepped() : smooth,
-           .normal_backlash = random_.below(2) ? random_(0.01, 0.3) : 0.0});
+      model_.add<drev::GearMesh>("mesh" + n, {pinion, any_node()},
+                                 {.base_radius_1 = 1.0,
+                                  .base_radius_2 = static_cast<double>(teeth_2) / teeth_1,
+                                  .teeth_1 = teeth_1,
+                                  .teeth_2 = teeth_2,
+                                  .stiffness = random_.below(2) ? stepped() : smooth,
+                                  .normal_backlash = random_.below(2) ? random_(0.01, 0.3) : 0.0});
     }
   }
 

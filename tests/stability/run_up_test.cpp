@@ -22,9 +22,8 @@ System run_up_model(double alpha, double zeta, double t_end) {
   m.add_node("disc");
   m.add<Inertia>("J", {"disc"}, {.inertia = 1.0});
   m.add<ShaftSpring>("shaft", {"drive", "disc"}, {.stiffness = 1.0, .damping = 2.0 * zeta});
-  m.add<EngineOrderTorque>(
-      "torque", {"disc"},
-      {.harmonics = {{1.0, 1.0, -kPi / 2}}, .mean = alpha, .twist_feedback = false});
+  m.add<EngineOrderTorque>("torque", {"disc"},
+                           {.harmonics = {{1.0, 1.0, -kPi / 2}}, .mean = alpha, .twist_feedback = false});
   m.set_reference("drive", run_up(0.0, alpha * t_end, 0.0, t_end));
   m.hold("drive");
   return m.build();
@@ -48,8 +47,8 @@ TEST_CASE("Run-up through resonance by exact propagation: largest deflection and
     // Stops between, so that the peaks inside steps are exact to 1e-9.
     Recorder stops(system, {"disc.angle_rad"}, 0.05);
     Peaks peaks(stops.channels(), true);
-    const RunSummary run = propagate(
-        system, {.tolerance = 1e-13, .t_end = t_end, .energy_tolerance = 1e-9}, {&stops, &peaks});
+    const RunSummary run =
+        propagate(system, {.tolerance = 1e-13, .t_end = t_end, .energy_tolerance = 1e-9}, {&stops, &peaks});
     INFO("alpha = " << row.alpha << ", zeta = " << row.zeta << "; " << run.brief_report());
     CHECK(run.ok());
     CHECK(peaks.peaks()[0].amplitude() == Approx(row.largest).epsilon(1e-7));

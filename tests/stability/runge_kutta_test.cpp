@@ -62,8 +62,7 @@ TEST_CASE("sdirk4 damps what is too fast and is of fourth order in what is slow"
   CHECK(spectral_radius(amplification("sdirk4", 1e3)) < 1e-1);
   double last = 0.0;
   for (const double omega_h : {0.2, 0.1, 0.05}) {
-    const double error =
-        std::abs(principal("sdirk4", omega_h) - std::exp(Complex(0.0, omega_h))) / omega_h;
+    const double error = std::abs(principal("sdirk4", omega_h) - std::exp(Complex(0.0, omega_h))) / omega_h;
     if (last > 0.0) CHECK(std::log2(last / error) == Approx(4.0).margin(0.1));
     last = error;
   }
@@ -79,8 +78,7 @@ TEST_CASE("Past contact changes: fourth order with located changes, second at mo
   }
   m.add<PolylineSpring>("k_1", {"1"}, PolylineSpring::dead_band(2000.0, 0.05));
   m.add<PolylineSpring>("k_2", {"1", "2"}, PolylineSpring::dead_band(1000.0, 0.03));
-  m.add<AppliedTorque>("force", {"2"},
-                       {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, 100.0, 100.0, 0.0})});
+  m.add<AppliedTorque>("force", {"2"}, {.table = TimeTable({0.0, 1.0, 2.0, 2.0}, {0.0, 100.0, 100.0, 0.0})});
   const System system = m.build();
   const auto error = [&](const char* method, double h, bool locate) {
     State s = State::initial(system);

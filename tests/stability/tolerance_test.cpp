@@ -15,9 +15,9 @@ using namespace drev;
 
 namespace {
 
-constexpr double kAllowed = 3.0;   // of the tolerance
-constexpr double kMoved = 1e-9;    // start of the deviations whose growth is measured
-constexpr unsigned kModels = 24;   // of each kind
+constexpr double kAllowed = 3.0;  // of the tolerance
+constexpr double kMoved = 1e-9;   // start of the deviations whose growth is measured
+constexpr unsigned kModels = 24;  // of each kind
 
 struct Kind {
   const char* name;
@@ -95,17 +95,16 @@ TEST_CASE("The true error stays below 3 times the tolerance on 72 random models"
           const double tolerance = std::pow(10.0, -3 - 2 * k);
           if (tolerance < 0.99 * methods[m].least) continue;
           State state = State::initial(model.system);
-          const RunSummary run =
-              m == 0 ? propagate(model.system,
-                                 {.tolerance = tolerance,
-                                  .t_end = model.t_end,
-                                  .energy_tolerance = std::max(1e-6, 100 * tolerance)},
-                                 state)
-                     : simulate(model.system,
-                                {.scheme = step_scheme(methods[m].name),
-                                 .tolerance = tolerance,
-                                 .t_end = model.t_end},
-                                state);
+          const RunSummary run = m == 0 ? propagate(model.system,
+                                                    {.tolerance = tolerance,
+                                                     .t_end = model.t_end,
+                                                     .energy_tolerance = std::max(1e-6, 100 * tolerance)},
+                                                    state)
+                                        : simulate(model.system,
+                                                   {.scheme = step_scheme(methods[m].name),
+                                                    .tolerance = tolerance,
+                                                    .t_end = model.t_end},
+                                                   state);
           const double ratio = judge.error(state) / tolerance;
           INFO(kind.name << " " << seed << ", " << methods[m].name << " " << tolerance << ": " << ratio
                          << " of it, deviations grow by " << judge.growth << "; " << run.brief_report());

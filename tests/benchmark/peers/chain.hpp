@@ -23,8 +23,8 @@ struct Mesh {
 };
 
 struct Chain {
-  int n = 0, end = 0;  ///< stations; which one is the free end
-  double omega = 0.0;  ///< nominal speed of all stations with loads [rad/s]
+  int n = 0, end = 0;          ///< stations; which one is the free end
+  double omega = 0.0;          ///< nominal speed of all stations with loads [rad/s]
   double inertia[kRows] = {};  ///< kg m^2
   alignas(64) double low[kRows] = {}, main[kRows] = {}, up[kRows] = {}, damping[kRows] = {};
   alignas(64) double phase[kRows] = {}, load[kRows] = {};  ///< rad; 1/inertia or amplitude/inertia

@@ -34,9 +34,9 @@ class LeanRk5 {
         h *= std::max(T(0.2), T(0.9) * std::pow(error, T(-0.2)));
         continue;
       }
-      const T grown = h * std::clamp(T(0.9) * std::pow(std::max(error, T(1e-10)), T(-0.17)) *
-                                         std::pow(previous, T(0.04)),
-                                     T(0.2), T(5));
+      const T grown =
+          h * std::clamp(T(0.9) * std::pow(std::max(error, T(1e-10)), T(-0.17)) * std::pow(previous, T(0.04)),
+                         T(0.2), T(5));
       bool changed = false;
       if (o_.changes || o_.knots) {
         const T s = first_change();
@@ -57,8 +57,7 @@ class LeanRk5 {
       previous = std::max(error, T(1e-4));
       h = grown;
       ++run_.steps;
-      if (o_.samples)
-        sampler.see(static_cast<double>(t), static_cast<double>(y_[c_.end]), run_.samples);
+      if (o_.samples) sampler.see(static_cast<double>(t), static_cast<double>(y_[c_.end]), run_.samples);
       if (run_.steps % 4096 == 0 && seconds(start) > kPatience) break;
     }
     run_.t_end = static_cast<double>(t);
@@ -101,10 +100,8 @@ class LeanRk5 {
     stage<2>(t + 3 * h / 10, h, {T(3) / 40, T(9) / 40});
     stage<3>(t + 4 * h / 5, h, {T(44) / 45, T(-56) / 15, T(32) / 9});
     stage<4>(t + 8 * h / 9, h, {T(19372) / 6561, T(-25360) / 2187, T(64448) / 6561, T(-212) / 729});
-    stage<5>(t + h, h,
-             {T(9017) / 3168, T(-355) / 33, T(46732) / 5247, T(49) / 176, T(-5103) / 18656});
-    stage<6>(t + h, h,
-             {T(35) / 384, T(0), T(500) / 1113, T(125) / 192, T(-2187) / 6784, T(11) / 84});
+    stage<5>(t + h, h, {T(9017) / 3168, T(-355) / 33, T(46732) / 5247, T(49) / 176, T(-5103) / 18656});
+    stage<6>(t + h, h, {T(35) / 384, T(0), T(500) / 1113, T(125) / 192, T(-2187) / 6784, T(11) / 84});
     T sum = 0;
     const T rtol = T(o_.rtol);
     for (int part = 0; part < 2; ++part) {
@@ -123,12 +120,10 @@ class LeanRk5 {
   T inside(int i, T s) const {
     const T rise = new_[i] - y_[i], bend = h_ * k_[0][i] - rise;
     const T last =
-        h_ *
-        (T(-12715105075) / T(11282082432) * k_[0][i] + T(87487479700) / T(32700410799) * k_[2][i] -
-         T(10690763975) / T(1880347072) * k_[3][i] + T(701980252875) / T(199316789632) * k_[4][i] -
-         T(1453857185) / T(822651844) * k_[5][i] + T(69997945) / T(29380423) * k_[6][i]);
-    return y_[i] +
-           s * (rise + (1 - s) * (bend + s * (rise - h_ * k_[6][i] - bend + (1 - s) * last)));
+        h_ * (T(-12715105075) / T(11282082432) * k_[0][i] + T(87487479700) / T(32700410799) * k_[2][i] -
+              T(10690763975) / T(1880347072) * k_[3][i] + T(701980252875) / T(199316789632) * k_[4][i] -
+              T(1453857185) / T(822651844) * k_[5][i] + T(69997945) / T(29380423) * k_[6][i]);
+    return y_[i] + s * (rise + (1 - s) * (bend + s * (rise - h_ * k_[6][i] - bend + (1 - s) * last)));
   }
 
   int interval(T t, T z, int i) const {

@@ -110,8 +110,7 @@ class StepFloor {
   /// last sides; should it cycle, all sides in turn (one fits: G > 0 and y rises).
   void add_contact(const double* z_0) {
     double free[kMeshes], y[kMeshes] = {};
-    for (int j = 0; j < meshes(); ++j)
-      free[j] = deflection(mesh(j), z_0) + q_ * deflection(mesh(j), a_);
+    for (int j = 0; j < meshes(); ++j) free[j] = deflection(mesh(j), z_0) + q_ * deflection(mesh(j), a_);
     for (int tries = 0, fits = 0; !fits && tries < 19; ++tries) {
       ++run.contact_passes;
       if (tries >= 10) sides_[0] = (tries - 10) % 3 - 1, sides_[1] = (tries - 10) / 3 - 1;

@@ -1,18 +1,17 @@
 #include "tests/benchmark/peers/sundials.hpp"
 
+#include <algorithm>
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
+#include <ctime>
 #include <cvode/cvode.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
+#include <stdexcept>
+#include <string>
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
-
-#include <algorithm>
-#include <ctime>
-#include <stdexcept>
-#include <string>
 
 namespace peers {
 
@@ -56,9 +55,7 @@ int bounds(realtype, N_Vector y, realtype* g, void* user) {
   }
   return 0;
 }
-int dae_bounds(realtype t, N_Vector y, N_Vector, realtype* g, void* user) {
-  return bounds(t, y, g, user);
-}
+int dae_bounds(realtype t, N_Vector y, N_Vector, realtype* g, void* user) { return bounds(t, y, g, user); }
 
 void find_pattern(Problem& p) {
   const Chain& c = *p.chain;
@@ -90,8 +87,8 @@ void fill(const Problem& p, double t, N_Vector y, double sign, double shift, SUN
   double* values = SUNSparseMatrix_Data(out);
   for (int j = 0; j < c.n; ++j) {
     *values++ = shift;  // dz_j/dz_j
-    for (auto s = p.columns[static_cast<std::size_t>(j)] + 1;
-         s < p.columns[static_cast<std::size_t>(j) + 1]; ++s) {
+    for (auto s = p.columns[static_cast<std::size_t>(j)] + 1; s < p.columns[static_cast<std::size_t>(j) + 1];
+         ++s) {
       const int i = static_cast<int>(p.rows[static_cast<std::size_t>(s)]) - c.n;
       double a = 0.0;
       if (i == j) a = -c.main[i] + load_slope(c, t, z[i], i);
@@ -112,21 +109,19 @@ void fill(const Problem& p, double t, N_Vector y, double sign, double shift, SUN
   }
 }
 
-int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix out, void* user, N_Vector, N_Vector,
-             N_Vector) {
+int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix out, void* user, N_Vector, N_Vector, N_Vector) {
   fill(*static_cast<const Problem*>(user), t, y, 1.0, 0.0, out);
   return 0;
 }
-int dae_jacobian(realtype t, realtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix out,
-                 void* user, N_Vector, N_Vector, N_Vector) {
+int dae_jacobian(realtype t, realtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix out, void* user,
+                 N_Vector, N_Vector, N_Vector) {
   fill(*static_cast<const Problem*>(user), t, y, -1.0, c_j, out);
   return 0;
 }
 
 void check(int flag, const char* what) {
   if (flag < 0)
-    throw std::runtime_error(std::string("SUNDIALS: ") + what + " returned " +
-                             std::to_string(flag));
+    throw std::runtime_error(std::string("SUNDIALS: ") + what + " returned " + std::to_string(flag));
 }
 
 void silent(int, const char*, const char*, char*, void*) {}
@@ -140,8 +135,7 @@ class Run {
     dy_ = N_VNew_Serial(n_, context_);
     tolerance_ = N_VNew_Serial(n_, context_);
     N_VConst(0.0, y_);
-    for (int i = 0; i < n_; ++i)
-      data(tolerance_)[i] = o_.rtol * (i < c_.n ? kAngleScale : kSpeedScale);
+    for (int i = 0; i < n_; ++i) data(tolerance_)[i] = o_.rtol * (i < c_.n ? kAngleScale : kSpeedScale);
     find_pattern(problem_);
     right_side(0.0, y_, dy_, &problem_);
     create();
@@ -185,12 +179,8 @@ class Run {
 
  private:
   bool erk() const { return o_.integrator <= Integrator::erk8; }
-  bool cvode() const {
-    return o_.integrator >= Integrator::adams && o_.integrator <= Integrator::bdf;
-  }
-  bool dirk() const {
-    return o_.integrator == Integrator::dirk4 || o_.integrator == Integrator::dirk5;
-  }
+  bool cvode() const { return o_.integrator >= Integrator::adams && o_.integrator <= Integrator::bdf; }
+  bool dirk() const { return o_.integrator == Integrator::dirk4 || o_.integrator == Integrator::dirk5; }
   bool ida() const { return o_.integrator == Integrator::ida; }
   int root_count() const { return o_.roots ? 2 * static_cast<int>(c_.meshes.size()) : 0; }
 
@@ -313,8 +303,7 @@ class Run {
     long explicit_ = 0;
     if (erk()) ERKStepGetNumSteps(memory_, &steps_), ERKStepGetNumRhsEvals(memory_, &evaluations_);
     if (dirk())
-      ARKStepGetNumSteps(memory_, &steps_),
-          ARKStepGetNumRhsEvals(memory_, &explicit_, &evaluations_);
+      ARKStepGetNumSteps(memory_, &steps_), ARKStepGetNumRhsEvals(memory_, &explicit_, &evaluations_);
     r.steps = steps_, r.evaluations = evaluations_;
   }
 
@@ -359,8 +348,6 @@ const char* name(Integrator integrator) {
   return "";
 }
 
-PeerRun run_sundials(const Chain& chain, const SundialsOptions& options) {
-  return Run(chain, options).run();
-}
+PeerRun run_sundials(const Chain& chain, const SundialsOptions& options) { return Run(chain, options).run(); }
 
 }  // namespace peers

@@ -48,12 +48,13 @@ void main_job(const Scene& scene, const System& system) {
   };
   const std::vector<double> t = last(r.times());
   write("main_job.svg",
-        app::svg_chart({.title = "Gear drive of the camshaft: forces in the meshes",
-                        .x_label = "time [s]",
-                        .y_label = "force along the line of action [kN]",
-                        .height = 320},
-                       {{.name = "mesh_1, crank gear and idler", .x = t, .y = scaled(last(r.samples(0)), 1e-3)},
-                        {.name = "mesh_2, idler and camshaft gear", .x = t, .y = scaled(last(r.samples(1)), 1e-3)}}));
+        app::svg_chart(
+            {.title = "Gear drive of the camshaft: forces in the meshes",
+             .x_label = "time [s]",
+             .y_label = "force along the line of action [kN]",
+             .height = 320},
+            {{.name = "mesh_1, crank gear and idler", .x = t, .y = scaled(last(r.samples(0)), 1e-3)},
+             {.name = "mesh_2, idler and camshaft gear", .x = t, .y = scaled(last(r.samples(1)), 1e-3)}}));
   write("main_job_deflection.svg",
         app::svg_chart({.title = "Camshaft: twist from the first to the last cam",
                         .x_label = "time [s]",
@@ -100,8 +101,8 @@ void work_precision() {
     return std::pair{r.samples(0).back(), r.samples(1).back()};
   };
   const auto reference = position(average_acceleration(), 1e-6);
-  for (const char* method : {"average_acceleration", "hht:0.05", "hht:0.3", "generalized_alpha:0.8",
-                             "generalized_alpha:0"}) {
+  for (const char* method :
+       {"average_acceleration", "hht:0.05", "hht:0.3", "generalized_alpha:0.8", "generalized_alpha:0"}) {
     ChartSeries s{.name = method, .markers = true};
     for (const double h : {8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4}) {
       const auto [x_1, x_2] = position(step_scheme(method), h);
@@ -110,11 +111,13 @@ void work_precision() {
     }
     series.push_back(std::move(s));
   }
-  write("work_precision.svg",
-        app::svg_chart({.title = "Two masses with backlash, case B: error at 2 s",
-                        .x_label = "steps", .y_label = "error of the positions [m]",
-                        .log_x = true, .log_y = true, .height = 340},
-                       series));
+  write("work_precision.svg", app::svg_chart({.title = "Two masses with backlash, case B: error at 2 s",
+                                              .x_label = "steps",
+                                              .y_label = "error of the positions [m]",
+                                              .log_x = true,
+                                              .log_y = true,
+                                              .height = 340},
+                                             series));
 }
 
 /// A gear of 6.5 kg m^2 on a radius of 0.25 m runs into the flank at 20 mm/s; xi = 0.1.
@@ -131,7 +134,9 @@ void mesh_damping() {
     m.add<Inertia>("J_held", {"held"}, {.inertia = 1.0});
     m.add<Inertia>("J_gear", {"gear"}, {.inertia = inertia});
     m.add<GearMesh>("mesh", {"gear", "held"},
-                    {.base_radius_1 = radius, .base_radius_2 = radius, .stiffness = stiffness,
+                    {.base_radius_1 = radius,
+                     .base_radius_2 = radius,
+                     .stiffness = stiffness,
                      .normal_backlash = backlash,
                      .damping = 0.2 * std::sqrt(stiffness * inertia) / radius,
                      .damping_law = law});
@@ -142,10 +147,11 @@ void mesh_damping() {
     simulate(system, {.step = 1e-6, .t_end = 2.5e-3}, {&r});
     series.push_back({.name = name, .x = scaled(r.times(), 1e3), .y = scaled(r.samples(0), 1e-3)});
   }
-  write("mesh_damping.svg",
-        app::svg_chart({.title = "One impact under the four damping laws of a mesh",
-                        .x_label = "time [ms]", .y_label = "force [kN]", .height = 340},
-                       series));
+  write("mesh_damping.svg", app::svg_chart({.title = "One impact under the four damping laws of a mesh",
+                                            .x_label = "time [ms]",
+                                            .y_label = "force [kN]",
+                                            .height = 340},
+                                           series));
 }
 
 }  // namespace

@@ -31,21 +31,18 @@ TEST_CASE("An accuracy asked for: published times of contact within the stated e
   CHECK(json.at("accuracy").at("reached") == true);
   CHECK(json.at("accuracy").at("horizon_s").is_null());
   const Json first = figure(json, "first contact change");
-  CHECK(std::abs(first.at("value").get<double>() - 0.26207413942088966) <=
-        first.at("error").get<double>());
+  CHECK(std::abs(first.at("value").get<double>() - 0.26207413942088966) <= first.at("error").get<double>());
   CHECK(figure(json, "contact changes, comparable").at("value") == 72);  // published
   for (const Json& f : json["accuracy"]["figures"]) CHECK(f.at("keeps_accuracy") == true);
   const std::string text = drev_command(words).out;
-  for (const char* part :
-       {"Accuracy asked          1e-06: reached", "peak deflection: 0.1855", "+-"})
+  for (const char* part : {"Accuracy asked          1e-06: reached", "peak deflection: 0.1855", "+-"})
     CHECK(contains(text, part));
   CHECK(contains(read_file(folder / "out/report.html"), R"("name":"peak deflection")"));
 }
 
-TEST_CASE(
-    "An accuracy that rattling does not allow is refused point by point, and statistics given") {
-  const auto run = drev_command(
-      {"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
+TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given") {
+  const auto run =
+      drev_command({"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
   INFO(run.err);
   CHECK(run.exit_code == 0);
   const Json json = Json::parse(run.out);
@@ -63,8 +60,8 @@ TEST_CASE(
 }
 
 TEST_CASE("The error stated of a torque that is a function of time covers what small steps give") {
-  const auto run = drev_command(
-      {"run", "two_inertia", "--set", "duration_s=0.05", "--accuracy", "1e-4", "--json"});
+  const auto run =
+      drev_command({"run", "two_inertia", "--set", "duration_s=0.05", "--accuracy", "1e-4", "--json"});
   INFO(run.err);
   CHECK(run.exit_code == 0);
   const Json json = Json::parse(run.out);
@@ -79,9 +76,9 @@ TEST_CASE("The error stated of a torque that is a function of time covers what s
 }
 
 TEST_CASE("Methods of high order come to an accuracy by their tolerance, others by their step") {
-  const Json exact = figure(
-      Json::parse(drev_command({"run", "two_mass_backlash", "--accuracy", "1e-10", "--json"}).out),
-      "peak deflection");
+  const Json exact =
+      figure(Json::parse(drev_command({"run", "two_mass_backlash", "--accuracy", "1e-10", "--json"}).out),
+             "peak deflection");
   for (const char* method : {"dormand_prince", "average_acceleration"}) {
     INFO(method);
     const bool controlled = std::string(method) == "dormand_prince";
@@ -93,7 +90,7 @@ TEST_CASE("Methods of high order come to an accuracy by their tolerance, others 
     CHECK(json.at("accuracy").at("reached") == true);
     CHECK(json.at("tolerance").is_null() != controlled);
     const Json peak = figure(json, "peak deflection");
-    CHECK(std::abs(peak.at("value").get<double>() -
-                   exact.at("value").get<double>()) <= peak.at("error").get<double>());
+    CHECK(std::abs(peak.at("value").get<double>() - exact.at("value").get<double>()) <=
+          peak.at("error").get<double>());
   }
 }

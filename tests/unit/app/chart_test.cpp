@@ -12,9 +12,9 @@ using Json = nlohmann::json;
 
 TEST_CASE("A chart: reference checked, errors fall with the step, files written") {
   const drev::test::TemporaryFolder folder;
-  const auto run = drev_command({"chart", "two_mass_backlash", "--set", "duration_s=0.5", "--limit",
-                                 "0.1", "--methods", "exact", "average_acceleration", "--json",
-                                 "--out", (folder / "out").string()});
+  const auto run =
+      drev_command({"chart", "two_mass_backlash", "--set", "duration_s=0.5", "--limit", "0.1", "--methods",
+                    "exact", "average_acceleration", "--json", "--out", (folder / "out").string()});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const Json json = Json::parse(run.out);
@@ -27,8 +27,7 @@ TEST_CASE("A chart: reference checked, errors fall with the step, files written"
   // Second order: in the force's ramp nothing but smooth motion and two contacts.
   const Json& points = json["curves"][1].at("points");
   REQUIRE(points.size() > 4);
-  const double coarse = points[0].at("error").get<double>(),
-               fine = points[3].at("error").get<double>();
+  const double coarse = points[0].at("error").get<double>(), fine = points[3].at("error").get<double>();
   CHECK(coarse / fine > 30.0);
   CHECK(coarse / fine < 130.0);
   for (const Json& p : points)
@@ -49,18 +48,15 @@ TEST_CASE("A chart: reference checked, errors fall with the step, files written"
 }
 
 TEST_CASE("A chart as text says which method to use") {
-  const auto run =
-      drev_command({"chart", "two_inertia", "--set", "duration_s=0.02", "--limit", "0.005"});
+  const auto run = drev_command({"chart", "two_inertia", "--set", "duration_s=0.02", "--limit", "0.005"});
   INFO(run.err);
   CHECK(run.exit_code == 0);
-  for (const char* part :
-       {"Which method should I use?", "for 0.01", "error at 1 ms", "Reference", "agrees"})
+  for (const char* part : {"Which method should I use?", "for 0.01", "error at 1 ms", "Reference", "agrees"})
     CHECK(contains(run.out, part));
 }
 
 TEST_CASE("A chart of a model at rest has no errors to draw") {
-  const auto run =
-      drev_command({"chart", "two_mass_backlash", "--set", "force_N=0", "--limit", "0.01"});
+  const auto run = drev_command({"chart", "two_mass_backlash", "--set", "force_N=0", "--limit", "0.01"});
   CHECK(run.exit_code == 1);
   CHECK(contains(run.err, "nothing moves"));
 }

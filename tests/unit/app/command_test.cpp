@@ -53,8 +53,7 @@ TEST_CASE("The models are listed, each with its settings") {
 }
 
 TEST_CASE("The channels listed are those of the settings given") {
-  const Json json =
-      Json::parse(drev_command({"list", "camshaft", "--set", "cylinders=6", "--json"}).out);
+  const Json json = Json::parse(drev_command({"list", "camshaft", "--set", "cylinders=6", "--json"}).out);
   const std::string all = json.at("channels").dump();
   CHECK(contains(all, "\"inlet_6.angle_rad\""));
   CHECK_FALSE(contains(all, "inlet_7"));
@@ -93,10 +92,17 @@ TEST_CASE("Modes of small and of free models need no count") {
 }
 
 TEST_CASE("Advice: every model tried, the cheapest that holds") {
-  const std::vector<std::string> words{"advise", "gear_drive", "--set", "duration_s=0.2",
-                                       "torque_mean_Nm=-8000", "torque_amplitude_Nm=2000",
-                                       "mesh_damping_Ns_per_m=20000", "--for",
-                                       "steady peak mesh_2.force_N", "--within", "2%"};
+  const std::vector<std::string> words{"advise",
+                                       "gear_drive",
+                                       "--set",
+                                       "duration_s=0.2",
+                                       "torque_mean_Nm=-8000",
+                                       "torque_amplitude_Nm=2000",
+                                       "mesh_damping_Ns_per_m=20000",
+                                       "--for",
+                                       "steady peak mesh_2.force_N",
+                                       "--within",
+                                       "2%"};
   const auto text = drev_command(words);
   CHECK(text.exit_code == 0);
   for (const char* part : {"full model", "no backlash", "cannot be used", "Use ", "2 %", "holds"})
@@ -112,27 +118,24 @@ TEST_CASE("Advice: every model tried, the cheapest that holds") {
   for (const Json& rung : rungs) {
     if (rung.at("name") != json.at("chosen")) continue;
     CHECK(rung.at("holds") == true);
-    CHECK(std::abs(rung.at("value").get<double>() / rungs.back().at("value").get<double>() - 1.0) <=
-          0.02);
+    CHECK(std::abs(rung.at("value").get<double>() / rungs.back().at("value").get<double>() - 1.0) <= 0.02);
     CHECK(rung.at("cost").get<double>() <= 1.0);
   }
 }
 
 TEST_CASE("A run as JSON is one object with everything in it") {
-  const auto run =
-      drev_command({"run", "camshaft", "--set", "duration_s=0.05", "drive=held", "--json"});
+  const auto run = drev_command({"run", "camshaft", "--set", "duration_s=0.05", "drive=held", "--json"});
   CHECK(run.exit_code == 0);
   CHECK(run.err.empty());
   const Json json = Json::parse(run.out);  // throws if there is anything else
   for (const char* key :
-       {"model", "settings", "method", "step_s", "status", "reason", "results", "energy_error",
-        "energy", "steps", "halved_steps", "iterations", "run_time_s", "note"})
+       {"model", "settings", "method", "step_s", "status", "reason", "results", "energy_error", "energy",
+        "steps", "halved_steps", "iterations", "run_time_s", "note"})
     CHECK(json.contains(key));
   const Json& results = json.at("results");
-  for (const char* key :
-       {"deflection_deg", "deflection_m", "max_torque_Nm", "max_torque_at", "max_force_N",
-        "static_torque_Nm", "dynamic_amplification", "front_contacts", "back_contacts",
-        "time_apart_s", "max_mesh_force_N", "contacts", "frequencies_Hz", "rigid_modes"})
+  for (const char* key : {"deflection_deg", "deflection_m", "max_torque_Nm", "max_torque_at", "max_force_N",
+                          "static_torque_Nm", "dynamic_amplification", "front_contacts", "back_contacts",
+                          "time_apart_s", "max_mesh_force_N", "contacts", "frequencies_Hz", "rigid_modes"})
     CHECK(results.contains(key));
   CHECK(json.at("status") == "success");
   CHECK(json.at("method") == "exact");
@@ -141,14 +144,12 @@ TEST_CASE("A run as JSON is one object with everything in it") {
   CHECK(results.at("max_mesh_force_N").is_null());  // held: no mesh
   CHECK(results.at("contacts").empty());
   CHECK(results.at("dynamic_amplification").get<double>() ==
-        Approx(results.at("max_torque_Nm").get<double>() /
-               results.at("static_torque_Nm").get<double>()));
+        Approx(results.at("max_torque_Nm").get<double>() / results.at("static_torque_Nm").get<double>()));
 }
 
 TEST_CASE("The figures of a run are the library's") {
-  const auto run =
-      drev_command({"run", "camshaft", "--set", "duration_s=0.05", "cylinders=6", "--step", "1e-5",
-                    "--json"});
+  const auto run = drev_command(
+      {"run", "camshaft", "--set", "duration_s=0.05", "cylinders=6", "--step", "1e-5", "--json"});
   const Json results = Json::parse(run.out).at("results");
   const drev::SceneEntry& entry = drev::find_scene("camshaft");
   drev::Settings settings("camshaft", entry.settings);
@@ -185,8 +186,8 @@ TEST_CASE("The figures of a run are the library's") {
   CHECK(mesh.at("rattle_index_W").get<double>() == Approx(record.impact_energy / 0.05).epsilon(1e-12));
   CHECK(results.at("max_mesh_force_N").get<double>() == Approx(force).epsilon(1e-12));
   double largest_static = 0.0;  // at other angles than drev's
-  for (const drev::Peak& p : drev::static_sweep(system, drev::find_channels(system, scene.torques),
-                                                0.0, 2 * drev::kTwoPi, 1000))
+  for (const drev::Peak& p :
+       drev::static_sweep(system, drev::find_channels(system, scene.torques), 0.0, 2 * drev::kTwoPi, 1000))
     largest_static = std::max(largest_static, p.amplitude());
   CHECK(results.at("static_torque_Nm").get<double>() == Approx(largest_static).epsilon(2e-3));
 }
@@ -229,8 +230,8 @@ TEST_CASE("The table has its units, and says what the data are") {
   CHECK(run.exit_code == 0);
   CHECK(run.err.empty());  // no progress where there is no terminal
   for (const char* part :
-       {" deg between fuel_1 and inlet_9", " N m in shaft_", " Hz", "mesh_1", "mesh_2", "front",
-        "back", "apart [s]", "rattle index", "[%]", "Static torque", "Dynamic amplification", "Energy balance",
+       {" deg between fuel_1 and inlet_9", " N m in shaft_", " Hz", "mesh_1", "mesh_2", "front", "back",
+        "apart [s]", "rattle index", "[%]", "Static torque", "Dynamic amplification", "Energy balance",
         "average_acceleration", "step 1e-05 s", "halved", "iterations", "reconstruction"})
     CHECK(contains(run.out, part));
 }
@@ -255,8 +256,8 @@ TEST_CASE("A run that failed looks like one") {
     CHECK(json.at("results").at("deflection_m").is_null());
   }
   SECTION("energy balance off") {
-    const auto run = drev_command({"run", "two_mass_backlash", "--set", "k_1_N_per_m=1e6",
-                                   "k_2_N_per_m=1e6", "--step", "2e-3"});
+    const auto run = drev_command(
+        {"run", "two_mass_backlash", "--set", "k_1_N_per_m=1e6", "k_2_N_per_m=1e6", "--step", "2e-3"});
     CHECK(run.exit_code == 1);
     CHECK(run.out.starts_with("*** DO NOT TRUST THIS RUN"));
     CHECK(contains(run.err, "DO NOT TRUST THIS RUN"));
@@ -265,8 +266,8 @@ TEST_CASE("A run that failed looks like one") {
 }
 
 TEST_CASE("Methods and settings reach the computation") {
-  const auto run = drev_command({"run", "--set", "duration_s=0.5", "two_mass_backlash", "--method",
-                                 "hht:0.1", "--step", "0.001", "--json"});
+  const auto run = drev_command({"run", "--set", "duration_s=0.5", "two_mass_backlash", "--method", "hht:0.1",
+                                 "--step", "0.001", "--json"});
   CHECK(run.exit_code == 0);
   const Json json = Json::parse(run.out);
   CHECK(json.at("method") == "hht:0.1");
@@ -284,10 +285,10 @@ TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a mode
   CHECK(object.at("contact_changes") == 72);  // of the exact solution over 10 s
   CHECK(std::abs(object.at("energy_error").get<double>()) < 1e-9);
   // Largest values of 1e6 steps of average acceleration: off by h^2.
-  const auto fine = drev_command(
-      {"run", "two_mass_backlash", "--step", "1e-5", "--set", "duration_s=2", "--json"});
-  const auto exact = drev_command(
-      {"run", "two_mass_backlash", "--method", "exact", "--set", "duration_s=2", "--json"});
+  const auto fine =
+      drev_command({"run", "two_mass_backlash", "--step", "1e-5", "--set", "duration_s=2", "--json"});
+  const auto exact =
+      drev_command({"run", "two_mass_backlash", "--method", "exact", "--set", "duration_s=2", "--json"});
   for (const char* figure : {"deflection_m", "max_force_N", "max_mesh_force_N"})
     CHECK(Json::parse(exact.out)["results"][figure].get<double>() ==
           Approx(Json::parse(fine.out)["results"][figure].get<double>()).epsilon(3e-5));
@@ -303,8 +304,8 @@ TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a mode
 }
 
 TEST_CASE("A tolerance controls the steps of a stepping method; what it took is said") {
-  const std::vector<std::string> words{"run", "two_mass_backlash", "--method", "dormand_prince",
-                                       "--tolerance", "1e-8"};
+  const std::vector<std::string> words{
+      "run", "two_mass_backlash", "--method", "dormand_prince", "--tolerance", "1e-8"};
   const Json truth = Json::parse(drev_command({"run", "two_mass_backlash", "--json"}).out);
   std::vector<std::string> with_json = words;
   with_json.push_back("--json");
@@ -331,11 +332,11 @@ TEST_CASE("A tolerance controls the steps of a stepping method; what it took is 
   CHECK(more.at("step_s") == 1e-3);
   CHECK(more.at("steps").get<long>() >= 10000);
   // Everything wrong with it at once.
-  const auto wrong = drev_command({"run", "two_mass_backlash", "--method", "hht:2", "--tolerance", "2",
-                                   "--step", "11"});
+  const auto wrong =
+      drev_command({"run", "two_mass_backlash", "--method", "hht:2", "--tolerance", "2", "--step", "11"});
   CHECK(wrong.exit_code == 2);
-  for (const char* part : {"3 faults", "alpha = 2", "--tolerance = 2, must be a number from 1e-13 to 0.1",
-                           "--step = 11 s"})
+  for (const char* part :
+       {"3 faults", "alpha = 2", "--tolerance = 2, must be a number from 1e-13 to 0.1", "--step = 11 s"})
     CHECK(contains(wrong.err, part));
 }
 
@@ -365,15 +366,14 @@ TEST_CASE("A mistyped method names the nearest one, exact among them") {
 TEST_CASE("The default step follows the fastest thing in a model") {
   // A torque of 31 kHz on two inertias: the twist is that of the forced vibration far above the mode,
   // at most twice A/(J_1 (w^2 - w_n^2)) k while the start rings.
-  const auto fast =
-      drev_command({"run", "two_inertia", "--method", "average_acceleration", "--set",
-                    "torque_frequency_Hz=31044.4", "duration_s=0.02", "--json"});
+  const auto fast = drev_command({"run", "two_inertia", "--method", "average_acceleration", "--set",
+                                  "torque_frequency_Hz=31044.4", "duration_s=0.02", "--json"});
   const Json object = Json::parse(fast.out);
   CHECK(object.at("step_s").get<double>() < 1.0 / 31044.4 / 100);
   CHECK(object["results"]["max_torque_Nm"].get<double>() < 0.1);
   // A light mass between the springs rattles fast: the impacts of exact propagation.
-  const std::vector<std::string> light{"run",   "two_mass_backlash",          "--json",
-                                       "--set", "mass_1_kg=1e-4", "duration_s=1.5"};
+  const std::vector<std::string> light{"run",   "two_mass_backlash", "--json",
+                                       "--set", "mass_1_kg=1e-4",    "duration_s=1.5"};
   std::vector<std::string> average = light;
   average.insert(average.end(), {"--method", "average_acceleration"});
   const Json stepped = Json::parse(drev_command(average).out), truth = Json::parse(drev_command(light).out);

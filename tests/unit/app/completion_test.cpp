@@ -51,12 +51,14 @@ TEST_CASE("bash completes words that it has split at =") {
       "COMP_LINE='drev run camshaft --set drive='; COMP_POINT=${#COMP_LINE}; "
       "COMP_WORDS=(drev run camshaft --set drive =); COMP_CWORD=5; _drev; echo \"${COMPREPLY[*]}\"";
   const std::string out = (folder / "out").string();
-  const int status = std::system(("bash -c '" + [&] {
-                                   std::string quoted;
-                                   for (const char c : script)
-                                     quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-                                   return quoted;
-                                 }() + "' >" + out + " 2>&1")
+  const int status = std::system(("bash -c '" +
+                                  [&] {
+                                    std::string quoted;
+                                    for (const char c : script)
+                                      quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+                                    return quoted;
+                                  }() +
+                                  "' >" + out + " 2>&1")
                                      .c_str());
   CHECK(status == 0);
   CHECK(lines_of(drev::test::read_file(out)) == Words{"held", "gears held free"});

@@ -55,13 +55,12 @@ Table read_table(const std::filesystem::path& path) {
 
 TEST_CASE("history.csv has the times asked for and the library's values") {
   const TemporaryFolder folder;
-  const std::vector<std::string> channels{"mass_2.velocity_m_per_s", "mass_1.position_m",
-                                          "spring_1.force_N", "mass_2-mass_1.distance_m"};
-  const auto run =
-      drev_command({"run", "two_mass_backlash", "--set", "duration_s=2.5", "--step", "0.001",
-                    "--every", "0.017", "--out", (folder / "deep/result").string(), "--record",
-                    "mass_2.velocity_m_per_s,mass_1.position_m", "--record",
-                    "spring_1.force_N,mass_2-mass_1.distance_m"});
+  const std::vector<std::string> channels{"mass_2.velocity_m_per_s", "mass_1.position_m", "spring_1.force_N",
+                                          "mass_2-mass_1.distance_m"};
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=2.5", "--step", "0.001",
+                                 "--every", "0.017", "--out", (folder / "deep/result").string(), "--record",
+                                 "mass_2.velocity_m_per_s,mass_1.position_m", "--record",
+                                 "spring_1.force_N,mass_2-mass_1.distance_m"});
   CHECK(run.exit_code == 0);
   CHECK(contains(run.out, "every 0.017 s"));
   const Table table = read_table(folder / "deep/result/history.csv");
@@ -82,8 +81,7 @@ TEST_CASE("history.csv has the times asked for and the library's values") {
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     REQUIRE(table.rows[k].size() == 1 + channels.size());
     CHECK(table.rows[k][0] == static_cast<double>(k) * 0.017);
-    for (std::size_t c = 0; c < channels.size(); ++c)
-      CHECK(table.rows[k][c + 1] == recorder.samples(c)[k]);
+    for (std::size_t c = 0; c < channels.size(); ++c) CHECK(table.rows[k][c + 1] == recorder.samples(c)[k]);
   }
   const Json summary = Json::parse(read_file(folder / "deep/result/summary.json"));
   CHECK(summary.at("status") == "success");
@@ -92,16 +90,15 @@ TEST_CASE("history.csv has the times asked for and the library's values") {
 
 TEST_CASE("The default interval is a round number, and the last row is the end of the run") {
   const TemporaryFolder folder;
-  const auto run = drev_command(
-      {"run", "two_inertia", "--set", "duration_s=0.3", "--out", (folder / "r").string()});
+  const auto run =
+      drev_command({"run", "two_inertia", "--set", "duration_s=0.3", "--out", (folder / "r").string()});
   CHECK(run.exit_code == 0);
   CHECK(contains(run.out, "every 0.0002 s"));
   const Table table = read_table(folder / "r/history.csv");
   REQUIRE(table.rows.size() == 1501);
   CHECK(table.rows.back()[0] == 1500 * 0.0002);
   const drev::SceneEntry& entry = drev::find_scene("two_inertia");
-  for (const std::string& channel :
-       entry.build(drev::Settings(entry.name, entry.settings)).channels)
+  for (const std::string& channel : entry.build(drev::Settings(entry.name, entry.settings)).channels)
     CHECK(contains(table.header, "," + channel));
 }
 
@@ -129,8 +126,8 @@ TEST_CASE("A full disk is an error, and the old result stays") {
     CHECK(contains(run.err, "history.partial.csv: No space left on device"));
   }
   SECTION("on the way: the run is given up") {
-    const auto run = drev_command({"run", "camshaft", "--set", "duration_s=1000", "--every", "1e-5",
-                                   "--out", (folder / "r").string(), "--json"});
+    const auto run = drev_command({"run", "camshaft", "--set", "duration_s=1000", "--every", "1e-5", "--out",
+                                   (folder / "r").string(), "--json"});
     CHECK(run.exit_code == 3);
     CHECK(contains(run.err, "No space left on device"));
     CHECK(Json::parse(run.out).at("status") == "output_error");
@@ -162,8 +159,8 @@ TEST_CASE("Standard output on a full disk is an error") {
 TEST_CASE("An interrupted run leaves what it had") {
   const int signal = GENERATE(SIGINT, SIGTERM);
   const TemporaryFolder folder;
-  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001",
-                         "--out", (folder / "r").string(), "--json"});
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--out",
+                         (folder / "r").string(), "--json"});
   // The file grows as the run goes.
   const auto partial = folder / "r/history.partial.csv";
   for (int i = 0; i < 1000; ++i) {
@@ -254,8 +251,7 @@ TEST_CASE("A disk that fills up leaves the summary that says that the run has no
 
 TEST_CASE("Two runs do not write one file") {
   const TemporaryFolder folder;
-  const Process first(
-      {"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  const Process first({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto second = drev_command({"run", "two_inertia", "--out", (folder / "r").string()});

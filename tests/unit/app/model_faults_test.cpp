@@ -79,11 +79,9 @@ std::vector<Fault> parameter_faults() {
                                        .inner_diameter = 0.2,
                                        .length = 1.0}),
        {"drive/d: inner_diameter = 0.2 m", "0.1"}},
-      {between<DistributedShaft>("d", {.shear_modulus = 8e10,
-                                       .density = 7850.0,
-                                       .outer_diameter = 0.1,
-                                       .length = 1.0,
-                                       .segments = 0}),
+      {between<DistributedShaft>(
+           "d",
+           {.shear_modulus = 8e10, .density = 7850.0, .outer_diameter = 0.1, .length = 1.0, .segments = 0}),
        {"drive/d: segments = 0", "1"}},
       {between<IdealGear>("i", {.ratio = 0.0}), {"drive/i: ratio = 0", "must not be 0"}},
       {[](Model& m) { m.add<RayleighDamping>("r", {}, {.alpha_mass = -1.0}); },
@@ -97,8 +95,7 @@ std::vector<Fault> parameter_faults() {
       {meshed([](auto& p) { p.stiffness = -1.0; }), {"drive/mesh: stiffness = -1 N/m"}},
       {meshed([=](auto& p) { p.stiffness = MeshStiffness::step(k, k, 2.5), p.teeth_1 = 20; }),
        {"drive/mesh", "contact_ratio = 2.5", "less than 2"}},
-      {meshed([=](auto& p) { p.stiffness = MeshStiffness::step(k, k, 1.5); }),
-       {"drive/mesh", "teeth_1"}},
+      {meshed([=](auto& p) { p.stiffness = MeshStiffness::step(k, k, 1.5); }), {"drive/mesh", "teeth_1"}},
       {meshed([](auto& p) { p.teeth_1 = -20; }), {"drive/mesh", "teeth_1 = -20"}},
       {meshed([](auto& p) {
          p.base_radius_1 = p.base_radius_2 = kNan;
@@ -138,8 +135,7 @@ std::vector<Fault> structure_faults() {
       {[](Model& m) { m.add_node("a,b"); }, {"drive: node name = a,b", "','"}},
       {[](Model& m) { m.add_node(""); }, {"drive: node name", "empty"}},
       {between<ShaftSpring>("shaft", {.stiffness = 1.0}), {"drive: element name = shaft", "twice"}},
-      {[](Model& m) { m.add<ShaftSpring>("s", {"load"}, {.stiffness = 1.0}); },
-       {"drive/s: nodes = 1", "2"}},
+      {[](Model& m) { m.add<ShaftSpring>("s", {"load"}, {.stiffness = 1.0}); }, {"drive/s: nodes = 1", "2"}},
       {[](Model& m) {
          m.add<ShaftSpring>("s", {"load", "load"}, {.stiffness = 1.0});
        },

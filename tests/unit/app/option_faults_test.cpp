@@ -129,14 +129,14 @@ TEST_CASE("Faults of the command line are named") {
 }
 
 TEST_CASE("All faults of one command line are listed at once") {
-  const auto run = drev_command({"run", "camshaft", "--stp", "--step", "1ms", "--every", "-1",
-                                 "--method", "hht:2", "--set", "cylinders=5", "drve=held",
-                                 "backlash_mm=x", "--record", "end.angle,mesh_9.force_N"});
+  const auto run = drev_command({"run", "camshaft", "--stp", "--step", "1ms", "--every", "-1", "--method",
+                                 "hht:2", "--set", "cylinders=5", "drve=held", "backlash_mm=x", "--record",
+                                 "end.angle,mesh_9.force_N"});
   INFO(run.err);
   CHECK(run.exit_code == 2);
   CHECK(contains(run.err, "11 faults"));
   for (const char* part :
-       {"--stp", "--step = 1ms", "--every = -1 s", "alpha = 2", "cylinders = 5", "drve",
-        "backlash_mm = x", "end.angle", "mesh_9.force_N", "--every, needs", "--record, needs"})
+       {"--stp", "--step = 1ms", "--every = -1 s", "alpha = 2", "cylinders = 5", "drve", "backlash_mm = x",
+        "end.angle", "mesh_9.force_N", "--every, needs", "--record, needs"})
     CHECK(contains(run.err, part));
 }

@@ -1,16 +1,15 @@
 #pragma once
 /// Runs the drev executable as a user would.
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <signal.h>
 #include <string>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 namespace drev::test {
@@ -83,9 +82,7 @@ class Process {
   pid_t id_ = -1;
 };
 
-inline Outcome drev_command(const std::vector<std::string>& arguments) {
-  return Process(arguments).wait();
-}
+inline Outcome drev_command(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

@@ -98,8 +98,8 @@ TEST_CASE("Of every group of samples the report has the lowest and the highest")
     REQUIRE(high.size() == groups);
     for (std::size_t i = 0; i < groups; ++i) {
       const auto begin = columns[c + 1].begin() + static_cast<std::ptrdiff_t>(i * group);
-      const auto end = columns[c + 1].begin() +
-                       static_cast<std::ptrdiff_t>(std::min((i + 1) * group, columns[0].size()));
+      const auto end =
+          columns[c + 1].begin() + static_cast<std::ptrdiff_t>(std::min((i + 1) * group, columns[0].size()));
       REQUIRE(low[i] == static_cast<float>(*std::min_element(begin, end)));
       REQUIRE(high[i] == static_cast<float>(*std::max_element(begin, end)));
     }
@@ -147,15 +147,16 @@ TEST_CASE("Contact bands add up to the time apart") {
     // A byte is 1/255 of a group; only groups with a change in them are rounded.
     const double impacts =
         contact.at("front_contacts").get<double>() + contact.at("back_contacts").get<double>();
-    CHECK(std::abs(apart - contact.at("time_apart_s").get<double>()) <= length * (2.0 + 2.0 * impacts) / 255.0);
+    CHECK(std::abs(apart - contact.at("time_apart_s").get<double>()) <=
+          length * (2.0 + 2.0 * impacts) / 255.0);
   }
 }
 
 TEST_CASE("Resonances: speeds and static answers as in closed form") {
-  // One cyclic torque on the last of three gears, the first held: the modes' static answers, each taken at the
-  // loaded gear, add up to torque times static compliance.
-  const Json data = block_of_run(
-      {"gear_drive", "--set", "engine_rpm=3000", "torque_order=9", "duration_s=0.2"});
+  // One cyclic torque on the last of three gears, the first held: the modes' static answers, each taken at
+  // the loaded gear, add up to torque times static compliance.
+  const Json data =
+      block_of_run({"gear_drive", "--set", "engine_rpm=3000", "torque_order=9", "duration_s=0.2"});
   const Json &campbell = data.at("campbell"), &modes = data.at("modes");
   REQUIRE(modes.size() == 2);
   const auto gear = std::find_if(data["model"]["nodes"].begin(), data["model"]["nodes"].end(),

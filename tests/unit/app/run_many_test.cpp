@@ -18,8 +18,7 @@ using Json = nlohmann::json;
 namespace {
 
 void wait_until(const std::function<bool()>& holds) {
-  for (int i = 0; i < 3000 && !holds(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int i = 0; i < 3000 && !holds(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   REQUIRE(holds());
 }
 
@@ -50,8 +49,7 @@ Json json_file(const std::filesystem::path& path) { return Json::parse(read_file
 
 }  // namespace
 
-TEST_CASE(
-    "Several models: the good ones run, the others are named, results are those of single runs") {
+TEST_CASE("Several models: the good ones run, the others are named, results are those of single runs") {
   const TemporaryFolder folder;
   write_train(folder / "trains/good.toml", "0.01");
   write_train(folder / "trains/hard.toml", "0.02");
@@ -63,8 +61,8 @@ TEST_CASE(
   std::ofstream(folder / "trains/other.toml") << "colour = 1\n";
   std::ofstream(folder / "trains/table.csv") << "1,2\n";
   const std::string out = (folder / "results").string();
-  const auto run = drev_command({"run", (folder / "trains").string() + "/", "--out", out,
-                                 "two_inertia", "--set", "k_Nm_per_rad=9000"});
+  const auto run = drev_command(
+      {"run", (folder / "trains").string() + "/", "--out", out, "two_inertia", "--set", "k_Nm_per_rad=9000"});
   INFO(run.out << run.err);
   CHECK(run.exit_code == 2);
   CHECK(contains(run.out, "3 of 6 succeeded"));
@@ -83,18 +81,17 @@ TEST_CASE(
   for (const char* name : {"good", "hard", "main"}) {
     CHECK(run_of(all, name).at("status") == "success");
     const std::string alone = (folder / (std::string("alone_") + name)).string();
-    drev_command({"run", (folder / "trains").string() + "/" + name + ".toml", "--out", alone,
-                  "--set", "k_Nm_per_rad=9000"});
+    drev_command({"run", (folder / "trains").string() + "/" + name + ".toml", "--out", alone, "--set",
+                  "k_Nm_per_rad=9000"});
     CHECK(read_file(alone + "/history.csv") == read_file(out + "/" + name + "/history.csv"));
-    CHECK(json_file(alone + "/summary.json").at("results") ==
-          run_of(all, name).at("summary").at("results"));
+    CHECK(json_file(alone + "/summary.json").at("results") == run_of(all, name).at("summary").at("results"));
   }
   CHECK(run_of(all, "torn").at("summary").is_null());
   CHECK_FALSE(std::filesystem::exists(out + "/torn"));
   CHECK_FALSE(std::filesystem::exists(out + "/runs.partial.json"));
 
-  const auto good = drev_command({"run", "two_inertia", (folder / "trains/good.toml").string(),
-                                  "--out", out, "--json", "--jobs", "1"});
+  const auto good = drev_command(
+      {"run", "two_inertia", (folder / "trains/good.toml").string(), "--out", out, "--json", "--jobs", "1"});
   CHECK(good.exit_code == 0);
   CHECK(good.err.empty());
   CHECK(Json::parse(good.out) == json_file(folder / "results/runs.json"));
@@ -124,14 +121,13 @@ TEST_CASE("Several models: faults of the command line start nothing") {
   std::filesystem::create_directory(folder / "empty");
   const std::string out = (folder / "r").string();
   const std::string a = (folder / "a.toml").string(), b = (folder / "b").string();
-  const auto refused = drev_command({"run", a, b, (folder / "empty").string(), "--out", out,
-                                     "--jobs", "0", "--report", "x.html", "--stp"});
+  const auto refused = drev_command(
+      {"run", a, b, (folder / "empty").string(), "--out", out, "--jobs", "0", "--report", "x.html", "--stp"});
   INFO(refused.err);
   CHECK(refused.exit_code == 2);
   CHECK(contains(refused.err, "5 faults"));
-  for (const char* part :
-       {"b/a.toml, has the name of", "both results would be in DIR/a", "--jobs = 0",
-        "directory without a model file", "--report = x.html, is for one run", "--stp"})
+  for (const char* part : {"b/a.toml, has the name of", "both results would be in DIR/a", "--jobs = 0",
+                           "directory without a model file", "--report = x.html, is for one run", "--stp"})
     CHECK(contains(refused.err, part));
   CHECK_FALSE(std::filesystem::exists(out));
 }
@@ -139,11 +135,10 @@ TEST_CASE("Several models: faults of the command line start nothing") {
 TEST_CASE("A run that is killed does not stop the others") {
   const TemporaryFolder folder;
   write_train(folder / "long.toml", "10000");
-  for (const char* name : {"a", "b", "c"})
-    write_train(folder / (std::string(name) + ".toml"), "0.01");
+  for (const char* name : {"a", "b", "c"}) write_train(folder / (std::string(name) + ".toml"), "0.01");
   const auto path = [&](const char* name) { return (folder / name).string(); };
-  const Process process({"run", path("long.toml"), path("a.toml"), path("b.toml"), path("c.toml"),
-                         "--out", path("r"), "--json", "--jobs", "2"});
+  const Process process({"run", path("long.toml"), path("a.toml"), path("b.toml"), path("c.toml"), "--out",
+                         path("r"), "--json", "--jobs", "2"});
   // The others, one after the other, beside the long one.
   wait_until([&] { return std::filesystem::exists(folder / "r/c/summary.json"); });
   const Json partial = json_file(folder / "r/long/summary.partial.json");
@@ -163,15 +158,13 @@ TEST_CASE(
     "begun") {
   const int signal = GENERATE(SIGINT, SIGTERM, SIGKILL);
   const TemporaryFolder folder;
-  for (const char* name : {"a", "b", "c"})
-    write_train(folder / (std::string(name) + ".toml"), "10000");
+  for (const char* name : {"a", "b", "c"}) write_train(folder / (std::string(name) + ".toml"), "10000");
   const auto path = [&](const char* name) { return (folder / name).string(); };
   const Process process(
       {"run", path("a.toml"), path("b.toml"), path("c.toml"), "--out", path("r"), "--jobs", "2"});
   const auto begun = [&](const char* name) {
     std::error_code missing;
-    return std::filesystem::file_size(folder / "r" / name / "history.partial.csv", missing) > 0 &&
-           !missing;
+    return std::filesystem::file_size(folder / "r" / name / "history.partial.csv", missing) > 0 && !missing;
   };
   wait_until([&] { return begun("a") && begun("b"); });
   process.send(signal);
@@ -199,8 +192,9 @@ TEST_CASE(
 TEST_CASE("Settings varied: every combination, with one table of figures") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
-  const auto run = drev_command({"run", "two_inertia", "--vary", "inertia_1_kg_m2=0.01:0.01:0.03", "--vary",
-                                 "stiffness_Nm_per_rad=8000,9000.5", "--set", "duration_s=0.05", "--out", out});
+  const auto run =
+      drev_command({"run", "two_inertia", "--vary", "inertia_1_kg_m2=0.01:0.01:0.03", "--vary",
+                    "stiffness_Nm_per_rad=8000,9000.5", "--set", "duration_s=0.05", "--out", out});
   INFO(run.out << run.err);
   CHECK(run.exit_code == 0);
   CHECK(contains(run.out, "6 of 6 succeeded"));
@@ -224,8 +218,8 @@ TEST_CASE("Settings varied: every combination, with one table of figures") {
     CHECK(one.at("varied").at("inertia_1_kg_m2") == std::stod(inertia));
     CHECK(rows[i + 1].starts_with('"' + name + "\",success," + inertia + "," + stiffness + ","));
     const Json alone = Json::parse(
-        drev_command({"run", "two_inertia", "--json", "--out", (folder / "alone").string(), "--set", "duration_s=0.05",
-                      "inertia_1_kg_m2=" + inertia, "stiffness_Nm_per_rad=" + stiffness})
+        drev_command({"run", "two_inertia", "--json", "--out", (folder / "alone").string(), "--set",
+                      "duration_s=0.05", "inertia_1_kg_m2=" + inertia, "stiffness_Nm_per_rad=" + stiffness})
             .out);
     CHECK(alone.at("results") == one.at("summary").at("results"));
     CHECK(contains(rows[i + 1], "," + alone.at("results").at("max_torque_Nm").dump() + ","));

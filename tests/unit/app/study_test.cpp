@@ -75,16 +75,15 @@ TEST_CASE("Study: free frequencies within 0.005 Hz of an independent solver's") 
 
 TEST_CASE("Study: the report of the cheap groups") {
   const drev::test::TemporaryFolder folder;
-  const auto run = drev_command({"study", "--only", "data,frequencies,held_frequencies,benchmark",
-                                 "--out", (folder / "out").string()});
+  const auto run = drev_command(
+      {"study", "--only", "data,frequencies,held_frequencies,benchmark", "--out", (folder / "out").string()});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(contains(run.out, "stands"));
   const std::string report = read_file(folder / "out/study.md");
   CHECK(check_tables(report) > 60);
-  for (const char* source :
-       {"Table 3.2", "Table 3.3", "Table 4.1", "Table 4.2", "Table 4.3", "Table 4.5", "Table 5.1",
-        "Table 5.2", "Table 5.3", "Table 5.4", "Figure 5.10"})
+  for (const char* source : {"Table 3.2", "Table 3.3", "Table 4.1", "Table 4.2", "Table 4.3", "Table 4.5",
+                             "Table 5.1", "Table 5.2", "Table 5.3", "Table 5.4", "Figure 5.10"})
     CHECK(contains(report, source));
   // The two halves of the first mode's story: 106.576 Hz (independent solver), shown as 102.84 Hz by
   // average acceleration, tan(w' h/2) = w h/2.
@@ -109,16 +108,14 @@ TEST_CASE("Study: every table of the source is in docs/study.md") {
 TEST_CASE("Study: a group that is none lists those that are") {
   const auto run = drev_command({"study", "--only", "gear_drives"});
   CHECK(run.exit_code == 2);
-  for (const char* part :
-       {"gear_drives", "did you mean 'gear_drive'?", "held", "run_up", "firing_order"})
+  for (const char* part : {"gear_drives", "did you mean 'gear_drive'?", "held", "run_up", "firing_order"})
     CHECK(contains(run.err, part));
 }
 
 TEST_CASE("Study: superposed cylinders are the steady state of a run in time") {
   const int cylinders = 6;
-  const SettingList settings{{"cylinders", "6"},    {"drive", "held"},
-                             {"damping", "case_1"}, {"loads", "source"},
-                             {"duration_s", "3.2"}, {"firing_order", "1-4-3-6-2-5"}};
+  const SettingList settings{{"cylinders", "6"},  {"drive", "held"},     {"damping", "case_1"},
+                             {"loads", "source"}, {"duration_s", "3.2"}, {"firing_order", "1-4-3-6-2-5"}};
   const Scene scene = build_scene("camshaft", settings);
   const System system = scene.model.build();
   // 20 revolutions at 750 rpm: the start has died out to exp(-10.6 * 3) = 2e-14.
@@ -137,9 +134,8 @@ TEST_CASE("Study: superposed cylinders are the steady state of a run in time") {
     const std::vector<double>& samples = recorder.samples(static_cast<std::size_t>(c));
     double worst = 0.0;
     for (int i = 0; i < points; ++i)
-      worst = std::max(worst,
-                       std::abs(samples[samples.size() - 1 - points + static_cast<std::size_t>(i)] -
-                                waves(i * SteadyShaft::kSamples / points, c)));
+      worst = std::max(worst, std::abs(samples[samples.size() - 1 - points + static_cast<std::size_t>(i)] -
+                                       waves(i * SteadyShaft::kSamples / points, c)));
     INFO(names[static_cast<std::size_t>(c)]);
     // Harmonics above 1440 (9 kHz; the fastest mode is at 5 kHz) are left out: kinks of the tables.
     CHECK(worst <= (c == 0 ? 1e-5 * waves.col(0).cwiseAbs().maxCoeff() : 1e-4 * largest));
@@ -163,8 +159,7 @@ TEST_CASE("Study: growth under stepped mesh stiffness is that of a run, and -a/2
   CHECK(mesh_growth(train("mean", "case_1"), period, 8) == Approx(-0.5 * 15.38).epsilon(1e-6));
   const System unstable = train("step", "case_1");
   const Growth growth = measure_growth(
-      unstable,
-      {.method = {.name = "average_acceleration", .step = 1e-5}, .t_end = 0.5, .pieces = 50});
+      unstable, {.method = {.name = "average_acceleration", .step = 1e-5}, .t_end = 0.5, .pieces = 50});
   const double rate = mesh_growth(unstable, period, 8);
   CHECK(rate > 10.0);
   CHECK(std::abs(growth.rate - rate) <= growth.rate_error + 0.03 * rate);

@@ -96,7 +96,7 @@ TEST_CASE("SVG chart: a long line is thinned to the pixels and keeps its peaks")
   std::vector<double> t(kPoints), y(kPoints);
   for (std::size_t i = 0; i < kPoints; ++i)
     t[i] = static_cast<double>(i) * 1e-5, y[i] = std::sin(500.0 * t[i]);
-  y[123457] = 7.0;   // one sample each
+  y[123457] = 7.0;  // one sample each
   y[301234] = -5.0;
   const std::string svg = svg_chart({}, {{.name = "signal", .x = t, .y = y}});
   CHECK(svg.size() < 60000);
@@ -111,8 +111,7 @@ TEST_CASE("SVG chart: a long line is thinned to the pixels and keeps its peaks")
   CHECK(time(low->first) == Approx(1.23457).margin(1e-4));
   CHECK(time(high->first) == Approx(3.01234).margin(1e-4));
   // 12 units apart, 8 % of air: the same share of the plot in px.
-  const std::string two =
-      svg_chart({}, {{.name = "signal", .x = {0, 1}, .y = {-5, 7}}});
+  const std::string two = svg_chart({}, {{.name = "signal", .x = {0, 1}, .y = {-5, 7}}});
   CHECK(high->second - low->second ==
         Approx(points_of(two, 0)[0].second - points_of(two, 0)[1].second).margin(0.05));
 }
@@ -121,8 +120,8 @@ TEST_CASE("SVG chart: logarithmic ticks are powers of ten, with lines between th
   const std::string svg = svg_chart({.log_x = true, .log_y = true},
                                     {{.name = "order 2", .x = {1e2, 1e3, 1e4}, .y = {1e-2, 1e-4, 1e-6}}});
   CHECK(fault_in(svg) == "");
-  for (const std::string exponent : {">2</tspan>", ">3</tspan>", ">4</tspan>", ">-2</tspan>",
-                                     ">-4</tspan>", ">-6</tspan>"})
+  for (const std::string exponent :
+       {">2</tspan>", ">3</tspan>", ">4</tspan>", ">-2</tspan>", ">-4</tspan>", ">-6</tspan>"})
     CHECK(count(svg, exponent) == 1);
   CHECK(count(svg, "class=\"n\"") >= 16);  // 2 to 9 of each decade of x
   const auto p = points_of(svg, 0);
@@ -132,15 +131,12 @@ TEST_CASE("SVG chart: logarithmic ticks are powers of ten, with lines between th
 
 TEST_CASE("SVG chart: linear ticks are round numbers; large and small ones are scaled") {
   const std::string svg = svg_chart({}, {{.name = "", .x = {0, 5}, .y = {-0.3, 0.7}}});
-  for (const std::string tick : {">0.0<", ">0.2<", ">-0.2<", ">0.6<", ">5<"})
-    CHECK(count(svg, tick) >= 1);
+  for (const std::string tick : {">0.0<", ">0.2<", ">-0.2<", ">0.6<", ">5<"}) CHECK(count(svg, tick) >= 1);
   CHECK(count(svg, ">-0.0<") == 0);
-  const std::string large = svg_chart({.y_label = "force [N]"},
-                                      {{.name = "", .x = {0, 1}, .y = {0, 4.2e6}}});
+  const std::string large = svg_chart({.y_label = "force [N]"}, {{.name = "", .x = {0, 1}, .y = {0, 4.2e6}}});
   CHECK(count(large, "force [N] (×10⁶)") == 1);
   CHECK(count(large, ">4.0<") == 1);
-  const std::string small = svg_chart({.y_label = "error [m]"},
-                                      {{.name = "", .x = {0, 1}, .y = {0, 2e-6}}});
+  const std::string small = svg_chart({.y_label = "error [m]"}, {{.name = "", .x = {0, 1}, .y = {0, 2e-6}}});
   CHECK(count(small, "error [m] (×10⁻⁶)") == 1);
 }
 
@@ -154,8 +150,8 @@ TEST_CASE("SVG chart: a single point, a constant and extreme ranges are drawn") 
     CHECK(count(svg, "nan") == 0);
     CHECK(count(svg, "inf") == 0);
   }
-  const std::string wide = svg_chart({.log_x = true, .log_y = true},
-                                     {{.name = "s", .x = {1e-300, 1e300}, .y = {3, 3}}});
+  const std::string wide =
+      svg_chart({.log_x = true, .log_y = true}, {{.name = "s", .x = {1e-300, 1e300}, .y = {3, 3}}});
   CHECK(fault_in(wide) == "");
   CHECK(wide.size() < 20000);
 }
@@ -185,7 +181,8 @@ TEST_CASE("SVG chart: bad input is refused, with every finding") {
 TEST_CASE("Chart: from the eighth series on the markers are open; rings surround points") {
   std::vector<ChartSeries> series;
   for (int i = 0; i < 8; ++i)
-    series.push_back({.name = "s" + std::to_string(i), .x = {0.0, 1.0}, .y = {0.0, 1.0 + i}, .markers = true});
+    series.push_back(
+        {.name = "s" + std::to_string(i), .x = {0.0, 1.0}, .y = {0.0, 1.0 + i}, .markers = true});
   series.push_back({.name = "ring", .x = {0.5}, .y = {2.0}, .line = false, .rings = true});
   const std::string svg = svg_chart({}, series);
   const auto count = [&](const std::string& part) {

@@ -29,23 +29,25 @@ Model everything() {
   add_disc(m, "pump", 0.1);
   add_disc(m, "shaker", 1.0);
   m.add<GearMesh>("mesh_1", {"crank", "idler"},
-                  {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 5e4,
-                   .normal_backlash = 2e-3, .damping = 30.0});
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.2,
+                   .stiffness = 5e4,
+                   .normal_backlash = 2e-3,
+                   .damping = 30.0});
   m.add<GearMesh>("mesh_2", {"idler", "cam"},
                   {.base_radius_1 = 0.2, .base_radius_2 = 0.15, .stiffness = 4e4});
   m.add<ShaftSpring>("shaft", {"cam", "tail"}, {.stiffness = 300.0, .damping = 2.0});
   m.add<PolylineSpring>("stop", {"cam", "tail"}, PolylineSpring::dead_band(500.0, 0.02, 0.4));
   m.add<IdealGear>("gear", {"tail", "pump"}, {.ratio = -3.0});
   m.add<PolylineSpring>("coupling", {"crank", "shaker"}, {.x = {-1, 0, 1}, .y = {-80, 0, 40}});
-  m.add<CamTorque>("cam_load", {"tail"},
-                   {.angle_table = PeriodicTable({0.0, 2.0, 4.0}, {1.0, 6.0, -3.0})});
+  m.add<CamTorque>("cam_load", {"tail"}, {.angle_table = PeriodicTable({0.0, 2.0, 4.0}, {1.0, 6.0, -3.0})});
   m.add<EngineOrderTorque>("gas", {"crank"}, {.harmonics = {{.order = 2, .amplitude = 9.0}}});
   m.add<EngineOrderTorque>("pump_load", {"pump"}, {.harmonics = {{.order = 1, .amplitude = 4.0}}});
   m.add<problems::Maxwell>("damper", {"cam", "tail"}, {.stiffness = 60.0, .damping = 5.0});
   m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 0.2, .beta_stiffness = 1e-3});
   m.given_motion("shaker", {[](double t) {
-    return MotionPoint{0.1 * std::sin(t), 0.1 * std::cos(t), -0.1 * std::sin(t)};
-  }});
+                   return MotionPoint{0.1 * std::sin(t), 0.1 * std::cos(t), -0.1 * std::sin(t)};
+                 }});
   return m;
 }
 
@@ -83,8 +85,7 @@ TEST_CASE("Dashpots load the mean motion") {
   Model m("drag");
   add_disc(m, "crank", 2.0);
   add_disc(m, "wheel", 0.5);
-  m.add<GearMesh>("mesh", {"crank", "wheel"},
-                  {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e8});
+  m.add<GearMesh>("mesh", {"crank", "wheel"}, {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e8});
   m.set_reference("crank", constant_speed(30.0));
   const Vector zero = Vector::Zero(2);
   Vector p;
@@ -118,8 +119,7 @@ TEST_CASE("A given motion drives its neighbours through spring, damper and share
   add_disc(m, "table", 2.0);
   add_disc(m, "load", 1.0);
   m.add<DistributedShaft>("bar", {"table", "load"},
-                          {.shear_modulus = 8e10, .density = 8000.0, .outer_diameter = 0.02,
-                           .length = 0.5});
+                          {.shear_modulus = 8e10, .density = 8000.0, .outer_diameter = 0.02, .length = 0.5});
   m.add<Dashpot>("slip", {"table", "load"}, {.damping = 4.0});
   m.given_motion("table", {[](double) { return MotionPoint{0.3, -2.0, 50.0}; }});
   const System s = m.build();
@@ -157,14 +157,13 @@ TEST_CASE("Tangents against finite differences of the forces, in contact, apart 
     a.tangent_values({0, 1, 0}, z, v, history, true, values);
     const Eigen::MatrixXd c = dense(s, values);
     a.tangent_values({2, 3, 5}, z, v, history, true, values);
-    CHECK((dense(s, values) - 5 * k - 3 * c - 2 * dense(s, s.mass_values())).norm() <=
-          1e-12 * k.norm());
+    CHECK((dense(s, values) - 5 * k - 3 * c - 2 * dense(s, s.mass_values())).norm() <= 1e-12 * k.norm());
     for (int i = 0; i < 4; ++i) {
       const Vector e = Vector::Unit(4, i) * h;
-      const Vector by_z = (problems::forces(a, z + e, v, history) -
-                           problems::forces(a, z - e, v, history)) / (2 * h);
-      const Vector by_v = (problems::forces(a, z, v + e, history) -
-                           problems::forces(a, z, v - e, history)) / (2 * h);
+      const Vector by_z =
+          (problems::forces(a, z + e, v, history) - problems::forces(a, z - e, v, history)) / (2 * h);
+      const Vector by_v =
+          (problems::forces(a, z, v + e, history) - problems::forces(a, z, v - e, history)) / (2 * h);
       INFO("sample " << sample << ", column " << i);
       // Differences of forces of 1e3 over 1e-6 leave 1e-7 relative to the stiffest column; none of the
       // samples stands within h of a kink.
@@ -194,8 +193,11 @@ TEST_CASE("Contact closed and open") {
   add_disc(m, "a", 1.0);
   add_disc(m, "b", 1.0);
   m.add<GearMesh>("mesh", {"a", "b"},
-                  {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .teeth_1 = 20,
-                   .stiffness = MeshStiffness::step(1e4, 2e4, 1.5), .normal_backlash = 1e-3,
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.2,
+                   .teeth_1 = 20,
+                   .stiffness = MeshStiffness::step(1e4, 2e4, 1.5),
+                   .normal_backlash = 1e-3,
                    .damping = 50.0});
   const System s = m.build();
   const Assembler a(s);

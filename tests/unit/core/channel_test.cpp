@@ -81,8 +81,7 @@ TEST_CASE("A mesh's force is positive on the front flank") {
   disc(m, "pinion", 1.0);
   disc(m, "wheel", 1.0);
   m.add<GearMesh>("mesh", {"pinion", "wheel"},
-                  {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e6,
-                   .normal_backlash = 1e-3});
+                  {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e6, .normal_backlash = 1e-3});
   const System s = m.build();
   const Assembler a(s);
   // x = 0.1 * 0.03 + 0.2 * (-0.01) = 1 mm; half a mm of penetration.
@@ -145,8 +144,8 @@ TEST_CASE("Reaction of a given motion: everything that its node must overcome") 
   m.add<ShaftSpring>("shaft", {"table", "load"}, {.stiffness = 50.0, .damping = 3.0});
   m.add<Dashpot>("bearing", {"table"}, {.damping = 0.7});
   m.given_motion("table", {[](double t) {
-    return MotionPoint{0.1 * std::sin(4 * t), 0.4 * std::cos(4 * t), -1.6 * std::sin(4 * t)};
-  }});
+                   return MotionPoint{0.1 * std::sin(4 * t), 0.4 * std::cos(4 * t), -1.6 * std::sin(4 * t)};
+                 }});
   const System s = m.build();
   Assembler a(s);
   a.set_time(0.3);
@@ -189,8 +188,7 @@ TEST_CASE("Torques of two ideal gears in a chain") {
   const double alpha = 23.0 / (1.5 + 4 * 0.7 + 36 * 0.2);  // 2 rad/s^2
   const State state = state_of(s, {0.0}, {0.0}, {alpha});
   CHECK(value(s, a, state, "gear_2.torque_Nm") == Approx(0.2 * -6.0 * alpha));
-  CHECK(value(s, a, state, "gear_1.torque_Nm") ==
-        Approx(0.7 * -2.0 * alpha + 3.0 * (0.2 * -6.0 * alpha)));
+  CHECK(value(s, a, state, "gear_1.torque_Nm") == Approx(0.7 * -2.0 * alpha + 3.0 * (0.2 * -6.0 * alpha)));
 }
 
 TEST_CASE("Torque of an ideal gear whose driven side is prescribed") {
@@ -281,9 +279,9 @@ TEST_CASE("A name that belongs to two channels is refused, not guessed") {
   Model m("clash");
   disc(m, "a", 1.0);
   disc(m, "b", 1.0);
-  m.add<DistributedShaft>("shaft", {"a", "b"},
-                          {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1,
-                           .length = 1.0, .segments = 2});
+  m.add<DistributedShaft>(
+      "shaft", {"a", "b"},
+      {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1, .length = 1.0, .segments = 2});
   m.add<ShaftSpring>("shaft_2", {"a", "b"}, {.stiffness = 1.0});
   const System s = m.build();
   CHECK(find_channel(s, "shaft_1.torque_Nm").unit() == "N m");

@@ -149,8 +149,7 @@ TEST_CASE("A spring between two nodes of one ideal train sees its one unknown") 
   n.add<IdealGear>("g_1", {"a", "b"}, {.ratio = -2.0});
   n.add<IdealGear>("g_2", {"b", "c"}, {.ratio = -0.5});
   n.add<PolylineSpring>("across", {"a", "c"}, {.x = {-1, 1}, .y = {-5, 5}});
-  n.add<GearMesh>("mesh", {"a", "b"},
-                  {.base_radius_1 = 0.2, .base_radius_2 = 0.1, .stiffness = 1e3});
+  n.add<GearMesh>("mesh", {"a", "b"}, {.base_radius_1 = 0.2, .base_radius_2 = 0.1, .stiffness = 1e3});
   const System s = n.build();
   REQUIRE(s.size() == 1);
   const Assembler a(s);

@@ -24,8 +24,11 @@ Model discs(std::initializer_list<const char*> names) {
 void mesh(Model& m, const char* name, const char* a, const char* b, double r_a, double r_b,
           bool internal = false, double backlash = 0.0) {
   m.add<GearMesh>(name, {a, b},
-                  {.base_radius_1 = r_a, .base_radius_2 = r_b, .internal = internal,
-                   .stiffness = 1e8, .normal_backlash = backlash});
+                  {.base_radius_1 = r_a,
+                   .base_radius_2 = r_b,
+                   .internal = internal,
+                   .stiffness = 1e8,
+                   .normal_backlash = backlash});
 }
 
 double ratio(const System& s, const char* node) { return s.ratio(s.node(node)); }

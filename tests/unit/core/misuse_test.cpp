@@ -42,9 +42,7 @@ Model pair() {
 TEST_CASE("Functions that return NaN, at once or later") {
   for (const double from : {0.0, 0.0105}) {
     INFO("NaN from " << from);
-    const auto motion = [from](double t) {
-      return t < from ? MotionPoint{} : MotionPoint{kNan, kNan, kNan};
-    };
+    const auto motion = [from](double t) { return t < from ? MotionPoint{} : MotionPoint{kNan, kNan, kNan}; };
     Model driven = pair();
     driven.given_motion("a", {motion});
     CHECK(refused(driven.build()));
@@ -85,8 +83,8 @@ TEST_CASE("A function that throws: the exception arrives, and the system can be 
 
 TEST_CASE("Scales from 1e-12 to 1e12 give the same motion") {
   for (const double scale : {1e-12, 1e-6, 1.0, 1e6, 1e12}) {
-    const problems::Oscillator o{.inertia = 2.0 * scale, .damping = 3.0 * scale,
-                                 .stiffness = 800.0 * scale, .torque = 5.0 * scale};
+    const problems::Oscillator o{
+        .inertia = 2.0 * scale, .damping = 3.0 * scale, .stiffness = 800.0 * scale, .torque = 5.0 * scale};
     const System s = o.model().build();
     Recorder recorder(s, {"disc.angle_rad"}, 0.05);
     const RunSummary summary = simulate(s, {.step = 1e-4, .t_end = 0.5}, {&recorder});
@@ -125,9 +123,9 @@ TEST_CASE("Breakpoints at the start and the end, before and after, doubled a rou
   Model m = o.model();
   const auto torque = [](double t) { return t < 0.1 ? 0.0 : 5.0; };
   const double above = std::nextafter(0.1, 1.0), below = std::nextafter(0.1, 0.0);
-  m.add<AppliedTorque>("jump", {"disc"},
-                       {.torque = torque,
-                        .breakpoints = {0.5, 0.0, 0.1, -3.0, above, 0.1, 7.0, below, 0.1 + 1e-13}});
+  m.add<AppliedTorque>(
+      "jump", {"disc"},
+      {.torque = torque, .breakpoints = {0.5, 0.0, 0.1, -3.0, above, 0.1, 7.0, below, 0.1 + 1e-13}});
   const System s = m.build();
   CHECK(s.breakpoints().front() == -3.0);
   CHECK(std::is_sorted(s.breakpoints().begin(), s.breakpoints().end()));
@@ -141,8 +139,7 @@ TEST_CASE("Breakpoints at the start and the end, before and after, doubled a rou
   CHECK(recorder.samples(0)[1] == Approx(0.0).margin(1e-15));
   // (w h)^2/12 w t times the amplitude: 3.3e-5 * 8 * 0.006.
   for (std::size_t i = 2; i < recorder.times().size(); ++i)
-    CHECK(recorder.samples(0)[i] ==
-          Approx(after.exact(recorder.times()[i] - 0.1)).margin(5e-6));
+    CHECK(recorder.samples(0)[i] == Approx(after.exact(recorder.times()[i] - 0.1)).margin(5e-6));
 }
 
 TEST_CASE("Options and states that do not fit the model") {

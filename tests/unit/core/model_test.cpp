@@ -43,7 +43,7 @@ TEST_CASE("A sound model builds, again and again, and outlives its description")
 
 TEST_CASE("Five faults of five kinds are five findings") {
   Model m = sound();
-  m.add_node("shaft end");  // 1: no inertia
+  m.add_node("shaft end");                                                     // 1: no inertia
   m.add<ShaftSpring>("coupling", {"pump", "shaft end"}, {.stiffness = -5.0});  // 2
   m.add<ShaftSpring>("stub", {"pmup", "motor"}, {.stiffness = 1.0});           // 3: unknown node
   m.hold("motr");                                                              // 4: unknown node
@@ -70,8 +70,7 @@ TEST_CASE("Five faults of five kinds are five findings") {
 TEST_CASE("Several faults in one element are several findings") {
   Model m = sound();
   m.add<GearMesh>("mesh", {"motor", "pump"},
-                  {.base_radius_1 = -0.1, .stiffness = 1e8, .normal_backlash = -0.25,
-                   .damping = kNan});
+                  {.base_radius_1 = -0.1, .stiffness = 1e8, .normal_backlash = -0.25, .damping = kNan});
   const auto found = findings_of(m);
   CHECK(count_with(found, {"pump_set/mesh", "base_radius_1 = -0.1 m"}) == 1);
   CHECK(count_with(found, {"pump_set/mesh", "base_radius_2 = NaN m"}) == 1);
@@ -106,9 +105,9 @@ TEST_CASE("Names") {
     Model m = sound();
     m.add_node("long_1");
     m.add<Inertia>("disc", {"long_1"}, {.inertia = 1.0});
-    m.add<DistributedShaft>("long", {"motor", "pump"},
-                            {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1,
-                             .length = 1.0, .segments = 3});
+    m.add<DistributedShaft>(
+        "long", {"motor", "pump"},
+        {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1, .length = 1.0, .segments = 3});
     CHECK(only_fault(m, {"node name = long_1", "is used twice"}));
   }
 }

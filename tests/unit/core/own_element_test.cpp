@@ -32,17 +32,13 @@ class Anything final : public Element {
 
 class Spring final : public ScalarForce {
  public:
-  ScalarResponse evaluate(const ScalarInput& in) const override {
-    return {.y = 5.0 * in.x, .dy_dx = 5.0};
-  }
+  ScalarResponse evaluate(const ScalarInput& in) const override { return {.y = 5.0 * in.x, .dy_dx = 5.0}; }
 };
 
 class BadLoad final : public Load {
  public:
   LoadResponse evaluate(const LoadInput&) const override { return {}; }
-  std::vector<double> breakpoints() const override {
-    return {1.0, std::numeric_limits<double>::infinity()};
-  }
+  std::vector<double> breakpoints() const override { return {1.0, std::numeric_limits<double>::infinity()}; }
 };
 
 class Nothing final : public GeneralForce {
@@ -84,11 +80,16 @@ TEST_CASE("Descriptions of the wrong size or content are findings") {
   };
   CHECK(bad(2, [](int, Terms& t) { t.mass = Eigen::MatrixXd::Zero(1, 1); }, {"mass = 1 x 1"}));
   CHECK(bad(2, [&](int, Terms& t) { t.stiffness(0, 1) = nan; }, {"stiffness", "finite"}));
-  CHECK(bad(2, [](int, Terms& t) { t.scalars.push_back({.b = row({1, -1, 1}), .force = &spring}); },
+  CHECK(bad(2,
+            [](int, Terms& t) {
+              t.scalars.push_back({.b = row({1, -1, 1}), .force = &spring});
+            },
             {"scalar b = 3 entries"}));
-  CHECK(bad(2, [](int, Terms& t) { t.scalars.push_back({.b = row({1, -1})}); },
-            {"scalar force", "null"}));
-  CHECK(bad(2, [](int, Terms& t) { t.scalars.push_back({.b = row({0, 0}), .force = &spring}); },
+  CHECK(bad(2, [](int, Terms& t) { t.scalars.push_back({.b = row({1, -1})}); }, {"scalar force", "null"}));
+  CHECK(bad(2,
+            [](int, Terms& t) {
+              t.scalars.push_back({.b = row({0, 0}), .force = &spring});
+            },
             {"scalar b", "not 0"}));
   CHECK(bad(2,
             [](int, Terms& t) {
@@ -100,20 +101,27 @@ TEST_CASE("Descriptions of the wrong size or content are findings") {
   CHECK(bad(1, [](int, Terms& t) { t.loads.push_back({0, nullptr}); }, {"load", "null"}));
   CHECK(bad(1, [](int, Terms& t) { t.generals.push_back(nullptr); }, {"general force", "null"}));
   CHECK(bad(9, [](int, Terms& t) { t.generals.push_back(&nothing); }, {"9 nodes", "at most 8"}));
-  CHECK(bad(3, [](int, Terms& t) { t.closures.push_back({.b = row({1, 1, 1})}); },
+  CHECK(bad(3,
+            [](int, Terms& t) {
+              t.closures.push_back({.b = row({1, 1, 1})});
+            },
             {"closure", "at most two"}));
-  CHECK(bad(3, [](int, Terms& t) { t.constraints.push_back(row({1, 1, 1})); },
+  CHECK(bad(3,
+            [](int, Terms& t) {
+              t.constraints.push_back(row({1, 1, 1}));
+            },
             {"constraint = 3", "exactly two"}));
-  CHECK(bad(1, [](int, Terms& t) { t.constraints.push_back(row({1})); },
-            {"constraint = 1", "exactly two"}));
-  CHECK(bad(2, [](int, Terms& t) { t.outputs.push_back({"", row({1, 2, 3}), row({1, 2})}); },
+  CHECK(bad(1, [](int, Terms& t) { t.constraints.push_back(row({1})); }, {"constraint = 1", "exactly two"}));
+  CHECK(bad(2,
+            [](int, Terms& t) {
+              t.outputs.push_back({"", row({1, 2, 3}), row({1, 2})});
+            },
             {"output stiffness = 3 entries"}));
   CHECK(bad(0, [&](int, Terms& t) { t.rayleigh_a = nan; }, {"rayleigh_a"}));
 }
 
 TEST_CASE("A constraint ties the nodes that it names, wherever they stand in the element") {
-  const System s =
-      with(3, [](int, Terms& t) { t.constraints.push_back(row({2.0, 0.0, -1.0})); }).build();
+  const System s = with(3, [](int, Terms& t) { t.constraints.push_back(row({2.0, 0.0, -1.0})); }).build();
   CHECK(s.size() == 8);
   CHECK(s.node_map(2).unknown == s.node_map(0).unknown);
   CHECK(s.node_map(2).coeff == Approx(2.0));

@@ -50,7 +50,8 @@ TEST_CASE("Table loads at once give what each gives alone, and a bound of their 
     for (std::size_t e = 0; e < 70; ++e) {
       const auto alone = [&](const std::vector<double>& at) {
         const double gain = e % 2 ? coeff : 0.0;
-        return coeff * cams[e].evaluate({.nominal_angle = ratio * phi, .deviation = gain * at[69 - e]}).torque;
+        return coeff *
+               cams[e].evaluate({.nominal_angle = ratio * phi, .deviation = gain * at[69 - e]}).torque;
       };
       CHECK(p[69 - e] == Approx(alone(z)).margin(1e-13 * (1.0 + std::abs(phi))));
       most = std::max(most, std::abs(alone(moved) - alone(z)));

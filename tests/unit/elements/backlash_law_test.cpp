@@ -52,8 +52,7 @@ TEST_CASE("proportional damping grows from the edge and saturates at p_ref = b/2
 }
 
 TEST_CASE("flanks never pull") {
-  for (const auto kind :
-       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only}) {
+  for (const auto kind : {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only}) {
     const BacklashLaw l = law(kind);
     // p = 10 um carries 2000 N; leaving at 3 m/s the damper wants -3000 N.
     const ScalarResponse front = l.evaluate(50e-6, -3.0, kConstant);
@@ -90,8 +89,7 @@ TEST_CASE("contact-only damping jumps at the edge") {
 
 TEST_CASE("without backlash every damping law is the same linear spring and damper") {
   for (const auto kind :
-       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only,
-        MeshDamping::always}) {
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only, MeshDamping::always}) {
     const BacklashLaw l = law(kind, 0.0);
     CHECK_FALSE(l.gap());
     CHECK(l.kinks().empty());
@@ -104,19 +102,14 @@ TEST_CASE("without backlash every damping law is the same linear spring and damp
 TEST_CASE("every damping law is sound at random states") {
   struct Functor {
     BacklashLaw law;
-    ScalarResponse operator()(const ScalarInput& in) const {
-      return law.evaluate(in.x, in.x_dot, kConstant);
-    }
+    ScalarResponse operator()(const ScalarInput& in) const { return law.evaluate(in.x, in.x_dot, kConstant); }
     std::span<const double> kinks() const { return law.kinks(); }
     std::optional<Gap> gap() const { return law.gap(); }
   };
   for (const auto kind :
-       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only,
-        MeshDamping::always})
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only, MeshDamping::always})
     for (const double backlash : {0.0, 80e-6, 0.7853981633974483})
-      CHECK(
-          check_element(LawElement<Functor>({law(kind, backlash)}), 2, {.samples = 2000}).text() ==
-          "");
+      CHECK(check_element(LawElement<Functor>({law(kind, backlash)}), 2, {.samples = 2000}).text() == "");
 }
 
 TEST_CASE("a loading cycle dissipates: work done over it is positive") {
@@ -148,8 +141,7 @@ TEST_CASE("backlash law: faults") {
     return all.empty() ? std::string() : std::string(ModelError(all).what());
   };
   CHECK(faults({}) == "");
-  CHECK(faults({.normal_backlash = -0.5}) ==
-        "mesh: normal_backlash = -0.5 m, must be >= 0 and finite");
+  CHECK(faults({.normal_backlash = -0.5}) == "mesh: normal_backlash = -0.5 m, must be >= 0 and finite");
   CHECK(contains(faults({.damping = NAN}), "damping = NaN N s/m"));
   CHECK(contains(faults({.reference_penetration = 0.0}), "reference_penetration = 0 m"));
 }

@@ -15,8 +15,7 @@ using namespace drev::test;
 namespace {
 
 GearMesh::Params plain() {
-  return {
-      .base_radius_1 = 0.030, .base_radius_2 = 0.075, .stiffness = 2e8, .normal_backlash = 80e-6};
+  return {.base_radius_1 = 0.030, .base_radius_2 = 0.075, .stiffness = 2e8, .normal_backlash = 80e-6};
 }
 
 }  // namespace
@@ -57,8 +56,7 @@ TEST_CASE("gear meshes are sound at random states") {
                                  MeshStiffness::fourier(8e8, {{1, 1e8, 0.3}, {2, 5e7, -1.0}}),
                                  MeshStiffness::fourier_of_step(6.582e8, 1.102e9, 1.6, 10),
                                  MeshStiffness::table({0.0, 0.3, 0.35, 0.9}, {1e9, 1e9, 7e8, 7e8})})
-    for (const auto kind :
-         {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always}) {
+    for (const auto kind : {MeshDamping::proportional, MeshDamping::contact_only, MeshDamping::always}) {
       auto p = teeth;
       p.stiffness = k;
       p.damping_law = kind;
@@ -113,7 +111,8 @@ TEST_CASE("a mesh without backlash is a spring and a damper in the matrices") {
   const System system = pair(p);
   CHECK(system.scalars().empty());
   const double flexibility = 0.030 * 0.030 / 2e-3 + 0.075 * 0.075 / 5e-2;
-  CHECK(solve_modes(system, {}).frequency_Hz.back() == Approx(to_hz(std::sqrt(2e8 * flexibility))).epsilon(1e-9));
+  CHECK(solve_modes(system, {}).frequency_Hz.back() ==
+        Approx(to_hz(std::sqrt(2e8 * flexibility))).epsilon(1e-9));
   State state = State::initial(system);
   state.z << 1e-3, -2e-4;
   state.v << 0.5, 0.1;
@@ -173,10 +172,8 @@ TEST_CASE("Fourier series of the rectangular wave against quadrature of its defi
     double expected = integral(wave, 0, 1, steps);
     for (int k = 1; k <= n; ++k) {
       const double w = kTwoPi * k;
-      const double a =
-          2 * integral([&](double u) { return wave(u) * std::cos(w * u); }, 0, 1, steps);
-      const double b =
-          2 * integral([&](double u) { return wave(u) * std::sin(w * u); }, 0, 1, steps);
+      const double a = 2 * integral([&](double u) { return wave(u) * std::cos(w * u); }, 0, 1, steps);
+      const double b = 2 * integral([&](double u) { return wave(u) * std::sin(w * u); }, 0, 1, steps);
       expected += a * std::cos(w * s) + b * std::sin(w * s);
     }
     CHECK(series.at(s).value == Approx(expected).epsilon(1e-8));

@@ -14,8 +14,7 @@ TEST_CASE("linear elements are sound") {
   CHECK(check_element(Dashpot({.damping = 3.0}), 2).text() == "");
   CHECK(check_element(GroundSpring({.stiffness = 2e4, .damping = 1.0}), 1).text() == "");
   CHECK(check_element(IdealGear({.ratio = -0.4}), 2).text() == "");
-  CHECK(check_element(RayleighDamping({.alpha_mass = 2.0, .beta_stiffness = 1e-5}), 0).text() ==
-        "");
+  CHECK(check_element(RayleighDamping({.alpha_mass = 2.0, .beta_stiffness = 1e-5}), 0).text() == "");
   CHECK(check_element(DistributedShaft({.shear_modulus = 8e10,
                                         .density = 7850,
                                         .outer_diameter = 0.1,
@@ -42,8 +41,7 @@ TEST_CASE("shaft: a forward end b pulls a forward") {
   // k = 100, twist = 0.03 - 0.01 = 0.02 rad: 2 N m; rate 4 - 1 = 3 rad/s at c = 0.5: 1.5 N m.
   const Terms t = described(ShaftSpring({.stiffness = 100, .damping = 0.5}), 2);
   const Eigen::Vector2d q(0.01, 0.03), v(1, 4);
-  const Eigen::Vector2d f =
-      t.stiffness * q + t.damping * v;  // on the left side: f = -(torque on it)
+  const Eigen::Vector2d f = t.stiffness * q + t.damping * v;  // on the left side: f = -(torque on it)
   CHECK(f[0] == Approx(-3.5));
   CHECK(f[1] == Approx(3.5));
   REQUIRE(t.outputs.size() == 1);

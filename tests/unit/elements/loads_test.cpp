@@ -14,8 +14,7 @@ using namespace drev::test;
 TEST_CASE("loads are sound at random states") {
   const PeriodicTable table({0.0, 1.0, 1.5, 4.0}, {0.0, 30.0, -25.0, 0.0});
   for (const bool feedback : {true, false}) {
-    CHECK(check_element(CamTorque({.angle_table = table, .phase = 0.7, .twist_feedback = feedback}),
-                        1)
+    CHECK(check_element(CamTorque({.angle_table = table, .phase = 0.7, .twist_feedback = feedback}), 1)
               .text() == "");
     CHECK(check_element(EngineOrderTorque({.harmonics = {{0.5, 10.0, 0.1}, {16, 3.0, -1.0}},
                                            .mean = 5.0,
@@ -23,10 +22,8 @@ TEST_CASE("loads are sound at random states") {
                         1)
               .text() == "");
   }
-  CHECK(check_element(AppliedTorque({.torque = [](double t) { return std::sin(t); }}), 1).text() ==
-        "");
-  CHECK(check_element(AppliedTorque({.table = TimeTable({0, 1, 1, 2}, {0, 1, 5, 3})}), 1).text() ==
-        "");
+  CHECK(check_element(AppliedTorque({.torque = [](double t) { return std::sin(t); }}), 1).text() == "");
+  CHECK(check_element(AppliedTorque({.table = TimeTable({0, 1, 1, 2}, {0, 1, 5, 3})}), 1).text() == "");
 }
 
 TEST_CASE("cam torque by hand") {
@@ -67,13 +64,12 @@ TEST_CASE("engine orders by hand") {
 
 TEST_CASE("loads: faults") {
   CHECK(contains(findings(AppliedTorque({})), "exactly one of torque, table and harmonics"));
-  CHECK(contains(
-      findings(AppliedTorque({.torque = [](double) { return 0.0; }, .table = TimeTable({0}, {1})})),
-      "exactly one of torque, table and harmonics"));
+  CHECK(
+      contains(findings(AppliedTorque({.torque = [](double) { return 0.0; }, .table = TimeTable({0}, {1})})),
+               "exactly one of torque, table and harmonics"));
   CHECK(contains(findings(AppliedTorque({.table = TimeTable({1, 0}, {1, 1})})), "table.times[1]"));
-  CHECK(contains(
-      findings(AppliedTorque({.torque = [](double) { return 0.0; }, .breakpoints = {NAN}})),
-      "breakpoints[0] = NaN s"));
+  CHECK(contains(findings(AppliedTorque({.torque = [](double) { return 0.0; }, .breakpoints = {NAN}})),
+                 "breakpoints[0] = NaN s"));
   CHECK(contains(findings(CamTorque({})), "angle_table = 0 points"));
   CHECK(contains(findings(CamTorque({.angle_table = PeriodicTable({0, 1}, {0, 1}), .phase = NAN})),
                  "phase = NaN rad"));

@@ -31,8 +31,7 @@ void check_pieces(std::span<const LawPiece> pieces, double x_range, double v_ran
       CHECK((y - elastic) * v == Approx(r.dissipated_power).margin(1e-9));
       const double dx = 1e-6;
       CHECK(elastic ==
-            Approx((law(x + dx, v).stored_energy - law(x - dx, v).stored_energy) / (2 * dx))
-                .margin(1e-3));
+            Approx((law(x + dx, v).stored_energy - law(x - dx, v).stored_energy) / (2 * dx)).margin(1e-3));
     }
     CHECK(inside == 1);
   }
@@ -42,8 +41,7 @@ void check_pieces(std::span<const LawPiece> pieces, double x_range, double v_ran
 
 TEST_CASE("Backlash law: its pieces are the law") {
   const double k = 2000.0;
-  for (const MeshDamping damping :
-       {MeshDamping::always, MeshDamping::contact_only, MeshDamping::limited})
+  for (const MeshDamping damping : {MeshDamping::always, MeshDamping::contact_only, MeshDamping::limited})
     for (const double gap : {0.1, 0.0})
       for (const double c : {30.0, 0.0}) {
         const BacklashLaw law({.normal_backlash = gap, .damping = c, .damping_law = damping});
@@ -65,10 +63,10 @@ TEST_CASE("Backlash law: proportional damping has pieces only without a gap or a
 TEST_CASE("Backlash law: with products of deflection and rate, its pieces are the law for any damping") {
   const double k = 2000.0;
   const BacklashLaw law({.normal_backlash = 0.1, .damping = 300.0, .reference_penetration = 0.04});
-  check_pieces(law.product_pieces(k), 0.2, 10.0,
-               [&](double x, double v) { return law.evaluate(x, v, {k, 0.0}); });
-  const BacklashLaw limited(
-      {.normal_backlash = 0.1, .damping = 300.0, .damping_law = MeshDamping::limited});
+  check_pieces(law.product_pieces(k), 0.2, 10.0, [&](double x, double v) {
+    return law.evaluate(x, v, {k, 0.0});
+  });
+  const BacklashLaw limited({.normal_backlash = 0.1, .damping = 300.0, .damping_law = MeshDamping::limited});
   CHECK(limited.product_pieces(k).size() == limited.pieces(k).size());
 }
 

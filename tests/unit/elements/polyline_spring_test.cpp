@@ -22,8 +22,7 @@ double work(const PolylineSpring& s, double from, double to) {
 TEST_CASE("polyline springs are sound at random states") {
   for (const auto& p :
        {PolylineSpring::dead_band(1e5, 1e-3, 2.0), PolylineSpring::dead_band(1e5, 0),
-        PolylineSpring::with_stops(100, 0.2, 5000, 1.0),
-        PolylineSpring::Params{{-1, 0, 1}, {0, 0, 4}},
+        PolylineSpring::with_stops(100, 0.2, 5000, 1.0), PolylineSpring::Params{{-1, 0, 1}, {0, 0, 4}},
         PolylineSpring::Params{{1, 2, 3, 5}, {5, 6, 9, 9}},
         PolylineSpring::Params{{-3, -2, -1}, {-9, -6, -5}}})
     for (const int nodes : {1, 2})
@@ -64,8 +63,7 @@ TEST_CASE("energy is the integral of the force from where the force is zero") {
     CHECK(stops.evaluate({.x = x}).stored_energy == Approx(work(stops, 0, x)).epsilon(1e-6));
   const PolylineSpring offset({.x = {1, 2, 3, 5}, .y = {5, 6, 9, 9}});  // zero at x = -4, outside
   for (const double x : {-6.0, -4.0, 1.5, 2.5, 9.0})
-    CHECK(offset.evaluate({.x = x}).stored_energy ==
-          Approx(work(offset, -4, x)).epsilon(1e-6).margin(1e-9));
+    CHECK(offset.evaluate({.x = x}).stored_energy == Approx(work(offset, -4, x)).epsilon(1e-6).margin(1e-9));
   const PolylineSpring crossing({.x = {-2, 0, 2}, .y = {-3, -1, 7}});  // zero at 0.25
   for (const double x : {-5.0, 0.0, 0.25, 1.0, 4.0})
     CHECK(crossing.evaluate({.x = x}).stored_energy ==

@@ -55,9 +55,7 @@ TEST_CASE("periodic table, even: the fast look-up agrees with interpolation by h
   for (int i = -2000; i < 2000; ++i) {
     const double place = 0.37 + 0.7 * i;  // in points
     const double cell = std::floor(place), s = place - cell;
-    const auto wrap = [n](double k) {
-      return static_cast<std::size_t>((static_cast<long>(k) % n + n) % n);
-    };
+    const auto wrap = [n](double k) { return static_cast<std::size_t>((static_cast<long>(k) % n + n) % n); };
     const double expected = (1 - s) * values[wrap(cell)] + s * values[wrap(cell + 1)];
     REQUIRE(table.at(kTwoPi * place / n).value == Approx(expected).margin(1e-10));
   }

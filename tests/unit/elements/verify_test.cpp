@@ -54,8 +54,7 @@ struct CountingLoad final : Load {
 struct WrongLoad final : Load {
   explicit WrongLoad(bool depends) : depends_(depends) {}
   LoadResponse evaluate(const LoadInput& in) const override {
-    return {
-        .torque = -2.0 * in.speed, .dtorque_dangle = 0.0, .dtorque_dspeed = depends_ ? 2.0 : 0.0};
+    return {.torque = -2.0 * in.speed, .dtorque_dangle = 0.0, .dtorque_dspeed = depends_ ? 2.0 : 0.0};
   }
   bool depends_on_motion() const override { return depends_; }
   bool depends_;
@@ -94,11 +93,10 @@ TEST_CASE("wrong tangents are caught") {
 }
 
 TEST_CASE("wrong energies and active dampers are caught") {
-  CHECK(contains(report([](auto&, auto& r) { r.stored_energy *= 1.01; }),
-                 "energy does not match the force"));
+  CHECK(contains(report([](auto&, auto& r) { r.stored_energy *= 1.01; }), "energy does not match the force"));
   CHECK(contains(report([](auto&, auto& r) { r.stored_energy -= 1.0; }), "negative stored energy"));
-  CHECK(contains(report([](auto&, auto& r) { r.dissipated_power *= 0.5; }),
-                 "dissipated power does not match"));
+  CHECK(
+      contains(report([](auto&, auto& r) { r.dissipated_power *= 0.5; }), "dissipated power does not match"));
   const std::string active = report([](const ScalarInput& in, ScalarResponse& r) {
     r.y -= 6.0 * in.x_dot;
     r.dy_dx_dot -= 6.0;
@@ -106,22 +104,19 @@ TEST_CASE("wrong energies and active dampers are caught") {
   });
   CHECK(contains(active, "active damper"));
   CHECK(contains(active, "negative dissipated power"));
-  CHECK(contains(report([](const ScalarInput& in, ScalarResponse& r) {
-                   r.stored_energy += 1.0 + std::sin(in.t);
-                 }),
-                 "varies() is false"));
+  CHECK(contains(
+      report([](const ScalarInput& in, ScalarResponse& r) { r.stored_energy += 1.0 + std::sin(in.t); }),
+      "varies() is false"));
 }
 
 TEST_CASE("impure and non-finite laws are caught") {
   int calls = 0;
-  CHECK(contains(report([&calls](auto&, auto& r) { r.dissipated_power += 1e-9 * ++calls; }),
-                 "impure"));
+  CHECK(contains(report([&calls](auto&, auto& r) { r.dissipated_power += 1e-9 * ++calls; }), "impure"));
   CHECK(contains(report([](auto&, auto& r) { r.y = NAN; }), "not finite"));
 }
 
 TEST_CASE("a failure is listed a few times only") {
-  CHECK(check_element(LawElement<Law>({[](auto&, auto& r) { r.dy_dx *= 2; }}), 2).failures.size() ==
-        3);
+  CHECK(check_element(LawElement<Law>({[](auto&, auto& r) { r.dy_dx *= 2; }}), 2).failures.size() == 3);
 }
 
 TEST_CASE("parameters and node counts are reported, and nothing is tried then") {
@@ -165,8 +160,8 @@ TEST_CASE("wrong matrices, closures and sizes are caught") {
           t.stiffness << 1, -1, -1, 1;
           t.closures.push_back({.b = Eigen::Vector2d(1, -1)});
         }) == "");
-  CHECK(contains(report_terms([](Terms& t) { t.scalars.push_back({.b = LocalRow::Ones(3)}); }),
-                 "scalar row"));
+  CHECK(
+      contains(report_terms([](Terms& t) { t.scalars.push_back({.b = LocalRow::Ones(3)}); }), "scalar row"));
   CHECK(contains(report_terms([](Terms& t) { t.closures.push_back({.b = LocalRow::Zero(2)}); }),
                  "ties 0 nodes"));
 }

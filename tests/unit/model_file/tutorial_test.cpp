@@ -12,7 +12,8 @@ TEST_CASE("The commands of the tutorial print what it says") {
   std::filesystem::copy_file(DREV_SOURCE_DIR "/models/tutorial/train.toml", folder / "train.toml");
   const auto printed_by = [&](const std::string& command) {
     std::ofstream(folder / "command") << command << "\n";
-    const std::string line = "cd '" + (folder / "").string() + "' && PATH=\"$(dirname '" DREV_EXECUTABLE
+    const std::string line = "cd '" + (folder / "").string() +
+                             "' && PATH=\"$(dirname '" DREV_EXECUTABLE
                              "'):$PATH\" sh ./command > printed 2>&1";
     CHECK(std::system(line.c_str()) != -1);
     return read_file(folder / "printed");

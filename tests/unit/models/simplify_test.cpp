@@ -54,8 +54,7 @@ TEST_CASE("The drive held is the camshaft with its gear held") {
   CHECK(held->placements().size() + 4 == gears.placements().size());  // two inertias, two meshes
   CHECK(peak(*held, twist, 0.05) == Approx(peak(camshaft("held"), twist, 0.05)).epsilon(1e-9));
   // Rigid meshes leave the crank gear's constant speed nothing else to do.
-  CHECK(peak(*with_rigid_meshes(gears), twist, 0.05) ==
-        Approx(peak(*held, twist, 0.05)).epsilon(1e-9));
+  CHECK(peak(*with_rigid_meshes(gears), twist, 0.05) == Approx(peak(*held, twist, 0.05)).epsilon(1e-9));
   CHECK_FALSE(with_drive_held(*held, nodes_of(*held, {twist})));
   CHECK_FALSE(with_drive_held(gears, nodes_of(gears, {"mesh_1.force_N"})));
   CHECK_FALSE(with_mean_stiffness(gears));
@@ -79,8 +78,8 @@ TEST_CASE("Parts that are tied anew keep the twists that they start with") {
   const Model full = geared(2e-4, -1e-3, -4e-3);
   for (const Model& m : {*with_rigid_meshes(full), *with_drive_held(full, {"gear", "end"})}) {
     const System system = m.build();
-    CHECK(find_channel(system, "end-gear.twist_rad")
-              .evaluate(Assembler(system), State::initial(system)) == Approx(-3e-3).epsilon(1e-12));
+    CHECK(find_channel(system, "end-gear.twist_rad").evaluate(Assembler(system), State::initial(system)) ==
+          Approx(-3e-3).epsilon(1e-12));
   }
 }
 
@@ -98,12 +97,9 @@ TEST_CASE("Shafts with fewer segments, and lumped") {
   Model m("shaft");
   m.add_node("a");
   m.add_node("b");
-  m.add<DistributedShaft>("s", {"a", "b"},
-                          {.shear_modulus = 8e10,
-                           .density = 7850,
-                           .outer_diameter = 0.1,
-                           .length = 2.0,
-                           .segments = 30});
+  m.add<DistributedShaft>(
+      "s", {"a", "b"},
+      {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1, .length = 2.0, .segments = 30});
   m.add<Inertia>("J", {"b"}, {.inertia = 3.0});
   m.hold("a");
   m.set_initial("s_10", 0.01, 0.0);

@@ -76,16 +76,15 @@ TEST_CASE("Accuracy: times of contact of a ball between two walls, and order amp
                        const double a = kPi / 2;  // int_0^0.5 2 t sin(a t) dt
                        return 2.0 * (std::sin(a * 0.5) / (a * a) - 0.5 * std::cos(a * 0.5) / a);
                      })();
-  const double wall =
-      [] {  // int_0.5^1.5 (1 + 2/pi sin(pi (t - 0.5))) sin(a t) dt, by Simpson's rule
-        double sum = 0.0;
-        for (int i = 0; i <= 2000; ++i) {
-          const double t = 0.5 + i / 2000.0;
-          const double y = (1.0 + 2.0 / kPi * std::sin(kPi * (t - 0.5))) * std::sin(kPi / 2 * t);
-          sum += y * (i == 0 || i == 2000 ? 1.0 : i % 2 ? 4.0 : 2.0);
-        }
-        return sum / 6000.0;
-      }();
+  const double wall = [] {  // int_0.5^1.5 (1 + 2/pi sin(pi (t - 0.5))) sin(a t) dt, by Simpson's rule
+    double sum = 0.0;
+    for (int i = 0; i <= 2000; ++i) {
+      const double t = 0.5 + i / 2000.0;
+      const double y = (1.0 + 2.0 / kPi * std::sin(kPi * (t - 0.5))) * std::sin(kPi / 2 * t);
+      sum += y * (i == 0 || i == 2000 ? 1.0 : i % 2 ? 4.0 : 2.0);
+    }
+    return sum / 6000.0;
+  }();
   const Figure* order = r.find("amplitude of order 1 ");
   REQUIRE(order != nullptr);
   // What sampling folds back onto it is the rest: 128 samples a cycle of a spectrum that falls as 1/n^4.
@@ -94,8 +93,7 @@ TEST_CASE("Accuracy: times of contact of a ball between two walls, and order amp
 
 TEST_CASE("Accuracy: every fault of the options at once") {
   try {
-    run_to_accuracy(unit_oscillator().build(),
-                    {.accuracy = 2.0, .t_end = 0.0, .cycle = -1.0, .ensemble = 1});
+    run_to_accuracy(unit_oscillator().build(), {.accuracy = 2.0, .t_end = 0.0, .cycle = -1.0, .ensemble = 1});
     FAIL("nothing was refused");
   } catch (const ModelError& error) {
     CHECK(error.findings().size() == 5);

@@ -25,8 +25,7 @@ System build(const GapChain& c) {
     const std::string n = std::to_string(i + 1), node = "m" + n;
     m.add_node(node);
     m.add<Inertia>("J" + n, {node}, {.inertia = 1.0});
-    if (c.ground[i] > 0.0)
-      m.add<GroundSpring>("ground" + n, {node}, {.stiffness = c.ground[i]});
+    if (c.ground[i] > 0.0) m.add<GroundSpring>("ground" + n, {node}, {.stiffness = c.ground[i]});
     const auto gap = PolylineSpring::dead_band(c.stiffness[i], c.half_gap[i]);
     if (last.empty())
       m.add<PolylineSpring>("gap" + n, {node}, gap);

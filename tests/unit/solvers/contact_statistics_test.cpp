@@ -123,8 +123,8 @@ TEST_CASE("Equivalent mass of a contact: 1/(b^T M^-1 b), lumped and consistent")
 
   // A shaft of two ends behind gear b: M = J/6 [2 1; 1 2] on (b, c), beside J_b.
   lumped.add_node("c");
-  lumped.add<DistributedShaft>("shaft", {"b", "c"},
-                               {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1, .length = 0.5});
+  lumped.add<DistributedShaft>(
+      "shaft", {"b", "c"}, {.shear_modulus = 8e10, .density = 7850, .outer_diameter = 0.1, .length = 0.5});
   const System system = lumped.build();
   REQUIRE_FALSE(system.mass_is_diagonal());
   const Eigen::MatrixXd mass = [&] {

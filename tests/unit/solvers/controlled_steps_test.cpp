@@ -25,10 +25,9 @@ TEST_CASE("The estimate is the true local error on smooth steps") {
     double h;
     bool own;  // estimates the method's own error
   };
-  for (const Expected& e : {Expected{"average_acceleration", 0.008, true},
-                            Expected{"bathe:0.8", 0.008, true}, Expected{"tr_bdf2", 0.008, true},
-                            Expected{"rk4", 0.01, true}, Expected{"sdirk4", 0.02, false},
-                            Expected{"dormand_prince", 0.03, false}}) {
+  for (const Expected& e : {Expected{"average_acceleration", 0.008, true}, Expected{"bathe:0.8", 0.008, true},
+                            Expected{"tr_bdf2", 0.008, true}, Expected{"rk4", 0.01, true},
+                            Expected{"sdirk4", 0.02, false}, Expected{"dormand_prince", 0.03, false}}) {
     INFO(e.method);
     const auto stepper = make_stepper(system, step_scheme(e.method), {});
     StepPoint from, to;
@@ -63,16 +62,14 @@ TEST_CASE("Controlled steps: the error of case B at 2 s stays below the toleranc
   Vector exact(2);
   for (const auto& row : read_csv("case_B_100N.csv"))
     if (std::stod(row[0]) == 2.0) exact << std::stod(row[1]), std::stod(row[2]);
-  for (const char* method :
-       {"average_acceleration", "hht:0.1", "generalized_alpha:0.8", "bathe:0.8", "tr_bdf2", "sdirk4",
-        "rk4", "dormand_prince", "central_difference"}) {
+  for (const char* method : {"average_acceleration", "hht:0.1", "generalized_alpha:0.8", "bathe:0.8",
+                             "tr_bdf2", "sdirk4", "rk4", "dormand_prince", "central_difference"}) {
     double last = 0.0;
     for (const double tolerance : {1e-3, 1e-4}) {
       State state = State::initial(system);
-      const RunSummary run = simulate(
-          system, {.scheme = step_scheme(method), .tolerance = tolerance, .t_end = 2.0}, state);
-      const double error =
-          (state.z - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>();
+      const RunSummary run =
+          simulate(system, {.scheme = step_scheme(method), .tolerance = tolerance, .t_end = 2.0}, state);
+      const double error = (state.z - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>();
       INFO(method << ", tolerance " << tolerance << ": " << error << ", " << run.brief_report());
       CHECK(run.ok());
       CHECK(run.located == 2);
@@ -92,8 +89,8 @@ TEST_CASE("Controlled steps: outputs between them have the method's order, stops
   const System system = m.build();
   for (const char* method : {"generalized_alpha:0.8", "tr_bdf2", "sdirk4", "dormand_prince"}) {
     Recorder r(system, {"m.position_m", "m.velocity_m_per_s"}, 0.0333);
-    const RunSummary run = simulate(
-        system, {.scheme = step_scheme(method), .tolerance = 1e-5, .t_end = 2.0}, {&r});
+    const RunSummary run =
+        simulate(system, {.scheme = step_scheme(method), .tolerance = 1e-5, .t_end = 2.0}, {&r});
     INFO(method << ": " << run.brief_report());
     CHECK(run.ok());
     REQUIRE(r.times().size() == 61);
@@ -137,8 +134,7 @@ TEST_CASE("A force that jumps at an unknown time is passed, and said") {
     CHECK(run.forced >= 1);
     CHECK(run.forced < 20);
     const double static_z = 1.0 / (kTwoPi * kTwoPi);
-    CHECK(state.z[0] ==
-          Approx(static_z * (1 - std::cos(kTwoPi * 0.63))).margin(1e-3 * static_z));
+    CHECK(state.z[0] == Approx(static_z * (1 - std::cos(kTwoPi * 0.63))).margin(1e-3 * static_z));
   }
 }
 
@@ -147,11 +143,10 @@ TEST_CASE("A tolerance whose share of a step is below rounding does not end the 
   const System system = unit_oscillator().build();
   State state = State::initial(system);
   state.v[0] = 1.0;
-  const RunSummary run = simulate(system,
-                                  {.tolerance = 1e-11,
-                                   .t_end = 100.0,
-                                   .progress = [calls = 0](double) mutable { return ++calls < 20; }},
-                                  state);
+  const RunSummary run = simulate(
+      system,
+      {.tolerance = 1e-11, .t_end = 100.0, .progress = [calls = 0](double) mutable { return ++calls < 20; }},
+      state);
   INFO(run.brief_report());
   CHECK(run.status == RunStatus::interrupted);
   CHECK(state.v[0] == Approx(std::cos(kTwoPi * state.t)).epsilon(1e-11));

@@ -108,8 +108,7 @@ TEST_CASE("A dashpot that is not proportional", "[damped_modes]") {
        {dragged.modes[0].lambda, std::complex<double>(dragged.real_lambda[0])}) {
     const std::complex<double> shaft = 600.0 + 4.0 * l;
     // determinant over l: (2 l^2 + 7 l + s)(3 l^2 + s) - s^2 = l [6 l^3 + 21 l^2 + 5 s l + 7 s]
-    const std::complex<double> rest =
-        6.0 * l * l * l + 21.0 * l * l + 5.0 * shaft * l + 7.0 * shaft;
+    const std::complex<double> rest = 6.0 * l * l * l + 21.0 * l * l + 5.0 * shaft * l + 7.0 * shaft;
     CHECK(std::abs(rest) < 1e-11 * 7.0 * 600.0 * 500.0);
   }
 }

@@ -105,12 +105,9 @@ TEST_CASE("Exact propagation: a mass matrix that is not diagonal") {
   m.add_node("a");
   m.add_node("b");
   m.add<Inertia>("J", {"b"}, {.inertia = 2.0});
-  m.add<DistributedShaft>("shaft", {"a", "b"},
-                          {.shear_modulus = 8e10,
-                           .density = 7850.0,
-                           .outer_diameter = 0.1,
-                           .length = 3.0,
-                           .segments = 6});
+  m.add<DistributedShaft>(
+      "shaft", {"a", "b"},
+      {.shear_modulus = 8e10, .density = 7850.0, .outer_diameter = 0.1, .length = 3.0, .segments = 6});
   m.add<PolylineSpring>("stop", {"b"}, PolylineSpring::dead_band(1e5, 1e-3));
   m.hold("a");
   m.set_initial("b", 5e-3, 0.0);
@@ -179,9 +176,8 @@ TEST_CASE("Exact propagation: a law without a solution ends with an error that n
   m.add<LawElement<Relay>>("relay", {"m"}, {});
   m.set_initial("m", 0.5, 0.0);
   const System system = m.build();
-  CHECK_THROWS_WITH(propagate(system, {.t_end = 5.0}), Catch::Contains("relay") &&
-                                                           Catch::Contains("to and fro") &&
-                                                           Catch::Contains("at t ="));
+  CHECK_THROWS_WITH(propagate(system, {.t_end = 5.0}),
+                    Catch::Contains("relay") && Catch::Contains("to and fro") && Catch::Contains("at t ="));
 }
 
 TEST_CASE("Exact propagation: what cannot be propagated is refused with the reason") {

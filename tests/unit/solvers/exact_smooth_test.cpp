@@ -93,14 +93,16 @@ TEST_CASE("Exact propagation: meshes that are smooth, stepped or damped by penet
     const System system = pair_of_gears(mesh);
     State exact = State::initial(system), tight = exact, fine = exact, coarse = exact;
     const double end = 0.004;
-    const RunSummary run = propagate(system, {.tolerance = 1e-10, .t_end = end, .energy_tolerance = 1e-10}, exact);
+    const RunSummary run =
+        propagate(system, {.tolerance = 1e-10, .t_end = end, .energy_tolerance = 1e-10}, exact);
     INFO(name << ": " << run.brief_report());
     CHECK(run.ok());
     CHECK(propagate(system, {.tolerance = 1e-13, .t_end = end}, tight).ok());
     runge_kutta(system, end, 2e-8, fine);
     runge_kutta(system, end, 2e-7, coarse);
     INFO("against tolerance 1e-13 " << difference(exact.z, tight.z) << ", Runge-Kutta 2e-8 "
-                                    << difference(exact.z, fine.z) << ", 2e-7 " << difference(exact.z, coarse.z));
+                                    << difference(exact.z, fine.z) << ", 2e-7 "
+                                    << difference(exact.z, coarse.z));
     // Letting go and limiting are kinks of the law in x' that it does not tell of.
     CHECK(difference(exact.z, tight.z) < 1e-8);
     CHECK(difference(exact.z, fine.z) < allowed);
@@ -154,7 +156,8 @@ TEST_CASE("Exact propagation: a cam's slopes on a free mass, the only stiffness 
   m.set_initial("a", 0.5, -50.0);
   const System system = m.build();
   State exact = State::initial(system), fine = exact;
-  const RunSummary run = propagate(system, {.tolerance = 1e-11, .t_end = 3.0, .energy_tolerance = 1e-11}, exact);
+  const RunSummary run =
+      propagate(system, {.tolerance = 1e-11, .t_end = 3.0, .energy_tolerance = 1e-11}, exact);
   INFO(run.brief_report());
   CHECK(run.ok());
   runge_kutta(system, 3.0, 1e-5, fine);

@@ -18,8 +18,7 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
   m.add<Dashpot>("c", {"m"}, {.damping = 0.2});
   m.set_initial("m", 1.0, 0.0);
   const System system = m.build();
-  const Growth g =
-      measure_growth(system, {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 200.0});
+  const Growth g = measure_growth(system, {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 200.0});
   CHECK(g.status == RunStatus::success);
   CHECK(g.t.size() == 400);
   CHECK(std::abs(g.rate + 0.1) < 0.01);
@@ -42,10 +41,9 @@ TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
 }
 
 TEST_CASE("Growth: controlled steps, which differ for states that hardly do, give the exponent too") {
-  const Growth g = measure_growth(chaotic_oscillator(),
-                                  {.method = {.name = "dormand_prince", .tolerance = 1e-4},
-                                   .t_end = 500 * kTwoPi,
-                                   .pieces = 1000});
+  const Growth g = measure_growth(
+      chaotic_oscillator(),
+      {.method = {.name = "dormand_prince", .tolerance = 1e-4}, .t_end = 500 * kTwoPi, .pieces = 1000});
   CHECK(g.status == RunStatus::success);
   CHECK(g.rate == Approx(0.10947).margin(std::max(0.003, 1.5 * g.rate_error)));
   CHECK(g.rate_error < 0.02);

@@ -48,8 +48,7 @@ TEST_CASE("Sturm count of uniform chains, free and held", "[InertiaCounter]") {
       for (int j = 0; j < 9; ++j) {
         // two places between lambda_j and lambda_j+1: one of them may meet a tiny pivot
         for (const double fraction : {0.5, 0.382}) {
-          const InertiaCount count =
-              counter.count_below(lambda(j) + fraction * (lambda(j + 1) - lambda(j)));
+          const InertiaCount count = counter.count_below(lambda(j) + fraction * (lambda(j + 1) - lambda(j)));
           if (count.trusted) {
             ++trusted;
             CHECK(count.below == j + 1);

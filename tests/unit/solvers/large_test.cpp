@@ -71,9 +71,7 @@ TEST_CASE("A chain of 1e5 inertias swings in one of its modes", "[transient][lar
   // Started in mode j, average acceleration turns it by 2 atan(omega h/2) a step, exactly.
   const int n = 100000, mode = 20000, steps = 50;
   Model model = held_chain(n);
-  const auto shape = [&](int i) {
-    return std::sin((2 * mode - 1) * kPi * (i + 1.0) / (2.0 * n + 1.0));
-  };
+  const auto shape = [&](int i) { return std::sin((2 * mode - 1) * kPi * (i + 1.0) / (2.0 * n + 1.0)); };
   for (int i = 0; i < n; ++i) model.set_initial(NodeId{i}, 1e-3 * shape(i), 0.0);
   const System system = model.build();
   const double h = 0.01, angle = 2.0 * std::atan(0.5 * h * omega_of(n, mode));

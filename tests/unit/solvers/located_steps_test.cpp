@@ -33,8 +33,7 @@ Model between_stops(double k, double half_gap, double damping, MeshDamping law) 
   m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
   m.add<LawElement<TwistBacklash>>(
       "stop", {"m"},
-      TwistBacklash{BacklashLaw({.normal_backlash = 2 * half_gap, .damping = damping,
-                                 .damping_law = law}),
+      TwistBacklash{BacklashLaw({.normal_backlash = 2 * half_gap, .damping = damping, .damping_law = law}),
                     k});
   return m;
 }
@@ -88,9 +87,13 @@ TEST_CASE("A contact damper that jumps: located changes take the error from orde
   const double exit_speed = std::exp(-d * t_1) * (std::cos(w * t_1) - d / w * std::sin(w * t_1));
   const auto error = [&](const char* method, double h, bool locate) {
     State s = State::initial(system);
-    const RunSummary run = simulate(
-        system, {.scheme = step_scheme(method), .step = h, .locate_contacts = locate, .t_end = 0.045,
-                 .energy_tolerance = 1}, s);
+    const RunSummary run = simulate(system,
+                                    {.scheme = step_scheme(method),
+                                     .step = h,
+                                     .locate_contacts = locate,
+                                     .t_end = 0.045,
+                                     .energy_tolerance = 1},
+                                    s);
     CHECK(run.ok());
     if (locate) {
       CHECK(run.located == 3);
@@ -114,8 +117,7 @@ TEST_CASE("A contact damper that jumps: located changes take the error from orde
 
 TEST_CASE("Where a contact damper is limited or lets go, located steps keep their order") {
   // Rebounds between two flanks; the truth is exact propagation, verified against closed forms of its own.
-  for (const MeshDamping law :
-       {MeshDamping::limited, MeshDamping::contact_only, MeshDamping::proportional}) {
+  for (const MeshDamping law : {MeshDamping::limited, MeshDamping::contact_only, MeshDamping::proportional}) {
     Model m("rebounds");
     m.add_node("gear");
     m.add_node("held");
@@ -178,8 +180,11 @@ TEST_CASE("Two changes inside one step are both located") {
   for (const char* method : {"sdirk4", "average_acceleration"}) {
     ContactStatistics contacts(system);
     const RunSummary run = simulate(system,
-                                    {.scheme = step_scheme(method), .step = 1.25e-3,
-                                     .locate_contacts = true, .t_end = 0.03, .energy_tolerance = 1},
+                                    {.scheme = step_scheme(method),
+                                     .step = 1.25e-3,
+                                     .locate_contacts = true,
+                                     .t_end = 0.03,
+                                     .energy_tolerance = 1},
                                     {&contacts});
     INFO(method);
     CHECK(run.located == 2);
@@ -199,9 +204,12 @@ TEST_CASE("Grazing and resting on an edge end the run in time") {
     for (const char* method : {"average_acceleration", "sdirk4", "rk4"}) {
       for (const double tolerance : {0.0, 1e-4}) {
         INFO(method << ", tolerance " << tolerance << ", pressed " << pressed);
-        const RunSummary run = simulate(
-            system, {.scheme = step_scheme(method), .step = 1e-3, .tolerance = tolerance,
-                     .locate_contacts = true, .t_end = 0.5, .energy_tolerance = 0.05});
+        const RunSummary run = simulate(system, {.scheme = step_scheme(method),
+                                                 .step = 1e-3,
+                                                 .tolerance = tolerance,
+                                                 .locate_contacts = true,
+                                                 .t_end = 0.5,
+                                                 .energy_tolerance = 0.05});
         CHECK(run.ok());
         CHECK(run.steps < 20000);
       }
@@ -227,8 +235,8 @@ TEST_CASE("A mesh stiffness that steps with the angle: controlled steps end at i
   for (const char* method : {"dormand_prince", "sdirk4"}) {
     INFO(method);
     State s = State::initial(system);
-    const RunSummary run = simulate(
-        system, {.scheme = step_scheme(method), .tolerance = 1e-7, .t_end = turns * kTwoPi}, s);
+    const RunSummary run =
+        simulate(system, {.scheme = step_scheme(method), .tolerance = 1e-7, .t_end = turns * kTwoPi}, s);
     INFO(run.brief_report());
     CHECK(run.ok());
     CHECK(run.located >= 2 * turns - 1);

@@ -67,8 +67,8 @@ TEST_CASE("A motion that is an unknown function: controlled steps, to their tole
   m.add_node("foot", NodeKind::translational);
   m.add<ShaftSpring>("between", {"m", "foot"}, {.stiffness = 1.0});
   m.given_motion("foot", {.at = [](double t) {
-    return MotionPoint{std::sin(t), std::cos(t), -std::sin(t)};
-  }});
+                   return MotionPoint{std::sin(t), std::cos(t), -std::sin(t)};
+                 }});
   const System system = m.build();
   const MethodChoice choice = choose_method(system, 10.0, 1e-3);
   CHECK(choice.method.name == "dormand_prince");
@@ -92,8 +92,7 @@ TEST_CASE("A method by name runs as its own function would") {
   State exact = State::initial(system), stepped = exact, own = exact;
   CHECK(run_method(system, {.name = "exact", .tolerance = 1e-12}, {.t_end = 0.3}, exact).ok());
   CHECK(exact.z[0] == Approx(std::cos(kTwoPi * 0.3)).epsilon(1e-11));
-  const RunSummary run =
-      run_method(system, {.name = "hht:0.1", .step = 1e-3}, {.t_end = 0.3}, stepped);
+  const RunSummary run = run_method(system, {.name = "hht:0.1", .step = 1e-3}, {.t_end = 0.3}, stepped);
   CHECK(run.steps == 300);
   simulate(system, {.scheme = hht(0.1), .step = 1e-3, .t_end = 0.3}, own);
   CHECK(stepped.z[0] == own.z[0]);

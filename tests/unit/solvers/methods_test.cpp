@@ -49,9 +49,9 @@ System manufactured() {
   m.add<GroundSpring>("spring", {"m"}, {.stiffness = 2.0, .damping = 0.3});
   m.add<LawElement<Cubic>>("law", {"m"}, Cubic{});
   m.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) {
-                                         const double s = std::sin(t);
-                                         return s + 0.3 * std::cos(t) + 3 * s * s * s;
-                                       }});
+                         const double s = std::sin(t);
+                         return s + 0.3 * std::cos(t) + 3 * s * s * s;
+                       }});
   m.set_initial("m", 0.0, 1.0);
   return m.build();
 }
@@ -81,15 +81,14 @@ TEST_CASE("Composite methods: period elongation and amplitude decay of the close
     const char* method;
     double h, decay, elongation;  // per period 1
   };
-  for (const Expected& e :
-       {Expected{"bathe:0.8", 0.01, 1.2154084e-6, 9.5061452e-5},
-        Expected{"bathe:0.8", 0.05, 1.5038013e-4, .0023708848},
-        Expected{"bathe:0.8", 0.1, .001165431, .0094143225},
-        Expected{"bathe:0.8", 0.2, .0082529092, .036628071},
-        Expected{"tr_bdf2", 0.01, 5.731928e-6, 1.5962523e-4},
-        Expected{"tr_bdf2", 0.05, 7.0745397e-4, .0039751997},
-        Expected{"tr_bdf2", 0.1, .0054377414, .015714424},
-        Expected{"tr_bdf2", 0.2, .037285748, .060210578}}) {
+  for (const Expected& e : {Expected{"bathe:0.8", 0.01, 1.2154084e-6, 9.5061452e-5},
+                            Expected{"bathe:0.8", 0.05, 1.5038013e-4, .0023708848},
+                            Expected{"bathe:0.8", 0.1, .001165431, .0094143225},
+                            Expected{"bathe:0.8", 0.2, .0082529092, .036628071},
+                            Expected{"tr_bdf2", 0.01, 5.731928e-6, 1.5962523e-4},
+                            Expected{"tr_bdf2", 0.05, 7.0745397e-4, .0039751997},
+                            Expected{"tr_bdf2", 0.1, .0054377414, .015714424},
+                            Expected{"tr_bdf2", 0.2, .037285748, .060210578}}) {
     INFO(e.method << ", h = " << e.h);
     const std::complex<double> lambda = amplification(e.method, kTwoPi * e.h).eigenvalues()[0];
     const double phi = std::abs(std::arg(lambda));
@@ -122,8 +121,7 @@ TEST_CASE("Every method has its order on a smooth nonlinear problem, and so has 
     double last = 0.0, last_energy = 0.0;
     for (const double h : {e.h, e.h / 2, e.h / 4}) {
       State s = State::initial(system);
-      const RunSummary run =
-          simulate(system, {.scheme = step_scheme(e.method), .step = h, .t_end = 3.0}, s);
+      const RunSummary run = simulate(system, {.scheme = step_scheme(e.method), .step = h, .t_end = 3.0}, s);
       CHECK(run.ok());
       const double error = std::max(std::abs(s.z[0] - std::sin(3.0)), std::abs(s.v[0] - std::cos(3.0)));
       const double energy = std::abs(run.energy.worst_imbalance);
@@ -195,6 +193,5 @@ TEST_CASE("Damping in a stability limit: explicit Runge-Kutta on the real axis")
   m.add_node("disc");
   m.add<Inertia>("J", {"disc"}, {.inertia = 2.0});
   m.add<GroundSpring>("wall", {"disc"}, {.stiffness = 1e-6, .damping = 50.0});
-  CHECK(stability_limit(m.build(), step_scheme("rk4")) ==
-        Approx(2.785293563405282 / 25.0).epsilon(1e-8));
+  CHECK(stability_limit(m.build(), step_scheme("rk4")) == Approx(2.785293563405282 / 25.0).epsilon(1e-8));
 }

@@ -30,8 +30,7 @@ System chain(int n, double inertia, double stiffness, bool held) {
     model.add_node(name("n", i));
     model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = inertia});
     if (i > 0)
-      model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)},
-                             {.stiffness = stiffness});
+      model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)}, {.stiffness = stiffness});
   }
   if (held) model.add<GroundSpring>("ground", {"n0"}, {.stiffness = stiffness});
   return model.build();
@@ -64,8 +63,7 @@ TEST_CASE("Free-free chains: one rigid mode, none missed", "[modes]") {
     for (const int limit : {kAlwaysLanczos, 200}) {
       if (n > 200 && limit > 0) continue;
       const int count = std::min(12, n - 1);
-      const ModeSet modes =
-          solve_modes(chain(n, inertia, k, false), {.count = count, .dense_limit = limit});
+      const ModeSet modes = solve_modes(chain(n, inertia, k, false), {.count = count, .dense_limit = limit});
       CHECK(modes.rigid_modes == 1);
       REQUIRE(modes.count() == count);
       for (int j = 1; j <= count; ++j) {
@@ -87,8 +85,7 @@ TEST_CASE("Held chains have no rigid mode", "[modes]") {
     REQUIRE(modes.count() == std::min(n, 10));
     for (int j = 1; j <= modes.count(); ++j)
       CHECK(modes.omega(j - 1) ==
-            Approx(2.0 * std::sqrt(2000.0) * std::sin((2 * j - 1) * kPi / (4 * n + 2)))
-                .epsilon(1e-12));
+            Approx(2.0 * std::sqrt(2000.0) * std::sin((2 * j - 1) * kPi / (4 * n + 2))).epsilon(1e-12));
     if (n > 10) CHECK(modes.summary.sturm_count == 10);
   }
 }
@@ -120,8 +117,7 @@ TEST_CASE("Lanczos finds all copies in a large hub", "[modes]") {
   CHECK(modes.summary.copies_not_returned == 53);
   CHECK(modes.summary.sturm_count == 60);
   const ModeSet some = solve_modes(system, {.count = 20, .dense_limit = kAlwaysLanczos});
-  for (int j = 0; j < 20; ++j)
-    CHECK(lambda(some, j) == Approx((3.0 - std::sqrt(5.0)) / 2.0).epsilon(1e-12));
+  for (int j = 0; j < 20; ++j) CHECK(lambda(some, j) == Approx((3.0 - std::sqrt(5.0)) / 2.0).epsilon(1e-12));
 }
 
 TEST_CASE("Shapes: unit modal mass, orthogonal, signed, over all nodes", "[modes]") {
@@ -167,8 +163,7 @@ TEST_CASE("Contacts closed and open", "[modes]") {
   Model model("two shafts");
   for (int i = 1; i <= 4; ++i) model.add_node(name("n", i));
   const double inertia[] = {0.3, 0.2, 0.4, 0.1};
-  for (int i = 1; i <= 4; ++i)
-    model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = inertia[i - 1]});
+  for (int i = 1; i <= 4; ++i) model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = inertia[i - 1]});
   model.add<ShaftSpring>("k12", {"n1", "n2"}, {.stiffness = 100.0});
   model.add<ShaftSpring>("k34", {"n3", "n4"}, {.stiffness = 300.0});
   model.add<GearMesh>(
@@ -189,9 +184,9 @@ TEST_CASE("Contacts closed and open", "[modes]") {
   double sum = 0.0;
   for (int j = 0; j < 3; ++j) sum += lambda(closed, j);
   // trace of M^-1 K
-  CHECK(sum ==
-        Approx(lambda(open, 0) + lambda(open, 1) + 1e6 * (0.05 * 0.05 / 0.2 + 0.1 * 0.1 / 0.4))
-            .epsilon(1e-12));
+  CHECK(
+      sum ==
+      Approx(lambda(open, 0) + lambda(open, 1) + 1e6 * (0.05 * 0.05 / 0.2 + 0.1 * 0.1 / 0.4)).epsilon(1e-12));
 }
 
 TEST_CASE("Stiffnesses that differ by 1e12: what the header promises", "[modes]") {
@@ -202,8 +197,7 @@ TEST_CASE("Stiffnesses that differ by 1e12: what the header promises", "[modes]"
     model.add_node(name("n", i));
     model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = 1.0});
     if (i > 0)
-      model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)},
-                             {.stiffness = k[i - 1]});
+      model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)}, {.stiffness = k[i - 1]});
   }
   const ModeSet modes = solve_modes(model.build());
   CHECK(modes.rigid_modes == 1);
@@ -255,8 +249,7 @@ System with_spring(int n, AnySpring::Params params) {
   for (int i = 0; i < n; ++i) {
     model.add_node(name("n", i));
     model.add<Inertia>(name("J", i), {name("n", i)}, {.inertia = 1.0});
-    if (i > 0)
-      model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)}, {.stiffness = 1.0});
+    if (i > 0) model.add<ShaftSpring>(name("k", i), {name("n", i - 1), name("n", i)}, {.stiffness = 1.0});
   }
   model.add<AnySpring>("any", {"n0"}, std::move(params));
   return model.build();

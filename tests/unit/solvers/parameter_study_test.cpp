@@ -14,8 +14,8 @@ TEST_CASE("Parameter study: the page's example") {
     settings.set("engine_rpm", to_text(600.0 + 10.0 * static_cast<double>(i)));
     return build_camshaft(settings).model.build();
   };
-  const ManyResult study = simulate_many(16, build, {.step = 1e-5, .t_end = 0.02},
-                                         {.channels = {"inlet_9-fuel_1.twist_rad"}});
+  const ManyResult study =
+      simulate_many(16, build, {.step = 1e-5, .t_end = 0.02}, {.channels = {"inlet_9-fuel_1.twist_rad"}});
   for (const VariantResult& variant : study.variants)
     if (variant.ok()) std::printf("%.6f rad\n", variant.peaks[0].amplitude());
   // [study]

@@ -43,8 +43,7 @@ struct Driven {
   /// y_n = A e^(i phase) / (k - (n w)^2 J + i n w c)
   Complex exact(const Harmonic& h) const {
     const double w = h.order * speed;
-    return h.amplitude * std::exp(Complex(0.0, h.phase)) /
-           Complex(stiffness - w * w * inertia, w * damping);
+    return h.amplitude * std::exp(Complex(0.0, h.phase)) / Complex(stiffness - w * w * inertia, w * damping);
   }
 };
 
@@ -90,8 +89,7 @@ TEST_CASE("Periodic response of two masses is the solution of the two complex eq
   m.add<Inertia>("J_b", {"b"}, {.inertia = 2.0});
   m.add<ShaftSpring>("first", {"clock", "a"}, {.stiffness = 900.0, .damping = 2.0});
   m.add<ShaftSpring>("second", {"a", "b"}, {.stiffness = 400.0, .damping = 1.5});
-  m.add<EngineOrderTorque>("torque", {"b"},
-                           {.harmonics = {{0.5, tau, 0.0}}, .twist_feedback = false});
+  m.add<EngineOrderTorque>("torque", {"b"}, {.harmonics = {{0.5, tau, 0.0}}, .twist_feedback = false});
   m.constant_speed("clock", w);
   const System system = m.build();
   // Half an order: two turns.
@@ -166,10 +164,8 @@ TEST_CASE("A gap that stays closed is a linear mesh with an offset; on both flan
 TEST_CASE("A gap that opens, a stiffness by phase: exact propagation comes back to where the period began") {
   const problems::DrivenGear open{
       .speed = 0.8, .half_gap = 0.2, .damping = 0.1, .mean = 0.5, .harmonics = {{1.0, 0.5, 0.0}}};
-  const problems::DrivenGear varying{.speed = 0.8,
-                                     .stiffness = MeshStiffness::fourier(1.0, {{1.0, 0.3, 0.5}}),
-                                     .damping = 0.1,
-                                     .mean = 0.5};
+  const problems::DrivenGear varying{
+      .speed = 0.8, .stiffness = MeshStiffness::fourier(1.0, {{1.0, 0.3, 0.5}}), .damping = 0.1, .mean = 0.5};
   for (const problems::DrivenGear& gear : {open, varying}) {
     const System system = gear.build();
     const PeriodicResponse r =
@@ -289,9 +285,9 @@ TEST_CASE("What has no periodic response, or none that can be found, says why") 
   refused(history.build(), {}, "history");
   // A period that begins with a jump of a load: as its harmonics fall off, 1e-6 would need more than 4096.
   Model jumps = p.model();
-  jumps.add<AppliedTorque>(
-      "square", {"disc"},
-      {.torque = [](double t) { return std::fmod(10.0 * t, kTwoPi) < kPi ? 1.0 : -1.0; }});
+  jumps.add<AppliedTorque>("square", {"disc"}, {.torque = [](double t) {
+                             return std::fmod(10.0 * t, kTwoPi) < kPi ? 1.0 : -1.0;
+                           }});
   refused(jumps.build(), {.channels = {"disc.acceleration_rad_per_s2"}}, "not the tolerance");
   CHECK_THROWS_AS(solve_periodic(p.model().build(), {.harmonics = -1}), ModelError);
   CHECK_THROWS_AS(solve_periodic(p.model().build(), {.tolerance = 0.0}), ModelError);

@@ -13,7 +13,10 @@ TEST_CASE("Exact propagation ends its steps at knots of a phase that a given mot
   Model m("given phase");
   for (const char* node : {"pinion", "wheel"}) m.add_node(node);
   m.set_reference("pinion", constant_speed(20.0));
-  m.given_motion("pinion", {.at = [](double t) { return MotionPoint{0.2 * t, 0.2, 0.0}; },
+  m.given_motion("pinion", {.at =
+                                [](double t) {
+                                  return MotionPoint{0.2 * t, 0.2, 0.0};
+                                },
                             .piecewise_quadratic = true});
   m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
   m.add<GearMesh>("mesh", {"pinion", "wheel"},

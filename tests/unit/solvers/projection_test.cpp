@@ -33,8 +33,7 @@ TEST_CASE("Gauss rule: exact to degree 2 n - 1") {
   const GaussRule& rule = gauss_rule();
   for (int degree = 0; degree < 2 * GaussRule::kNodes; ++degree) {
     double sum = 0.0;
-    for (std::size_t q = 0; q < GaussRule::kNodes; ++q)
-      sum += rule.weight[q] * std::pow(rule.s[q], degree);
+    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) sum += rule.weight[q] * std::pow(rule.s[q], degree);
     CHECK(sum == Approx(1.0 / (degree + 1)).epsilon(1e-14));
   }
 }

@@ -29,8 +29,7 @@ Model chain(bool held) {
     const std::string node = "n" + std::to_string(i);
     m.add_node(node);
     m.add<Inertia>("J" + node, {node}, {.inertia = kInertia});
-    if (i > 0)
-      m.add<ShaftSpring>("k" + node, {"n" + std::to_string(i - 1), node}, {.stiffness = kStiffness});
+    if (i > 0) m.add<ShaftSpring>("k" + node, {"n" + std::to_string(i - 1), node}, {.stiffness = kStiffness});
   }
   if (held) m.constant_speed("n0", 0.0);
   m.add<AppliedTorque>("load", {"n" + std::to_string(kCount - 1)},

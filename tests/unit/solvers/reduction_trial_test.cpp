@@ -1,10 +1,11 @@
 // A reduction that is tried before it is used: its channels beside the full model's by another method, and
 // what is refused.
+#include "solvers/reduction_trial.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/recorder.hpp"
-#include "solvers/reduction_trial.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/long_shafts.hpp"
 

@@ -155,8 +155,13 @@ TEST_CASE("Lockstep: every law of mesh damping, transmission error, moved ends, 
   for (const MeshDamping law : laws) {
     CAPTURE(static_cast<int>(law));
     const auto build = [law](std::size_t i) {
-      Model m = gear_pair(i, {.stiffness = 1e8, .normal_backlash = 2e-5 + 2e-6 * part(i), .damping = 400.0,
-                              .damping_law = law, .reference_penetration = 2e-6}, true);
+      Model m = gear_pair(i,
+                          {.stiffness = 1e8,
+                           .normal_backlash = 2e-5 + 2e-6 * part(i),
+                           .damping = 400.0,
+                           .damping_law = law,
+                           .reference_penetration = 2e-6},
+                          true);
       m.add<AppliedTorque>("torque", {"load"}, pulses(i));
       m.constant_speed("motor", 100.0);
       return m.build();
@@ -194,7 +199,8 @@ TEST_CASE("Lockstep: other methods of the family, and breakpoints that differ be
   }
 }
 
-TEST_CASE("Lockstep: chains of 2 to 7 inertias, whole and in parts, with gaps along and across, with a loop") {
+TEST_CASE(
+    "Lockstep: chains of 2 to 7 inertias, whole and in parts, with gaps along and across, with a loop") {
   enum class Shape { whole, gap_along, gap_across, apart, loop };
   const auto check_chain = [](Shape shape, int n, bool same, const char* method) {  // same: all matrices
     CAPTURE(static_cast<int>(shape), n, same, method);
@@ -218,8 +224,7 @@ TEST_CASE("Lockstep: chains of 2 to 7 inertias, whole and in parts, with gaps al
         before = node;
       }
       if (shape == Shape::gap_across) m.add<PolylineSpring>("gap", {"n0", "n3"}, gap);
-      if (shape == Shape::loop)
-        m.add<ShaftSpring>("loop", {"n0", "n2"}, {.stiffness = 3e3 + 10.0 * varied});
+      if (shape == Shape::loop) m.add<ShaftSpring>("loop", {"n0", "n2"}, {.stiffness = 3e3 + 10.0 * varied});
       m.add<AppliedTorque>("torque", {before}, pulses(i));
       m.add<AppliedTorque>("other torque", {"n0"}, pulses(i + 1));
       return m.build();
@@ -238,7 +243,8 @@ TEST_CASE("Lockstep: chains of 2 to 7 inertias, whole and in parts, with gaps al
 
 TEST_CASE("Lockstep: a backlash that begins at zero, where the mesh is a straight line") {
   const auto build = [](std::size_t i) {
-    Model m = gear_pair(i, {.stiffness = 1e8, .normal_backlash = i % 4 ? 5e-6 * part(i) : 0.0, .damping = 400.0});
+    Model m =
+        gear_pair(i, {.stiffness = 1e8, .normal_backlash = i % 4 ? 5e-6 * part(i) : 0.0, .damping = 400.0});
     m.add<AppliedTorque>("torque", {"load"}, pulses(i));
     m.constant_speed("motor", 100.0);
     return m.build();
@@ -251,7 +257,9 @@ TEST_CASE("Lockstep: a backlash that begins at zero, where the mesh is a straigh
 TEST_CASE("Lockstep: steps that one variant cannot make with the others it makes by itself") {
   // A damper that jumps where the flanks meet leaves steps without a root, which a single run halves.
   const auto build = [](std::size_t i) {
-    Model m = gear_pair(i, {.stiffness = 1e8, .normal_backlash = 2e-5, .damping = i % 2 ? 4e4 : 0.0,
+    Model m = gear_pair(i, {.stiffness = 1e8,
+                            .normal_backlash = 2e-5,
+                            .damping = i % 2 ? 4e4 : 0.0,
                             .damping_law = MeshDamping::contact_only});
     m.add<AppliedTorque>("torque", {"load"}, pulses(i));
     m.constant_speed("motor", 100.0);
@@ -271,8 +279,7 @@ TEST_CASE("Lockstep: a result does not depend on neighbours nor on the number of
   const TransientOptions options{.step = 5e-5, .t_end = 0.5, .energy_tolerance = 1e3};
   const ManyResult all = simulate_many(20, build, options, {.threads = 3});
   for (const std::size_t i : {std::size_t{3}, std::size_t{12}}) {
-    const ManyResult one =
-        simulate_many(1, [&](std::size_t) { return build(i); }, options, {.threads = 1});
+    const ManyResult one = simulate_many(1, [&](std::size_t) { return build(i); }, options, {.threads = 1});
     CHECK(one.variants[0].state.z == all.variants[i].state.z);
     CHECK(one.variants[0].summary.energy.worst_imbalance == all.variants[i].summary.energy.worst_imbalance);
   }

@@ -1,13 +1,12 @@
 /// Factorisations: what they must refuse, and solutions against a dense solver.
 #include "solvers/sparse_cholesky.hpp"
 
-#include <unistd.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <unistd.h>
 
 #include "solvers/sparse_lu.hpp"
 #include "tests/catch.hpp"
@@ -22,17 +21,14 @@ SparseMatrix sparse(const Eigen::MatrixXd& dense) {
   return s;
 }
 
-Vector values(const SparseMatrix& s) {
-  return Eigen::Map<const Vector>(s.valuePtr(), s.nonZeros());
-}
+Vector values(const SparseMatrix& s) { return Eigen::Map<const Vector>(s.valuePtr(), s.nonZeros()); }
 
 /// Free-free chain: K of n equal springs, singular.
 SparseMatrix free_chain(int n, double k) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i + 1 < n; ++i) {
     const double ki = k * (1.0 + 0.3 * std::sin(i));
-    entries.insert(entries.end(),
-                   {{i, i, ki}, {i + 1, i + 1, ki}, {i, i + 1, -ki}, {i + 1, i, -ki}});
+    entries.insert(entries.end(), {{i, i, ki}, {i + 1, i + 1, ki}, {i, i + 1, -ki}, {i + 1, i, -ki}});
   }
   SparseMatrix s(n, n);
   s.setFromTriplets(entries.begin(), entries.end());
@@ -138,9 +134,8 @@ std::vector<Shape> shapes() {
     for (int i = 0; i + 1 < n; ++i) chain.neighbours.push_back({i, i + 1});
     all.push_back(chain);
   }
-  Shape star{"star", 60, {}, 0, leaves}, tree{"tree", 200, {}, 0, leaves},
-      parts{"forest", 40, {}, 0, leaves}, ring{"ring", 30, {}, 27, looped},
-      ladder{"ladder", 60, {}, -1, looped}, full{"full", 60, {}, 0, looped};
+  Shape star{"star", 60, {}, 0, leaves}, tree{"tree", 200, {}, 0, leaves}, parts{"forest", 40, {}, 0, leaves},
+      ring{"ring", 30, {}, 27, looped}, ladder{"ladder", 60, {}, -1, looped}, full{"full", 60, {}, 0, looped};
   for (int i = 1; i < 60; ++i) star.neighbours.push_back({0, i});
   for (int i = 1; i < 200; ++i) tree.neighbours.push_back({(i * 7919 + 13) % i, i});
   for (int i = 0; i < 40; ++i)
@@ -190,8 +185,7 @@ TEST_CASE("Cholesky solves as a dense solver does, trees without fill", "[Sparse
 }
 
 TEST_CASE("Factors insist on the pattern they were analysed for", "[SparseCholesky][SparseLu]") {
-  const SparseMatrix a =
-      sparse(Eigen::MatrixXd(free_chain(5, 1.0)) + Eigen::MatrixXd::Identity(5, 5));
+  const SparseMatrix a = sparse(Eigen::MatrixXd(free_chain(5, 1.0)) + Eigen::MatrixXd::Identity(5, 5));
   Eigen::MatrixXd other = Eigen::MatrixXd(a);
   other(0, 4) = other(4, 0) = 0.1;
   const SparseMatrix b = sparse(other);

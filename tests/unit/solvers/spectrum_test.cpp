@@ -15,24 +15,20 @@ namespace {
 
 std::vector<double> tone(int samples, double dt, double amplitude, double frequency, double phase) {
   std::vector<double> s;
-  for (int j = 0; j < samples; ++j)
-    s.push_back(amplitude * std::sin(kTwoPi * frequency * j * dt + phase));
+  for (int j = 0; j < samples; ++j) s.push_back(amplitude * std::sin(kTwoPi * frequency * j * dt + phase));
   return s;
 }
 
-double largest(const Spectrum& s) {
-  return *std::max_element(s.amplitude.begin(), s.amplitude.end());
-}
+double largest(const Spectrum& s) { return *std::max_element(s.amplitude.begin(), s.amplitude.end()); }
 
-constexpr Window kWindows[] = {Window::rectangular, Window::hann, Window::hamming,
-                               Window::flat_top};
+constexpr Window kWindows[] = {Window::rectangular, Window::hann, Window::hamming, Window::flat_top};
 
 }  // namespace
 
 TEST_CASE("A tone on a line shows its amplitude with every window", "[spectrum]") {
   for (const Window window : kWindows) {
-    const Spectrum s = spectrum(tone(1024, 1e-3, 3.5, 40 / 1.024, 0.7), 1e-3,
-                                {.window = window, .drop_end_point = false});
+    const Spectrum s =
+        spectrum(tone(1024, 1e-3, 3.5, 40 / 1.024, 0.7), 1e-3, {.window = window, .drop_end_point = false});
     REQUIRE(s.amplitude.size() == 513);
     CHECK(s.frequency_Hz[40] == Approx(39.0625));
     CHECK(s.frequency_Hz.back() == Approx(500.0));
@@ -74,8 +70,7 @@ TEST_CASE("A tone half way between two lines loses what the window says", "[spec
 }
 
 TEST_CASE("Whole periods leak nothing, unless the end point is there twice", "[spectrum]") {
-  const std::vector<double> both_ends =
-      tone(201, 0.01, 1.0, 5.0, 0.3);  // 10 periods, 200 intervals
+  const std::vector<double> both_ends = tone(201, 0.01, 1.0, 5.0, 0.3);  // 10 periods, 200 intervals
   const auto leak = [](const Spectrum& s) {
     double sum = 0.0;
     for (std::size_t k = 0; k < s.amplitude.size(); ++k)
@@ -95,8 +90,7 @@ TEST_CASE("Whole periods leak nothing, unless the end point is there twice", "[s
 TEST_CASE("The mean is removed on demand", "[spectrum]") {
   std::vector<double> s = tone(400, 0.01, 0.1, 1.0, 0.0);
   for (double& x : s) x += 1000.0;
-  const SpectrumOptions options{
-      .window = Window::hann, .drop_end_point = false, .remove_mean = true};
+  const SpectrumOptions options{.window = Window::hann, .drop_end_point = false, .remove_mean = true};
   const Spectrum result = spectrum(s, 0.01, options);
   CHECK(result.amplitude[0] < 1e-10);
   CHECK(result.amplitude[4] == Approx(0.1).epsilon(1e-9));
@@ -117,8 +111,8 @@ TEST_CASE("Peaks are interpolated and sorted by amplitude", "[spectrum]") {
       std::vector<double> s = tone(2048, dt, 1.0, f_1, 0.4);
       const std::vector<double> second = tone(2048, dt, 3.0, f_2, 1.1);
       for (std::size_t j = 0; j < s.size(); ++j) s[j] += second[j];
-      const auto peaks = spectrum_peaks(
-          spectrum(s, dt, {.window = window, .drop_end_point = false}), 2, 10 * step);
+      const auto peaks =
+          spectrum_peaks(spectrum(s, dt, {.window = window, .drop_end_point = false}), 2, 10 * step);
       REQUIRE(peaks.size() == 2);
       // what the other tone and the images leak, 120 lines away and more: 0.16/(120 pi) with
       // Hamming

@@ -38,8 +38,7 @@ TEST_CASE("Static equilibrium closes the gap on the flank that the load asks for
     m.add<Inertia>("J1", {"held"}, {.inertia = 1.0});
     m.add<Inertia>("J2", {"wheel"}, {.inertia = 2.0});
     m.add<GearMesh>("mesh", {"held", "wheel"},
-                    {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e8,
-                     .normal_backlash = 1e-4});
+                    {.base_radius_1 = 0.1, .base_radius_2 = 0.2, .stiffness = 1e8, .normal_backlash = 1e-4});
     m.add<AppliedTorque>("load", {"wheel"}, {.torque = [tau](double) { return tau; }});
     m.hold("held");
     const System system = m.build();
@@ -47,8 +46,7 @@ TEST_CASE("Static equilibrium closes the gap on the flank that the load asks for
     const StaticResult r = solver.solve();
     const double sign = tau > 0 ? 1.0 : -1.0;
     // x = r_2 q_2; r_2 k (x - b) = tau.
-    CHECK(r.state.z[0] ==
-          Approx((sign * 5e-5 + tau / 0.2 / 1e8) / 0.2).epsilon(1e-9));
+    CHECK(r.state.z[0] == Approx((sign * 5e-5 + tau / 0.2 / 1e8) / 0.2).epsilon(1e-9));
     CHECK(find_channel(system, "mesh.force_N").evaluate(solver.assembler(), r.state) ==
           Approx(tau / 0.2).epsilon(1e-9));
   }
@@ -97,12 +95,10 @@ TEST_CASE("Sweep over a revolution: the load follows the nominal angle") {
   m.add_node("b");
   m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
   m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1000.0});
-  m.add<EngineOrderTorque>("tau", {"b"},
-                           {.harmonics = {{2.0, 10.0, 0.0}}, .twist_feedback = false});
+  m.add<EngineOrderTorque>("tau", {"b"}, {.harmonics = {{2.0, 10.0, 0.0}}, .twist_feedback = false});
   m.constant_speed("a", 10.0);
   const System system = m.build();
-  const auto peaks =
-      static_sweep(system, {find_channel(system, "s.torque_Nm")}, 0.0, kTwoPi, 360);
+  const auto peaks = static_sweep(system, {find_channel(system, "s.torque_Nm")}, 0.0, kTwoPi, 360);
   CHECK(peaks[0].max == Approx(10.0).epsilon(1e-9));
   CHECK(peaks[0].min == Approx(-10.0).epsilon(1e-9));
   CHECK(peaks[0].min_time == Approx(kPi / 2).epsilon(1e-9));

@@ -28,8 +28,7 @@ TEST_CASE("Sudden release of a static load: second order with the acceleration e
   Model m = unit_oscillator();
   const double k = 4 * kPi * kPi;
   m.add<AppliedTorque>("load", {"m"},
-                       {.torque = [=](double t) { return t < release ? k : 0.0; },
-                        .breakpoints = {release}});
+                       {.torque = [=](double t) { return t < release ? k : 0.0; }, .breakpoints = {release}});
   m.set_initial("m", 1.0, 0.0);
   const System system = m.build();
   const double exact = std::cos(kTwoPi * (2.25 - release));
@@ -64,16 +63,15 @@ TEST_CASE("Linear limits of the schemes: period elongation and amplitude decay o
     const char* method;
     double elongation, decay;
   };
-  for (const Expected& e : {Expected{"average_acceleration", 0.032074911, 0.0},
-                            Expected{"hht:0.05", 0.036110956, 0.0074101406},
-                            Expected{"hht:0.3", 0.046566671, 0.023300186},
-                            Expected{"generalized_alpha:0.8", 0.033828406, 9.8767819e-4}}) {
+  for (const Expected& e :
+       {Expected{"average_acceleration", 0.032074911, 0.0}, Expected{"hht:0.05", 0.036110956, 0.0074101406},
+        Expected{"hht:0.3", 0.046566671, 0.023300186},
+        Expected{"generalized_alpha:0.8", 0.033828406, 9.8767819e-4}}) {
     Model m = unit_oscillator();
     m.set_initial("m", 1.0, 0.0);
     const System system = m.build();
     Recorder r(system, {"m.position_m"}, 0.1);
-    simulate(system,
-             {.scheme = step_scheme(e.method), .step = 0.1, .t_end = 12.0, .energy_tolerance = 10},
+    simulate(system, {.scheme = step_scheme(e.method), .step = 0.1, .t_end = 12.0, .energy_tolerance = 10},
              {&r});
     // Fit u_n = rho^n cos(n phi + c): three successive samples give rho and phi. The spurious root of the
     // three-step forms has died out by then.
@@ -136,8 +134,7 @@ TEST_CASE("Varying mesh stiffness and transmission error: the balance counts wha
          .base_radius_2 = 0.075,
          .teeth_1 = 20,
          .teeth_2 = 50,
-         .stiffness = fourier ? MeshStiffness::fourier_of_step(1.5e8, 2.5e8, 1.6, 5)
-                              : MeshStiffness(2e8),
+         .stiffness = fourier ? MeshStiffness::fourier_of_step(1.5e8, 2.5e8, 1.6, 5) : MeshStiffness(2e8),
          .damping = 500.0,
          .transmission_error = std::vector<Harmonic>{{1.0, 5e-6, 0.3}}});
     m.add<AppliedTorque>("brake", {"wheel"}, {.torque = [](double) { return -100.0; }});
@@ -167,8 +164,7 @@ TEST_CASE("Given motion: reaction and response of the closed form") {
   m.add<Inertia>("Jd", {"disc"}, {.inertia = 1.0});
   m.add<ShaftSpring>("s", {"base", "disc"}, {.stiffness = stiffness});
   m.given_motion("base", {[=](double t) {
-                            return MotionPoint{amplitude * std::sin(w * t),
-                                               amplitude * w * std::cos(w * t),
+                            return MotionPoint{amplitude * std::sin(w * t), amplitude * w * std::cos(w * t),
                                                -amplitude * w * w * std::sin(w * t)};
                           },
                           {}});
@@ -196,8 +192,12 @@ TEST_CASE("Few contacts or the sparse tangent: the same run") {
   m.add<Inertia>("Ja", {"a"}, {.inertia = 0.01});
   m.add<Inertia>("Jb", {"b"}, {.inertia = 0.02});
   m.add<Inertia>("Jc", {"c"}, {.inertia = 0.015});
-  m.add<GearMesh>("mesh", {"a", "b"}, {.base_radius_1 = 0.03, .base_radius_2 = 0.06,
-                                       .stiffness = 1e8, .normal_backlash = 1e-4, .damping = 200.0});
+  m.add<GearMesh>("mesh", {"a", "b"},
+                  {.base_radius_1 = 0.03,
+                   .base_radius_2 = 0.06,
+                   .stiffness = 1e8,
+                   .normal_backlash = 1e-4,
+                   .damping = 200.0});
   m.add<ShaftSpring>("s", {"b", "c"}, {.stiffness = 5e3});
   m.add<EngineOrderTorque>("load", {"c"}, {.harmonics = {{2.0, 30.0, 0.0}}, .mean = -5.0});
   m.constant_speed("a", 100.0);
@@ -212,15 +212,13 @@ TEST_CASE("Few contacts or the sparse tangent: the same run") {
   CHECK(run_sparse.ok());
   CHECK(run_dense.newton_on_contacts);
   CHECK_FALSE(run_sparse.newton_on_contacts);
-  CHECK((dense.z - sparse.z).lpNorm<Eigen::Infinity>() <
-        1e-7 * dense.z.lpNorm<Eigen::Infinity>());
+  CHECK((dense.z - sparse.z).lpNorm<Eigen::Infinity>() < 1e-7 * dense.z.lpNorm<Eigen::Infinity>());
 }
 
 TEST_CASE("Output at exactly the times asked for, whatever the step") {
   Model m = unit_oscillator();
   m.set_initial("m", 1.0, 0.0);
-  m.add<AppliedTorque>("none", {"m"},
-                       {.torque = [](double) { return 0.0; }, .breakpoints = {0.0, 0.3, 0.7}});
+  m.add<AppliedTorque>("none", {"m"}, {.torque = [](double) { return 0.0; }, .breakpoints = {0.0, 0.3, 0.7}});
   const System system = m.build();
   Recorder r(system, {"m.position_m"}, 0.1);
   Recorder odd(system, {"m.position_m"}, 0.0333);
@@ -274,8 +272,7 @@ TEST_CASE("A run that is stopped says so and leaves what it had") {
   const System system = m.build();
   State state = State::initial(system);
   const RunSummary run = simulate(
-      system, {.step = 1e-4, .t_end = 10.0, .progress = [](double done) { return done < 0.5; }},
-      state);
+      system, {.step = 1e-4, .t_end = 10.0, .progress = [](double done) { return done < 0.5; }}, state);
   CHECK(run.status == RunStatus::interrupted);
   CHECK(run.t_end >= 5.0);
   CHECK(run.t_end < 5.2);

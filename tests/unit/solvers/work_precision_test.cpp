@@ -56,8 +56,7 @@ TEST_CASE("Work and precision: the cheapest is the one that keeps the error from
     return WorkPoint{.ok = ok, .error = error, .seconds = seconds};
   };
   // By luck good at its coarsest, then bad, then good again.
-  wp.curves.push_back(
-      {"lucky", {point(1e-3, 1.0), point(1e-1, 2.0), point(1e-3, 4.0), point(1e-6, 8.0)}});
+  wp.curves.push_back({"lucky", {point(1e-3, 1.0), point(1e-1, 2.0), point(1e-3, 4.0), point(1e-6, 8.0)}});
   wp.curves.push_back({"steady", {point(1.0, 1.0, false), point(5e-3, 3.0), point(5e-5, 9.0)}});
   CHECK(wp.cheapest(1e-2)->curve->name == "steady");
   CHECK(wp.cheapest(1e-2)->point->seconds == 3.0);
