@@ -3,10 +3,10 @@
 #include <exception>
 #include <string_view>
 
-#include "app/command_line.hpp"
-#include "app/completion.hpp"
-#include "app/exit_codes.hpp"
-#include "app/output_file.hpp"
+#include "app/base/output_file.hpp"
+#include "app/cli/command_line.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/commands/completion.hpp"
 
 namespace drev::app {
 

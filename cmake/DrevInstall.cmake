@@ -5,10 +5,10 @@ include(CMakePackageConfigHelpers)
 set(drev_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/drev)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 
-install(TARGETS drev_core drev_elements drev_solvers drev_models EXPORT drevTargets
+install(TARGETS drev_core drev_elements drev_solvers drev_models drev_advice EXPORT drevTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT drevTargets NAMESPACE drev:: DESTINATION ${drev_cmake_dir})
-foreach(room core elements solvers models)
+foreach(room core elements solvers models advice)
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
        ${PROJECT_SOURCE_DIR}/${room}/*.hpp ${PROJECT_SOURCE_DIR}/${room}/*/*.hpp)
   foreach(header IN LISTS headers)

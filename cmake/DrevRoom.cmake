@@ -2,7 +2,7 @@
 # part of it: a model's main.cpp is its example. A room of headers alone is a library, too.
 function(drev_room room)
   set(folder ${PROJECT_SOURCE_DIR}/${room})
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/*/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   set(anchor ${PROJECT_BINARY_DIR}/generated/drev_${room}.cpp)
   if(NOT EXISTS ${anchor})

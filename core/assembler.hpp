@@ -3,6 +3,8 @@
 /// about that time (nominal motion, prescribed motions) and nothing else; one per thread.
 #include <limits>
 
+#include "core/general_force.hpp"
+#include "core/scalar_force.hpp"
 #include "core/state.hpp"
 
 namespace drev {

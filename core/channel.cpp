@@ -4,6 +4,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/error.hpp"
+
 namespace drev {
 
 class ChannelFinder {

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/element.hpp"
 #include "core/ids.hpp"
 #include "core/motion.hpp"
 
 namespace drev {
 
+class Element;
 class System;
 
 /// What a node's one degree of freedom is.

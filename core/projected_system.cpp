@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/error.hpp"
+
 namespace drev {
 
 namespace {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.hpp"
+#include "core/general_force.hpp"
+#include "core/scalar_force.hpp"
 #include "core/state.hpp"
 
 namespace drev {

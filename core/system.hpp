@@ -19,6 +19,9 @@
 
 namespace drev {
 
+class GeneralForce;
+class ScalarForce;
+
 static_assert(
     EIGEN_DEFAULT_ALIGN_BYTES == 64,
     "compile with -DEIGEN_MAX_ALIGN_BYTES=64, as drev's CMake targets and drev.pc say: drev and its "

@@ -1,6 +1,7 @@
 #pragma once
 /// Turns a Model into a System, step by step; collects findings and throws them together.
 /// Internal to core: users call Model::build().
+#include "core/element.hpp"
 #include "core/kinematics.hpp"
 #include "core/name_index.hpp"
 #include "core/node_matrix.hpp"

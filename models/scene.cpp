@@ -22,4 +22,15 @@ const SceneEntry& find_scene(const std::string& name) {
   throw ModelError({{"drev", "model", name, "", "is no model" + did_you_mean(name, names)}});
 }
 
+Settings values_of(const SceneEntry& entry, const SettingList& settings) {
+  Settings values(entry.name, entry.settings);
+  for (const auto& [name, value] : settings) values.set(name, value);
+  return values;
+}
+
+Scene build_scene(const std::string& model, const SettingList& settings) {
+  const SceneEntry& entry = find_scene(model);
+  return entry.build(values_of(entry, settings));
+}
+
 }  // namespace drev

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/model.hpp"
@@ -36,5 +37,11 @@ struct SceneEntry {
 const std::vector<SceneEntry>& scenes();
 /// By name; throws ModelError with the nearest name.
 const SceneEntry& find_scene(const std::string& name);
+
+using SettingList = std::vector<std::pair<std::string, std::string>>;
+/// The defaults of a model with these settings in their place.
+Settings values_of(const SceneEntry& entry, const SettingList& settings);
+/// A ready-made model with settings; throws ModelError for a name or settings that cannot be.
+Scene build_scene(const std::string& model, const SettingList& settings);
 
 }  // namespace drev

@@ -1,5 +1,5 @@
 #pragma once
-/// One method with its knob, running it, and which one suits a system.
+/// Which method in time suits a system.
 ///
 /// The choice follows what the system is, not taste:
 ///   1. exact propagation, where why_not_exact() finds nothing and it is affordable. Nothing is cheaper
@@ -12,37 +12,11 @@
 ///
 /// Affordable: p (20 + unknowns + 10 contacts) <= 1.5e10 products, about half a minute; p: 25 for exact
 /// propagation, 70 for dormand_prince, in each step of 3/omega of the fastest mode.
-#include <functional>
 #include <string>
-#include <vector>
 
-#include "solvers/exact_propagation.hpp"
+#include "solvers/method.hpp"
 
 namespace drev {
-
-struct Method {
-  std::string name = "average_acceleration";  ///< "exact", or what step_scheme() knows
-  double step = 0.0;       ///< s; 0 for exact; with a tolerance the largest step, 0: no limit
-  double tolerance = 0.0;  ///< relative; 0: constant steps
-  bool exact() const { return name == "exact"; }
-  bool controlled() const { return !exact() && tolerance > 0.0; }
-};
-
-/// "exact, tolerance 1e-8", "hht:0.1, step 0.001 s".
-std::string to_text(const Method& method);
-
-struct MethodRunOptions {
-  double t_start = 0.0, t_end = 0.0;  ///< s
-  double energy_tolerance = 0.0;      ///< relative; 0: the method's own
-  std::function<bool(double)> progress = {};
-};
-
-/// Throws ModelError for a name that is no method, and as simulate() and propagate() do.
-RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
-                      State& state, const std::vector<Observer*>& observers = {});
-/// The same from the model's initial conditions.
-RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
-                      const std::vector<Observer*>& observers = {});
 
 struct MethodChoice {
   Method method;

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "core/channel.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/sparse_newton.hpp"
+#include "solvers/contact/sparse_newton.hpp"
+#include "solvers/run/peaks.hpp"
 
 namespace drev {
 

@@ -1,5 +1,7 @@
 #include "app/model_file/fields.hpp"
 
+#include "core/error.hpp"
+
 namespace drev::app {
 
 void Fields::guarded(const std::function<void()>& make) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "models/settings.hpp"
+
 namespace drev::app {
 
 std::optional<double> read_number(const Value& value, const std::string& unit, const std::string& where,

@@ -8,9 +8,9 @@
 #include "core/units.hpp"
 #include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "solvers/statics.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

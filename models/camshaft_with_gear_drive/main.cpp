@@ -9,9 +9,9 @@
 #include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
 #include "models/gear_drive/build_gear_drive.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

@@ -8,8 +8,8 @@
 #include "core/law_element.hpp"
 #include "core/verify.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/stepping/transient.hpp"
 
 // [law]
 /// y = k x + k3 x^3 [N m], x = twist of end b against end a [rad].

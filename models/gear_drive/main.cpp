@@ -6,9 +6,9 @@
 
 #include "core/system.hpp"
 #include "models/gear_drive/build_gear_drive.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

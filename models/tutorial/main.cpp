@@ -8,9 +8,9 @@
 
 #include "core/channel.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/accuracy.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/accuracy/accuracy.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/run/contact_statistics.hpp"
 
 using namespace drev;
 

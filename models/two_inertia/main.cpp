@@ -7,9 +7,9 @@
 
 #include "core/channel.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

@@ -6,9 +6,9 @@
 
 #include "core/system.hpp"
 #include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/recorder.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

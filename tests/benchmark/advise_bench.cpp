@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "advice/advise.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "models/fidelity/advise.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/advice_models.hpp"
 

@@ -8,9 +8,10 @@
 
 #include "core/system.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/peaks.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

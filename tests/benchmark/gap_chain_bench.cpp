@@ -10,7 +10,7 @@
 
 #include "core/system.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -9,9 +9,11 @@
 
 #include "core/assembler.hpp"
 #include "core/units.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/sparse_cholesky.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/benchmark/large_models.hpp"
 #include "tests/catch.hpp"
 

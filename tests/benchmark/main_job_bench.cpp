@@ -7,9 +7,9 @@
 
 #include "core/system.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -10,7 +10,7 @@
 
 #include "core/system.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/simulate_many.hpp"
+#include "solvers/batch/simulate_many.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -7,9 +7,9 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/recorder.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -11,11 +11,14 @@
 #include <ctime>
 #include <map>
 
+#include "core/assembler.hpp"
 #include "core/system.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "solvers/exact_propagation.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
 #include "tests/benchmark/peers/lean_rk5.hpp"
 #include "tests/catch.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <sys/resource.h>
 
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/benchmark/peer_harness.hpp"
 #include "tests/benchmark/peers/step_floor.hpp"
 

@@ -8,8 +8,8 @@
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/damped_modes.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/damped_modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

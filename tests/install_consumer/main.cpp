@@ -7,7 +7,7 @@
 #include "core/system.hpp"
 #include "elements/inertia.hpp"
 #include "elements/shaft_spring.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 
 int main() {
   drev::Model model("two inertias");

@@ -7,9 +7,9 @@
 #include "core/system.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/stepping/transient.hpp"
 
 using namespace drev;
 

@@ -14,7 +14,7 @@
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
 #include "models/scene.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "solvers/statics.hpp"
 #include "tests/stability/random_model.hpp"
 

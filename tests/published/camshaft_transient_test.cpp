@@ -4,9 +4,9 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "models/camshaft/build_camshaft.hpp"
-#include "solvers/peaks.hpp"
+#include "solvers/run/peaks.hpp"
 #include "solvers/statics.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/published/read_csv.hpp"
 

@@ -5,8 +5,8 @@
 #include "core/law_element.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/recorder.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

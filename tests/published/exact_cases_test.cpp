@@ -3,8 +3,8 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/recorder.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

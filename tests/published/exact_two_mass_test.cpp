@@ -5,9 +5,9 @@
 
 #include "core/system.hpp"
 #include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/contact_statistics.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/recorder.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/published/read_csv.hpp"
 

@@ -16,8 +16,8 @@
 #include "elements/ideal_gear.hpp"
 #include "elements/inertia.hpp"
 #include "elements/shaft_spring.hpp"
-#include "solvers/damped_modes.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/damped_modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "elements/catalogue.hpp"
-#include "solvers/accuracy.hpp"
+#include "solvers/accuracy/accuracy.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/chaotic_oscillator.hpp"
 

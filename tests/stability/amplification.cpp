@@ -6,6 +6,8 @@
 
 #include "elements/ground_spring.hpp"
 #include "elements/inertia.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
 
 namespace drev::problems {
 

@@ -12,7 +12,7 @@
 
 #include "core/dense_eigen.hpp"
 #include "core/units.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 
 namespace drev::problems {
 

@@ -3,7 +3,7 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

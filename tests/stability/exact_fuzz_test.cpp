@@ -6,7 +6,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "solvers/exact_propagation.hpp"
+#include "core/assembler.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/random_model.hpp"
 

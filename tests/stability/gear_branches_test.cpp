@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "core/units.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/recorder.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/stepped_spring.hpp"

@@ -5,8 +5,10 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -5,8 +5,8 @@
 
 #include "core/law_element.hpp"
 #include "core/units.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/stepped_spring.hpp"

@@ -3,8 +3,10 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/spectrum.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/periodic/spectrum.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "elements/catalogue.hpp"
-#include "solvers/contact_newton.hpp"
-#include "solvers/sparse_newton.hpp"
+#include "solvers/contact/contact_newton.hpp"
+#include "solvers/contact/sparse_newton.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -8,7 +8,7 @@
 
 #include "core/dense_eigen.hpp"
 #include "core/units.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 

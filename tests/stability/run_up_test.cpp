@@ -5,9 +5,10 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/exact_propagation.hpp"
-#include "solvers/peaks.hpp"
-#include "solvers/recorder.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/peaks.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

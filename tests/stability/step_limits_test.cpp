@@ -5,7 +5,7 @@
 #include "elements/ground_spring.hpp"
 #include "elements/inertia.hpp"
 #include "elements/shaft_spring.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/amplification.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "elements/catalogue.hpp"
-#include "solvers/recorder.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

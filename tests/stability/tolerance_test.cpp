@@ -6,7 +6,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "solvers/exact_propagation.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/random_model.hpp"
 #include "tests/stability/runge_kutta.hpp"

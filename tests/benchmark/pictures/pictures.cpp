@@ -7,15 +7,15 @@
 #include <cstdio>
 #include <fstream>
 
-#include "app/svg_chart.hpp"
+#include "app/chart/svg_chart.hpp"
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
 #include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/modes.hpp"
-#include "solvers/recorder.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/modes/modes.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
 
 using namespace drev;
 using app::ChartSeries;

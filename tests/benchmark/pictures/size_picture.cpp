@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "app/svg_chart.hpp"
+#include "app/chart/svg_chart.hpp"
 
 int main(int argc, char** argv) {
   const std::map<std::string, std::string> wanted{{"step", "a step"}, {"modes", "ten modes"}};

@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "elements/catalogue.hpp"
-#include "solvers/recorder.hpp"
+#include "solvers/run/recorder.hpp"
 #include "solvers/statics.hpp"
-#include "solvers/transient.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/oscillator.hpp"
 #include "tests/unit/not_finite.hpp"

@@ -5,7 +5,7 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "solvers/modes.hpp"
+#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
+#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 #include "tests/problems/general_elements.hpp"

@@ -1,0 +1,51 @@
+#include "advice/recipe.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "solvers/periodic/periodic_response.hpp"
+
+namespace drev {
+
+namespace {
+
+struct SteadyPeak {
+  double value = 0.0, error = 0.0;
+};
+
+SteadyPeak steady_peak(const System& system, const FigureOptions& figure, double turns) {
+  const PeriodicResponse response =
+      solve_periodic(system, {.tolerance = figure.accuracy, .channels = figure.channels, .turns = turns});
+  if (!response.found) throw SolverError(response.reason);
+  SteadyPeak steady;
+  for (const Peak& peak : response.peaks) steady.value = std::max(steady.value, peak.amplitude());
+  steady.error = response.error * steady.value;
+  return steady;
+}
+
+}  // namespace
+
+System Recipe::build() const { return reduction ? reduce(model.build(), *reduction).system : model.build(); }
+
+double Recipe::run() const {
+  const System system = build();
+  return turns ? steady_peak(system, figure, *turns).value : figure_of_run(system, method, figure);
+}
+
+FigureEstimate Recipe::estimate() {
+  const System system = build();
+  find_channels(system, figure.channels);
+  if (turns) {
+    try {
+      const SteadyPeak steady = steady_peak(system, figure, *turns);
+      return {.value = steady.value, .error = steady.error};
+    } catch (const SolverError& error) {
+      return {.failure = error.what()};
+    }
+  }
+  FigureEstimate e = estimate_figure(system, figure);
+  method = e.method;
+  return e;
+}
+
+}  // namespace drev

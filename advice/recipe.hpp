@@ -1,0 +1,26 @@
+#pragma once
+/// A model as it is to be run for one figure: what is simplified, and by which method.
+#include <optional>
+
+#include "advice/figure_estimate.hpp"
+#include "solvers/reduction/reduction.hpp"
+
+namespace drev {
+
+struct Recipe {
+  Model model;
+  FigureOptions figure;  ///< its channels have this model's names
+  Method method = {};
+  std::optional<ReductionOptions> reduction = {};
+  /// Turns of the reference shaft after which the loads repeat themselves: the periodic response in place of
+  /// a run.
+  std::optional<double> turns = {};
+
+  System build() const;
+  /// The figure, from the description on. Throws SolverError where it cannot be found.
+  double run() const;
+  /// The figure with its error, and the method that keeps it.
+  FigureEstimate estimate();
+};
+
+}  // namespace drev

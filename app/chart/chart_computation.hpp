@@ -1,0 +1,34 @@
+#pragma once
+/// `drev chart`: error against run time and work of the methods on one model.
+///
+/// The runs last the model's duration, but without gaps not more than 20 periods of its lowest elastic mode,
+/// and not past the time at which a small difference of the state has grown by a factor of 1000:
+/// beyond, every error is mostly growth, and the methods cannot be told apart.
+#include <string>
+
+#include "app/commands/requests.hpp"
+#include "solvers/accuracy/work_precision.hpp"
+
+namespace drev::app {
+
+struct ChartResult {
+  std::string quantity;        ///< what the error is of
+  std::string horizon_reason;  ///< what ended the runs, "" where it is the duration
+  WorkPrecision data;
+};
+
+/// A step that the source used for everything [s].
+inline constexpr double kSourceStep = 1e-3;
+
+ChartResult compute_chart(const ChartRequest& request);
+
+/// Short table and conclusion.
+std::string chart_as_text(const ChartRequest& request, const ChartResult& result);
+std::string chart_as_json(const ChartRequest& request, const ChartResult& result);
+std::string chart_as_csv(const ChartResult& result);
+/// Error over processor time, or over work.
+enum class ChartAxis { time, work };
+/// A point whose error is below the agreement of reference and check stands on the line of the agreement.
+std::string chart_as_svg(const ChartRequest& request, const ChartResult& result, ChartAxis axis);
+
+}  // namespace drev::app

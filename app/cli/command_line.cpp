@@ -1,0 +1,244 @@
+#include "app/cli/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/cli/help_texts.hpp"
+#include "app/cli/model_list.hpp"
+#include "models/scene.hpp"
+
+namespace drev::app {
+
+namespace {
+
+/// What CLI11 fills; an option that was not given stays empty.
+struct Raw {
+  std::string model;
+  std::vector<std::string> models;  ///< where there can be several
+  std::vector<std::string> sets;
+  std::map<std::string, std::vector<std::string>> options;
+  bool json = false, quiet = false;
+};
+
+void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
+  sub.allow_extras();  // unknown options are reported with the nearest right one
+  if (command.takes_model) {
+    std::string meaning = "Name of the model, as drev list shows them, or a model file, FILE.toml";
+    if (command.takes_models) meaning += ",\nor several, or directories of files, with --out";
+    if (command.takes_models)
+      sub.add_option("MODEL", raw.models, meaning)->option_text("...");
+    else
+      sub.add_option("MODEL", raw.model, meaning)->option_text(" ");
+    sub.add_option("--set", raw.sets, "Changes settings; as often as needed")->option_text("NAME=VALUE ...");
+  }
+  sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
+  sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
+  for (const OptionEntry& option : command.options)
+    sub.add_option(option.name, raw.options[option.name], option.meaning)
+        ->option_text(option.type)
+        ->allow_extra_args(option.values == OptionEntry::Values::words);
+  sub.footer(command.footer);
+}
+
+std::vector<std::string> option_names(const CLI::App& sub) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : sub.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+bool looks_like_option(const std::string& text) {
+  return text.size() > 1 && text[0] == '-' && !std::isdigit(static_cast<unsigned char>(text[1])) &&
+         text[1] != '.';
+}
+
+/// "; did you mean ..." or the command that has the option.
+std::string option_hint(const std::string& name, const CLI::App& sub) {
+  for (const CLI::App* other : sub.get_parent()->get_subcommands({}))
+    if (other->get_option_no_throw(name) != nullptr) return "; drev " + other->get_name() + " has it";
+  return did_you_mean(name, option_names(sub));
+}
+
+/// What stands on the command line and is known to nobody.
+void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
+                   std::vector<Finding>& findings) {
+  bool unknown_option = false;
+  for (const std::string& extra : extras) {
+    if (!looks_like_option(extra)) continue;
+    unknown_option = true;
+    const std::string name = extra.substr(0, extra.find('='));
+    findings.push_back({kCommandLine, "option", name, "",
+                        "is no option of drev " + sub.get_name() + option_hint(name, sub)});
+  }
+  if (unknown_option) return;  // the other words may be its values
+  for (const std::string& extra : extras)
+    findings.push_back(
+        {kCommandLine, "argument", extra, "",
+         extra.find('=') == std::string::npos ? "is one too many" : "must be written --set " + extra});
+}
+
+bool names_model(const std::string& word) {
+  std::error_code error;
+  return is_built_in(word) || std::filesystem::exists(word, error);
+}
+
+/// --set a=1 MODEL: models came to stand among the settings.
+void find_models_among_sets(Raw& raw, bool several) {
+  for (auto set = raw.sets.begin(); set != raw.sets.end();) {
+    if (set->find('=') == std::string::npos && (raw.models.empty() || (several && names_model(*set)))) {
+      raw.models.push_back(*set);
+      set = raw.sets.erase(set);
+    } else {
+      ++set;
+    }
+  }
+}
+
+/// MODEL a=1: a setting without --set.
+void find_sets_among_models(Raw& raw, std::vector<Finding>& findings) {
+  std::erase_if(raw.models, [&](const std::string& word) {
+    const bool set = word.find('=') != std::string::npos && !names_model(word);
+    if (set) findings.push_back({kCommandLine, "argument", word, "", "must be written --set " + word});
+    return set;
+  });
+}
+
+void take_sets(const Raw& raw, CommandLine& line) {
+  for (const std::string& text : raw.sets) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      line.findings.push_back({kCommandLine, "--set", text, "", "must be name=value"});
+      continue;
+    }
+    const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
+    const auto same = std::find_if(line.settings.begin(), line.settings.end(),
+                                   [&](const auto& setting) { return setting.first == name; });
+    if (same != line.settings.end())
+      line.findings.push_back({kCommandLine, "--set", text, "", "was set already, to " + same->second});
+    else
+      line.settings.emplace_back(name, value);
+  }
+}
+
+void take_option(const OptionEntry& option, const std::vector<std::string>& given, CommandLine& line) {
+  const auto report = [&](const std::string& value, const std::string& why) {
+    line.findings.push_back({kCommandLine, option.name, value, "", why});
+  };
+  if (given.empty()) return;
+  std::vector<std::string>& taken = line.options[option.name];
+  if (option.values == OptionEntry::Values::one) {
+    if (given.size() > 1)
+      report(given[1], "was given already, as " + given[0]);
+    else if (given[0].empty() || given[0].starts_with("--"))
+      report(given[0], "needs a value");
+    else
+      taken = given;
+    if (taken.empty()) line.options.erase(option.name);
+    return;
+  }
+  const bool commas = option.values == OptionEntry::Values::commas;
+  for (const std::string& text : given)
+    for (const std::string& name : commas ? split(text, ',') : std::vector{text}) {
+      if (name.empty() || name.starts_with("--"))
+        report(text, std::string("must be ") + option.type);
+      else if (std::count(taken.begin(), taken.end(), name) > 0)
+        report(name, "is named twice");
+      else
+        taken.push_back(name);
+    }
+}
+
+std::vector<std::string> command_names() {
+  std::vector<std::string> names;
+  for (const CommandEntry& command : commands()) names.push_back(command.name);
+  return names;
+}
+
+int no_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (words.empty()) {
+    std::cerr << "drev: no command given; it is one of " << join(command_names())
+              << ". drev --help says more.\n";
+    return kBadInput;
+  }
+  const std::string& word = words.front();
+  std::cerr << "drev: '" << word << "' is no "
+            << (looks_like_option(word) ? "option of drev itself" : "command");
+  std::vector<std::string> models;
+  for (const SceneEntry& entry : scenes()) models.push_back(entry.name);
+  if (std::find(models.begin(), models.end(), word) != models.end())
+    std::cerr << "; did you mean 'drev run " << word << "'?\n";
+  else if (looks_like_option(word))
+    std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
+  else
+    std::cerr << (word == "help" ? "; did you mean --help?" : did_you_mean(word, command_names()))
+              << "\nThe commands are " << join(command_names()) << ".\n";
+  return kBadInput;
+}
+
+}  // namespace
+
+std::optional<std::string> CommandLine::option(const std::string& name) const {
+  const auto found = options.find(name);
+  if (found == options.end()) return {};
+  return found->second.front();
+}
+
+std::optional<std::vector<std::string>> CommandLine::list(const std::string& name) const {
+  const auto found = options.find(name);
+  if (found == options.end()) return {};
+  return found->second;
+}
+
+ParsedCommandLine parse_command_line(int argc, char** argv) {
+  CLI::App app("drev: torsional dynamics of drivetrains", "drev");
+  app.set_version_flag("--version", "drev " DREV_VERSION);
+  app.allow_extras();
+  app.footer(std::string(kMainExamples) + "\n" + kExitCodesHelp);
+  Raw raw;
+  for (const CommandEntry& command : commands())
+    add_options(*app.add_subcommand(command.name, command.summary), command, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // help, version
+      std::ostringstream text;
+      app.exit(error, text, text);
+      print(text.str());
+      return {};
+    }
+    std::cerr << "drev: " << error.what() << "\nRun with --help for more information.\n";
+    return {.exit_code = kBadInput};
+  }
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (chosen.empty()) return {.exit_code = no_command(app)};
+
+  const CLI::App& sub = *chosen.front();
+  const std::vector<CommandEntry>& table = commands();
+  const CommandEntry& command = *std::find_if(
+      table.begin(), table.end(), [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
+  CommandLine line{.command = &command, .json = raw.json, .quiet = raw.quiet};
+  if (!raw.model.empty()) raw.models = {raw.model};
+  find_models_among_sets(raw, command.takes_models);
+  find_sets_among_models(raw, line.findings);
+  if (!raw.models.empty()) line.model = raw.models.front();
+  if (command.takes_models) line.options["MODEL"] = raw.models;
+  if (chosen.size() > 1)
+    line.findings.push_back(
+        {kCommandLine, "command", chosen[1]->get_name(), "", "is a second one; give one command"});
+  for (const std::string& word : app.remaining())
+    line.findings.push_back({kCommandLine, looks_like_option(word) ? "option" : "argument", word, "",
+                             "must stand after the command " + sub.get_name()});
+  report_extras(sub.remaining(), sub, line.findings);
+  take_sets(raw, line);
+  for (const OptionEntry& option : command.options) take_option(option, raw.options[option.name], line);
+  return {.command = std::move(line)};
+}
+
+}  // namespace drev::app

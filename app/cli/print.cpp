@@ -1,0 +1,22 @@
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "app/base/output_file.hpp"
+#include "app/commands/commands.hpp"
+
+namespace drev::app {
+
+namespace {
+bool quiet = false;
+}
+
+void set_quiet(bool value) { quiet = value; }
+
+void print(const std::string& text) {
+  if (quiet) return;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw OutputError(std::string("cannot write to standard output: ") + std::strerror(errno));
+}
+
+}  // namespace drev::app

@@ -1,0 +1,57 @@
+#include <set>
+
+#include "app/base/json_values.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/requests.hpp"
+
+namespace drev::app {
+
+namespace {
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// The runs that a file names; none where it cannot be read, which is said elsewhere.
+std::vector<std::string> run_names(const std::string& path) {
+  try {
+    return ModelFile(path, "").run_names();
+  } catch (const ModelError&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+int check_command(const CommandLine& line) {
+  std::vector<CommandLine> runs{line};
+  std::vector<std::string> names;
+  if (is_model_file(line.model) && !line.options.contains("--run")) names = run_names(line.model);
+  for (const std::string& name : names) {
+    runs.push_back(line);
+    runs.back().options["--run"] = {name};
+  }
+  std::size_t nodes = 0, elements = 0;
+  std::vector<Finding> findings;
+  std::set<std::string> said;
+  for (const CommandLine& run : runs) try {
+      const RunRequest request = request_run(run);
+      if (&run != &runs.front()) continue;
+      nodes = request.model.scene.model.node_names().size();
+      elements = request.model.scene.model.placements().size();
+    } catch (const ModelError& error) {
+      for (const Finding& finding : error.findings())
+        if (said.insert(finding.text()).second) findings.push_back(finding);
+    }
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  if (line.json)
+    print(json_text({{"model", line.model}, {"nodes", nodes}, {"elements", elements}, {"runs", names}}));
+  else
+    print(line.model + ": sound; " + counted(nodes, "node") + ", " + counted(elements, "element") +
+          (names.empty() ? "" : "; runs: " + join(names)) + "\n");
+  return kSuccess;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,29 @@
+#include <filesystem>
+
+#include "app/base/json_values.hpp"
+#include "app/base/output_file.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/requests.hpp"
+#include "app/model_file/export.hpp"
+
+namespace drev::app {
+
+int export_command(const CommandLine& line) {
+  const ModelRequest model = request_model(line);
+  const std::string text = export_scene(*model.entry, model.settings, model.scene);
+  const std::optional<std::string> out = line.option("--out");
+  if (!out) {
+    print(line.json ? json_text({{"file", text}}) : text);
+    return kSuccess;
+  }
+  const std::filesystem::path path(*out);
+  const std::string folder = folder_of(*out);
+  if (!path.has_filename() || path.extension() != ".toml")
+    throw ModelError({{"command line", "--out", *out, "", "must be the name of a file that ends in .toml"}});
+  create_directory(folder);
+  write_file(folder, path.stem().string(), "toml", text);
+  return kSuccess;
+}
+
+}  // namespace drev::app

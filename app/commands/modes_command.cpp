@@ -1,0 +1,48 @@
+#include "app/base/json_values.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/requests.hpp"
+#include "app/results/run_json.hpp"
+#include "app/results/run_text.hpp"
+#include "solvers/modes/modes.hpp"
+
+namespace drev::app {
+
+namespace {
+
+std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::string& contact) {
+  const std::string& name = model.entry->name;
+  std::string text = name + ": " + wrap(settings_text(model.settings), name.size() + 2);
+  text += "contacts " + contact + ", " + std::to_string(modes.rigid_modes) +
+          (modes.rigid_modes == 1 ? " rigid mode (0 Hz)\n\n" : " rigid modes (0 Hz)\n\n");
+  if (modes.frequency_Hz.empty()) return text + "no elastic mode\n";
+  text += "mode   frequency [Hz]\n";
+  for (std::size_t i = 0; i < modes.frequency_Hz.size(); ++i)
+    text += pad_left(std::to_string(i + 1), 4) + pad_left(digits(modes.frequency_Hz[i], 7), 17) + "\n";
+  if (!model.scene.note.empty()) text += "\n" + wrap(model.scene.note, 0);
+  return text;
+}
+
+}  // namespace
+
+int modes_command(const CommandLine& line) {
+  const ModesRequest request = request_modes(line);
+  const ModeSet modes = solve_modes(request.model.system, request.options);
+  const std::string contact = request.options.contact == Contact::closed ? "closed" : "open";
+  if (line.json) {
+    Json object = result_object("modes");
+    object["model"] = request.model.entry->name;
+    object["settings"] = settings_object(request.model.settings);
+    object["frequencies_Hz"] = modes.frequency_Hz;
+    object["rigid_modes"] = modes.rigid_modes;
+    object["contact"] = contact;
+    object["note"] = text_or_null(request.model.scene.note);
+    print(json_text(object));
+  } else {
+    print(as_text(request.model, modes, contact));
+  }
+  return kSuccess;
+}
+
+}  // namespace drev::app

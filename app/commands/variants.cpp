@@ -1,0 +1,81 @@
+#include "app/commands/variants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/text_layout.hpp"
+#include "models/settings.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kMostVariants = 10000;
+
+/// What is wrong with the values; empty: nothing.
+std::string read_values(const std::string& text, std::vector<std::string>& values) {
+  const std::vector<std::string> range = split(text, ':');
+  if (range.size() == 1) {
+    for (const std::string& value : split(text, ',')) {
+      if (value.empty() || value.find('/') != value.npos) return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
+      if (std::count(values.begin(), values.end(), value) > 0) return "has " + value + " twice";
+      values.push_back(value);
+    }
+    return {};
+  }
+  double first = 0.0, step = 0.0, last = 0.0;
+  if (range.size() != 3 || !read_number(range[0], first) || !read_number(range[1], step) ||
+      !read_number(range[2], last) || !std::isfinite(first) || !std::isfinite(step) || !std::isfinite(last))
+    return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
+  const double steps = std::floor((last - first) / step + 1e-9);
+  if (!(steps >= 0.0) || step == 0.0) return "has a STEP that does not lead from FIRST to LAST";
+  if (steps >= kMostVariants) return "has more values than " + short_digits(kMostVariants, 5);
+  for (double i = 0.0; i <= steps; ++i) {
+    const double value = first + i * step;
+    const std::string text = short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12);
+    if (!values.empty() && values.back() == text) return "has a STEP too small for 12 digits";
+    values.push_back(text);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string Variant::name() const {
+  std::vector<std::string> parts;
+  for (const auto& [name, value] : settings) parts.push_back(name + "=" + value);
+  return join(parts, ",");
+}
+
+std::vector<Variant> read_variants(const std::vector<std::string>& words, std::vector<Finding>& findings) {
+  std::vector<Variant> variants(1);
+  for (const std::string& word : words) {
+    const auto refuse = [&](const std::string& why) {
+      findings.push_back({"command line", "--vary", word, "", why});
+    };
+    const std::size_t equals = std::min(word.find('='), word.size());
+    const std::string name = word.substr(0, equals);
+    std::vector<std::string> values;
+    const std::string wrong = read_values(word.substr(std::min(equals + 1, word.size())), values);
+    const auto& settings = variants.front().settings;
+    if (name.empty() || !wrong.empty()) {
+      refuse(wrong.empty() ? "must be NAME=A,B,C or NAME=FIRST:STEP:LAST" : wrong);
+    } else if (std::any_of(settings.begin(), settings.end(),
+                           [&](const auto& s) { return s.first == name; })) {
+      refuse(name + " is varied already");
+    } else if (static_cast<double>(variants.size() * values.size()) > kMostVariants) {
+      refuse("makes more than " + short_digits(kMostVariants, 5) + " runs");
+    } else {
+      std::vector<Variant> all;
+      for (const Variant& variant : variants)
+        for (const std::string& value : values) {
+          all.push_back(variant);
+          all.back().settings.emplace_back(name, value);
+        }
+      variants = std::move(all);
+    }
+  }
+  return variants;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,140 @@
+#include "app/report/report_data.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "app/report/report_campbell.hpp"
+#include "app/report/report_model.hpp"
+#include "app/report/report_spectra.hpp"
+#include "app/results/run_json.hpp"
+#include "app/results/run_text.hpp"
+#include "app/run/run_computation.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kRunSamples = 1e5;   // of a run, unless --every says otherwise
+constexpr double kAboveModes = 3.0;   // spectra go so far beyond the highest mode listed
+constexpr double kAboveSpeed = 40.0;  // or to this order, where that is higher
+
+std::string now() {
+  const std::time_t time = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  ::gmtime_r(&time, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+/// The command that gives this run again.
+std::string command_of(const RunRequest& request, const RunResult& result) {
+  const Method& method = result.method;
+  const Settings& settings = request.model.settings;
+  std::string text = "drev run " + request.words;
+  for (std::size_t i = 0; i < settings.known().size(); ++i)
+    if (settings.values()[i] != settings.known()[i].default_text)
+      text += " --set " + settings.known()[i].name + "=" + settings.values()[i];
+  text += " --method " + method.name;
+  if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
+  if (method.step > 0.0) text += " --step " + to_text(method.step);
+  if (method.tolerance > 0.0) text += " --tolerance " + to_text(method.tolerance);
+  if (result.reduction.used) text += " --reduce " + to_text(*request.reduce);
+  return text;
+}
+
+Json inputs_array(const Settings& settings) {
+  Json inputs = Json::array();
+  for (std::size_t i = 0; i < settings.known().size(); ++i) {
+    const Setting& setting = settings.known()[i];
+    inputs.push_back({{"name", setting.name},
+                      {"value", settings.values()[i]},
+                      {"default", setting.default_text},
+                      {"unit", setting.unit},
+                      {"range", setting.range()},
+                      {"meaning", setting.meaning}});
+  }
+  return inputs;
+}
+
+/// Share of each group's time, a byte each: 255 is all of it.
+std::string shares(const std::vector<float>& seconds, const ReportHistory& history) {
+  std::vector<unsigned char> bytes(seconds.size());
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    const double end = i + 1 < seconds.size() ? history.times()[i + 1] : history.end();
+    const double length = end - history.times()[i];
+    const double share = length > 0.0 ? static_cast<double>(seconds[i]) / length : 0.0;
+    bytes[i] = static_cast<unsigned char>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+  }
+  return base64(bytes);
+}
+
+Json history_object(const ReportHistory& history) {
+  Json series = Json::array();
+  for (std::size_t s = 0; s < history.series().size(); ++s) {
+    const ReportHistory::Series& one = history.series()[s];
+    Json object{{"name", one.name},
+                {"unit", one.unit},
+                {"energy", s >= history.channel_count()},
+                {"low", base64(one.low)}};
+    if (history.group() > 1) object["high"] = base64(one.high);
+    series.push_back(std::move(object));
+  }
+  Json bands = Json::array();
+  for (const ReportHistory::Band& band : history.bands())
+    bands.push_back({{"element", band.element},
+                     {"front", shares(band.front, history)},
+                     {"back", shares(band.back, history)}});
+  Json object{{"samples", history.samples()},
+              {"group", history.group()},
+              {"groups", history.times().size()},
+              {"end", history.end()},
+              {"every", history.every()}};
+  if (history.every() == 0.0) object["times"] = base64(history.times());
+  object["series"] = std::move(series);
+  object["bands"] = std::move(bands);
+  return object;
+}
+
+}  // namespace
+
+double report_interval(const RunRequest& request, const Method& method) {
+  if (request.report_every) return *request.report_every;
+  if (!(method.tolerance > 0.0)) return 0.0;
+  const double duration = request.model.scene.duration, about = duration / kRunSamples;
+  const double cycle = cycle_of(request.model);
+  if (!(cycle > 2.0 * about) || cycle > duration) return about;
+  // A number of samples a cycle that transforms are fast for.
+  return cycle / std::exp2(std::floor(std::log2(cycle / about)));
+}
+
+Json report_data(const RunRequest& request, const RunResult& result, const ReportHistory& history) {
+  const ModelRequest& m = request.model;
+  Json data;
+  data["format"] = 1;
+  data["version"] = DREV_VERSION;
+  data["made"] = now();
+  data["command"] = command_of(request, result);
+  data["about"] = m.entry->summary;
+  data["warning"] = warning_of(result);
+  data["inputs"] = inputs_array(m.settings);
+  data["result"] = run_object(request, result);
+  data["model"] = model_object(m.scene.model, m.system);
+  data["modes"] = Json::array();
+  data["campbell"] = nullptr;
+  double highest = 0.0;
+  if (result.modes) {
+    data["modes"] = modes_object(m.system, *result.modes);
+    data["campbell"] = campbell_object(m.scene.model, m.system, *result.modes, m.scene.duration);
+    if (result.modes->count() > 0) highest = kAboveModes * result.modes->frequency_Hz.back();
+  }
+  highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
+  data["history"] = history_object(history);
+  data["spectra"] = spectra_object(history, cycle_of(m), highest > 0.0 ? highest : HUGE_VAL);
+  return data;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,35 @@
+#pragma once
+/// Where a report goes: a page, or the page printed as PDF. The file gets its name when it is complete.
+#include <optional>
+#include <string>
+
+#include "app/base/output_file.hpp"
+
+namespace drev::app {
+
+/// What speaks against a report of this name on this machine, as a finding says it; nullopt: nothing.
+std::optional<std::string> why_no_report(const std::string& path);
+
+class ReportFile {
+ public:
+  /// path: of an .html or a .pdf file. Opens its page. Throws OutputError.
+  explicit ReportFile(const std::string& path);
+  /// What was not committed is removed.
+  ~ReportFile();
+  ReportFile(const ReportFile&) = delete;
+  ReportFile& operator=(const ReportFile&) = delete;
+
+  /// Writes the page, prints it where that is asked for. Throws OutputError.
+  void commit(const std::string& page);
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string partial_pdf() const;
+
+  std::string path_, stem_;
+  bool pdf_;
+  OutputFile page_;
+  bool complete_ = false;  ///< the page is the report, under its name
+};
+
+}  // namespace drev::app

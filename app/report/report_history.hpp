@@ -1,0 +1,76 @@
+#pragma once
+/// What the report keeps of a run over time, in memory that does not grow with it:
+///
+///   groups   of 1, 2, 4, ... consecutive samples, at most kPlaces / channels of them; of each group the
+///            first time, and the lowest and the highest value of every channel, so that no peak of the
+///            samples is lost. When all places are taken, neighbours are joined and groups are twice as long
+///            from then on.
+///   tail     the last samples as they are, for spectra: at most kTail / channels, 2^17 at most.
+///   contacts time of each group that a gap spent closed on its front and on its back flank.
+///
+/// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
+/// and stored energy [J].
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/channel.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+
+namespace drev::app {
+
+class ReportHistory final : public Observer {
+ public:
+  /// every >= 0 [s]; 0: every step, for methods whose steps an output time would cut.
+  ReportHistory(const System& system, const std::vector<std::string>& channels, double every);
+
+  void start(const Assembler& assembler, const StepPoint& point) override;
+  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  double next_stop(double t) const override;
+
+  /// One curve: a channel, or an energy.
+  struct Series {
+    std::string name, unit;
+    std::vector<float> low, high;  ///< of each group
+    std::vector<double> tail;      ///< a ring: see tail_at()
+  };
+  /// The gap of one element: seconds of each group in which its front, its back flank is in contact.
+  struct Band {
+    std::string element;
+    std::vector<float> front, back;
+  };
+
+  double every() const { return every_; }
+  long samples() const { return samples_; }
+  long group() const { return group_; }                        ///< samples in a group
+  double end() const { return end_; }                          ///< s, of the last sample
+  const std::vector<double>& times() const { return times_; }  ///< s, first of each group
+  const std::vector<Series>& series() const { return series_; }
+  const std::vector<Band>& bands() const { return bands_; }
+  std::size_t channel_count() const { return channels_.size(); }
+
+  std::size_t tail_size() const { return tail_times_.size(); }
+  /// Sample i of the tail, the oldest first.
+  double tail_time(std::size_t i) const { return tail_times_[tail_place(i)]; }
+  double tail_value(std::size_t series, std::size_t i) const { return series_[series].tail[tail_place(i)]; }
+
+ private:
+  std::size_t tail_place(std::size_t i) const { return (oldest_ + i) % tail_times_.size(); }
+  void sample(const Assembler& assembler, const StepPoint& point);
+  void open_group(double t);
+  void join_neighbours();
+
+  std::vector<Channel> channels_;
+  double every_ = 0.0, start_ = 0.0, end_ = 0.0;
+  std::size_t places_, tail_places_, oldest_ = 0;
+  long samples_ = 0, group_ = 1, in_group_ = 0;
+  std::vector<double> times_, tail_times_;
+  std::vector<Series> series_;
+  std::vector<std::size_t> terms_;
+  std::vector<Gap> gaps_;
+  std::vector<Band> bands_;
+  Vector product_;
+};
+
+}  // namespace drev::app

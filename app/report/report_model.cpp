@@ -1,0 +1,170 @@
+#include "app/report/report_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/element.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kSumRounding = 1e-9;  // relative, of sums that should be zero
+constexpr std::size_t kSharesShown = 3;
+constexpr double kShareShown = 0.005;
+
+std::vector<int> nodes_of(const Placement& placement, const System& system) {
+  std::vector<int> nodes;
+  for (const NodeRef& node : placement.nodes) nodes.push_back(system.node_of(node));
+  for (const NodeId node : placement.internal) nodes.push_back(static_cast<int>(node));
+  return nodes;
+}
+
+Terms terms_of(const Placement& placement, int nodes) {
+  Terms terms(nodes);
+  placement.element->describe(nodes, terms);
+  return terms;
+}
+
+/// Writes one element into the drawing.
+class Drawing {
+ public:
+  explicit Drawing(const System& system) : inertia_(static_cast<std::size_t>(system.node_count())) {}
+
+  void add(const Placement& placement, const std::vector<int>& nodes) {
+    placement_ = &placement;
+    nodes_ = &nodes;
+    const int n = static_cast<int>(nodes.size());
+    const Terms terms = terms_of(placement, n);
+    for (int i = 0; i < n; ++i) inertia_[place(i)] += terms.mass.row(i).sum();
+    add_matrix(terms.stiffness, "shaft", "stiffness");
+    if (terms.stiffness.isZero(0.0)) add_matrix(terms.damping, "damper", "damping");
+    for (const ScalarSpec& spec : terms.scalars) add_law(spec);
+    for (const LocalRow& row : terms.constraints) add_gear(row);
+    for (const GeneralForce* general : terms.generals)
+      if (general != nullptr) add_other();
+    for (const LoadSpec& load : terms.loads)
+      loads.push_back({{"name", placement.name}, {"type", type()}, {"node", node(load.node)}});
+  }
+
+  double inertia(int node) const { return inertia_[static_cast<std::size_t>(node)]; }
+  Json joints = Json::array(), loads = Json::array();
+
+ private:
+  std::string type() const { return std::string(placement_->element->type()); }
+  int node(int local) const { return (*nodes_)[static_cast<std::size_t>(local)]; }
+  std::size_t place(int local) const { return static_cast<std::size_t>(node(local)); }
+
+  Json& joint(const char* kind, std::vector<int> local) {
+    Json list = Json::array();
+    for (const int i : local) list.push_back(node(i));
+    joints.push_back(
+        {{"name", placement_->name}, {"type", type()}, {"kind", kind}, {"nodes", std::move(list)}});
+    return joints.back();
+  }
+
+  void add_matrix(const Eigen::MatrixXd& k, const char* kind, const char* value) {
+    for (Eigen::Index i = 0; i < k.rows(); ++i) {
+      for (Eigen::Index j = 0; j < i; ++j)
+        if (k(i, j) != 0.0) joint(kind, {static_cast<int>(j), static_cast<int>(i)})[value] = -k(i, j);
+      const double to_ground = k.row(i).sum();
+      if (std::abs(to_ground) > kSumRounding * std::abs(k(i, i)))
+        joint(kind, {static_cast<int>(i)})[value] = to_ground;
+    }
+  }
+
+  void add_law(const ScalarSpec& spec) {
+    std::vector<int> local;
+    for (int i = 0; i < static_cast<int>(spec.b.size()); ++i)
+      if (spec.b[i] != 0.0) local.push_back(i);
+    if (local.empty() || local.size() > 2) return add_other();
+    const bool mesh = spec.along_line_of_action && local.size() == 2;
+    Json& law = joint(mesh ? "mesh" : "spring", local);
+    law["stiffness"] = number(spec.force->closed_stiffness());
+    if (mesh) {
+      law["radii"] = {std::abs(spec.b[local[0]]), std::abs(spec.b[local[1]])};
+      law["internal"] = spec.b[local[0]] * spec.b[local[1]] < 0.0;
+    }
+    if (const auto gap = spec.force->gap()) law["gap"] = gap->high - gap->low;
+  }
+
+  void add_gear(const LocalRow& row) {
+    std::vector<int> local;
+    for (int i = 0; i < static_cast<int>(row.size()); ++i)
+      if (row[i] != 0.0) local.push_back(i);
+    if (local.size() != 2) return add_other();
+    joint("gear", local)["ratio"] = -row[local[0]] / row[local[1]];
+  }
+
+  void add_other() {
+    if (nodes_->size() < 2) joint("other", {0});
+    for (int i = 1; i < static_cast<int>(nodes_->size()); ++i) joint("other", {i - 1, i});
+  }
+
+  const Placement* placement_ = nullptr;
+  const std::vector<int>* nodes_ = nullptr;
+  std::vector<double> inertia_;
+};
+
+/// q'Kq of one element, its laws closed, at the shape of a mode.
+double potential(const Terms& terms, const Eigen::VectorXd& q) {
+  double energy = q.dot(terms.stiffness * q);
+  for (const ScalarSpec& spec : terms.scalars)
+    energy += spec.force->closed_stiffness() * std::pow(spec.b.dot(q), 2);
+  return energy;
+}
+
+}  // namespace
+
+Json model_object(const Model& model, const System& system) {
+  Drawing drawing(system);
+  for (const Placement& placement : model.placements()) drawing.add(placement, nodes_of(placement, system));
+  Json nodes = Json::array();
+  for (int i = 0; i < system.node_count(); ++i) {
+    const int prescribed = system.node_map(i).prescribed;
+    nodes.push_back({{"name", system.node_names()[static_cast<std::size_t>(i)]},
+                     {"turns", system.node_kind(i) == NodeKind::rotational},
+                     {"ratio", number(system.ratio(i))},
+                     {"inertia", number(drawing.inertia(i))},
+                     {"held", prescribed >= 0 && system.prescribed_node(prescribed) == i}});
+  }
+  return {{"nodes", std::move(nodes)},
+          {"joints", std::move(drawing.joints)},
+          {"loads", std::move(drawing.loads)},
+          {"unknowns", system.size()}};
+}
+
+Json modes_object(const System& system, const ModeSet& modes) {
+  std::vector<std::vector<int>> nodes;
+  for (const Placement& placement : system.placements()) nodes.push_back(nodes_of(placement, system));
+  Json list = Json::array();
+  for (int m = 0; m < modes.count(); ++m) {
+    const Eigen::VectorXd shape = modes.shapes.col(m);
+    std::vector<std::pair<double, std::string>> shares;
+    double sum = 0.0;
+    for (std::size_t e = 0; e < nodes.size(); ++e) {
+      const Placement& placement = system.placements()[e];
+      Eigen::VectorXd q(static_cast<Eigen::Index>(nodes[e].size()));
+      for (std::size_t i = 0; i < nodes[e].size(); ++i) q[static_cast<Eigen::Index>(i)] = shape[nodes[e][i]];
+      const double energy = potential(terms_of(placement, static_cast<int>(nodes[e].size())), q);
+      sum += energy;
+      shares.emplace_back(energy, placement.name);
+    }
+    std::stable_sort(shares.begin(), shares.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    Json energy = Json::array();
+    for (std::size_t e = 0; e < std::min(kSharesShown, shares.size()); ++e)
+      if (shares[e].first > kShareShown * sum)
+        energy.push_back({{"element", shares[e].second}, {"share", number(shares[e].first / sum)}});
+    const double largest = shape.cwiseAbs().maxCoeff();
+    Json values = Json::array();
+    for (Eigen::Index i = 0; i < shape.size(); ++i)
+      values.push_back(std::round(1e5 * shape[i] / (largest > 0.0 ? largest : 1.0)) / 1e5);
+    list.push_back({{"frequency_Hz", modes.frequency_Hz[static_cast<std::size_t>(m)]},
+                    {"shape", std::move(values)},
+                    {"energy", std::move(energy)}});
+  }
+  return list;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,22 @@
+#pragma once
+/// The model as the report draws it: nodes with their inertias, what joins them, loads; and its modes.
+///
+/// All of it is read from what the elements say of themselves (Element::describe), so that one's own elements
+/// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
+/// a constraint is an ideal gear.
+#include "app/base/json_values.hpp"
+#include "core/system.hpp"
+#include "solvers/modes/modes.hpp"
+
+namespace drev::app {
+
+/// {nodes: [{name, turns, ratio, inertia, held}], joints: [{name, type, kind, nodes, ...}], loads: [{name,
+/// type, node}], unknowns}. kind of a joint: shaft, mesh, gear, spring (a law), damper, other; one node: to
+/// ground.
+Json model_object(const Model& model, const System& system);
+
+/// [{frequency_Hz, shape: [a number a node, largest 1], energy: [{element, share}]}]: share of the mode's
+/// potential energy, the three largest above 0.5 %.
+Json modes_object(const System& system, const ModeSet& modes);
+
+}  // namespace drev::app

@@ -1,0 +1,20 @@
+#pragma once
+/// report.html: one self-contained page, without network, made of the data blocks of one run or of two, the
+/// page's text, style and program (app/report/) and the chart library (dygraphs).
+#include <string>
+#include <vector>
+
+#include "app/base/json_values.hpp"
+
+namespace drev::app {
+
+/// blocks: the text of one or two data blocks (report_data.hpp).
+std::string report_page(const std::vector<std::string>& blocks);
+
+/// A data block as text that may stand in a page.
+std::string block_text(const Json& data);
+
+/// The blocks of a page that report_page() made; none if it is no such page.
+std::vector<std::string> blocks_of(const std::string& page);
+
+}  // namespace drev::app

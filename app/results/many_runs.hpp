@@ -1,0 +1,43 @@
+#pragma once
+/// What became of several runs, and how it is told.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/base/json_values.hpp"
+#include "app/cli/model_list.hpp"
+
+namespace drev::app {
+
+struct OneOfMany {
+  NamedModel model;
+  std::vector<std::pair<std::string, std::string>> varied;  ///< settings of --vary
+  std::string folder;
+  /// That of its summary, or not_started, running, bad_input, killed.
+  std::string status = "not_started";
+  std::string reason = {};
+  int code = 0;            ///< exit code of its process, -1: ended by a signal
+  double wall_time = 0.0;  ///< s
+  Json summary = {};       ///< null: there is none
+
+  bool ended() const { return status != "not_started" && status != "running"; }
+  bool ok() const { return status == "success"; }
+};
+
+struct ManyRuns {
+  std::vector<OneOfMany> runs;
+  std::vector<SkippedFile> skipped;
+  std::string folder;
+  std::string status = "running";  ///< success: of all; failed: at least one; interrupted
+
+  /// Of those that have ended: that succeeded, or that did not.
+  std::size_t count(bool ok) const;
+};
+
+/// runs.json, as docs/results.schema.json describes it.
+std::string many_as_json(const ManyRuns& many);
+/// runs.csv: a row a run, with its settings of --vary and its figures.
+std::string many_as_csv(const ManyRuns& many);
+std::string many_as_text(const ManyRuns& many);
+
+}  // namespace drev::app

@@ -1,0 +1,215 @@
+#include "app/results/run_json.hpp"
+
+#include <unistd.h>
+
+#include "app/base/json_values.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+/// Value of a quantity in one unit; null if the model gives it in another, or not at all.
+Json in_unit(const std::optional<Largest>& largest, const std::string& unit, double factor = 1.0) {
+  return largest && largest->unit == unit ? number(factor * largest->value) : Json(nullptr);
+}
+
+Json place_of(const std::optional<Largest>& largest, const std::string& unit) {
+  return largest && largest->unit == unit ? Json(largest->place()) : Json(nullptr);
+}
+
+Json distribution_object(const Distribution& d) {
+  const bool any = d.count() > 0;
+  Json object{{"count", d.count()}, {"mean", any ? number(d.mean()) : Json()}};
+  object["p50"] = any ? number(d.quantile(0.5)) : Json();
+  object["p90"] = any ? number(d.quantile(0.9)) : Json();
+  object["p99"] = any ? number(d.quantile(0.99)) : Json();
+  object["max"] = any ? number(d.largest()) : Json();
+  return object;
+}
+
+Json flanks_object(const Distribution& front, const Distribution& back, const Distribution& both,
+                   const std::string& unit) {
+  return {{"unit", unit},
+          {"front", distribution_object(front)},
+          {"back", distribution_object(back)},
+          {"both", distribution_object(both)}};
+}
+
+Json contact_object(const Contacts& c, double duration) {
+  const bool newton = c.force_unit == "N";
+  return {{"element", c.record.element},
+          {"front_contacts", c.record.front_impacts},
+          {"back_contacts", c.record.back_impacts},
+          {"time_apart_s", number(c.record.time_apart)},
+          {"time_apart_share", duration > 0.0 ? number(c.record.time_apart / duration) : Json()},
+          {"max_force_N", newton ? number(c.record.largest_force) : Json()},
+          {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
+          {"max_at_time_s", number(c.record.largest_force_time)},
+          {"impact_speed",
+           flanks_object(c.record.front_speed, c.record.back_speed, c.record.speed(), c.speed_unit())},
+          {"impact_force",
+           flanks_object(c.record.front_force, c.record.back_force, c.record.force(), c.force_unit)},
+          {"impact_energy_J", number(c.record.impact_energy)},
+          {"rattle_index_W", number(c.record.rattle_index(duration))}};
+}
+
+void add_contacts(Json& results, const RunResult& r) {
+  results["max_mesh_force_N"] = in_unit(r.mesh_force, "N");
+  results["max_mesh_force_at"] = place_of(r.mesh_force, "N");
+  if (r.contacts.empty()) {  // no gap anywhere, or no figures
+    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s"}) results[key] = nullptr;
+    results["contacts"] = Json::array();
+    return;
+  }
+  long front = 0, back = 0;
+  double apart = 0.0;
+  Json list = Json::array();
+  for (const Contacts& c : r.contacts) {
+    front += c.record.front_impacts;
+    back += c.record.back_impacts;
+    apart += c.record.time_apart;
+    list.push_back(contact_object(c, r.summary.t_end));
+  }
+  results["front_contacts"] = front;
+  results["back_contacts"] = back;
+  results["time_apart_s"] = number(apart);
+  results["contacts"] = std::move(list);
+}
+
+Json results_object(const RunResult& r) {
+  Json results;
+  results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
+  results["deflection_m"] = in_unit(r.deflection, "m");
+  results["deflection_of"] = r.deflection ? Json(r.deflection->place()) : Json();
+  results["max_torque_Nm"] = in_unit(r.force, "N m");
+  results["max_torque_at"] = place_of(r.force, "N m");
+  results["max_force_N"] = in_unit(r.force, "N");
+  results["max_force_at"] = place_of(r.force, "N");
+  results["max_at_time_s"] = r.force ? number(r.force->at) : Json();
+  results["static_torque_Nm"] = in_unit(r.static_force, "N m");
+  results["static_force_N"] = in_unit(r.static_force, "N");
+  results["static_at"] = r.static_force ? Json(r.static_force->place()) : Json();
+  results["dynamic_amplification"] = number(r.amplification());
+  add_contacts(results, r);
+  results["frequencies_Hz"] = Json();
+  results["rigid_modes"] = Json();
+  if (r.modes) {
+    results["frequencies_Hz"] = r.modes->frequency_Hz;
+    results["rigid_modes"] = r.modes->rigid_modes;
+  }
+  return results;
+}
+
+Json energy_object(const EnergyBalance& e) {
+  return {{"kinetic_J", number(e.kinetic)},
+          {"stored_J", number(e.stored)},
+          {"input_J", number(e.input)},
+          {"dissipated_J", number(e.dissipated)},
+          {"imbalance_J", number(e.imbalance)},
+          {"worst_imbalance_J", number(e.worst_imbalance)},
+          {"worst_at_time_s", number(e.worst_time)},
+          {"scale_J", number(e.scale)}};
+}
+
+Json accuracy_object(double asked, const AccuracyResult& a) {
+  Json figures = Json::array();
+  for (const Figure& f : a.figures)
+    figures.push_back({{"name", f.name},
+                       {"unit", text_or_null(f.unit)},
+                       {"value", number(f.value)},
+                       {"error", number(f.error)},
+                       {"kind", f.kind == Figure::Kind::interval ? "95 % interval" : "estimate"},
+                       {"keeps_accuracy", f.kind == Figure::Kind::estimate ? Json(f.keeps(asked)) : Json()}});
+  return {{"asked", asked},
+          {"reached", a.reached},
+          {"reason", text_or_null(a.reason)},
+          {"horizon_s", number(a.horizon)},
+          {"growth", a.growth.growth.empty() ? Json() : number(a.growth.growth.back())},
+          {"growth_rate_per_s", number(a.growth.rate)},
+          {"growth_rate_error_per_s", number(a.growth.rate_error)},
+          {"coarse", to_text(a.coarse)},
+          {"fine", to_text(a.fine)},
+          {"figures", std::move(figures)}};
+}
+
+Json reduction_object(const std::optional<double>& within, const ReductionNote& r) {
+  return {{"within", number(within)},
+          {"used", r.used},
+          {"coordinates", r.coordinates},
+          {"unknowns", r.of},
+          {"modes", r.used ? Json(r.modes) : Json()},
+          {"static_shapes", r.used ? Json(r.static_shapes) : Json()},
+          {"error", number(r.error)},
+          {"error_of", text_or_null(r.channel)},
+          {"reason", r.reason}};
+}
+
+/// What every run has, ended or not.
+Json head_object(const RunRequest& request, const std::string& scheme, const Method& method,
+                 const std::string& status, const std::string& reason) {
+  Json object = result_object("run");
+  object["model"] = request.model.entry->name;
+  object["settings"] = settings_object(request.model.settings);
+  object["method"] = scheme;
+  object["method_reason"] = request.method_reason;
+  object["step_s"] = method.step > 0.0 ? number(method.step) : Json();
+  object["tolerance"] = method.tolerance > 0.0 ? number(method.tolerance) : Json();
+  object["status"] = status;
+  object["reason"] = text_or_null(reason);
+  return object;
+}
+
+}  // namespace
+
+Json result_object(const char* kind) {
+  return {{"$schema", "urn:drev:results:1"}, {"kind", kind}, {"drev", DREV_VERSION}};
+}
+
+Json run_object(const RunRequest& request, const RunResult& r) {
+  const RunSummary& s = r.summary;
+  const bool exact = r.method.exact(), controlled = r.method.controlled();
+  Json object = head_object(request, s.scheme, r.method, r.status, r.reason);
+  object["method_reason"] = r.method_reason;
+  object["reduction"] = reduction_object(request.reduce, r.reduction);
+  object["results"] = results_object(r);
+  object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
+  object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
+  object["energy"] = energy_object(s.energy);
+  object["t_end_s"] = number(s.t_end);
+  object["steps"] = s.steps;
+  object["halved_steps"] = s.halved;
+  object["rejected_steps"] = controlled ? Json(s.rejected) : Json();
+  object["forced_steps"] = controlled ? Json(s.forced) : Json();
+  object["fallback_steps"] = exact ? Json() : Json(s.fallbacks);
+  object["contact_changes"] = exact ? Json(s.contact_changes) : Json();
+  object["located"] = controlled ? Json(s.located) : Json();
+  object["iterations"] = s.iterations;
+  object["solves"] = s.solves;
+  object["run_time_s"] = number(r.run_time);
+  object["phases"] = {{"modes_s", number(r.modes_time)},
+                      {"static_s", number(r.static_time)},
+                      {"reduction_s", number(r.reduction_time)},
+                      {"accuracy_s", number(r.accuracy_time)},
+                      {"simulation_s", number(r.run_time)}};
+  object["note"] = text_or_null(request.model.scene.note);
+  return object;
+}
+
+std::string run_as_json(const RunRequest& request, const RunResult& result) {
+  return json_text(run_object(request, result));
+}
+
+std::string running_as_json(const RunRequest& request) {
+  Json object =
+      head_object(request, request.method.name, request.method, "running",
+                  "the run has not ended: it still goes on, its process was killed, or the disk was full");
+  object["process"] = ::getpid();
+  object["duration_s"] = number(request.model.scene.duration);
+  object["record"] = request.record;
+  object["every_s"] = number(request.every);
+  object["note"] = text_or_null(request.model.scene.note);
+  return json_text(object);
+}
+
+}  // namespace drev::app

@@ -1,0 +1,237 @@
+#include "app/results/run_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/text_layout.hpp"
+#include "core/units.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr std::size_t kModesShown = 6;
+
+std::string value_text(const Largest& l) {
+  if (l.unit == "rad") return digits(to_deg(l.value), 4) + " deg";
+  return digits(l.value, 5) + " " + l.unit;
+}
+
+/// The element, and between which nodes it is.
+std::string place_text(const Model& model, const Largest& l) {
+  const std::string place = l.place();
+  for (const Placement& placement : model.placements()) {
+    if (placement.name != place) continue;
+    std::vector<std::string> nodes;
+    for (const NodeRef& node : placement.nodes) nodes.push_back(model.name_of(node));
+    return place + " (" + join(nodes, " to ") + ")";
+  }
+  return place;
+}
+
+/// "between A and B" for the difference of two nodes, "of A" for one.
+std::string deflection_place(const Model& model, const Largest& l) {
+  const std::string place = l.place();
+  const auto& names = model.node_names();
+  const auto is_node = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (std::size_t cut = place.find('-'); cut != std::string::npos; cut = place.find('-', cut + 1)) {
+    const std::string first = place.substr(0, cut), second = place.substr(cut + 1);
+    if (is_node(first) && is_node(second)) return "between " + second + " and " + first;
+  }
+  return "of " + place;
+}
+
+std::string modes_row(const RunResult& r) {
+  if (!r.modes) return labelled("Modes", "not found: " + r.modes_reason);
+  std::vector<std::string> shown;
+  for (const double f : r.modes->frequency_Hz)
+    if (shown.size() < kModesShown) shown.push_back(digits(f, 5));
+  return labelled("Lowest modes", (shown.empty() ? "none" : join(shown) + " Hz") + ", and " +
+                                      std::to_string(r.modes->rigid_modes) + " rigid; contacts closed");
+}
+
+std::string force_rows(const Scene& scene, const RunResult& r) {
+  const Model& model = scene.model;
+  const bool torque = scene.torques.empty() || scene.torques.front().ends_with("_Nm");
+  const std::string name = torque ? "torque" : "force";
+  std::string text;
+  if (r.force)
+    text += labelled("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) + " at " +
+                                            short_digits(r.force->at, 4) + " s");
+  if (!r.static_force)
+    return text + labelled("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
+  text += labelled("Static " + name, value_text(*r.static_force) + " in " +
+                                         place_text(model, *r.static_force) + " (largest " + name +
+                                         " in static equilibrium, over all sections and one turn)");
+  if (const auto amplification = r.amplification())
+    text += labelled("Dynamic amplification",
+                     digits(*amplification, 3) + " (largest " + name + " / static " + name + ")");
+  return text;
+}
+
+std::string contact_line(const std::string& name, long front, long back, double apart, double share,
+                         const std::string& force) {
+  return "  " + pad_right(name, kLabel - 2) + pad_left(std::to_string(front), 8) +
+         pad_left(std::to_string(back), 8) + pad_left(digits(apart, 4), 12) +
+         pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
+}
+
+/// "0.012, 0.045, 0.09 m/s"
+std::string quantiles_text(const Distribution& d, const std::string& unit) {
+  return digits(d.quantile(0.5), 3) + ", " + digits(d.quantile(0.9), 3) + ", " + digits(d.quantile(0.99), 3) +
+         " " + unit;
+}
+
+/// How hard the flanks meet; nothing without impacts.
+std::string impact_rows(const RunResult& r, double duration) {
+  std::string text;
+  for (const Contacts& c : r.contacts) {
+    const ContactRecord& k = c.record;
+    if (k.impacts() == 0) continue;
+    std::string line = "speed " + quantiles_text(k.speed(), c.speed_unit());
+    if (k.force().count() > 0) line += "; force " + quantiles_text(k.force(), c.force_unit);
+    text += "  " + pad_right(k.element, kLabel - 2) +
+            wrap(line + "; rattle index " + digits(k.rattle_index(duration), 3) + " W", kLabel);
+  }
+  if (text.empty()) return {};
+  return labelled("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
+}
+
+std::string contact_rows(const RunResult& r) {
+  if (r.contacts.empty()) {
+    if (!r.mesh_force) return {};
+    return labelled("Largest mesh force", value_text(*r.mesh_force) + " in " + r.mesh_force->place() +
+                                              " at " + short_digits(r.mesh_force->at, 4) +
+                                              " s; no backlash, so no impacts");
+  }
+  std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
+                     pad_left("apart [s]", 12) + pad_left("[%]", 10) + pad_left("largest force", 18) + "\n";
+  const double duration = r.summary.t_end > 0.0 ? r.summary.t_end : 1.0;
+  long front = 0, back = 0;
+  double apart = 0.0;
+  const Contacts* hardest = &r.contacts.front();
+  for (const Contacts& c : r.contacts) {
+    const ContactRecord& k = c.record;
+    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_apart, k.time_apart / duration,
+                         digits(k.largest_force, 5) + " " + c.force_unit);
+    front += k.front_impacts;
+    back += k.back_impacts;
+    apart += k.time_apart;
+    if (k.largest_force > hardest->record.largest_force) hardest = &c;
+  }
+  if (r.contacts.size() > 1)
+    text += contact_line("together", front, back, apart,
+                         apart / (duration * static_cast<double>(r.contacts.size())),
+                         digits(hardest->record.largest_force, 5) + " " + hardest->force_unit);
+  return text + impact_rows(r, duration);
+}
+
+std::string energy_row(const EnergyBalance& e) {
+  if (!(e.scale > 0.0)) return labelled("Energy balance", "no energy in the run");
+  if (std::abs(e.relative_error()) < 1e-12) return labelled("Energy balance", "holds to rounding");
+  return labelled("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
+                                        digits(e.scale, 3) + " J" +
+                                        (e.worst_imbalance > 0.0 ? " (gained)" : " (lost)") + ", worst at " +
+                                        short_digits(e.worst_time, 4) + " s");
+}
+
+std::string method_text(const RunResult& r) {
+  std::string text = r.summary.scheme;
+  if (r.method.tolerance > 0.0) text += ", tolerance " + short_digits(r.method.tolerance, 3);
+  if (r.method.step > 0.0)
+    text +=
+        (r.method.controlled() ? ", steps of at most " : ", step ") + short_digits(r.method.step, 4) + " s";
+  return text;
+}
+
+/// What was done for it; beside the method's usual work only what there was.
+std::string effort_text(const RunResult& r) {
+  const RunSummary& s = r.summary;
+  const bool exact = r.method.exact(), controlled = r.method.controlled();
+  std::vector<std::string> items;
+  const auto add = [&](bool shown, long count, const char* what) {
+    if (shown || count > 0) items.push_back(std::to_string(count) + " " + what);
+  };
+  add(true, s.steps, "steps");
+  add(controlled, s.rejected, "rejected");
+  add(!exact && !controlled, s.halved, "halved");
+  add(exact, s.contact_changes, "contact changes located");
+  add(false, s.located, "kinks or knots located");
+  add(false, s.fallbacks, "with a force inside its jump");
+  add(false, s.forced, "of the least length, with an error above their share");
+  add(!exact && !controlled, s.iterations, "iterations");
+  add(false, s.solves, exact ? "products" : "linear solves");
+  return join(items) + ", " + digits(r.run_time, 3) + " s";
+}
+
+/// A value with the digits that its error leaves, and the error.
+std::string figure_text(const Figure& f) {
+  int places = 12;
+  if (f.error > 0.0 && f.value != 0.0)
+    places = std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(f.value) / f.error))) + 1, 2, 15);
+  const bool known = std::isfinite(f.error);
+  return short_digits(f.value, known ? places : 3) + " +- " +
+         (known ? short_digits(f.error, 2) : std::string("unknown")) + (f.unit.empty() ? "" : " " + f.unit);
+}
+
+std::string accuracy_rows(double asked, const AccuracyResult& a) {
+  std::string text = labelled(
+      "Accuracy asked", short_digits(asked, 3) + (a.reached ? ": reached" : ": not reached: " + a.reason));
+  text += labelled("Growth", "a small difference grows " +
+                                 short_digits(a.growth.growth.empty() ? 1.0 : a.growth.growth.back(), 3) +
+                                 " times at most, exp(" + short_digits(a.growth.rate, 3) + " t) +- " +
+                                 short_digits(a.growth.rate_error, 2) + " 1/s on the whole");
+  for (const Figure& f : a.figures)
+    text += "  " + f.name + ": " + figure_text(f) +
+            (f.kind == Figure::Kind::interval ? " (95 % interval)"
+             : f.keeps(asked)                 ? ""
+                                              : " (not kept)") +
+            "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string settings_text(const Settings& settings) {
+  std::vector<std::string> items;
+  for (std::size_t i = 0; i < settings.known().size(); ++i)
+    items.push_back(settings.known()[i].name + " " + settings.values()[i]);
+  return join(items);
+}
+
+std::string warning_of(const RunResult& r) {
+  if (r.ok()) return {};
+  std::string head = "RUN FAILED (" + r.status + ")";
+  if (r.status == "energy_error") head = "DO NOT TRUST THIS RUN (energy_error)";
+  if (r.status == "interrupted") head = "RUN INTERRUPTED";
+  if (r.status == "output_error") head = "RUN GIVEN UP (output_error)";
+  return head + ": " + r.reason;
+}
+
+std::string run_as_text(const RunRequest& request, const RunResult& r) {
+  const RunSummary& s = r.summary;
+  const Model& model = request.model.scene.model;
+  std::string text;
+  if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
+  text += request.model.entry->name + ": " +
+          wrap(settings_text(request.model.settings), request.model.entry->name.size() + 2);
+  text += "\n" + modes_row(r);
+  if (r.deflection)
+    text += labelled("Largest deflection", value_text(*r.deflection) + " " +
+                                               deflection_place(model, *r.deflection) + " at " +
+                                               short_digits(r.deflection->at, 4) + " s");
+  if (!r.force && !r.ok())
+    text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
+  text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
+  text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
+  text += labelled("Why this method", r.method_reason);
+  text += labelled("Reduction", r.reduction.reason);
+  text += labelled("Effort", effort_text(r));
+  if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
+  if (!request.model.scene.note.empty()) text += labelled("Note", request.model.scene.note);
+  return text;
+}
+
+}  // namespace drev::app

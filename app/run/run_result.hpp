@@ -1,0 +1,67 @@
+#pragma once
+/// Everything that `drev run` reports, as data. What has no meaning for a model, or could not be found, is
+/// absent, with the reason.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/requests.hpp"
+#include "solvers/accuracy/accuracy.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/stepping/transient.hpp"
+
+namespace drev::app {
+
+/// Largest |value| of a channel (or of several: of which).
+struct Largest {
+  double value = 0.0;  ///< unit below
+  std::string channel, unit;
+  double at = 0.0;  ///< s; angle of the reference shaft [rad] of a static value
+  /// The part of the channel's name before its quantity: element, node or NODE-NODE.
+  std::string place() const { return channel.substr(0, channel.rfind('.')); }
+};
+
+struct Contacts {
+  ContactRecord record;
+  std::string force_unit;  ///< N or N m
+  std::string speed_unit() const { return force_unit == "N" ? "m/s" : "rad/s"; }
+};
+
+/// Of a run in fewer coordinates, or why it is not.
+struct ReductionNote {
+  bool used = false;
+  int coordinates = 0, of = 0;  ///< of the run; unknowns of the model
+  int modes = 0, static_shapes = 0;
+  std::optional<double> error = {};  ///< estimated, relative to the peak of `channel`, the largest of all
+  std::string channel = {};
+  std::string reason = {};  ///< a sentence without full stop
+};
+
+struct RunResult {
+  /// success, energy_error, unstable, no_convergence, not_finite, interrupted; failed: ended by an error;
+  /// output_error: ended because an output could not be written.
+  std::string status = "success";
+  std::string reason;
+  Method method;  ///< with the step or tolerance that an accuracy asked for led to
+  std::string method_reason;
+  ReductionNote reduction;
+  RunSummary summary;
+  std::optional<AccuracyResult> accuracy;
+  std::optional<ModeSet> modes;
+  std::string modes_reason;
+  std::optional<Largest> deflection, force, static_force;
+  std::optional<Largest> mesh_force;  ///< over meshes and whatever else has a gap [N]
+  std::string static_reason;          ///< why there is no static force
+  std::vector<Contacts> contacts;
+  double modes_time = 0.0, static_time = 0.0, reduction_time = 0.0, accuracy_time = 0.0,
+         run_time = 0.0;  ///< s of wall time
+
+  bool ok() const { return status == "success"; }
+  /// Largest force over largest static force.
+  std::optional<double> amplification() const {
+    if (!force || !static_force || !(static_force->value > 0.0)) return {};
+    return force->value / static_force->value;
+  }
+};
+
+}  // namespace drev::app

@@ -1,0 +1,225 @@
+#include "app/study/study_runs.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <future>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "app/base/interrupt.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/run/run_computation.hpp"
+#include "core/units.hpp"
+#include "models/camshaft/published.hpp"
+#include "solvers/accuracy/error_growth.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/statics.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kSettled = 1.0;                 // s
+constexpr double kNudge = 1e-9;                  // rad
+constexpr double kCoarse = 1e-7, kFine = 1e-11;  // tolerances of exact propagation
+constexpr std::size_t kStepRuns = 8;
+
+}  // namespace
+
+void for_all(std::size_t count, const std::function<void(std::size_t)>& task) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        if (interrupted()) throw SolverError("interrupted");
+        task(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+  };
+  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  {
+    std::vector<std::jthread> pool;
+    for (std::size_t i = 1; i < std::min(threads, count); ++i) pool.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+Method source_method() { return {.name = "average_acceleration", .step = published::kStep}; }
+
+Method exact_method(double tolerance) { return {.name = "exact", .tolerance = tolerance}; }
+
+RunSummary run_watched(const System& system, const Method& method, double t_end,
+                       const std::vector<Observer*>& observers) {
+  const RunSummary summary = run_method(
+      system, method, {.t_end = t_end, .progress = [](double) { return !interrupted(); }}, observers);
+  if (!summary.ok() && summary.status != RunStatus::energy_error)
+    throw SolverError(system.name() + ": " + summary.reason);
+  return summary;
+}
+
+WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start, double length)
+    : peaks_(std::move(channels), inside_steps),
+      start_(start),
+      length_(length),
+      window_(start > 0.0 ? -1 : 0) {}
+
+void WindowPeaks::start(const Assembler& assembler, const StepPoint& point) {
+  peaks_.start(assembler, point);
+}
+
+void WindowPeaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+  peaks_.step(assembler, from, to);
+  if (to.state.t < edge(window_ + 1) - 1e-9 * length_) return;
+  largest_ = std::max(largest_, amplitude());
+  if (window_ >= 0) amplitudes_.push_back(amplitude());
+  peaks_.start(assembler, to);
+  ++window_;
+}
+
+namespace {
+
+CamshaftFigures make_run(const SettingList& settings, const Method& method, double nudge) {
+  Scene scene = build_scene("camshaft", settings);
+  if (nudge != 0.0) scene.model.set_initial("end", nudge, 0.0);
+  const System system = scene.model.build();
+  const bool inside = method.exact();
+  Peaks deflection(find_channels(system, {scene.deflection}));
+  Peaks torque(find_channels(system, scene.torques));
+  const double revolution = scene.static_turn / system.reference_speed();
+  WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled, revolution);
+  WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
+  ContactStatistics contacts(system, inside);
+  std::vector<Observer*> observers{&contacts};
+  // Constant steps would be cut at the windows' ends, and a run that rattles be another.
+  if (method.exact())
+    observers.insert(observers.end(), {&settled_deflection, &settled_torque});
+  else
+    observers.insert(observers.end(), {&deflection, &torque});
+  CamshaftFigures figures;
+  figures.summary = run_watched(system, method, scene.duration, observers);
+  figures.deflection = to_deg(inside ? settled_deflection.largest() : deflection.peaks()[0].amplitude());
+  figures.torque = inside ? settled_torque.largest() : torque.peaks()[torque.largest()].amplitude();
+  figures.settled_deflection = to_deg(mean_of(settled_deflection.amplitudes()).value);
+  figures.settled_torque = mean_of(settled_torque.amplitudes()).value;
+  for (const ContactRecord& record : contacts.records()) {
+    figures.front += static_cast<double>(record.front_impacts);
+    figures.back += static_cast<double>(record.back_impacts);
+  }
+  return figures;
+}
+
+}  // namespace
+
+CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge) {
+  static std::mutex mutex;
+  static std::map<std::string, std::shared_future<CamshaftFigures>> runs;
+  const std::string name = join(values_of(find_scene("camshaft"), settings).values()) + ", " +
+                           to_text(method) + ", " + short_digits(nudge, 17);
+  std::promise<CamshaftFigures> promise;
+  std::unique_lock lock(mutex);
+  const auto [entry, is_new] = runs.try_emplace(name);
+  if (!is_new) {
+    const std::shared_future<CamshaftFigures> made = entry->second;
+    lock.unlock();
+    return made.get();
+  }
+  entry->second = promise.get_future().share();
+  lock.unlock();
+  try {
+    const CamshaftFigures figures = make_run(settings, method, nudge);
+    promise.set_value(figures);
+    return figures;
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+    throw;
+  }
+}
+
+Known CamshaftCase::known(Member member) const {
+  if (!statistic) return from_two(exact[0].*member, exact[1].*member, kFine);
+  std::vector<double> values;
+  for (const CamshaftFigures& run : exact) values.push_back(run.*member);
+  return mean_of(values);
+}
+
+double CamshaftCase::at_step(Member member) const {
+  double sum = 0.0;
+  for (const CamshaftFigures& run : source) sum += run.*member;
+  return sum / static_cast<double>(source.size());
+}
+
+std::string CamshaftCase::step_cell(Member member) const {
+  if (!statistic) return cell(source[0].*member);
+  const auto [low, high] = std::minmax_element(
+      source.begin(), source.end(), [member](const auto& a, const auto& b) { return a.*member < b.*member; });
+  return digits(at_step(member), 4) + " (" + digits((*low).*member, 3) + " to " + digits((*high).*member, 3) +
+         ")";
+}
+
+std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int runs) {
+  const bool statistic = runs > 2;
+  const std::size_t at_step = statistic ? kStepRuns : 1, each = at_step + static_cast<std::size_t>(runs);
+  std::vector<CamshaftCase> results(cases.size());
+  for (CamshaftCase& result : results) {
+    result.statistic = statistic;
+    result.source.resize(at_step);
+    result.exact.resize(each - at_step);
+  }
+  for_all(cases.size() * each, [&](std::size_t i) {
+    SettingList settings{{"loads", "source"}};
+    for (const auto& setting : cases[i / each]) settings.push_back(setting);
+    CamshaftCase& result = results[i / each];
+    const std::size_t run = i % each;
+    if (run < at_step) {
+      result.source[run] = run_camshaft(settings, source_method(), kNudge * static_cast<double>(run));
+      return;
+    }
+    const std::size_t k = run - at_step;
+    result.exact[k] = statistic ? run_camshaft(settings, exact_method(1e-10), kNudge * static_cast<double>(k))
+                                : run_camshaft(settings, exact_method(k == 0 ? kCoarse : kFine), 0.0);
+  });
+  return results;
+}
+
+double static_torque(const Scene& scene) {
+  const System system = scene.model.build();
+  double largest = 0.0;
+  for (const Peak& peak :
+       static_sweep(system, find_channels(system, scene.torques), 0.0, scene.static_turn, kStaticAngles))
+    largest = std::max(largest, peak.amplitude());
+  return largest;
+}
+
+Known mean_of(const std::vector<double>& values) {
+  const MeanInterval mean = batch_mean(values, static_cast<int>(values.size()));
+  return {mean.mean, mean.half_width, true};
+}
+
+Known from_two(double coarse, double fine, double tolerance) {
+  return {fine, 2.0 * std::abs(fine - coarse) + std::max(tolerance, 1e-14) * std::abs(fine)};
+}
+
+double shown_at_step(double frequency_Hz, double h) {
+  return to_hz(2.0 / h * std::atan(0.5 * hz(frequency_Hz) * h));
+}
+
+std::string stands(bool it_does) { return it_does ? "stands" : "does not stand"; }
+
+std::string cell(double value) { return digits(value, 5); }
+
+std::string printed(double value) { return short_digits(value, 6); }
+
+std::string percent(double value, double reference) {
+  const double change = 100.0 * (value / reference - 1.0);
+  return (change < 0.0 ? "-" : "+") + digits(std::abs(change), std::abs(change) < 1.0 ? 1 : 2) + " %";
+}
+
+}  // namespace drev::app

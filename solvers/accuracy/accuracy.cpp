@@ -1,0 +1,418 @@
+#include "solvers/accuracy/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "solvers/accuracy/accuracy_observers.hpp"
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/periodic/spectrum.hpp"
+#include "solvers/run/recorder.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kSafety = 2.0;           // on the difference of two runs
+constexpr double kLeastOrder = 0.25;      // of a difference over the one before: second order
+constexpr double kRounding = 1e-14;       // relative, before growth
+constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
+constexpr double kTightening = 1e-3;      // of its tolerance from run to run
+constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
+constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
+constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
+constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
+constexpr int kBatches = 20, kOrders = 5;
+constexpr double kSettled = 0.1;  // of the run: left out of time averages
+constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
+
+/// Everything watched in one run.
+struct Watched {
+  Watched(const System& system, const AccuracyOptions& o, const std::string& followed, double every)
+      : deflection(o.deflection.empty() ? std::vector<Channel>{} : find_channels(system, {o.deflection})),
+        torque(find_channels(system, o.torques)),
+        edges(system),
+        batches(system, find_channels(system, {followed}), kSettled * o.t_end, o.t_end, kBatches),
+        recorder(system, {followed}, every) {}
+  std::vector<Observer*> observers() { return {&deflection, &torque, &edges, &batches, &recorder}; }
+
+  RunSummary summary;
+  PeakWatch deflection, torque;
+  EdgeWatch edges;
+  BatchWatch batches;
+  Recorder recorder;
+  double seconds = 0.0;
+};
+
+double quantile(std::vector<double> x, double part) {
+  const auto k = static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1) + 0.5);
+  std::nth_element(x.begin(), x.begin() + k, x.end());
+  return x[static_cast<std::size_t>(k)];
+}
+
+/// Amplitudes of a record of whole cycles; its first and last sample, the same phase, as their mean.
+Spectrum cycle_spectrum(std::vector<double> record, double every) {
+  record.front() = 0.5 * (record.front() + record.back());
+  return spectrum(record, every);
+}
+
+class AccurateRun {
+ public:
+  AccurateRun(const System& system, const AccuracyOptions& options)
+      : system_(system), o_(options), followed_(options.deflection) {
+    if (followed_.empty())
+      followed_ = o_.torques.empty() ? all_channels(system).front().name() : o_.torques.front();
+    choose_sampling();
+  }
+
+  AccuracyResult run() {
+    Method method = o_.method;
+    if (method.exact())
+      method.tolerance = std::clamp(kFirstTolerance * o_.accuracy, 100 * kLeastTolerance, kLargestTolerance);
+    else if (method.controlled())
+      method.tolerance = std::clamp(o_.accuracy, 10 * kLeastOfSteps, 1e-2);
+    else
+      method.step = every_ / std::ceil(every_ / method.step);  // halves as it is asked to
+    Method for_growth = method;
+    if (method.exact()) for_growth.tolerance = 1e-13;
+    result_.growth =
+        measure_growth(system_, {.method = for_growth, .t_end = o_.t_end, .progress = [this](double p) {
+                                   return going_on(0.2 * p);
+                                 }});
+    if (result_.growth.status != RunStatus::success) {
+      result_.summary.status = result_.growth.status;
+      result_.summary.reason = result_.growth.reason;
+      return std::move(result_);
+    }
+    std::unique_ptr<Watched> coarse = watch(method, 0.2, 0.4), fine;
+    result_.coarse = method;
+    for (int level = 1; coarse->summary.ok(); ++level) {
+      result_.fine = tighter(result_.coarse);
+      fine = watch(result_.fine, 0.4, 0.7);
+      result_.summary = fine->summary;
+      if (!fine->summary.ok()) break;
+      compare(*coarse, *fine);
+      // Two differences of constant steps: one may be small by chance.
+      if ((result_.reached && (method.exact() || level > 1)) || ends(level, fine->seconds)) break;
+      result_.coarse = result_.fine;
+      coarse = std::move(fine);
+    }
+    if (!coarse->summary.ok()) result_.summary = coarse->summary;
+    if (result_.summary.ok() && result_.horizon < o_.t_end) add_statistics(*fine);
+    if (result_.summary.ok()) say_why_not();
+    return std::move(result_);
+  }
+
+ private:
+  bool going_on(double part) { return !o_.progress || o_.progress(part); }
+
+  /// Samples four times as often as the fastest mode swings, if that is not too many; whole numbers a cycle.
+  void choose_sampling() {
+    const double rate = fastest_rate(system_);
+    const double wanted = std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
+    double count = std::min(wanted, static_cast<double>(kMostSamples));
+    if (!o_.method.exact() && !o_.method.controlled())
+      count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
+    every_ = o_.t_end / std::ceil(count);
+    if (o_.cycle > 0.0 && o_.cycle <= o_.t_end) every_ = o_.cycle / std::ceil(o_.cycle / every_);
+  }
+
+  std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
+    auto w = std::make_unique<Watched>(system_, o_, followed_, every_);
+    const std::clock_t start = std::clock();
+    w->summary = run_method(
+        system_, method,
+        {.t_end = o_.t_end, .progress = [&](double part) { return going_on(begin + (end - begin) * part); }},
+        w->observers());
+    w->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    // An energy balance that is off is an error of the figures like any other.
+    if (w->summary.status == RunStatus::energy_error) w->summary.status = RunStatus::success;
+    w->deflection.refine(system_, method);
+    w->torque.refine(system_, method);
+    return w;
+  }
+
+  Method tighter(Method m) const {
+    if (m.exact())
+      m.tolerance = std::max(kLeastTolerance, kTightening * m.tolerance);
+    else if (m.controlled())
+      m.tolerance = std::max(kLeastOfSteps, kTighteningSteps * m.tolerance);
+    else
+      m.step *= 0.5;
+    return m;
+  }
+
+  bool ends(int level, double seconds) const {
+    if (result_.fine.exact()) return result_.fine.tolerance <= kLeastTolerance;
+    if (result_.fine.controlled() && result_.fine.tolerance <= kLeastOfSteps) return true;
+    if (2.0 * seconds > o_.most_seconds) return true;
+    return level >= 2 && result_.growth.factor(o_.t_end) > kChaos;
+  }
+
+  /// A figure at time t, from both runs.
+  void add(const std::string& name, const std::string& unit, double coarse, double fine, double scale,
+           double t) {
+    double error = error_of(coarse, fine, scale, t);
+    if (!result_.fine.exact()) {
+      double& before = differences_[name];
+      error = std::max(error, kSafety * kLeastOrder * before);
+      before = std::abs(coarse - fine);
+    }
+    result_.figures.push_back({name, unit, fine, error, std::abs(scale)});
+  }
+
+  double error_of(double coarse, double fine, double scale, double t) const {
+    return kSafety * std::abs(coarse - fine) +
+           std::max(kRounding, result_.fine.tolerance) * result_.growth.factor(t) * std::abs(scale);
+  }
+
+  void compare(const Watched& a, const Watched& b) {
+    result_.figures.clear();
+    find_horizon(a, b);
+    if (!b.deflection.empty())
+      add("peak deflection", b.deflection.channel().unit(), a.deflection.value(), b.deflection.value(),
+          b.deflection.value(), b.deflection.time());
+    if (!b.torque.empty())
+      add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(), b.torque.value(),
+          b.torque.time());
+    compare_edges(a.edges.passed(), b.edges.passed());
+    if (!o_.deflection.empty()) compare_orders(a, b);
+    result_.reached =
+        result_.horizon > o_.t_end && std::all_of(result_.figures.begin(), result_.figures.end(),
+                                                  [&](const Figure& f) { return f.keeps(o_.accuracy); });
+  }
+
+  void find_horizon(const Watched& a, const Watched& b) {
+    const auto &x = a.recorder.samples(0), &y = b.recorder.samples(0);
+    double peak = 0.0;
+    for (const double value : y) peak = std::max(peak, std::abs(value));
+    // Two runs that round alike may agree for longer than any other two would.
+    result_.horizon = result_.growth.time_of(o_.accuracy / kRounding);
+    for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i)
+      if (std::abs(x[i] - y[i]) > o_.accuracy * peak) {
+        result_.horizon = std::min(result_.horizon, b.recorder.times()[i]);
+        return;
+      }
+  }
+
+  void compare_edges(const std::vector<EdgePassed>& a, const std::vector<EdgePassed>& b) {
+    if (b.empty() && a.empty()) return;
+    std::size_t same = 0;
+    while (same < std::min(a.size(), b.size()) && a[same].law == b[same].law &&
+           a[same].high == b[same].high && a[same].outward == b[same].outward &&
+           error_of(a[same].t, b[same].t, b[same].t, b[same].t) <= o_.accuracy * b[same].t)
+      ++same;
+    const double count = static_cast<double>(same);
+    result_.figures.push_back({"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
+    if (same > 0) {
+      add("first contact change", "s", a[0].t, b[0].t, b[0].t, b[0].t);
+      add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t, b[same - 1].t);
+    }
+    if (result_.horizon <= o_.t_end) return;
+    const double all = static_cast<double>(b.size());
+    result_.figures.push_back({"contact changes", "", all,
+                               kSafety * std::abs(all - static_cast<double>(a.size())), std::max(1.0, all)});
+  }
+
+  /// Whole cycles at the end of the run, as many as fit into its last half or else into the run.
+  struct Record {
+    std::size_t begin = 0, end = 0, cycles = 0;
+  };
+  Record last_cycles(const std::vector<double>& samples) const {
+    const auto per_cycle = static_cast<std::size_t>(std::round(o_.cycle / every_));
+    const std::size_t steps = samples.size() - 1;
+    std::size_t cycles = steps / 2 / per_cycle;
+    if (cycles == 0) cycles = steps / per_cycle;
+    return {steps - cycles * per_cycle, steps, cycles};
+  }
+
+  static std::vector<double> part(const std::vector<double>& all, std::size_t begin, std::size_t end) {
+    return {all.begin() + static_cast<std::ptrdiff_t>(begin),
+            all.begin() + static_cast<std::ptrdiff_t>(end + 1)};
+  }
+
+  void compare_orders(const Watched& a, const Watched& b) {
+    const auto &x = a.recorder.samples(0), &y = b.recorder.samples(0);
+    if (x.size() != y.size() || y.size() < 16) return;
+    const bool ordered = o_.cycle > 0.0;
+    if (ordered && o_.cycle > o_.t_end) return;
+    const Record r = ordered ? last_cycles(y) : Record{y.size() / 2, y.size() - 1, 1};
+    if (r.cycles == 0) return;
+    const auto of = [&](const std::vector<double>& all) {
+      const std::vector<double> record = part(all, r.begin, r.end);
+      return ordered ? cycle_spectrum(record, every_)
+                     : spectrum(record, every_, {.window = Window::flat_top, .remove_mean = true});
+    };
+    const Spectrum coarse = of(x), fine = of(y);
+    std::vector<std::size_t> lines;
+    for (std::size_t k = r.cycles; k + 1 < fine.amplitude.size(); k += r.cycles)
+      if (ordered ||
+          (fine.amplitude[k] > fine.amplitude[k - 1] && fine.amplitude[k] >= fine.amplitude[k + 1]))
+        lines.push_back(k);
+    std::sort(lines.begin(), lines.end(),
+              [&](std::size_t i, std::size_t j) { return fine.amplitude[i] > fine.amplitude[j]; });
+    if (lines.size() > kOrders) lines.resize(kOrders);
+    orders_.clear();
+    for (const std::size_t k : lines) {
+      std::ostringstream name;
+      name.precision(5);
+      if (ordered)
+        name << "amplitude of order " << k / r.cycles << " (" << fine.frequency_Hz[k] << " Hz)";
+      else
+        name << "amplitude at " << fine.frequency_Hz[k] << " Hz";
+      orders_[name.str()] = k / r.cycles;
+      add(name.str(), unit_of_deflection(), coarse.amplitude[k], fine.amplitude[k], b.deflection.value(),
+          o_.t_end);
+    }
+  }
+
+  std::string unit_of_deflection() const { return find_channel(system_, o_.deflection).unit(); }
+
+  void add_statistic(const std::string& name, const std::string& unit, const MeanInterval& m) {
+    result_.figures.push_back({name, unit, m.mean, m.half_width, std::abs(m.mean), Figure::Kind::interval});
+  }
+
+  /// Replaces what cannot be compared by statistics, and adds the time averages.
+  void add_statistics(const Watched& fine) {
+    std::vector<Figure> kept;
+    bool peaks = false;
+    for (const Figure& f : result_.figures) {
+      if (f.keeps(o_.accuracy)) {
+        kept.push_back(f);
+        continue;
+      }
+      peaks |= f.name.starts_with("peak");
+    }
+    std::swap(kept, result_.figures);
+    if (peaks) add_ensemble(kept);
+    add_cycles(kept, fine.recorder.samples(0));
+    for (const BatchWatch::Contact& c : fine.batches.contacts()) {
+      add_statistic(c.element + ": share of time apart", "", batch_mean(c.share_apart, kBatches));
+      add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
+      add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
+      add_statistic(c.element + ": mean force", c.unit, batch_mean(c.mean_force, kBatches));
+      add_statistic(c.element + ": rms force", c.unit, batch_mean(c.rms_force, kBatches));
+    }
+    for (const BatchWatch::Average& a : fine.batches.averages()) {
+      add_statistic("mean of " + a.channel, a.unit, batch_mean(a.mean, kBatches));
+      add_statistic("rms of " + a.channel, a.unit, batch_mean(a.rms, kBatches));
+    }
+    add_quantiles(fine.recorder.samples(0), fine.batches.averages().front());
+  }
+
+  /// Peaks over runs that start beside the first.
+  void add_ensemble(const std::vector<Figure>& replaced_from) {
+    std::vector<double> deflections, torques;
+    for (int i = 1; i <= o_.ensemble && going_on(0.7 + 0.3 * i / o_.ensemble); ++i) {
+      PeakWatch deflection(o_.deflection.empty() ? std::vector<Channel>{}
+                                                 : find_channels(system_, {o_.deflection}));
+      PeakWatch torque(find_channels(system_, o_.torques));
+      State state = neighbour(system_, i, result_.growth.z_scale, result_.growth.v_scale);
+      const RunSummary run =
+          run_method(system_, result_.coarse, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state,
+                     {&deflection, &torque});
+      if (!run.ok()) continue;
+      deflections.push_back(deflection.value());
+      torques.push_back(torque.value());
+    }
+    const std::string of = ", mean of " + std::to_string(deflections.size()) + " runs";
+    for (const Figure& f : replaced_from)
+      if (!f.keeps(o_.accuracy) && f.name.starts_with("peak"))
+        add_statistic(f.name + of, f.unit,
+                      batch_mean(f.name == "peak torque" ? torques : deflections, o_.ensemble));
+  }
+
+  /// Order amplitudes of the single cycles.
+  void add_cycles(const std::vector<Figure>& figures, const std::vector<double>& samples) {
+    if (!(o_.cycle > 0.0)) return;
+    for (const Figure& f : figures) {
+      const auto order = orders_.find(f.name);
+      if (f.keeps(o_.accuracy) || order == orders_.end()) continue;
+      const Record r = last_cycles(samples);
+      const std::size_t length = (r.end - r.begin) / r.cycles;
+      std::vector<double> amplitudes;
+      for (std::size_t i = 0; i < r.cycles; ++i)
+        amplitudes.push_back(
+            cycle_spectrum(part(samples, r.begin + i * length, r.begin + (i + 1) * length), every_)
+                .amplitude[order->second]);
+      add_statistic(f.name + ", mean of " + std::to_string(r.cycles) + " cycles", f.unit,
+                    batch_mean(amplitudes, kBatches));
+    }
+  }
+
+  void add_quantiles(const std::vector<double>& samples, const BatchWatch::Average& of) {
+    const auto first = static_cast<std::size_t>(kSettled * static_cast<double>(samples.size()));
+    const std::size_t count = (samples.size() - first) / kBatches;
+    if (count < 100) return;  // a quantile of 1 % means nothing
+    for (const int percent : {1, 99}) {
+      std::vector<double> each;
+      for (std::size_t b = 0; b < kBatches; ++b)
+        each.push_back(
+            quantile(part(samples, first + b * count, first + (b + 1) * count - 1), percent / 100.0));
+      add_statistic(std::to_string(percent) + " % quantile of " + of.channel, of.unit,
+                    batch_mean(each, kBatches));
+    }
+  }
+
+  void say_why_not() {
+    if (result_.reached) return;
+    std::ostringstream text;
+    text.precision(3);
+    if (result_.horizon < o_.t_end) {
+      text << "from t = " << result_.horizon << " s on two runs differ by more than " << o_.accuracy
+           << " (a small difference of the state has grown by " << result_.growth.factor(result_.horizon)
+           << " there, by " << result_.growth.factor(o_.t_end)
+           << " at the end): what depends on it is given as a statistic with its 95 % confidence "
+              "interval";
+    } else {
+      text << "not every figure keeps " << o_.accuracy << " yet, and a finer run would ";
+      if (result_.fine.exact() || result_.fine.tolerance == kLeastOfSteps)
+        text << "only add rounding";
+      else
+        text << "take more than " << o_.most_seconds << " s";
+    }
+    result_.reason = text.str();
+  }
+
+  const System& system_;
+  const AccuracyOptions& o_;
+  std::string followed_;
+  double every_ = 0.0;
+  AccuracyResult result_;
+  std::map<std::string, double> differences_;  // of the last two runs with constant steps, by figure
+  std::map<std::string, std::size_t> orders_;  // figure, line of one cycle's spectrum
+};
+
+}  // namespace
+
+const Figure* AccuracyResult::find(const std::string& name) const {
+  auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
+  if (found == figures.end())
+    found = std::find_if(figures.begin(), figures.end(),
+                         [&](const Figure& f) { return f.name.starts_with(name); });
+  return found == figures.end() ? nullptr : &*found;
+}
+
+AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/accuracy", findings);
+  check.within("accuracy", o.accuracy, 1e-12, 0.5, "");
+  check.positive("t_end", o.t_end, "s");
+  check.non_negative("cycle", o.cycle, "s");
+  check.positive("most_seconds", o.most_seconds, "s");
+  if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
+  if (!o.method.exact() && !o.method.controlled()) check.positive("method.step", o.method.step, "s");
+  if (o.method.exact())
+    if (const auto why = why_not_exact(system)) check.fail("method", "exact", "", *why);
+  if (system.size() == 0) check.fail("unknowns", "0", "", "must be at least one");
+  if (!findings.empty()) throw ModelError(findings);
+  return AccurateRun(system, o).run();
+}
+
+}  // namespace drev

@@ -1,0 +1,66 @@
+#pragma once
+/// Figures of a run, each with its error, to an accuracy that is asked for.
+///
+///   1. How fast do small differences grow (growth.hpp)?
+///   2. The run at one tolerance (exact, controlled steps) or step, then at a tighter one. A figure of the
+///      tighter run has the error 2 |difference| + max(tolerance, 1e-14) growth |figure|; with controlled and
+///      constant steps not less than half of the difference before, which second order quarters. Tightened
+///      until every figure keeps the accuracy, or the method's end or the time allowed is reached.
+///   3. The horizon: the first time at which the two runs differ by more than the accuracy, or 1e-14 has
+///      grown to it. Past it trajectories
+///      cannot be compared point by point; what depends on them is given as a statistic with a 95 %
+///      confidence interval: time averages by the means of 20 batches, peaks over the run by runs that start
+///      1e-9 beside the first.
+///
+/// The estimate is one: it is honest where tightening reduces the error by a factor of 3 or more (second
+/// order: 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a
+/// method with constant steps.
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "solvers/accuracy/error_growth.hpp"
+
+namespace drev {
+
+struct AccuracyOptions {
+  double accuracy = 1e-4;                 ///< relative, 1e-12 to 0.5
+  double t_end = 0.0;                     ///< s
+  std::string deflection = {};            ///< channel; its peak, orders and quantiles; empty: none
+  std::vector<std::string> torques = {};  ///< channels; the largest peak of all
+  double cycle = 0.0;  ///< s, of which orders are the multiples; 0: frequencies of the last half
+  Method method = {};  ///< exact, controlled (the tolerance is found), or the constant step to begin with
+  double most_seconds = 30.0;  ///< processor time of the longest run
+  int ensemble = 8;            ///< perturbed runs for peaks past the horizon
+  std::function<bool(double)> progress = {};
+};
+
+struct Figure {
+  enum class Kind {
+    estimate,  ///< error estimated from two runs
+    interval   ///< statistic, with the half-width of its 95 % confidence interval
+  };
+  std::string name, unit;
+  double value = 0.0, error = 0.0;
+  double scale = 0.0;  ///< that the accuracy is relative to
+  Kind kind = Kind::estimate;
+  bool keeps(double accuracy) const { return error <= accuracy * scale; }
+};
+
+struct AccuracyResult {
+  std::vector<Figure> figures;
+  /// Every estimate keeps the accuracy and nothing had to be given as a statistic.
+  bool reached = false;
+  std::string reason;  ///< why not
+  Growth growth;
+  double horizon = std::numeric_limits<double>::infinity();  ///< s
+  Method coarse, fine;                                       ///< the two runs compared
+  RunSummary summary;                                        ///< of the fine one
+  /// By name, or by how the name begins; null: none.
+  const Figure* find(const std::string& name) const;
+};
+
+/// Throws ModelError for bad options. A run that fails says so in the summary.
+AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& options);
+
+}  // namespace drev

@@ -1,0 +1,171 @@
+#include "solvers/accuracy/accuracy_observers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+constexpr int kParts = 64;          // of the step that held a peak
+constexpr int kBisections = 48;     // of a step, for a contact change
+constexpr double kSameTime = 1e-9;  // relative to a batch
+
+/// Ends steps at equal distances.
+class Stops final : public Observer {
+ public:
+  Stops(double begin, double distance) : begin_(begin), distance_(distance) {}
+  void start(const Assembler&, const StepPoint&) override {}
+  void step(const Assembler&, const StepPoint&, const StepPoint&) override {}
+  double next_stop(double t) const override {
+    return begin_ + distance_ * (std::floor((t - begin_) / distance_ + 1e-6) + 1.0);
+  }
+
+ private:
+  double begin_, distance_;
+};
+
+/// Cubic through values and rates at the ends of a step of length h, at s in [0, 1].
+double hermite(double y_0, double r_0, double y_1, double r_1, double h, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  return (2 * s3 - 3 * s2 + 1) * y_0 + (s3 - 2 * s2 + s) * h * r_0 + (3 * s2 - 2 * s3) * y_1 +
+         (s3 - s2) * h * r_1;
+}
+
+}  // namespace
+
+void PeakWatch::start(const Assembler& assembler, const StepPoint& point) {
+  if (empty()) return;
+  peaks_.start(assembler, point);
+  value_ = peaks_.peaks()[peaks_.largest()].amplitude();
+  time_ = end_ = point.state.t;
+}
+
+void PeakWatch::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+  if (empty()) return;
+  peaks_.step(assembler, from, to);
+  const Peak& peak = peaks_.peaks()[peaks_.largest()];
+  if (!(peak.amplitude() > value_)) return;
+  value_ = peak.amplitude(), time_ = peak.time(), end_ = to.state.t;
+  before_ = from.state;
+}
+
+void PeakWatch::refine(const System& system, const Method& method) {
+  if (before_.z.size() == 0 || (!method.exact() && !method.controlled())) return;
+  const double begin = before_.t, distance = (end_ - begin) / kParts;
+  if (!(begin + distance > begin)) return;
+  PeakWatch close({channel()});
+  Stops stops(begin, distance);
+  State state = before_;
+  const Method again = method.exact() ? method : Method{.name = method.name, .step = distance};
+  const RunSummary run = run_method(
+      system, again, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300}, state, {&close, &stops});
+  if (run.ok()) value_ = close.value(), time_ = close.time();
+}
+
+EdgeWatch::EdgeWatch(const System& system) : system_(system) {}
+
+void EdgeWatch::step(const Assembler& /*assembler*/, const StepPoint& from, const StepPoint& to) {
+  const double h = to.state.t - from.state.t;
+  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
+    const auto gap = system_.scalars()[j].force->gap();
+    if (!gap) continue;
+    const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
+    std::vector<EdgePassed> here;
+    for (const bool high : {false, true}) {
+      const double edge = high ? gap->high : gap->low;
+      if ((a.x > edge) == (b.x > edge)) continue;
+      double low = 0.0, up = 1.0;
+      for (int i = 0; i < kBisections; ++i) {
+        const double s = 0.5 * (low + up);
+        ((hermite(a.x, a.x_dot, b.x, b.x_dot, h, s) > edge) == (a.x > edge) ? low : up) = s;
+      }
+      here.push_back({from.state.t + up * h, j, high, (b.x > edge) == high});
+    }
+    if (here.size() == 2 && here[1].t < here[0].t) std::swap(here[0], here[1]);
+    passed_.insert(passed_.end(), here.begin(), here.end());
+  }
+}
+
+/// Integrals of the cubic and, by the same rule, of its square.
+void BatchWatch::Sum::add(double y_0, double r_0, double y_1, double r_1, double h) {
+  value += 0.5 * h * (y_0 + y_1) + h * h / 12.0 * (r_0 - r_1);
+  square += 0.5 * h * (y_0 * y_0 + y_1 * y_1) + h * h / 6.0 * (y_0 * r_0 - y_1 * r_1);
+}
+
+BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end,
+                       int batches)
+    : channels_(std::move(channels)),
+      begin_(begin),
+      length_((end - begin) / batches),
+      batches_(batches),
+      statistics_(system, true),
+      values_(channels_.size()) {
+  for (std::size_t j = 0; j < system.scalars().size(); ++j)
+    if (system.scalars()[j].force->gap()) laws_.push_back(j);
+  forces_.resize(laws_.size());
+  for (const ContactRecord& r : statistics_.records()) {
+    const auto same = [&](const Channel& c) { return c.name() == r.element + ".force_N"; };
+    const std::vector<Channel> all = all_channels(system);
+    contacts_.push_back(
+        {.element = r.element, .unit = std::any_of(all.begin(), all.end(), same) ? "N" : "N m"});
+  }
+  for (const Channel& c : channels_) averages_.push_back({.channel = c.name(), .unit = c.unit()});
+}
+
+void BatchWatch::start(const Assembler& assembler, const StepPoint& point) {
+  statistics_.start(assembler, point);
+  begin_batch();
+  done_ = point.state.t < begin_ - kSameTime * length_ ? 0 : 1;
+}
+
+double BatchWatch::next_stop(double /*t*/) const { return begin_ + done_ * length_; }
+
+void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+  statistics_.step(assembler, from, to);
+  const double h = to.state.t - from.state.t, same = kSameTime * length_;
+  if (from.state.t < begin_ - same) {  // ahead of the first batch
+    begin_batch();
+    if (to.state.t >= begin_ - same) done_ = 1;
+    return;
+  }
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    const std::size_t j = laws_[i];
+    const ScalarResponse &a = from.responses[j], &b = to.responses[j];
+    forces_[i].add(a.y, a.dy_dx * from.inputs[j].x_dot, b.y, b.dy_dx * to.inputs[j].x_dot, h);
+  }
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const auto r_0 = channels_[c].rate(assembler, from.state), r_1 = channels_[c].rate(assembler, to.state);
+    values_[c].add(channels_[c].evaluate(assembler, from.state), r_0.value_or(0.0),
+                   channels_[c].evaluate(assembler, to.state), r_1.value_or(0.0), h);
+  }
+  if (done_ <= batches_ && to.state.t >= next_stop(0.0) - same) close();
+}
+
+void BatchWatch::begin_batch() {
+  before_.clear();
+  for (const ContactRecord& r : statistics_.records())
+    before_.push_back({r.time_apart, r.impact_energy, r.impacts()});
+}
+
+void BatchWatch::close() {
+  ++done_;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Begin& a = before_[i];
+    const ContactRecord& b = statistics_.records()[i];
+    contacts_[i].share_apart.push_back((b.time_apart - a.time_apart) / length_);
+    contacts_[i].impacts_per_second.push_back(static_cast<double>(b.impacts() - a.impacts) / length_);
+    contacts_[i].impact_power.push_back((b.impact_energy - a.impact_energy) / length_);
+    contacts_[i].mean_force.push_back(forces_[i].value / length_);
+    contacts_[i].rms_force.push_back(std::sqrt(std::max(0.0, forces_[i].square / length_)));
+    forces_[i] = {};
+  }
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    averages_[c].mean.push_back(values_[c].value / length_);
+    averages_[c].rms.push_back(std::sqrt(std::max(0.0, values_[c].square / length_)));
+    values_[c] = {};
+  }
+  begin_batch();
+}
+
+}  // namespace drev

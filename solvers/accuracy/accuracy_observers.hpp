@@ -1,0 +1,100 @@
+#pragma once
+/// What accuracy.cpp watches in each of its runs: peaks with the state ahead of them, changes of contact with
+/// their times, time averages in batches. Internal to accuracy.cpp, but for the peaks.
+#include <vector>
+
+#include "solvers/accuracy/error_growth.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/peaks.hpp"
+
+namespace drev {
+
+/// Largest |value| over channels, and the step that held it, from which it can be found again more closely.
+class PeakWatch final : public Observer {
+ public:
+  explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels), true) {}
+  void start(const Assembler& assembler, const StepPoint& point) override;
+  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+
+  bool empty() const { return peaks_.channels().empty(); }
+  double value() const { return value_; }
+  double time() const { return time_; }
+  const Channel& channel() const { return peaks_.channels()[peaks_.largest()]; }
+  /// Runs the step that held the peak once more, in 64 parts: the cubic between two points leaves nothing.
+  /// Not with constant steps.
+  void refine(const System& system, const Method& method);
+
+ private:
+  Peaks peaks_;
+  double value_ = 0.0, time_ = 0.0, end_ = 0.0;
+  State before_;
+};
+
+/// The deflection of a law passed an edge of its gap.
+struct EdgePassed {
+  double t = 0.0;        ///< s, on the cubic through deflections and rates at both ends of the step
+  std::size_t law = 0;   ///< of System::scalars()
+  bool high = false;     ///< which edge
+  bool outward = false;  ///< contact made
+};
+
+class EdgeWatch final : public Observer {
+ public:
+  explicit EdgeWatch(const System& system);
+  void start(const Assembler&, const StepPoint&) override {}
+  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  const std::vector<EdgePassed>& passed() const { return passed_; }
+
+ private:
+  const System& system_;
+  std::vector<EdgePassed> passed_;
+};
+
+/// Time averages in equal batches over [begin, end]; steps end where batches do.
+class BatchWatch final : public Observer {
+ public:
+  BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end, int batches);
+  void start(const Assembler& assembler, const StepPoint& point) override;
+  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  double next_stop(double t) const override;
+
+  /// Of one contact or channel: a value a batch.
+  struct Contact {
+    std::string element, unit;  ///< of its force
+    std::vector<double> share_apart = {}, impacts_per_second = {}, impact_power = {}, mean_force = {},
+                        rms_force = {};
+  };
+  struct Average {
+    std::string channel, unit;
+    std::vector<double> mean = {}, rms = {};
+  };
+  const std::vector<Contact>& contacts() const { return contacts_; }
+  const std::vector<Average>& averages() const { return averages_; }
+
+ private:
+  void close();
+  void begin_batch();
+
+  std::vector<Channel> channels_;
+  double begin_, length_;
+  int batches_,
+      done_ = 0;  // the next stop ends the first stretch, ahead of the batches, or batch done_
+  ContactStatistics statistics_;
+  /// Of each contact where the batch began.
+  struct Begin {
+    double time_apart = 0.0, impact_energy = 0.0;
+    long impacts = 0;
+  };
+  std::vector<Begin> before_;
+  std::vector<std::size_t> laws_;
+  struct Sum {
+    double value = 0.0, square = 0.0;
+    void add(double y_0, double r_0, double y_1, double r_1, double h);
+  };
+  std::vector<Sum> forces_, values_;
+  std::vector<Contact> contacts_;
+  std::vector<Average> averages_;
+};
+
+}  // namespace drev

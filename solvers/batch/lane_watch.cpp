@@ -1,0 +1,181 @@
+#include "solvers/batch/lane_watch.hpp"
+
+#include <cmath>
+
+namespace drev {
+
+LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std::vector<std::string>& names)
+    : watched_(names.size()), systems_(systems) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::vector<Channel> found = find_channels(*systems[at(lane)], names);
+    for (std::size_t i = 0; i < names.size(); ++i) watched_[i].channels[at(lane)] = found[i];
+  }
+  // A step takes a mesh's phase where it is predicted; a channel's value is of the phase at its end.
+  const auto phased = [&](int law) { return systems[0]->scalars()[at(law)].phase_node >= 0; };
+  for (Watched& w : watched_) {
+    const Channel& first = w.channels[0];
+    const auto rows_of = [&](auto row, std::vector<int>& unknowns, LaneArray& coefficients) {
+      for (const Entry& e : row(first)) unknowns.push_back(e.index);
+      coefficients.resize(unknowns.size());
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (std::size_t e = 0; e < unknowns.size(); ++e)
+          coefficients[e].v[lane] = row(w.channels[at(lane)])[e].coeff;
+    };
+    if (first.is_linear()) {
+      w.kind = Watched::Kind::linear;
+      rows_of([](const Channel& c) -> const std::vector<Entry>& { return c.z_row(); }, w.z, w.z_coeff);
+      rows_of([](const Channel& c) -> const std::vector<Entry>& { return c.v_row(); }, w.v, w.v_coeff);
+    } else if (const int law = first.force_of(); law >= 0 && !phased(law)) {
+      w.kind = Watched::Kind::force;
+      w.law = law;
+    } else if (first.deflection_of() >= 0) {
+      w.kind = Watched::Kind::deflection;
+      w.law = first.deflection_of();
+    }
+  }
+  std::array<std::vector<double>, kLanes> masses;
+  for (int lane = 0; lane < kLanes; ++lane) masses[at(lane)] = equivalent_masses(*systems[at(lane)]);
+  for (std::size_t j = 0; j < systems[0]->scalars().size(); ++j) {
+    if (!systems[0]->scalars()[j].force->gap()) continue;
+    Contact c;
+    c.law = static_cast<int>(j);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Gap gap = systems[at(lane)]->scalars()[j].force->gap().value_or(Gap{});
+      c.low.v[lane] = gap.low;
+      c.high.v[lane] = gap.high;
+      c.masses[at(lane)] = masses[at(lane)][j];
+    }
+    contacts_.push_back(c);
+  }
+}
+
+struct LaneWatchKernels {
+  DREV_WIDEST static void sum(const LaneWatch::Watched& c, const LanePoint& point, LaneRow& out) {
+    Lanes sum{};
+    for (std::size_t e = 0; e < c.z.size(); ++e)
+      sum += c.z_coeff[e].v * point.z[static_cast<std::size_t>(c.z[e])].v;
+    for (std::size_t e = 0; e < c.v.size(); ++e)
+      sum += c.v_coeff[e].v * point.v[static_cast<std::size_t>(c.v[e])].v;
+    out.v = sum;
+  }
+
+  DREV_WIDEST static void peak(LaneWatch::Watched& c, const LaneRow& value, double t, const LaneMask& lanes) {
+    const LaneMask above = lanes & (value.v > c.max.v), below = lanes & (value.v < c.min.v);
+    if (!any(above | below)) return;
+    c.max.v = above ? value.v : c.max.v;
+    c.max_time.v = above ? Lanes{} + t : c.max_time.v;
+    c.min.v = below ? value.v : c.min.v;
+    c.min_time.v = below ? Lanes{} + t : c.min_time.v;
+  }
+
+  /// contact_statistics.cpp in lanes. True: a lane passes an edge, its impacts are to be seen to.
+  DREV_WIDEST static bool contact(LaneWatch::Contact& c, const LanePointLaws& from, const LanePointLaws& to,
+                                  double h, double t, const LaneMask& lanes) {
+    const auto j = static_cast<std::size_t>(c.law);
+    const Lanes x_0 = from.x[j].v, x_1 = to.x[j].v, c_low = c.low.v, c_high = c.high.v;
+    const LaneMask above_0 = x_0 > c_high, above_1 = x_1 > c_high;
+    const LaneMask below_0 = x_0 < c_low, below_1 = x_1 < c_low;
+    Lanes size = to.y[j].v;
+    magnitude(size);
+    if (const LaneMask more = lanes & (size > c.force.v); any(more)) {
+      c.force.v = more ? size : c.force.v;
+      c.force_time.v = more ? Lanes{} + t : c.force_time.v;
+    }
+    c.largest.v = (lanes & (size > c.largest.v)) ? size : c.largest.v;
+    const LaneMask outside = above_0 | below_0;
+    if (!any(lanes & ((above_0 ^ above_1) | (below_0 ^ below_1)))) {  // each stays where it was
+      c.apart.v += (lanes & ~outside) ? Lanes{} + h : Lanes{};
+      return false;
+    }
+    const Lanes one = Lanes{} + 1.0;
+    const Lanes low = x_0 < x_1 ? x_0 : x_1, high = x_0 < x_1 ? x_1 : x_0;
+    Lanes inside = (high < c_high ? high : c_high) - (low > c_low ? low : c_low);
+    inside = inside > 0.0 ? inside : Lanes{};
+    const LaneMask stands = high == low;
+    const Lanes share = stands ? (outside ? Lanes{} : one) : inside / (stands ? one : high - low);
+    c.apart.v += lanes ? h * share : Lanes{};
+    return true;
+  }
+};
+
+void LaneWatch::value(const Watched& c, const std::vector<Assembler>& assemblers, const LanePoint& point,
+                      double t, LaneRow& out) const {
+  switch (c.kind) {
+    case Watched::Kind::linear:
+      return LaneWatchKernels::sum(c, point, out);
+    case Watched::Kind::force:
+      out = point.laws.y[at(c.law)];
+      return;
+    case Watched::Kind::deflection:
+      out = point.laws.x[at(c.law)];
+      return;
+    case Watched::Kind::other:
+      break;
+  }
+  StepPoint of_lane;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    point.get(lane, of_lane);
+    of_lane.state.t = t;
+    out.v[lane] = c.channels[at(lane)].evaluate(assemblers[at(lane)], of_lane.state);
+  }
+}
+
+void LaneWatch::start(const std::vector<Assembler>& assemblers, const LanePoint& point, double t) {
+  for (Watched& c : watched_) {
+    value(c, assemblers, point, t, c.max);
+    c.min = c.max;
+    c.max_time.v = c.min_time.v = Lanes{} + t;
+  }
+  for (Contact& c : contacts_)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      c.force.v[lane] = std::abs(point.laws.y[at(c.law)].v[lane]);
+      c.force_time.v[lane] = t;
+    }
+}
+
+void LaneWatch::step(const std::vector<Assembler>& assemblers, const LanePoint& from, const LanePoint& to,
+                     double h, double t, const LaneMask& lanes) {
+  LaneRow now;
+  for (Watched& c : watched_) {
+    value(c, assemblers, to, t, now);
+    LaneWatchKernels::peak(c, now, t, lanes);
+  }
+  for (Contact& c : contacts_)
+    if (LaneWatchKernels::contact(c, from.laws, to.laws, h, t, lanes)) cross(c, from.laws, to.laws, lanes);
+}
+
+void LaneWatch::cross(Contact& c, const LanePointLaws& from, const LanePointLaws& to, const LaneMask& lanes) {
+  const std::size_t j = at(c.law);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (lanes[lane] == 0) continue;
+    ContactInterval interval{c.met[at(lane)], c.largest.v[lane]};
+    note_crossings({c.low.v[lane], c.high.v[lane]}, {.x = from.x[j].v[lane], .x_dot = from.x_dot[j].v[lane]},
+                   {.x = to.x[j].v[lane], .x_dot = to.x_dot[j].v[lane]}, std::abs(to.y[j].v[lane]),
+                   c.masses[at(lane)], interval, c.records[at(lane)]);
+    c.met[at(lane)] = interval.met;
+    c.largest.v[lane] = interval.largest;
+  }
+}
+
+std::vector<Peak> LaneWatch::peaks(int lane) const {
+  std::vector<Peak> all;
+  for (const Watched& c : watched_)
+    all.push_back({c.max.v[lane], c.max_time.v[lane], c.min.v[lane], c.min_time.v[lane]});
+  return all;
+}
+
+std::vector<ContactRecord> LaneWatch::contacts(int lane) const {
+  std::vector<ContactRecord> all;
+  for (const Contact& c : contacts_) {
+    const System& system = *systems_[at(lane)];
+    ContactRecord r = c.records[at(lane)];
+    r.element = system.placements()[at(index(system.scalars()[at(c.law)].element))].name;
+    r.time_apart = c.apart.v[lane];
+    r.largest_force = c.force.v[lane];
+    r.largest_force_time = c.force_time.v[lane];
+    all.push_back(std::move(r));
+  }
+  return all;
+}
+
+}  // namespace drev

@@ -1,0 +1,52 @@
+#pragma once
+/// What watches kLanes variants at once: Peaks and ContactStatistics (of whole steps) in lanes.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "solvers/batch/lane_step.hpp"
+#include "solvers/run/contact_statistics.hpp"
+#include "solvers/run/peaks.hpp"
+
+namespace drev {
+
+class LaneWatch {
+ public:
+  /// Throws ModelError for channels that a system has not.
+  LaneWatch(const std::array<const System*, kLanes>& systems, const std::vector<std::string>& channels);
+
+  void start(const std::vector<Assembler>& assemblers, const LanePoint& point, double t);
+  /// A step from -> to of length h that ends at t, in these lanes; the assemblers stand at its end.
+  void step(const std::vector<Assembler>& assemblers, const LanePoint& from, const LanePoint& to, double h,
+            double t, const LaneMask& lanes);
+  std::vector<Peak> peaks(int lane) const;
+  std::vector<ContactRecord> contacts(int lane) const;
+
+ private:
+  struct Watched {
+    std::array<Channel, kLanes> channels;
+    enum class Kind { linear, force, deflection, other } kind = Kind::other;
+    int law = -1;
+    std::vector<int> z, v;
+    LaneArray z_coeff, v_coeff;
+    LaneRow max, max_time, min, min_time;
+  };
+  struct Contact {
+    int law = 0;
+    LaneRow low, high, apart, force, force_time;
+    LaneRow largest;  // of the contact at hand
+    std::array<bool, kLanes> met{};
+    std::array<double, kLanes> masses{};
+    std::array<ContactRecord, kLanes> records;  // of the impacts
+  };
+  friend struct LaneWatchKernels;
+  void value(const Watched& c, const std::vector<Assembler>& assemblers, const LanePoint& point, double t,
+             LaneRow& out) const;
+  void cross(Contact& c, const LanePointLaws& from, const LanePointLaws& to, const LaneMask& lanes);
+
+  std::vector<Watched> watched_;
+  std::vector<Contact> contacts_;
+  std::array<const System*, kLanes> systems_;
+};
+
+}  // namespace drev

@@ -1,0 +1,344 @@
+#include "solvers/batch/lockstep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "solvers/run/run_verdict.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr long kProgressSteps = 100;
+constexpr double kSameTime = 1e-9;   // as in transient.cpp
+constexpr double kSameStep = 1e-10;  // as in step_equation.cpp
+
+/// Up to kLanes variants; the last one fills what is left.
+std::array<const System*, kLanes> fill(const std::vector<const System*>& systems) {
+  std::array<const System*, kLanes> all;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) all[lane] = systems[std::min(lane, systems.size() - 1)];
+  return all;
+}
+
+}  // namespace
+
+std::optional<std::string> why_not_lockstep(const System& system, const TransientOptions& o) {
+  if (o.scheme.tableau) return "lockstep is for methods of the generalized-alpha family";
+  if (o.tolerance > 0.0) return "steps controlled by their error differ between variants";
+  if (o.locate_contacts.value_or(false)) return "located contact changes differ between variants";
+  if (!system.generals().empty()) return "the model has general elements";
+  if (system.rows().rows() > 0) return "the model is a projected one";
+  if (static_cast<int>(system.scalars().size()) > o.newton.max_dense_contacts)
+    return "the model has more laws than max_dense_contacts";
+  return std::nullopt;
+}
+
+Lockstep::Lockstep(const std::vector<const System*>& systems, const TransientOptions& options,
+                   const std::vector<std::string>& channels)
+    : systems_(fill(systems)),
+      count_(systems.size()),
+      options_(options),
+      scheme_(options.scheme),
+      results_(count_),
+      matrices_(systems_),
+      factor_(matrices_.pattern, matrices_.chain),
+      laws_(systems_),
+      loads_(systems_),
+      watch_(systems_, channels),
+      lambda_(at(laws_.count())) {
+  const std::size_t n = at(matrices_.n);
+  for (const System* system : systems_) {
+    steppers_.push_back(std::make_unique<StepSolver>(*system, scheme_, options.newton));
+    assemblers_.emplace_back(*system);
+  }
+  for (LanePoint* point : {&now_, &next_}) {
+    for (LaneArray* a : {&point->z, &point->v, &point->a, &point->p}) a->resize(n);
+    if (scheme_.alpha_f != 0.0) point->total.resize(n);
+    laws_.prepare(point->laws);
+  }
+  for (LaneArray* a : {&known_, &a_}) a->resize(n);
+  w_.rows.resize(n * lambda_.size());
+  for (std::size_t lane = 0; lane < count_; ++lane) alive_[static_cast<int>(lane)] = -1;
+}
+
+std::vector<VariantResult> Lockstep::run(const std::function<bool(double)>& go_on) {
+  t_ = options_.t_start;
+  for (std::size_t i = 0; i < count_; ++i) {
+    RunSummary& s = results_[i].summary;
+    s.scheme = scheme_.name;
+    s.step = options_.step;
+    results_[i].in_lockstep = true;
+  }
+  start(t_, true);
+  watch_.start(assemblers_, now_, t_);
+  const std::vector<double>& breaks = systems_[0]->breakpoints();
+  const double same = kSameTime * options_.step;
+  while (any(alive_) && t_ < options_.t_end) {
+    const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t_);
+    double stop = options_.t_end;
+    if (next_break != breaks.end()) stop = std::min(stop, *next_break);
+    if (options_.t_end - stop <= same) stop = options_.t_end;
+    const bool at_break = next_break != breaks.end() && *next_break - stop <= same;
+    if (at_break) stop = *next_break;
+    const double begin = t_, count = std::max(1.0, std::ceil((stop - begin) / options_.step - 1e-6));
+    const double h = (stop - begin) / count;
+    prepare(h);
+    for (double i = 1.0; i <= count && any(alive_); i += 1.0) {
+      const double t_new = i == count ? stop : begin + i * h;
+      // Just before a breakpoint the loads have their old values.
+      const bool before_break = i == count && at_break;
+      step(h, t_new, before_break ? std::nextafter(t_new, -std::numeric_limits<double>::infinity()) : t_new);
+      if (steps_ % kProgressSteps == 0 &&
+          !go_on((t_ - options_.t_start) / (options_.t_end - options_.t_start)))
+        for (int lane = 0; lane < kLanes; ++lane)
+          if (alive(lane)) fail(lane, t_, RunStatus::interrupted, "interrupted");
+    }
+    if (at_break && t_ < options_.t_end) start(t_, false);
+  }
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (alive(lane)) finish_lane(lane, t_);
+  return std::move(results_);
+}
+
+/// Consistent accelerations, at the start and behind breakpoints.
+void Lockstep::start(double t, bool first) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!first && !alive(lane)) continue;
+    StepPoint& point = to_alone_;
+    if (first)
+      point.state = State::initial(*systems_[at(lane)], t);
+    else
+      now_.get(lane, point);
+    point.state.t = t;
+    if (!first) {
+      from_alone_ = point;
+      assemblers_[at(lane)].multiply_stiffness(point.state.z, from_alone_.kz);
+    }
+    StepSolver& stepper = *steppers_[at(lane)];
+    stepper.start(point);
+    now_.set(lane, point);
+    for (std::size_t j = 0; j < lambda_.size(); ++j) lambda_[j].v[lane] = point.responses[j].y;
+    force_scale_.v[lane] = std::max<double>(force_scale_.v[lane], largest_force(point));
+    if (first) {
+      monitors_.push_back(std::make_unique<EnergyMonitor>(stepper.assembler(), point));
+      const EnergyBalance& b = monitors_.back()->balance();
+      energy_.start.v[lane] = b.kinetic + b.stored;
+    } else {
+      monitors_[at(lane)]->restore(energy_.get(lane));
+      monitors_[at(lane)]->restart(from_alone_, point);
+    }
+    energy_.set(lane, monitors_[at(lane)]->balance());
+    assemblers_[at(lane)].set_time(t);
+    if (first && alive(lane) && !point.state.a.allFinite())
+      fail(lane, t, RunStatus::not_finite, "the initial acceleration");
+  }
+}
+
+/// The factor and the compliance of the contacts for steps of length h.
+void Lockstep::prepare(double h) {
+  if (std::abs(h - h_) <= kSameStep * h) return;
+  h_ = h;
+  const Weights weights = scheme_.weights(h);
+  matrices_.combine(weights, values_);
+  factor_.factorize(values_);
+  ++factorizations_;
+  for (int lane = 0; lane < kLanes; ++lane)
+    if (alive(lane) && !factor_.ok(lane)) {
+      alive_[lane] = 0;
+      results_[at(lane)].error = systems_[at(lane)]->name() + ": the step matrix of " + scheme_.name +
+                                 " at h = " + to_text(h) +
+                                 " s is not positive definite; is a stiffness negative?";
+    }
+  const LaneArray zero(at(matrices_.n));
+  LaneArray column(zero.size());
+  for (int j = 0; j < laws_.count(); ++j) {
+    laws_.row(j, column);
+    factor_.solve(column.data(), 0.0, zero.data(), column.data());
+    for (std::size_t i = 0; i < column.size(); ++i) w_.rows[i * lambda_.size() + at(j)] = column[i];
+  }
+  w_.find_common();
+  laws_.set_compliance(w_.rows, weights.k, weights.c);
+}
+
+DREV_WIDEST
+void Lockstep::solve(double h, double t_evaluate, LaneMask& failed) {
+  const double phi = 1.0 - scheme_.alpha_f;
+  const StepOptions& newton = options_.newton;
+  // Loads start at the acceleration so far.
+  LaneMotion motion{next_.z.data(), next_.v.data(), now_.a.data(), scheme_.beta * h * h, scheme_.gamma * h};
+  LaneMask open = alive_;
+  const Lanes none{}, one = none + 1.0;
+  loads_.evaluate(motion, open, next_.p);
+  if (laws_.phased()) laws_.take_angles(assemblers_, motion, next_.laws);
+  for (int pass = 1;; ++pass) {
+    passes_.v += open ? one : none;
+    factor_.solve(known_.data(), phi, next_.p.data(), a_.data());
+    LaneRow scale = force_scale_, change, steepness;
+    if (any(scale.v <= 0.0)) {
+      largest(next_.p, change);
+      scale.v = scale.v > 0.0 ? scale.v : change.v;
+    }
+    if (laws_.count() > 0) {
+      LaneMotion free = motion;
+      free.a = a_.data();
+      LaneMask unsolved = open;
+      laws_.solve(free, t_evaluate, scale, newton.contact.tolerance, unsolved, lambda_.data(), next_.laws,
+                  iterations_);
+      failed |= unsolved;
+      open &= ~unsolved;
+    } else {
+      iterations_.v += open ? one : none;
+    }
+    correct(phi, w_, lambda_, motion.a, a_, change);
+    a_.swap(next_.a);
+    motion.a = next_.a.data();
+    if (!loads_.depend_on_motion()) return;
+    const Lanes small = newton.load_tolerance * scale.v;
+    if (loads_.steepness_known()) {
+      loads_.steepness(steepness);
+      open &= steepness.v * (motion.kappa_z * change.v) > small;
+      if (!any(open)) return;
+      loads_.evaluate(motion, open, next_.p);
+    } else {
+      p_before_ = next_.p;
+      loads_.evaluate(motion, open, next_.p);
+      largest_difference(next_.p, p_before_, change);
+      open &= change.v > small;
+      if (!any(open)) return;
+    }
+    if (pass == newton.max_load_passes) {
+      failed |= open;
+      return;
+    }
+  }
+}
+
+DREV_WIDEST
+void Lockstep::step(double h, double t_new, double t_evaluate) {
+  for (Assembler& assembler : assemblers_) assembler.set_time(t_evaluate);
+  loads_.set_time(assemblers_);
+  if (laws_.has_known()) laws_.take_known(assemblers_);
+  predict(matrices_, scheme_, h, now_, known_, next_);
+  LaneMask failed{};
+  solve(h, t_evaluate, failed);
+  LaneMask good = alive_ & ~failed;
+  next_.laws.t = t_evaluate;
+  laws_.energies(next_.laws);
+  laws_.forces(next_.laws.y, by_);
+  LaneRow extra;
+  if (laws_.extra_input())
+    laws_.add_extra_input(
+        now_.laws, now_.z.data(), next_.laws,
+        {next_.z.data(), next_.v.data(), next_.a.data(), scheme_.beta * h * h, scheme_.gamma * h}, extra);
+  finish(matrices_, scheme_, h, t_new, now_, by_, extra, next_, good, energy_, force_scale_);
+  watch_.step(assemblers_, now_, next_, h, t_new, good);
+  if (const LaneMask alone = alive_ & ~good; any(alone))
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (alone[lane]) step_alone(lane, h, t_new, t_evaluate);
+  std::swap(now_, next_);
+  t_ = t_new;
+  ++steps_;
+  const Lanes limit = options_.energy_growth_limit * energy_.given.v;
+  if (any(alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0)))
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!alive(lane)) continue;
+      RunSummary& s = results_[at(lane)].summary;
+      check_growth(s, systems_[at(lane)]->name(), t_, energy_.get(lane), options_.energy_growth_limit);
+      if (!s.ok()) finish_lane(lane, t_);
+    }
+}
+
+void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
+  now_.get(lane, from_alone_);
+  from_alone_.state.t = t_;
+  assemblers_[at(lane)].multiply_damping(from_alone_.state.v, from_alone_.cv);
+  StepEquation& equation = steppers_[at(lane)]->equation();
+  equation.start_from(from_alone_);
+  equation.expect_force(force_scale_.v[lane]);
+  monitors_[at(lane)]->restore(energy_.get(lane));
+  ++results_[at(lane)].steps_alone;
+  if (!advance_alone(lane, h, t_new, t_evaluate, 0)) return;
+  const StepPoint& end = from_alone_;  // of its last step
+  next_.laws.t = t_evaluate;
+  for (std::size_t j = 0; j < lambda_.size(); ++j) lambda_[j].v[lane] = end.responses[j].y;
+  force_scale_.v[lane] = std::max<double>(force_scale_.v[lane], largest_force(end));
+}
+
+/// As a single run does (transient.cpp): halves steps that do not converge.
+bool Lockstep::advance_alone(int lane, double h, double t_new, double t_evaluate, int depth) {
+  StepSolver& stepper = *steppers_[at(lane)];
+  RunSummary& s = results_[at(lane)].summary;
+  NewtonResult result = stepper.step(from_alone_, h, t_new, t_evaluate, to_alone_);
+  s.iterations += result.iterations;
+  if (result.status == NewtonStatus::converged) return accept_alone(lane, h);
+  if (depth < options_.max_halvings) {
+    ++s.halved;
+    ++s.steps;
+    const double middle = from_alone_.state.t + 0.5 * h;
+    return advance_alone(lane, 0.5 * h, middle, middle, depth + 1) &&
+           advance_alone(lane, 0.5 * h, t_new, t_evaluate, depth + 1);
+  }
+  if (result.status == NewtonStatus::no_root) {
+    result = stepper.step(from_alone_, h, t_new, t_evaluate, to_alone_, true);
+    s.iterations += result.iterations;
+    s.fallbacks += result.inside_jump;
+    if (result.status == NewtonStatus::converged) return accept_alone(lane, h);
+  }
+  if (result.status == NewtonStatus::not_finite)
+    fail(lane, from_alone_.state.t, RunStatus::not_finite, to_text(result.status));
+  else
+    fail(lane, from_alone_.state.t, RunStatus::no_convergence,
+         std::string(to_text(result.status)) + " even with h = " + to_text(h) + " s");
+  return false;
+}
+
+bool Lockstep::accept_alone(int lane, double h) {
+  const State& state = to_alone_.state;
+  const System& system = *systems_[at(lane)];
+  for (int k = 0; k < system.size(); ++k)
+    if (!std::isfinite(state.z[k]) || !std::isfinite(state.v[k])) {
+      fail(lane, from_alone_.state.t, RunStatus::not_finite, "the motion of " + system.unknown_name(k));
+      return false;
+    }
+  monitors_[at(lane)]->step(from_alone_, to_alone_, h);
+  energy_.set(lane, monitors_[at(lane)]->balance());
+  now_.set(lane, from_alone_);
+  next_.set(lane, to_alone_);
+  LaneMask this_lane{};
+  this_lane[lane] = -1;
+  assemblers_[at(lane)].set_time(steppers_[at(lane)]->assembler().time());
+  watch_.step(assemblers_, now_, next_, h, state.t, this_lane);
+  std::swap(from_alone_, to_alone_);
+  return true;
+}
+
+void Lockstep::fail(int lane, double t, RunStatus status, const std::string& what) {
+  end_run(results_[at(lane)].summary, systems_[at(lane)]->name(), t, status, what);
+  finish_lane(lane, t);
+}
+
+/// The lane's result, from what it stands at at time t.
+void Lockstep::finish_lane(int lane, double t) {
+  VariantResult& r = results_[at(lane)];
+  RunSummary& s = r.summary;
+  StepPoint point;
+  now_.get(lane, point);
+  r.state = std::move(point.state);
+  r.state.t = t;
+  r.peaks = watch_.peaks(lane);
+  r.contacts = watch_.contacts(lane);
+  const StepEquation& equation = steppers_[at(lane)]->equation();
+  s.t_end = t;
+  s.steps += steps_;
+  s.iterations += static_cast<long>(iterations_.v[lane]);
+  s.load_passes = static_cast<long>(passes_.v[lane]) + equation.load_passes();
+  s.factorizations = factorizations_ + equation.factorizations();
+  s.solves = s.load_passes + equation.solves() - equation.load_passes();
+  s.energy = energy_.get(lane);
+  judge_energy(s, options_.energy_tolerance);
+  alive_[lane] = 0;
+}
+
+}  // namespace drev

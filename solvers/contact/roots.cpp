@@ -1,0 +1,89 @@
+#include "solvers/contact/roots.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace drev {
+
+namespace {
+
+constexpr double kSmallestRadius = 1e-13;  // relative to the end
+constexpr int kNewtonLimit = 100;
+
+/// The root of a polynomial that is monotone on [low, high], g(low) >= 0 > g(high).
+double bracketed_root(std::span<const double> g, double low, double high) {
+  double s = 0.5 * (low + high);
+  for (int i = 0; i < kNewtonLimit; ++i) {
+    const double value = polynomial_value(g, s), slope = polynomial_slope(g, s);
+    (value >= 0.0 ? low : high) = s;
+    double next = s - value / slope;
+    if (!(next > low && next < high)) {
+      // Newton leaves the bracket: the root lies within rounding of s, or the bracket is halved.
+      const double near = std::abs(value / slope);
+      if (near <= 2.0 * std::numeric_limits<double>::epsilon() * s) return s;
+      next = 0.5 * (low + high);
+    }
+    if (next == s || next <= low || next >= high) return s;
+    s = next;
+  }
+  return s;
+}
+
+class Search {
+ public:
+  Search(std::span<const double> g, double end) : g_(g), smallest_(kSmallestRadius * end) {
+    double power = 1.0;
+    for (std::size_t k = 2; k < g.size(); ++k, power *= end)
+      curvature_ += static_cast<double>(k * (k - 1)) * std::abs(g[k]) * power;
+  }
+
+  std::optional<double> first(double low, double high) const {
+    const double c = 0.5 * (low + high), r = 0.5 * (high - low);
+    const double value = polynomial_value(g_, c), slope = polynomial_slope(g_, c);
+    const double bend = curvature_ * r;
+    if (std::abs(value) > std::abs(slope) * r + 0.5 * bend * r) {
+      if (value < 0.0) return low;  // it fell below at the very start
+      return std::nullopt;
+    }
+    if (std::abs(slope) > bend) {
+      if (slope > 0.0)
+        return polynomial_value(g_, low) < 0.0 && low > 0.0 ? std::optional(low) : std::nullopt;
+      if (polynomial_value(g_, high) >= 0.0) return std::nullopt;
+      return polynomial_value(g_, low) < 0.0 ? low : bracketed_root(g_, low, high);
+    }
+    if (r <= smallest_) return polynomial_value(g_, high) < 0.0 ? std::optional(c) : std::nullopt;
+    if (const auto left = first(low, c)) return left;
+    return first(c, high);
+  }
+
+ private:
+  std::span<const double> g_;
+  double smallest_, curvature_ = 0.0;
+};
+
+}  // namespace
+
+double polynomial_value(std::span<const double> g, double s) {
+  double sum = 0.0;
+  for (std::size_t k = g.size(); k-- > 0;) sum = sum * s + g[k];
+  return sum;
+}
+
+double polynomial_slope(std::span<const double> g, double s) {
+  double sum = 0.0;
+  for (std::size_t k = g.size(); k-- > 1;) sum = sum * s + static_cast<double>(k) * g[k];
+  return sum;
+}
+
+std::optional<double> first_crossing(std::span<const double> g, double end) {
+  while (!g.empty() && g[0] == 0.0) g = g.subspan(1);
+  if (g.size() < 2) return std::nullopt;
+  // Most often the constant term outweighs all others, or all others have its sign.
+  double falling = 0.0, power = end;
+  for (std::size_t k = 1; k < g.size(); ++k, power *= end)
+    if (g[k] < 0.0) falling -= g[k] * power;
+  if (g[0] > falling) return std::nullopt;
+  return Search(g, end).first(0.0, end);
+}
+
+}  // namespace drev

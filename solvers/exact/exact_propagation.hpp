@@ -1,0 +1,68 @@
+#pragma once
+/// Exact propagation: between located contact changes, to rounding where the model is linear in pieces, to
+/// the tolerance where it is smooth.
+///
+/// Between changes M z'' + C z' + K z + sum b_j y_j = p, and each step is its Taylor series, carried to
+/// the degree at which it is exact to the tolerance (taylor_series.hpp). Contact changes are roots of
+/// polynomials, isolated with a certificate (polynomial.hpp): none is missed, and the step ends there.
+/// Step and degree follow from the series' own decay; there is no step to choose. Knots of cam tables
+/// that an angle passes within a step, torques that are functions, engine orders, and laws
+/// that are smooth between their kinks (mesh stiffness by phase, transmission error, damping that grows
+/// with penetration) enter by their projection on polynomials along the path (projection.hpp).
+///
+/// What it needs: motions that are piecewise quadratic, no general elements. why_not_exact() says what of
+/// a model is not so. A law's jump or kink that it tells of neither by pieces(), kinks() nor next_knot()
+/// is passed by short steps.
+///
+/// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
+/// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
+/// system only statistics are comparable, with any method.
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/state.hpp"
+#include "solvers/run/run_summary.hpp"
+
+namespace drev {
+
+class Observer;
+
+/// A law went over from one piece to another.
+struct ContactChange {
+  double t = 0.0;        ///< s
+  int law = 0;           ///< of System::scalars()
+  int from = 0, to = 0;  ///< of its pieces()
+};
+
+struct ExactOptions {
+  /// Error that the series' truncation may add over the whole run, relative to the largest
+  /// deflection and speed so far [-], before the motion itself amplifies it. Shared out evenly over
+  /// the time.
+  double tolerance = 1e-10;
+  double t_start = 0.0;  ///< s
+  double t_end = 0.0;    ///< s, > t_start
+  /// Largest energy error that passes without warning, relative to the run's energy scale [-].
+  double energy_tolerance = 1e-6;
+  /// Called every 100 steps with the part done, 0..1; return false to stop the run.
+  std::function<bool(double)> progress = {};
+  /// Called at every change of a piece.
+  std::function<void(const ContactChange&)> on_change = {};
+};
+
+/// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing.
+std::optional<std::string> why_not_exact(const System& system);
+
+/// Runs from the state given and leaves the last state in it. Observers see the end of every step,
+/// contact changes and breakpoints among them, and points between, those they ask for among them: to watch
+/// a run does not change it. Throws ModelError
+/// for bad options and for a system that why_not_exact() refuses, SolverError (with time and
+/// element) if laws change without end at one time. RunSummary.scheme is "exact".
+RunSummary propagate(const System& system, const ExactOptions& options, State& state,
+                     const std::vector<Observer*>& observers = {});
+
+/// The same from the model's initial conditions.
+RunSummary propagate(const System& system, const ExactOptions& options,
+                     const std::vector<Observer*>& observers = {});
+
+}  // namespace drev

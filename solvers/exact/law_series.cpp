@@ -1,0 +1,224 @@
+#include "solvers/exact/law_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/contact/pieces.hpp"
+#include "solvers/contact/roots.hpp"
+
+namespace drev {
+
+namespace {
+
+// A coefficient below this part of the terms it was summed from is zero: rounding.
+constexpr double kZero = 1e-13;
+// The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not
+// seen).
+constexpr double kFloor = 4e-15;
+constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
+
+/// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
+double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {
+  double sum = 0.0, s_j = 1.0;
+  for (std::size_t j = 0; j < a.size(); ++j, s_j *= s) {
+    double s_k = s_j * s;
+    for (std::size_t k = 1; k < b.size(); ++k, s_k *= s)
+      sum += a[j] * b[k] * s_k * static_cast<double>(k) / static_cast<double>(j + k);
+  }
+  return sum;
+}
+
+/// b is the other side of a's line.
+bool opposite(const LawBound& a, const LawBound& b) {
+  const double size_a = std::max({std::abs(a.a), std::abs(a.b_x), std::abs(a.b_v)});
+  const double size_b = std::max({std::abs(b.a), std::abs(b.b_x), std::abs(b.b_v)});
+  const auto cancels = [&](double p, double q) { return std::abs(p / size_a + q / size_b) <= kParallel; };
+  return cancels(a.a, b.a) && cancels(a.b_x, b.b_x) && cancels(a.b_v, b.b_v);
+}
+
+}  // namespace
+
+LawPieces::LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    laws_[j].pieces = pieces_or_stretches(term, term.force->pieces());
+  }
+}
+
+void LawPieces::locate(const std::vector<ScalarInput>& inputs) {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    laws_[j].piece = piece_at(laws_[j].pieces, inputs[j]);
+    laws_[j].root = -1;
+  }
+}
+
+void LawPieces::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
+  std::size_t s = 0;
+  for (const Entry& row : term.z)
+    for (const Entry& col : term.z) {
+      const double b = row.coeff * col.coeff;
+      const int slot = term.slots[s++];
+      series.add_stiffness(slot, k * b);
+      if (c != 0.0) series.add_damping(slot, c * b);
+    }
+}
+
+void LawPieces::add_to(TaylorSeries& series, const KnownForces& known, double h) const {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system_.scalars()[j];
+    const LawPiece& p = current(j);
+    if (p.k != 0.0 || p.c != 0.0) add(series, term, p.k, p.c);
+    std::array<double, 3> y{p.y_0, 0.0, 0.0};
+    for (const Entry& e : term.u) {
+      const std::array<double, 3>& u = known.prescribed(e.index);
+      for (std::size_t i = 0; i < 3; ++i) {
+        y[i] += p.k * e.coeff * u[i];
+        if (i < 2) y[i] += p.c * e.coeff * static_cast<double>(i + 1) * u[i + 1] / h;
+      }
+    }
+    for (const Entry& e : term.z)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (y[i] != 0.0) series.right_side(static_cast<int>(i))[e.index] -= e.coeff * y[i];
+  }
+}
+
+void LawPieces::add_stiffest(TaylorSeries& series) const {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system_.scalars()[j];
+    // A smooth law's stretches carry no force of their own.
+    double k = std::abs(term.force->closed_stiffness()), c = std::abs(term.force->closed_damping());
+    for (const LawPiece& p : laws_[j].pieces) {
+      k = std::max(k, std::abs(p.k));
+      c = std::max(c, std::abs(p.c));
+    }
+    add(series, term, k, c);
+  }
+}
+
+void LawPieces::expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth) {
+  const auto terms = static_cast<std::size_t>(series.degree()) + 1;
+  h_ = series.step();
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const ScalarTerm& term = system_.scalars()[j];
+    Law& law = laws_[j];
+    law.x.assign(terms, 0.0);
+    law.x_size.assign(terms, 0.0);
+    law.known.assign(3, 0.0);
+    for (const Entry& e : term.z)
+      for (std::size_t k = 0; k < terms; ++k) {
+        const double part = e.coeff * series.coefficient(static_cast<int>(k), e.index);
+        law.x[k] += part;
+        law.x_size[k] += std::abs(part);
+      }
+    for (const Entry& e : term.u)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double part = e.coeff * known.prescribed(e.index)[k];
+        law.known[k] += part;
+        law.x[k] += part;
+        law.x_size[k] += std::abs(part);
+      }
+    const std::vector<double>& offset = smooth.offset(static_cast<int>(j));
+    for (std::size_t k = 0; k < std::min(terms, offset.size()); ++k) {
+      law.x[k] += offset[k];
+      law.x_size[k] += std::abs(offset[k]);
+    }
+  }
+}
+
+void LawPieces::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
+  const std::size_t terms = law.x.size();
+  g.resize(terms);
+  for (std::size_t k = 0; k < terms; ++k) {
+    g[k] = b.b_x * law.x[k];
+    if (b.b_v != 0.0 && k + 1 < terms) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
+  }
+  g[0] += b.a;
+}
+
+bool LawPieces::falls_at_once(Law& law, const LawBound& b, int index) {
+  std::vector<double>& g = law.bounds[at(index)];
+  bound_series(law, b, g);
+  if (index != law.root && g[0] > 0.0) return false;
+  const auto size = [&](std::size_t k) {
+    double sum = std::abs(b.b_x) * law.x_size[k];
+    if (b.b_v != 0.0 && k + 1 < law.x.size())
+      sum += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * law.x_size[k + 1];
+    return sum;
+  };
+  const double whole = std::abs(b.a) + size(0);
+  if (index != law.root && g[0] < -kZero * whole) return true;
+  g[0] = 0.0;
+  for (std::size_t k = 1; k < g.size(); ++k) {
+    if (std::abs(g[k]) > std::max(kZero * size(k), kFloor * whole)) return g[k] < 0.0;
+    g[k] = 0.0;
+  }
+  return false;
+}
+
+std::optional<LawPieces::Change> LawPieces::change_at_once() {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const LawPiece& p = current(j);
+    laws_[j].bounds.resize(p.bounds.size());
+    for (std::size_t i = 0; i < p.bounds.size(); ++i)
+      if (falls_at_once(laws_[j], p.bounds[i], static_cast<int>(i)))
+        return Change{0.0, static_cast<int>(j), static_cast<int>(i)};
+  }
+  return std::nullopt;
+}
+
+std::optional<LawPieces::Change> LawPieces::first_change(double end) {
+  std::optional<Change> first;
+  for (std::size_t j = 0; j < laws_.size(); ++j)
+    for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i)
+      if (const auto s = first_crossing(laws_[j].bounds[i], end)) {
+        first = Change{*s, static_cast<int>(j), static_cast<int>(i)};
+        end = *s;
+      }
+  return first;
+}
+
+double LawPieces::beyond_end(const Change& change) const {
+  const std::vector<double>& g = laws_[at(change.law)].bounds[at(change.bound)];
+  return -polynomial_value(g, 1.0) / polynomial_slope(g, 1.0);
+}
+
+void LawPieces::pass(const Change& change) {
+  Law& law = laws_[at(change.law)];
+  const LawBound crossed = current(at(change.law)).bounds[at(change.bound)];
+  law.piece = crossed.next;
+  law.root = -1;
+  const std::vector<LawBound>& bounds = current(at(change.law)).bounds;
+  for (std::size_t i = 0; i < bounds.size(); ++i)
+    if (opposite(crossed, bounds[i])) law.root = static_cast<int>(i);
+}
+
+void LawPieces::forget_roots() {
+  for (Law& law : laws_) law.root = -1;
+}
+
+double LawPieces::dissipated(double s) const {
+  double sum = 0.0;
+  std::vector<double> y;
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const LawPiece& p = current(j);
+    if (p.c == 0.0 && p.k == p.elastic_k && p.y_0 == p.elastic_0) continue;
+    bound_series(laws_[j], {p.y_0 - p.elastic_0, p.k - p.elastic_k, p.c, 0}, y);
+    sum += work_of(y, laws_[j].x, s);
+  }
+  return sum;
+}
+
+double LawPieces::input(double s) const {
+  double sum = 0.0;
+  std::vector<double> y;
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    if (system_.scalars()[j].u.empty() || !system_.any_prescribed_moves()) continue;
+    const LawPiece& p = current(j);
+    bound_series(laws_[j], {p.y_0, p.k, p.c, 0}, y);
+    sum += work_of(y, laws_[j].known, s);
+  }
+  return sum;
+}
+
+}  // namespace drev

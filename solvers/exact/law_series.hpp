@@ -1,0 +1,74 @@
+#pragma once
+/// LawPieces: which piece of its law each scalar element is on, and when it leaves it.
+///
+/// On a piece, y = y_0 + k x + c x': k and c go into the matrices, y_0 and what is known of x to
+/// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
+/// fall below zero is the change (polynomial.hpp). Behind a change the crossed bound of the new
+/// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
+/// not zero says whether the piece holds or changes back at once. Laws without linear pieces
+/// (smooth_laws.hpp) take part with the stretches between their kinks.
+#include <functional>
+#include <optional>
+
+#include "solvers/exact/load_series.hpp"
+#include "solvers/exact/projected_laws.hpp"
+
+namespace drev {
+
+class LawPieces {
+ public:
+  struct Change {
+    double s = 0.0;  ///< where in the step
+    int law = 0;     ///< of System::scalars()
+    int bound = 0;   ///< of its piece
+  };
+
+  explicit LawPieces(const System& system);
+
+  /// Every law on the piece that its input is on.
+  void locate(const std::vector<ScalarInput>& inputs);
+  int piece(int law) const { return laws_[at(law)].piece; }
+
+  /// Adds the pieces to the matrices and the right side over a step of h seconds.
+  void add_to(TaylorSeries& series, const KnownForces& known, double h) const;
+  /// Adds the stiffest pieces of all laws, to bound the fastest rate.
+  void add_stiffest(TaylorSeries& series) const;
+
+  /// The deflections' series along the step.
+  void expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth);
+  /// A law whose piece does not hold from s = 0 on, s = 0.
+  std::optional<Change> change_at_once();
+  /// The first change in (0, end].
+  std::optional<Change> first_change(double end);
+  /// How far behind s = 1 the bound is crossed, by Newton's rule.
+  double beyond_end(const Change& change) const;
+  /// The law goes over to the piece behind the bound.
+  void pass(const Change& change);
+  /// The step was accepted and no bound is known to be at zero any more.
+  void forget_roots();
+
+  /// From 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
+  /// ends.
+  double dissipated(double s) const;
+  double input(double s) const;
+
+ private:
+  struct Law {
+    std::vector<LawPiece> pieces;  // the law's own, or the stretches between its kinks
+    int piece = 0;
+    int root = -1;                            // bound of the piece that is zero at s = 0
+    std::vector<double> x, known;             // series of x, and of its known part
+    std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
+    std::vector<std::vector<double>> bounds;  // series of the piece's bounds
+  };
+  const LawPiece& current(std::size_t j) const { return laws_[j].pieces[at(laws_[j].piece)]; }
+  void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
+  bool falls_at_once(Law& law, const LawBound& bound, int index);
+  void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;
+
+  const System& system_;
+  std::vector<Law> laws_;
+  double h_ = 0.0;
+};
+
+}  // namespace drev

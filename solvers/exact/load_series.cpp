@@ -1,0 +1,313 @@
+#include "solvers/exact/load_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/roots.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
+constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
+// What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
+constexpr double kPathRest = 4e-3;
+// The same behind a kink, times its gain: the rest swings about zero there.
+constexpr double kKinkRest = 1e-5;
+
+std::array<double, 3> over_step(const MotionPoint& m, double h) {
+  return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
+}
+
+}  // namespace
+
+KnownForces::KnownForces(const System& system)
+    : system_(system),
+      assembler_(system),
+      stride_(TaylorSeries::stride(system)),
+      p_(at(kProjectionTerms * stride_)),
+      base_(at(3 * stride_)),
+      projection_(stride_),
+      last_(stride_),
+      of_loads_(stride_),
+      u_(at(system.prescribed_count())) {
+  for (const LoadTerm& term : system.loads()) {
+    const NodeMap& map = system.node_map(term.node);
+    if (map.prescribed >= 0) continue;  // its work is the prescribed node's
+    const Place place{&term, system.place(map), map.coeff, system.ratio(term.node),
+                      term.load->depends_on_motion()};
+    if (term.load->stretch(0.0, 0.0, 1.0))
+      loads_.push_back({place});
+    else
+      smooth_.push_back({place});
+  }
+}
+
+void KnownForces::move(double t, const Vector& z, const Vector& v) {
+  t_ = t;
+  assembler_.set_time(t);
+  const MotionPoint& nominal = assembler_.nominal();
+  for (Linear& l : loads_) {
+    l.deviation = l.feedback ? l.coeff * along(l.row, z) : 0.0;
+    l.angle = l.ratio * nominal.value + l.deviation;
+    l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * along(l.row, v) : 0.0);
+  }
+  for (Smooth& l : smooth_) {
+    l.torque = assembler_.load(*l.term, z, v).torque;
+  }
+}
+
+void KnownForces::look_up(Linear& l, double direction) {
+  l.stretch = l.term->load->stretch(t_, l.angle, direction).value_or(LoadStretch{});
+  l.t_0 = t_;
+  l.angle_0 = l.angle;
+}
+
+void KnownForces::locate(double t, const Vector& z, const Vector& v) {
+  move(t, z, v);
+  for (Linear& l : loads_) look_up(l, l.speed);
+}
+
+void KnownForces::advance(double t, const Vector& z, const Vector& v, bool whole) {
+  move(t, z, v);
+  for (Linear& l : loads_) {
+    if (whole && !l.watched) {
+      l.stretch = l.ahead;
+      l.angle_0 = l.ahead_angle_0;
+    }
+    const double near = kOnKnot * std::max(1.0, std::abs(l.angle));
+    if (l.speed > 0.0 ? l.stretch.high - l.angle > near : l.angle - l.stretch.low > near) continue;
+    look_up(l, l.speed);
+  }
+}
+
+void KnownForces::pass_knot() { look_up(loads_[at(leaving_)], leaving_direction_); }
+
+void KnownForces::add_to(TaylorSeries& series, double h) {
+  const int n = system_.size();
+  h_ = h;
+  degree_ = 2;
+  projected_ = false;
+  std::fill_n(p_.begin(), 3 * stride_, 0.0);
+  const auto p = [&](int k, int row) -> double& { return p_[at(k * stride_ + row)]; };
+  const auto add = [&](int k, double factor, const Vector& values) {
+    for (int i = 0; i < n; ++i) p(k, i) += factor * values[i];
+  };
+  const MotionPoint& nominal = assembler_.nominal();
+  phi_ = over_step(nominal, h);
+  if (nominal.acceleration != 0.0) add(0, -nominal.acceleration, system_.nominal_inertia());
+  if (nominal.rate != 0.0) add(0, -nominal.rate, system_.nominal_drag());
+  if (nominal.acceleration != 0.0) add(1, -nominal.acceleration * h, system_.nominal_drag());
+  if (system_.any_prescribed_moves()) {
+    const MatrixSet& zu = system_.coupling_zu();
+    for (int k = 0; k < system_.prescribed_count(); ++k) {
+      const MotionPoint& u = assembler_.prescribed(k);
+      u_[at(k)] = over_step(u, h);
+      for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it)
+        p(0, static_cast<int>(it.row())) -= it.value() * u.acceleration;
+      for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) {
+        p(0, static_cast<int>(it.row())) -= it.value() * u.rate;
+        p(1, static_cast<int>(it.row())) -= it.value() * u.acceleration * h;
+      }
+      for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
+        for (int i = 0; i < 3; ++i) p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
+    }
+  }
+  for (const Linear& l : loads_) {
+    const LoadStretch& s = l.stretch;
+    p(0, l.row) += l.coeff * (s.torque + s.time_slope * (t_ - l.t_0) + s.angle_slope * (l.angle - l.angle_0));
+    p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
+    p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
+  }
+  for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.torque;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < stride_; ++i) series.right_side(k)[i] += p(k, i);
+  for (const Linear& l : loads_) {
+    if (!l.feedback || l.stretch.angle_slope == 0.0) continue;
+    const double slope = l.coeff * l.coeff * l.stretch.angle_slope;
+    series.add_row_stiffness(l.row, -slope);
+    series.widen(l.row, slope, 0.0);
+    // The slope acts on the change of the deviation over the step.
+    series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
+  }
+}
+
+double KnownForces::angle_term(const Place& l, const TaylorSeries& series, int k) const {
+  const double nominal = k < 3 ? l.ratio * phi_[at(k)] : 0.0;
+  return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
+}
+
+double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
+  if (loads_.empty()) return 0.0;
+  kinks_.clear();
+  double gain = 0.0;
+  ranges_.resize(at(3 * stride_));
+  double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
+  series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
+  for (Linear& l : loads_) {
+    l.watched = false;
+    l.gain = 0.0;
+    l.ahead = l.stretch;
+    l.ahead_angle_0 = l.angle_0;
+    const auto row = at(l.row);
+    const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
+    const double first = angle_term(l, series, 1);
+    // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
+    const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
+    if (l.angle + reach < l.stretch.high && l.angle - reach > l.stretch.low) continue;
+    if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
+      l.watched = true;
+      continue;
+    }
+    const bool rises = first > 0.0;
+    const double end = l.angle + l.ratio * (phi_[1] + phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+    double jumps = 0.0;
+    bool have_theta = false;
+    for (;;) {
+      const double bound = rises ? l.ahead.high : l.ahead.low;
+      if (rises ? end <= bound : end >= bound) break;
+      const LoadStretch next = l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+      const bool moves = rises ? next.high > bound : next.low < bound;
+      if (!moves || next.time_slope != l.ahead.time_slope) {
+        l.watched = true;
+        break;
+      }
+      if (!have_theta) {
+        theta_.resize(at(series.degree() + 1));
+        theta_[0] = l.angle;
+        for (int k = 1; k <= series.degree(); ++k) theta_[at(k)] = angle_term(l, series, k);
+        have_theta = true;
+      }
+      const double jump = next.angle_slope - l.ahead.angle_slope;
+      kinks_.add(l.row, bound, l.coeff * jump, theta_);
+      jumps += std::abs(jump);
+      l.ahead = next;
+      l.ahead_angle_0 = bound;
+    }
+    if (l.feedback) l.gain = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
+    gain = std::max(gain, l.gain);
+  }
+  kinks_.add_to(projection_, tolerance);
+  return gain;
+}
+
+double KnownForces::project_smooth(const TaylorSeries& series) {
+  if (smooth_.empty()) return 0.0;
+  const GaussRule& rule = gauss_rule();
+  double gain = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    series.evaluate(rule.s[q], z_, v_);
+    assembler_.set_time(t_ + h_ * rule.s[q]);
+    for (const Smooth& l : smooth_) {
+      const LoadResponse at_node = assembler_.load(*l.term, z_, v_);
+      projection_.add_node(q, l.row, l.coeff * (at_node.torque - l.torque));
+      const double move = l.coeff * l.coeff * series.mobility(l.row);
+      gain = std::max(gain, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
+                                    h_ * std::abs(at_node.dtorque_dspeed)));
+    }
+  }
+  assembler_.set_time(t_);
+  return gain;
+}
+
+KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws, bool first,
+                                         double tolerance) {
+  if (first) {
+    for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
+    last_.clear();
+  } else {
+    std::swap(last_, projection_);
+  }
+  projection_.clear();
+  Change change;
+  change.gain = std::max(find_kinks(series, tolerance), project_smooth(series));
+  if (!laws.empty()) {
+    of_loads_ = projection_;
+    change.gain = std::max(change.gain, laws.project(series, projection_));
+  }
+  const auto note = [&](int row) {
+    double size = 0.0;
+    for (int j = 0; j < kProjectionTerms; ++j)
+      size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
+    const double move = series.reach(row) * h_;
+    const auto kind = at(row < series.size() ? series.kind(row) : 0);
+    const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
+    if (size > 0.0) change.size = std::max(change.size, move * size / scale);
+    return scale > 0.0 ? move / scale : 0.0;
+  };
+  const auto tail = [&](int row) {
+    return std::abs(projection_.coefficient(kProjectionDegree, row)) +
+           std::abs(projection_.coefficient(kProjectionDegree - 1, row));
+  };
+  const auto note_rest = [&](int row) {
+    change.rest = std::max(change.rest, kPathRest * tail(row) * note(row));
+  };
+  // A kink is projected along a path that lacks the rest itself.
+  for (const Linear& l : loads_)
+    change.rest = std::max(change.rest, kKinkRest * l.gain * tail(l.row) * note(l.row));
+  for (const Smooth& l : smooth_) note_rest(l.row);
+  for (const int row : laws.rows()) note_rest(row);
+  if (change.size == 0.0) return change;
+  projected_ = true;
+  with_laws_ = !laws.empty();
+  degree_ = kProjectionDegree;
+  for (int k = 0; k < 3; ++k) std::copy_n(base_.data() + k * stride_, stride_, series.right_side(k));
+  projection_.add_powers(3, series.right_side(0));
+  series.set_right_degree(kProjectionDegree);
+  return change;
+}
+
+void KnownForces::shorten(double r) {
+  double power = 1.0;
+  for (int k = 0; k < 3; ++k, power *= r) {
+    for (int i = 0; i < stride_; ++i) p_[at(k * stride_ + i)] *= power;
+    phi_[at(k)] *= power;
+    for (auto& u : u_) u[at(k)] *= power;
+  }
+}
+
+std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double end) {
+  leaving_ = -1;
+  std::optional<double> first;
+  const auto degree = static_cast<std::size_t>(series.degree());
+  for (std::size_t i = 0; i < loads_.size(); ++i) {
+    const Linear& l = loads_[i];
+    if (!l.watched) continue;
+    for (const double side : {1.0, -1.0}) {
+      const double bound = side > 0.0 ? l.stretch.high : l.stretch.low;
+      if (std::isinf(bound)) continue;
+      std::vector<double>& g = power_;
+      g.assign(1, std::max(0.0, side * (bound - l.angle)));
+      for (std::size_t k = 1; k <= degree; ++k)
+        g.push_back(-side * angle_term(l, series, static_cast<int>(k)));
+      std::size_t lead = 0;
+      while (lead <= degree && g[lead] == 0.0) ++lead;
+      if (lead > degree) continue;
+      const std::optional<double> s = g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
+      if (!s) continue;
+      first = s;
+      end = *s;
+      leaving_ = static_cast<int>(i);
+      leaving_direction_ = side;
+    }
+  }
+  return first;
+}
+
+double KnownForces::work(const TaylorSeries& series, double s, const Vector& end) {
+  if (projected_) {
+    // p_ by powers: what was projected beside what add_to() put there.
+    (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());
+    projected_ = false;
+  }
+  double sum = series_work(stride_, series.energy_degree(), series.coefficients(0), degree_, p_.data(), s);
+  for (const Linear& l : loads_)
+    if (l.feedback && l.stretch.angle_slope != 0.0) {
+      const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
+      sum += 0.5 * l.stretch.angle_slope * turn * turn;
+    }
+  return sum;
+}
+
+}  // namespace drev

@@ -1,0 +1,109 @@
+#pragma once
+/// KnownForces: loads, nominal motion and prescribed motions as polynomials over a step, for
+/// TaylorSeries.
+///
+/// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope
+/// against the deviation to the stiffness's diagonal. Knots that theta(s) passes in the step add kinks,
+/// and loads without stretches (functions, engine orders) what they differ from their tangent: both are
+/// projected on polynomials (projection.hpp) along the path that the series gives, and the series is
+/// expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
+#include <optional>
+
+#include "solvers/exact/projected_laws.hpp"
+#include "solvers/exact/projection.hpp"
+#include "solvers/exact/taylor_series.hpp"
+
+namespace drev {
+
+class KnownForces {
+ public:
+  explicit KnownForces(const System& system);
+
+  /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start
+  /// and after breakpoints.
+  void locate(double t, const Vector& z, const Vector& v);
+  /// Moves to a state further on in the step. whole: it is the end of what was projected last, where loads
+  /// are on the stretch that they came to.
+  void advance(double t, const Vector& z, const Vector& v, bool whole);
+
+  /// Adds the right side over a step of h seconds and the loads' tangents.
+  void add_to(TaylorSeries& series, double h);
+  /// False: no load can differ from what add_to() adds.
+  bool projects() const { return !loads_.empty() || !smooth_.empty(); }
+
+  /// What project() found, relative to the largest deflection and speed.
+  struct Change {
+    double size = 0.0;  ///< of the motion, by what the forces' projection changed; 0: nothing to project
+    double gain = 0.0;  ///< of that which comes back by the next projection: below 1 it settles
+    double rest = 0.0;  ///< of the motion, by what no polynomial of the projection's degree holds
+  };
+  /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
+  /// first: the step is new. tolerance: relative, of the kinks' moments.
+  Change project(TaylorSeries& series, SmoothLaws& laws, bool first, double tolerance);
+  /// Whether the right side holds a projection, for this step and no shorter one.
+  bool projected() const { return projected_; }
+  /// The step became r h; only where nothing was projected.
+  void shorten(double r);
+
+  /// Prescribed motion k as a polynomial over the step.
+  const std::array<double, 3>& prescribed(int k) const { return u_[at(k)]; }
+
+  /// First s in (0, end] (0 for a load about to leave backwards) at which a load whose angle may turn back
+  /// leaves its stretch: the step must end there.
+  std::optional<double> first_knot(const TaylorSeries& series, double end);
+  /// After first_knot() and advance() to it: that load goes on to the next stretch.
+  void pass_knot();
+  ElementId knot_element() const { return loads_[at(leaving_)].term->element; }
+
+  /// Work of all these forces on the unknowns from 0 to s of the step, where they stand at `end` [J].
+  double work(const TaylorSeries& series, double s, const Vector& end);
+
+ private:
+  struct Place {
+    const LoadTerm* term;
+    int row;  // of the series
+    double coeff, ratio;
+    bool feedback;
+  };
+  struct Linear : Place {
+    LoadStretch stretch = {}, ahead = {};
+    double t_0 = 0.0, angle_0 = 0.0;                   // where `stretch` gives its torque
+    double ahead_angle_0 = 0.0;                        // the same of `ahead`
+    double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
+    double gain = 0.0;                                 // of its kinks in this step: Change::gain
+    bool watched = false;                              // its angle may turn back in this step
+  };
+  struct Smooth : Place {
+    double torque = 0.0;  // at the step's start
+  };
+  void move(double t, const Vector& z, const Vector& v);
+  void look_up(Linear& load, double direction);
+  double along(int row, const Vector& z) const {
+    return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
+  }
+  double angle_term(const Place& load, const TaylorSeries& series, int k) const;
+  double find_kinks(const TaylorSeries& series, double tolerance);
+  double project_smooth(const TaylorSeries& series);
+
+  const System& system_;
+  Assembler assembler_;
+  std::vector<Linear> loads_;
+  std::vector<Smooth> smooth_;
+  int stride_;
+  std::vector<double> p_;         // by powers of s, without the loads' slopes: kProjectionTerms columns
+  std::vector<double> base_;      // of the series' right side, degrees 0 to 2, before projection
+  int degree_ = 2;                // of p_
+  Projection projection_, last_;  // of this pass, and the last
+  Projection of_loads_;           // of this pass, where there are laws too
+  KinkMoments kinks_;
+  bool projected_ = false, with_laws_ = false;
+  std::array<double, 3> phi_{};
+  std::vector<std::array<double, 3>> u_;
+  std::vector<double> theta_, power_, ranges_;
+  Vector z_, v_;
+  double t_ = 0.0, h_ = 0.0;
+  int leaving_ = -1;
+  double leaving_direction_ = 0.0;
+};
+
+}  // namespace drev

@@ -1,0 +1,154 @@
+#include "solvers/exact/projected_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/roots.hpp"
+
+namespace drev {
+
+SmoothLaws::SmoothLaws(const System& system)
+    : system_(system), assembler_(system), offsets_(system.scalars().size()) {
+  for (std::size_t j = 0; j < system.scalars().size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    if (!term.force->pieces().empty() && term.phase_node < 0) continue;
+    laws_.push_back({.index = static_cast<int>(j), .term = &term});
+    if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
+    for (const Entry& e : term.z) rows_.push_back(e.index);
+  }
+}
+
+double SmoothLaws::along(const ScalarTerm& term, const Vector& q) {
+  double sum = 0.0;
+  for (const Entry& e : term.z) sum += e.coeff * q[e.index];
+  return sum;
+}
+
+void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) {
+  t_ = start.state.t;
+  h_ = h;
+  for (Law& law : laws_) {
+    const ScalarTerm& term = *law.term;
+    const ScalarResponse& r = start.responses[at(law.index)];
+    law.k = r.dy_dx;
+    law.c = r.dy_dx_dot;
+    law.y = r.y;
+    law.x = along(term, start.state.z);
+    law.x_dot = along(term, start.state.v);
+    law.angle = start.inputs[at(law.index)].angle;
+    law.stored = r.stored_energy;
+    std::size_t s = 0;
+    double b_1 = 0.0;
+    for (const Entry& e : term.z) b_1 += std::abs(e.coeff);
+    for (const Entry& row : term.z) {
+      series.widen(row.index, law.k * b_1 * row.coeff, law.c * b_1 * row.coeff);
+      for (const Entry& col : term.z) {
+        const int slot = term.slots[s++];
+        series.add_stiffness(slot, law.k * row.coeff * col.coeff);
+        if (law.c != 0.0) series.add_damping(slot, law.c * row.coeff * col.coeff);
+      }
+      series.right_side(0)[row.index] -= row.coeff * (law.y - law.k * law.x - law.c * law.x_dot);
+    }
+    // - e along the nominal angle, which is known.
+    std::vector<double>& offset = offsets_[at(law.index)];
+    offset.clear();
+    if (term.phase_node < 0 || !system_.reference()) continue;
+    const double ratio = system_.ratio(term.phase_node);
+    const GaussRule& rule = gauss_rule();
+    Projection one(kLanes);
+    bool any = false;
+    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+      const double phi = system_.reference()->at(t_ + h * rule.s[q]).value;
+      const double e = term.force->offset(ratio * phi).e;
+      any |= e != 0.0;
+      one.add_node(q, 0, -e);
+    }
+    if (!any) continue;
+    std::vector<double> powers(at(kProjectionTerms * kLanes));
+    one.add_powers(0, powers.data());
+    for (int k = 0; k < kProjectionTerms; ++k) offset.push_back(powers[at(k * kLanes)]);
+  }
+}
+
+double SmoothLaws::project(const TaylorSeries& series, Projection& projection) {
+  if (laws_.empty()) return 0.0;
+  const GaussRule& rule = gauss_rule();
+  double gain = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    series.evaluate(rule.s[q], z_, v_);
+    assembler_.set_time(t_ + h_ * rule.s[q]);
+    for (const Law& law : laws_) {
+      const ScalarTerm& term = *law.term;
+      const ScalarResponse r = assembler_.respond(term, z_, v_);
+      const double difference =
+          r.y - law.y - law.k * (along(term, z_) - law.x) - law.c * (along(term, v_) - law.x_dot);
+      double mobility = 0.0;
+      for (const Entry& e : term.z) {
+        mobility += e.coeff * e.coeff * series.mobility(e.index);
+        projection.add_node(q, e.index, -e.coeff * difference);
+      }
+      gain = std::max(
+          gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) + h_ * std::abs(r.dy_dx_dot - law.c)));
+    }
+  }
+  return gain;
+}
+
+std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double end) {
+  std::optional<double> first;
+  for (const Law& law : laws_) {
+    if (law.term->phase_node < 0) continue;
+    const NodeMap& map = system_.node_map(law.term->phase_node);
+    assembler_.set_time(t_);
+    g_.assign(at(series.degree() + 1), 0.0);
+    const auto add_known = [&](double factor, const MotionPoint& m) {
+      g_[1] += factor * m.rate * h_;
+      g_[2] += 0.5 * factor * m.acceleration * h_ * h_;
+    };
+    add_known(system_.ratio(law.term->phase_node), assembler_.nominal());
+    if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
+    for (const Entry& e : law.phase_row)
+      for (int k = 1; k <= series.degree(); ++k) g_[at(k)] += e.coeff * series.coefficient(k, e.index);
+    for (const double side : {1.0, -1.0}) {
+      const std::optional<double> knot = law.term->force->next_knot(law.angle, side);
+      if (!knot) continue;
+      g_[0] = side * (*knot - law.angle);
+      if (!(g_[0] > 0.0)) continue;
+      std::vector<double> g = g_;
+      for (std::size_t k = 1; k < g.size(); ++k) g[k] *= -side;
+      if (const auto s = first_crossing(g, end)) {
+        first = s;
+        end = *s;
+      }
+    }
+  }
+  return first;
+}
+
+SmoothLaws::Work SmoothLaws::work(const TaylorSeries& series, double s) {
+  Work work;
+  if (laws_.empty()) return work;
+  const GaussRule& rule = gauss_rule();
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    series.evaluate(s * rule.s[q], z_, v_);
+    assembler_.set_time(t_ + s * h_ * rule.s[q]);
+    const double dt = s * h_ * rule.weight[q];
+    for (const Law& law : laws_) {
+      const ScalarInput in = assembler_.input(*law.term, z_, v_);
+      const ScalarResponse r = law.term->force->evaluate(in);
+      const double by_unknowns = along(*law.term, v_);
+      work.dissipated += dt * r.dissipated_power;
+      // What the law's energy gains beyond its ends' work comes from what varies in it.
+      work.input += law.term->force->varies() ? dt * (r.dissipated_power - r.y * by_unknowns)
+                                              : dt * r.y * (in.x_dot - by_unknowns);
+    }
+  }
+  series.evaluate(s, z_, v_);
+  assembler_.set_time(t_ + s * h_);
+  for (const Law& law : laws_)
+    if (law.term->force->varies())
+      work.input += assembler_.respond(*law.term, z_, v_).stored_energy - law.stored;
+  return work;
+}
+
+}  // namespace drev

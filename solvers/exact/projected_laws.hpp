@@ -1,0 +1,65 @@
+#pragma once
+/// SmoothLaws: laws that state no linear pieces (mesh stiffness by phase, transmission error, damping that
+/// grows with penetration, a user's own), for TaylorSeries.
+///
+/// Between its kinks() such a law is smooth. Its tangent at the step's start goes into the matrices; what
+/// y(x, x', t, angle) differs from it along the series' path is projected (projection.hpp), pass by pass
+/// until the path settles. Steps end where x passes a kink (law_pieces.hpp) or the angle passes a knot of
+/// the law (a stiffness that steps).
+#include <optional>
+#include <vector>
+
+#include "solvers/exact/projection.hpp"
+#include "solvers/exact/taylor_series.hpp"
+#include "solvers/run/evaluated_state.hpp"
+
+namespace drev {
+
+class SmoothLaws {
+ public:
+  explicit SmoothLaws(const System& system);
+
+  bool empty() const { return laws_.empty(); }
+
+  /// Adds the tangents at the step's start, the point's inputs and responses; the step has h seconds.
+  void add_to(TaylorSeries& series, const StepPoint& start, double h);
+  /// Adds the differences along the series' path, on the right side; returns how much of a change of the
+  /// path comes back.
+  double project(const TaylorSeries& series, Projection& projection);
+  /// What projection leaves of law forces, by row, is judged there.
+  const std::vector<int>& rows() const { return rows_; }
+
+  /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
+  const std::vector<double>& offset(int law) const { return offsets_[at(law)]; }
+
+  /// First s in (0, end] at which an angle passes a knot.
+  std::optional<double> first_knot(const TaylorSeries& series, double end);
+
+  /// Energy put in by what varies in the laws and their ends, and dissipated in them, from 0 to s [J].
+  struct Work {
+    double input = 0.0, dissipated = 0.0;
+  };
+  Work work(const TaylorSeries& series, double s);
+
+ private:
+  struct Law {
+    int index;
+    const ScalarTerm* term;
+    std::vector<Entry> phase_row = {};  // its phase node's deviation
+    double k = 0.0, c = 0.0;
+    double y = 0.0, x = 0.0, x_dot = 0.0;  // y and b^T z, b^T v at the start
+    double angle = 0.0, stored = 0.0;
+  };
+  static double along(const ScalarTerm& term, const Vector& q);
+
+  const System& system_;
+  Assembler assembler_;
+  std::vector<Law> laws_;
+  std::vector<int> rows_;
+  std::vector<std::vector<double>> offsets_;
+  std::vector<double> g_;
+  Vector z_, v_;
+  double t_ = 0.0, h_ = 0.0;
+};
+
+}  // namespace drev

@@ -1,0 +1,339 @@
+#include "solvers/exact/taylor_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.hpp"
+#include "core/lanes.hpp"
+#include "solvers/exact/series_kernels.hpp"
+
+namespace drev {
+
+namespace {
+constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
+constexpr int kPowerIterations = 60;
+constexpr double kEigenvalueMargin = 1.1;
+constexpr double kEnergyPart = 0.01;  // of the tolerance: terms that energies do without, 1e-13 to 1e-9
+constexpr double kShorten = 0.9;      // of the step at which the last terms are just small enough
+}  // namespace
+
+TaylorSeries::TaylorSeries(const System& system)
+    : system_(system), n_(system.size()), solve_in_(n_), solve_out_(n_) {
+  find_storage();
+  const auto fill = [&](const Vector& values, std::vector<double>& out) {
+    for (Eigen::Index s = 0; s < values.size(); ++s) out[position_[static_cast<std::size_t>(s)]] = values[s];
+  };
+  fill(system.stiffness_values(), k_base_);
+  fill(system.damping_values(), c_base_);
+  undamped_ = system.damping_values().isZero(0.0);
+  base_main_damping_ = system.damping_is_diagonal() && main_ >= 0;
+  diagonal_mass_ = system.mass_is_diagonal();
+  inverse_mass_.assign(at(stride_), 0.0);
+  if (diagonal_mass_) {
+    for (int i = 0; i < n_; ++i)
+      inverse_mass_[at(i)] = 1.0 / system.mass_values()[system.diagonal_slots()[at(i)]];
+  } else {
+    if (mass_.factorize(system.pattern(), system.mass_values()) != FactorStatus::success)
+      throw SolverError(system.name() + ": the mass matrix is not positive definite");
+    Vector row_sum = Vector::Zero(n_);
+    for (int i = 0; i < n_; ++i) {
+      mass_.solve(Vector::Unit(n_, i), solve_out_);
+      row_sum += solve_out_.cwiseAbs();
+    }
+    mass_norm_ = row_sum.maxCoeff();
+  }
+  std::vector<int> kinds(at(n_), 0);
+  for (int node = 0; node < system.node_count(); ++node)
+    if (system.node_map(node).unknown >= 0 && system.node_kind(node) == NodeKind::translational)
+      kinds[at(system.node_map(node).unknown)] = 1;
+  const auto translational = std::count(kinds.begin(), kinds.end(), 1);
+  if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
+  find_rows();
+  reset();
+}
+
+void TaylorSeries::find_rows() {
+  const int m = system_.loaded_rows();
+  row_slopes_.setZero(m);
+  row_mobility_.resize(m);
+  row_reach_.resize(m);
+  with_rows_.assign(at(stride_), 0.0);
+  for (int j = 0; j < m; ++j) {
+    solve_in_ = system_.rows().row(j).transpose();
+    solve_mass(solve_in_, solve_out_);
+    row_mobility_[j] = solve_in_.dot(solve_out_);
+    row_reach_[j] = solve_out_.lpNorm<Eigen::Infinity>();
+  }
+}
+
+void TaylorSeries::find_storage() {
+  const SparseMatrix& p = system_.pattern();
+  std::map<int, std::size_t> offsets;  // and which diagonal it is
+  for (int row = 0; row < n_; ++row)
+    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
+      offsets.try_emplace(p.innerIndexPtr()[s] - row, 0);
+  const auto entries = static_cast<std::size_t>(p.nonZeros());
+  stride_ = stride(system_);
+  if (static_cast<double>(offsets.size()) * n_ > kDiagonalFill * static_cast<double>(entries))
+    offsets.clear();
+  for (auto& [offset, number] : offsets) {
+    number = diagonals_.size();
+    if (offset == 0) main_ = static_cast<int>(number);
+    diagonals_.push_back({offset, number * at(stride_)});
+    pad_ = std::max(pad_, whole_lanes(std::abs(offset)));
+  }
+  position_.resize(entries);
+  for (int row = 0; row < n_; ++row)
+    for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
+      position_[at(s)] =
+          diagonals_.empty() ? at(s) : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + at(row);
+  const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * at(stride_);
+  k_base_.assign(length, 0.0);
+  c_base_.assign(length, 0.0);
+  z_.assign(at(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
+  p_.assign(at(kProjectionTerms * stride_), 0.0);
+  zeros_.assign(at(stride_), 0.0);
+  sums_.assign(at(2 * stride_), 0.0);
+  k_ = k_base_;
+  c_ = c_base_;
+  for (const Diagonal& d : diagonals_) {
+    k_views_.push_back({d.offset, k_.data() + d.values});
+    c_views_.push_back({d.offset, c_.data() + d.values});
+  }
+}
+
+void TaylorSeries::reset() {
+  std::copy(k_base_.begin(), k_base_.end(), k_.begin());  // the views stay
+  std::copy(c_base_.begin(), c_base_.end(), c_.begin());
+  damped_ = !undamped_;
+  main_damping_ = base_main_damping_;
+  k_more_ = c_more_ = 0.0;
+  std::fill_n(p_.begin(), 3 * stride_, 0.0);
+  row_slopes_.setZero();
+  right_degree_ = 2;
+}
+
+void TaylorSeries::add_damping(int slot, double value) {
+  c_[position_[at(slot)]] += value;
+  damped_ = true;
+  main_damping_ = false;
+}
+
+void TaylorSeries::subtract_product(const std::vector<double>& values, bool main_only, const double* x,
+                                    double factor, double* out) const {
+  if (diagonals_.empty()) {
+    const int* outer = system_.pattern().outerIndexPtr();
+    const int* inner = system_.pattern().innerIndexPtr();
+    for (int row = 0; row < n_; ++row) {
+      double sum = 0.0;
+      for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values[at(s)] * x[inner[s]];
+      out[row] -= factor * sum;
+    }
+    return;
+  }
+  for (const Diagonal& d : diagonals_) {
+    if (main_only && d.offset != 0) continue;
+    for (int i = 0; i < n_; ++i) out[i] -= factor * values[d.values + at(i)] * x[i + d.offset];
+  }
+}
+
+double TaylorSeries::bound_rates() {
+  const int* outer = system_.pattern().outerIndexPtr();
+  k_norm_ = c_norm_ = 0.0;
+  for (int row = 0; row < n_; ++row) {
+    double k_sum = 0.0, c_sum = 0.0;
+    for (int s = outer[row]; s < outer[row + 1]; ++s) {
+      k_sum += std::abs(k_[position_[at(s)]]);
+      c_sum += std::abs(c_[position_[at(s)]]);
+    }
+    k_norm_ = std::max(k_norm_, k_sum * mobility(row));
+    c_norm_ = std::max(c_norm_, c_sum * mobility(row));
+  }
+  // |lambda|^2 <= |lambda| c + k.
+  k_norm_ = std::min(k_norm_, largest_eigenvalue(k_));
+  c_norm_ = std::min(c_norm_, largest_eigenvalue(c_));
+  k_more_ = c_more_ = 0.0;
+  return rate();
+}
+
+double TaylorSeries::rate() const {
+  const double k = k_norm_ + k_more_, c = c_norm_ + c_more_;
+  return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
+}
+
+void TaylorSeries::widen(int row, double k, double c) {
+  if (row >= n_)  // rows share unknowns
+    k_more_ += std::abs(k) * mobility(row);
+  else
+    k_more_ = std::max(k_more_, std::abs(k) * mobility(row));
+  c_more_ = std::max(c_more_, std::abs(c) * mobility(row));
+}
+
+double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
+  // Power iteration; what it lacks after some iterations is in the margin.
+  Vector x(n_), product(n_);
+  for (int i = 0; i < n_; ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.0 * i);
+  double largest = 0.0;
+  for (int i = 0; i < kPowerIterations; ++i) {
+    std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
+    std::copy_n(x.data(), n_, z_.data() + pad_);
+    subtract_product(values, false, z_.data() + pad_, -1.0, solve_in_.data());
+    solve_mass(solve_in_, product);
+    largest = product.norm();
+    if (!(largest > 0.0)) return 0.0;
+    x = product / largest;
+  }
+  return kEigenvalueMargin * largest;
+}
+
+TaylorSeries::Norm TaylorSeries::norm(const double* x) const {
+  if (kinds_.empty()) return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
+  Norm result{};
+  for (int i = 0; i < n_; ++i) {
+    double& largest = result[at(kinds_[at(i)])];
+    largest = std::max(largest, std::abs(x[i]));
+  }
+  return result;
+}
+
+void TaylorSeries::note_scale(const Vector& z, const Vector& v) {
+  const Norm a = norm(z.data()), b = norm(v.data());
+  for (std::size_t i = 0; i < 2; ++i) {
+    z_scale_[i] = std::max(z_scale_[i], a[i]);
+    v_scale_[i] = std::max(v_scale_[i], b[i]);
+  }
+}
+
+void TaylorSeries::solve_mass(const Vector& rhs, Vector& out) {
+  if (!diagonal_mass_) return mass_.solve(rhs, out);
+  out.resize(n_);
+  for (int i = 0; i < n_; ++i) out[i] = rhs[i] * inverse_mass_[at(i)];
+}
+
+/// with_rows_ = p with the rows' forces less their slopes times x_0.
+void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
+  const Eigen::Index m = row_slopes_.size();
+  const auto tail = [&](const double* x) { return Eigen::Map<const Vector>(x + n_, m); };
+  row_forces_ = tail(p) - row_slopes_.cwiseProduct(tail(x_0));
+  std::copy_n(p, n_, with_rows_.data());
+  Eigen::Map<Vector>(with_rows_.data(), n_).noalias() += system_.rows().topRows(m).transpose() * row_forces_;
+}
+
+TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
+  const double* p = k - 2 <= right_degree_ ? p_.data() + at((k - 2) * stride_) : zeros_.data();
+  const double* x_0 = coefficients(k - 2);
+  if (row_slopes_.size() > 0) {
+    add_row_forces(p, x_0);
+    p = with_rows_.data();
+  }
+  const double* x_1 = coefficients(k - 1);
+  double* next = z_.data() + at(pad_ + k * stride_);
+  const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
+  if (!diagonals_.empty() && diagonal_mass_) {
+    std::span<const DiagonalView> c(c_views_);
+    if (!damped_)
+      c = {};
+    else if (main_damping_)
+      c = c.subspan(at(main_), 1);
+    const double largest =
+        series_term(stride_, k_views_, c, c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
+    rows_of(next);
+    return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
+  }
+  std::copy_n(p, n_, solve_in_.data());
+  subtract_product(k_, false, x_0, 1.0, solve_in_.data());
+  if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
+  solve_mass(solve_in_, solve_out_);
+  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
+  rows_of(next);
+  return norm(next);
+}
+
+double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
+  h_ = h;
+  energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
+  const auto column = [&](int k) { return z_.data() + at(pad_ + k * stride_); };
+  std::copy_n(z.data(), n_, column(0));
+  for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
+  for (int k = 0; k < 2; ++k) rows_of(column(k));
+  note_scale(z, v);
+  Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
+  z_scale = z_scale_;
+  v_scale = v_scale_;
+  const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
+  // How far a term is above what is allowed.
+  const auto excess = [&](int k) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (sizes_[at(k)][i] > 0.0)
+        largest = std::max({largest, sizes_[at(k)][i] / (tolerance * z_scale[i]),
+                            k * sizes_[at(k)][i] / (h * tolerance * v_scale[i])});
+    return largest;
+  };
+  for (int k = 2; k <= kMaxDegree; ++k) {
+    const Norm size = next_term(k, h);
+    sizes_[at(k)] = size;
+    for (std::size_t i = 0; i < 2; ++i) {
+      z_scale[i] = std::max(z_scale[i], size[i]);
+      v_scale[i] = std::max(v_scale[i], k * size[i] / h);
+    }
+    degree_ = k;
+    ++products_;
+    if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
+    if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
+    const double last = excess(k);
+    const double first = k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
+    const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
+    if (first <= 1.0 && second <= 1.0) return h_;
+  }
+  // The last two terms are too large: over r h they are r^k times as large.
+  double r = 1.0;
+  for (const int k : {kMaxDegree - 1, kMaxDegree})
+    if (excess(k) > 1.0) r = std::min(r, std::pow(excess(k), -1.0 / (k - 1)));
+  r *= kShorten;
+  double power = 1.0;
+  for (int k = 0; k <= degree_; ++k, power *= r)
+    for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
+  h_ = r * h;
+  return h_;
+}
+
+int TaylorSeries::energy_degree() const {
+  const auto rate = [&](int k) { return k * (sizes_[at(k)][0] + sizes_[at(k)][1]); };
+  double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
+  for (int k = 2; k <= degree_; ++k) largest = std::max(largest, rate(k));
+  int degree = degree_;
+  while (degree > 1 && rate(degree) < energy_part_ * largest) --degree;
+  return degree;
+}
+
+double TaylorSeries::dissipated(double s) {
+  if (undamped_) return 0.0;
+  const int degree = energy_degree();
+  rates_.resize(at(degree * stride_));
+  forces_.assign(at(degree * stride_), 0.0);
+  for (int j = 1; j <= degree; ++j) {
+    const double* z = coefficients(j);
+    double* rate = rates_.data() + at((j - 1) * stride_);
+    double* force = forces_.data() + at((j - 1) * stride_);
+    for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
+    for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
+    // The product reads beside the column: from the coefficients, which have room there.
+    subtract_product(c_base_, base_main_damping_, z, -j, force);
+  }
+  return series_product(stride_, degree, rates_.data(), forces_.data(), s) / h_;
+}
+
+void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
+  double* sums = sums_.data();
+  series_values(stride_, degree_, coefficients(0), s, sums, sums + stride_);
+  z.resize(n_);
+  v.resize(n_);
+  for (int i = 0; i < n_; ++i) {
+    z[i] = sums[i];
+    v[i] = sums[stride_ + i] / h_;
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,143 @@
+#pragma once
+/// TaylorSeries: the solution of a linear system over one step, in s = (t - t_0)/h:
+///
+///   M z'' + C z' + K z = P_0 + P_1 s + P_2 s^2 + ...,      z = sum Z_k s^k
+///   (k+2)(k+1)/h^2 M Z_{k+2} = P_k - (k+1)/h C Z_{k+1} - K Z_k
+///
+/// K and C are those of the system with the tangents of the pieces that hold (set by the caller). Rows of
+/// the series behind the unknowns are the system's loaded rows: forces and slopes there act through them.
+/// One sparse product a degree, by diagonals where the pattern has few of them; M diagonal is a
+/// scaling, else one solve with its factor. The series is carried until the next two terms are
+/// below the tolerance, as deflections and as rates, by (|.|: the largest eigenvalue, or row sum if less)
+///   |Z_{k+2}| <= h^2 |M^-1 K| |Z_k|/((k+1)(k+2)) + h |M^-1 C| |Z_{k+1}|/(k+2)
+/// If that is not so by kMaxDegree, the step is shortened: Z_k r^k is the same solution over r h.
+///
+/// Rounding grows as exp(fastest rate h); the caller bounds the step by it. Source: D. Barton,
+/// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential
+/// equations by the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
+#include <array>
+
+#include "core/assembler.hpp"
+#include "solvers/exact/projection.hpp"
+#include "solvers/exact/series_kernels.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
+
+namespace drev {
+
+class TaylorSeries {
+ public:
+  static constexpr int kMaxDegree = 32;
+
+  /// Throws SolverError if M cannot be factored.
+  explicit TaylorSeries(const System& system);
+
+  /// K and C back to the system's own, the right side to zero; then add what the pieces add.
+  void reset();
+  void add_stiffness(int slot, double value) { k_[position_[at(slot)]] += value; }
+  /// The same on the diagonal of a row.
+  void add_row_stiffness(int row, double value) {
+    if (row < n_)
+      add_stiffness(system_.diagonal_slots()[at(row)], value);
+    else
+      row_slopes_[row - n_] += value;
+  }
+  void add_damping(int slot, double value);
+  /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
+  void widen(int row, double k, double c);
+  /// Estimate from above of the fastest rate |lambda| with those [1/s].
+  double rate() const;
+  /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
+  /// sets a higher one, up to kProjectionDegree, has written all of those above.
+  double* right_side(int k) { return p_.data() + at(k * stride_); }
+  void set_right_degree(int degree) { right_degree_ = degree; }
+
+  /// Takes the values that stand now as the largest there will be: bounds |M^-1 K| and |M^-1 C| by
+  /// them and returns an estimate from above of the fastest rate |lambda| [1/s] (power iteration).
+  double bound_rates();
+
+  /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h; 0 if the terms
+  /// overflow. tolerance: relative to the largest deflection and speed noted so far.
+  double expand(const Vector& z, const Vector& v, double h, double tolerance);
+
+  long products() const { return products_; }  ///< with the matrices, one a degree
+  int degree() const { return degree_; }
+  double step() const { return h_; }
+  int size() const { return n_; }
+  /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
+  int stride() const { return stride_; }
+  static int stride(const System& system) { return whole_lanes(system.size() + system.loaded_rows()); }
+  const double* coefficients(int k) const { return z_.data() + at(pad_ + k * stride_); }
+  double coefficient(int k, int row) const { return coefficients(k)[row]; }
+  /// z and v at s.
+  void evaluate(double s, Vector& z, Vector& v) const;
+  /// The degree up to which terms count in energies.
+  int energy_degree() const;
+  /// int z'^T C z' dt from 0 to s of the step with the system's own C: what linear dampers took
+  /// [J].
+  double dissipated(double s);
+  /// out = M^-1 rhs.
+  void solve_mass(const Vector& rhs, Vector& out);
+
+  /// Largest deflection and speed [s^-1 of it] so far and in the terms of this step, of rotational and of
+  /// translational unknowns (kind 0 and 1, where there are both).
+  using Norm = std::array<double, 2>;
+  const Norm& z_scale() const { return z_step_scale_; }
+  const Norm& v_scale() const { return v_step_scale_; }
+  int kind(int row) const { return kinds_.empty() ? 0 : kinds_[at(row)]; }
+  /// Upper estimate of the acceleration of a row by a force on it [1/(kg m^2) or 1/kg].
+  double mobility(int row) const {
+    if (row >= n_) return row_mobility_[row - n_];
+    return diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
+  }
+  /// The same of the unknown that a force on a row moves most.
+  double reach(int row) const { return row < n_ ? mobility(row) : row_reach_[row - n_]; }
+
+ private:
+  struct Diagonal {
+    int offset;
+    std::size_t values;
+  };
+  void find_storage();
+  void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
+                        double* out) const;
+  double largest_eigenvalue(const std::vector<double>& values);
+  Norm next_term(int k, double h);
+  void find_rows();
+  /// Sets the loaded rows of a column from its unknowns.
+  void rows_of(double* column) const {
+    const Eigen::Index m = row_slopes_.size();
+    if (m > 0)
+      Eigen::Map<Vector>(column + n_, m).noalias() =
+          system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
+  }
+  void add_row_forces(const double* p, const double* x_0);
+  void note_scale(const Vector& z, const Vector& v);
+  Norm norm(const double* x) const;
+
+  const System& system_;
+  int n_, stride_ = 0, pad_ = 0;
+  std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
+  std::vector<std::size_t> position_;  // of a slot of the pattern in k_, c_
+  std::vector<Diagonal> diagonals_;    // padded to stride_; empty: rows of the pattern
+  int main_ = -1;                      // which diagonal is the main one
+  std::vector<DiagonalView> k_views_, c_views_;
+  bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
+  bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
+  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
+  SparseCholesky mass_;
+  double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
+  std::vector<double> p_, z_, rates_, forces_, zeros_;
+  // Of the system's loaded rows.
+  Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
+  std::vector<double> with_rows_;
+  mutable std::vector<double> sums_;
+  Vector solve_in_, solve_out_;
+  std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
+  std::vector<int> kinds_;                    // of the unknowns, if the system has both
+  Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
+  int degree_ = 0, right_degree_ = 2;
+  double h_ = 0.0, energy_part_ = 0.0;
+  long products_ = 0;
+};
+
+}  // namespace drev

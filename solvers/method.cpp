@@ -1,0 +1,43 @@
+#include "solvers/method.hpp"
+
+#include <sstream>
+
+#include "solvers/exact/exact_propagation.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/stepping/transient.hpp"
+
+namespace drev {
+
+std::string to_text(const Method& method) {
+  std::ostringstream text;
+  text << method.name;
+  if (method.tolerance > 0.0) text << ", tolerance " << method.tolerance;
+  if (method.step > 0.0) text << ", step " << method.step << " s";
+  return text.str();
+}
+
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o, State& state,
+                      const std::vector<Observer*>& observers) {
+  if (method.exact()) {
+    ExactOptions options{
+        .tolerance = method.tolerance, .t_start = o.t_start, .t_end = o.t_end, .progress = o.progress};
+    if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
+    return propagate(system, options, state, observers);
+  }
+  TransientOptions options{.scheme = step_scheme(method.name),
+                           .step = method.step,
+                           .tolerance = method.tolerance,
+                           .t_start = o.t_start,
+                           .t_end = o.t_end,
+                           .progress = o.progress};
+  if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
+  return simulate(system, options, state, observers);
+}
+
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
+                      const std::vector<Observer*>& observers) {
+  State state = State::initial(system, options.t_start);
+  return run_method(system, method, options, state, observers);
+}
+
+}  // namespace drev

@@ -1,0 +1,125 @@
+#include "solvers/modes/damped_modes.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "core/assembler.hpp"
+#include "core/dense_eigen.hpp"
+#include "core/error.hpp"
+#include "core/units.hpp"
+
+namespace drev {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+Matrix dense(const SparseMatrix& pattern, const Vector& values) {
+  SparseMatrix a = pattern;
+  std::copy(values.begin(), values.end(), a.valuePtr());
+  return a;
+}
+
+/// Orthonormal columns; the first span the null space of K^.
+Matrix basis_by_stiffness(const Matrix& k, bool symmetric) {
+  if (!symmetric) {
+    // K^' P = Q R: what R does not reach is orthogonal to the rows of K^.
+    const Matrix q = Eigen::ColPivHouseholderQR<Matrix>(k.transpose()).householderQ();
+    return q.rowwise().reverse();
+  }
+  const SymmetricEigen eigen = symmetric_eigen(k);
+  const Vector size = eigen.values.cwiseAbs();
+  std::vector<int> order(static_cast<std::size_t>(size.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return size[a] < size[b]; });
+  return eigen.vectors(Eigen::all, order);
+}
+
+void check_rigid(const System& system, const Matrix& k, const Matrix& v, int rigid) {
+  constexpr double kRounding = 1e-13;
+  int found = 0;
+  while (found < system.size() && (k * v.col(found)).norm() <= kRounding * k.norm()) ++found;
+  if (found != rigid)
+    throw SolverError("damped modes of " + system.name() + ": the model has " + std::to_string(rigid) +
+                      " parts free to turn, but " + std::to_string(found) +
+                      " motions without a restoring torque beside the stiffest element's rounding");
+}
+
+DampedMode to_mode(std::complex<double> lambda) {
+  const double w = std::abs(lambda);
+  return {lambda, to_hz(lambda.imag()), to_hz(w), -lambda.real() / w};
+}
+
+}  // namespace
+
+DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options) {
+  const int n = system.size();
+  if (n > options.size_limit)
+    throw ModelError({{system.name() + "/damped modes", "unknowns", std::to_string(n), "",
+                       "must not exceed size_limit = " + std::to_string(options.size_limit) +
+                           ": the eigenproblem is dense"}});
+  const Assembler assembler(system);
+  Vector values;
+  const Eigen::LLT<Matrix> mass(dense(system.pattern(), system.mass_values()));
+  if (mass.info() != Eigen::Success)
+    throw SolverError("damped modes of " + system.name() + ": mass matrix not positive definite");
+  // L^-1 A L^-T
+  const auto reduced = [&](const Weights& weights) {
+    assembler.contact_values(weights, options.contact, values);
+    const Matrix half = mass.matrixL().solve(dense(system.pattern(), values));
+    return Matrix(mass.matrixL().solve(half.transpose()).transpose());
+  };
+  Matrix k = reduced({0.0, 0.0, 1.0}), c = reduced({0.0, 1.0, 0.0});
+  if (system.symmetric_tangent()) k = (0.5 * (k + k.transpose())).eval();
+
+  DampedModeSet set;
+  set.contact = options.contact;
+  const int r = set.rigid_modes = system.rigid_mode_count(options.contact);
+  const Matrix v = basis_by_stiffness(k, system.symmetric_tangent());
+  check_rigid(system, k, v, r);
+  k = (v.transpose() * k * v).eval();
+  c = (v.transpose() * c * v).eval();
+
+  // Unknowns: w_0 y of the elastic coordinates, y' of all.
+  const int e = n - r;
+  const double w0 = k.norm() > 0.0 ? std::sqrt(k.norm()) : 1.0;
+  Matrix a = Matrix::Zero(e + n, e + n);
+  a.block(0, e + r, e, e) = w0 * Matrix::Identity(e, e);
+  a.block(e, 0, n, e) = -k.rightCols(e) / w0;
+  a.block(e, e, n, n) = -c;
+  const GeneralEigen eigen = general_eigen(a);
+  if (!eigen.converged)
+    throw SolverError("damped modes of " + system.name() + ": the eigensolver did not converge");
+
+  std::vector<int> oscillating;
+  for (int j = 0; j < e + n; ++j) {
+    const std::complex<double> lambda = eigen.values[j];
+    if (lambda.imag() == 0.0) set.real_lambda.push_back(lambda.real());
+    if (lambda.imag() > 0.0) oscillating.push_back(j);
+  }
+  std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
+  std::sort(oscillating.begin(), oscillating.end(),
+            [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
+  set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
+  for (std::size_t j = 0; j < oscillating.size(); ++j) {
+    set.modes.push_back(to_mode(eigen.values[oscillating[j]]));
+    // Rates are lambda times the shape: the common factor is scaled away.
+    const Eigen::VectorXcd y = v * eigen.vectors.col(oscillating[j]).tail(n);
+    const Eigen::VectorXcd z = mass.matrixU().solve(y);
+    auto shape = set.shapes.col(static_cast<Eigen::Index>(j));
+    for (int i = 0; i < system.node_count(); ++i) {
+      for (const Entry& e : system.row_of(i)) shape[i] += e.coeff * z[e.index];
+    }
+    Eigen::Index largest = 0;
+    shape.cwiseAbs().maxCoeff(&largest);
+    const std::complex<double> scale = shape[largest];
+    shape /= scale;
+  }
+  return set;
+}
+
+}  // namespace drev

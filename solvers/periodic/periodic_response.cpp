@@ -1,0 +1,178 @@
+#include "solvers/periodic/periodic_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "solvers/periodic/harmonic_balance.hpp"
+#include "solvers/run/cubic_peak.hpp"
+
+namespace drev {
+
+namespace {
+
+using Harmonics = HarmonicBalance::Harmonics;
+
+constexpr int kFewest = 16, kMost = 4096;
+constexpr double kLargestSize = 2e7;  // unknowns x harmonics: 320 MB a motion
+constexpr double kFirstTail = 1e-3;
+constexpr double kPeriodicity = 1e-8;
+constexpr double kNewtonTolerance = 1e-2;  // of the tolerance
+
+/// What a level of harmonics gives.
+struct Level {
+  Eigen::MatrixXd values;  // channels (unknowns, without any) x samples
+  bool closed = true;
+};
+
+/// Channels and contacts over the period.
+Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& z, int samples, double period,
+               const std::vector<Channel>& channels) {
+  const auto q = balance.motion(z, 0, samples), v = balance.motion(z, 1, samples);
+  const auto a = balance.motion(z, 2, samples);
+  Assembler assembler(system);
+  State state = State::initial(system);
+  Level level;
+  if (channels.empty())
+    level.values = q;
+  else
+    level.values.resize(static_cast<Eigen::Index>(channels.size()), samples);
+  std::vector<int> side(system.scalars().size(), 0);
+  for (int s = 0; s < samples; ++s) {
+    state.t = period * s / samples;
+    state.z = q.col(s);
+    state.v = v.col(s);
+    state.a = a.col(s);
+    assembler.set_time(state.t);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      level.values(static_cast<Eigen::Index>(c), s) = channels[c].evaluate(assembler, state);
+    for (std::size_t j = 0; j < side.size(); ++j) {
+      const auto gap = system.scalars()[j].force->gap();
+      if (!gap) continue;
+      const double x = assembler.input(system.scalars()[j], state.z, state.v).x;
+      const int now = x >= gap->high ? 1 : x <= gap->low ? -1 : 0;
+      if (s == 0) side[j] = now;
+      level.closed = level.closed && now != 0 && now == side[j];
+    }
+  }
+  return level;
+}
+
+/// Largest and smallest value of a channel: at the samples, and of the cubic between them.
+Peak peak_of(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& rate, double h) {
+  Peak p{y[0], 0.0, y[0], 0.0};
+  for (Eigen::Index s = 0; s < y.size(); ++s) {
+    const Eigen::Index next = (s + 1) % y.size();
+    const double t = h * static_cast<double>(s);
+    p.note(y[s], t);
+    if (const auto inside = cubic_peak(y[s], rate[s], y[next], rate[next], h))
+      p.note(inside->value, t + inside->s * h);
+  }
+  return p;
+}
+
+/// The harmonics to start with, no more than `most`: beyond them the motion has kFirstTail of itself or less.
+int first_level(const HarmonicBalance& balance, const Harmonics& z, int most) {
+  const double limit = kFirstTail * balance.size(z);
+  Harmonics tail = Harmonics::Zero(z.rows(), z.cols());
+  auto needed = static_cast<int>(z.cols()) - 1;
+  for (; needed > kFewest; --needed) {
+    tail.col(needed) = z.col(needed);
+    if (balance.size(tail) > limit) break;
+  }
+  int level = kFewest;
+  while (level < needed) level *= 2;
+  return std::min(level, most);
+}
+
+/// Largest difference of a channel between two levels, over its largest value.
+double difference(const Level& coarse, const Level& fine) {
+  double largest = 0.0;
+  for (Eigen::Index c = 0; c < fine.values.rows(); ++c) {
+    double of_channel = 0.0;
+    for (Eigen::Index s = 0; s < coarse.values.cols(); ++s)
+      of_channel = std::max(of_channel, std::abs(fine.values(c, 2 * s) - coarse.values(c, s)));
+    if (of_channel > 0.0) largest = std::max(largest, of_channel / fine.values.row(c).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+double given_period(const System& system, const PeriodicOptions& options, PeriodicResponse& response) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/periodic response", findings);
+  check.non_negative("period", options.period, "s");
+  check.positive("turns", options.turns, "");
+  check.within("harmonics", options.harmonics, 0, kMost, "");
+  check.within("tolerance", options.tolerance, 1e-10, 1e-1, "");
+  const double speed = system.reference_speed();
+  if (options.period == 0.0 && speed == 0.0)
+    check.fail("period", "0", "s", "must be given: no reference shaft turns");
+  if (!findings.empty()) throw ModelError(findings);
+  response.period = options.period > 0.0 ? options.period : options.turns * kTwoPi / speed;
+  response.order_step = speed > 0.0 ? kTwoPi / (speed * response.period) : 0.0;
+  return response.period;
+}
+
+std::string refusal(const System& system) {
+  if (system.size() == 0) return "every node is prescribed";
+  if (const auto floating = system.floating_parts(Contact::closed); !floating.empty())
+    return "a part of the model floats freely (with " + floating.front() + ")";
+  for (const GeneralTerm& term : system.generals())
+    if (term.force->history_size() > 0)
+      return system.placements()[at(index(term.element))].name + " has a history, which is unknown";
+  return {};
+}
+
+}  // namespace
+
+PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& options) {
+  PeriodicResponse response;
+  const double period = given_period(system, options, response);
+  const std::vector<Channel> channels = find_channels(system, options.channels);
+  response.reason = refusal(system);
+  if (!response.reason.empty()) return response;
+  const auto most = static_cast<int>(std::clamp<double>(kLargestSize / system.size(), 2 * kFewest, kMost));
+  const bool given = options.harmonics > 0;
+
+  // Each level has twice the harmonics of the one before it, whose samples are every other one of its own.
+  HarmonicBalance balance(system, period);
+  Harmonics z;
+  int harmonics = given ? (options.harmonics + 1) / 2 : most / 2;
+  response.reason = balance.start(harmonics, 4 * harmonics, z).reason;
+  if (!response.reason.empty()) return response;
+  if (!given) harmonics = first_level(balance, z, harmonics);
+  Level level = {}, before;
+  for (int number = 0;; ++number, harmonics *= 2) {
+    const HarmonicBalance::Outcome outcome =
+        balance.solve(harmonics, 4 * harmonics, kNewtonTolerance * options.tolerance, z);
+    response.harmonics = harmonics;
+    response.iterations += outcome.iterations;
+    response.reason = outcome.reason;
+    if (response.reason.empty() && number == 0 && balance.aperiodicity(z, 4 * harmonics) > kPeriodicity)
+      response.reason = "what acts on the model does not have the period " + to_text(period) + " s";
+    if (!response.reason.empty()) return response;
+    level = evaluate(system, balance, z, 4 * harmonics, period, channels);
+    if (number > 0) {
+      response.error = difference(before, level) + outcome.residual;
+      if (given || response.error <= options.tolerance || 2 * harmonics > most) break;
+    }
+    before = std::move(level);
+  }
+  response.contact_closed = level.closed;
+  response.found = given || response.error <= options.tolerance;
+  if (!response.found)
+    response.reason = "the error is " + to_text(response.error) + " with " + std::to_string(harmonics) +
+                      " harmonics, not the tolerance " + to_text(options.tolerance);
+  if (!response.found || channels.empty()) return response;
+  const Harmonics amplitudes = balance.to_harmonics(level.values, harmonics);
+  const Eigen::MatrixXd rates = balance.motion(amplitudes, 1, 4 * harmonics);
+  for (Eigen::Index c = 0; c < amplitudes.rows(); ++c) {
+    response.peaks.push_back(peak_of(level.values.row(c), rates.row(c), period / (4 * harmonics)));
+    const Eigen::VectorXcd row = amplitudes.row(c).transpose();
+    response.amplitudes.emplace_back(row.begin(), row.end());
+  }
+  return response;
+}
+
+}  // namespace drev

@@ -1,0 +1,67 @@
+#include "solvers/periodic/speed_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.hpp"
+
+namespace drev {
+
+namespace {
+constexpr double kWidth = 1e-4;  // of the search, beside the grid
+}
+
+SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::vector<double>& speeds,
+                        const PeriodicOptions& options) {
+  std::vector<Finding> findings;
+  ParameterCheck check("speed sweep", findings);
+  check.increasing("speeds", speeds, "");
+  if (speeds.empty()) check.fail("speeds", "none", "", "must be at least one");
+  if (options.channels.empty()) check.fail("channels", "none", "", "must be at least one");
+  if (options.period != 0.0)
+    check.fail("period", to_text(options.period), "s", "must be 0: it changes with the speed");
+  if (!findings.empty()) throw ModelError(findings);
+
+  SpeedSweep sweep;
+  std::map<double, std::vector<double>> amplitudes;  // of all channels, by speed; none without a response
+  const auto solve = [&](double speed) {
+    PeriodicResponse response = solve_periodic(build(speed), options);
+    std::vector<double>& here = amplitudes[speed];
+    for (const Peak& peak : response.peaks) here.push_back(peak.amplitude());
+    return response;
+  };
+  for (const double speed : speeds) sweep.curve.push_back({speed, solve(speed)});
+  sweep.worst.resize(options.channels.size());
+  for (std::size_t c = 0; c < options.channels.size(); ++c) {
+    SpeedSweep::Worst& worst = sweep.worst[c];
+    const auto at_speed = [&](double speed) {
+      if (!amplitudes.contains(speed)) solve(speed);
+      const std::vector<double>& here = amplitudes[speed];
+      const double amplitude = here.empty() ? 0.0 : here[c];
+      if (amplitude > worst.amplitude) worst = {speed, amplitude};
+      return amplitude;
+    };
+    std::size_t top = 0;
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      const double before = worst.amplitude;
+      if (at_speed(speeds[i]) > before) top = i;
+    }
+    double low = speeds[top > 0 ? top - 1 : 0], high = speeds[std::min(top + 1, speeds.size() - 1)];
+    const double width = kWidth * (high - low), golden = 0.5 * (std::sqrt(5.0) - 1.0);
+    double left = high - golden * (high - low), right = low + golden * (high - low);
+    double y_left = high > low ? at_speed(left) : 0.0, y_right = high > low ? at_speed(right) : 0.0;
+    while (high - low > width) {
+      if (y_left >= y_right) {
+        high = right, right = left, y_right = y_left;
+        y_left = at_speed(left = high - golden * (high - low));
+      } else {
+        low = left, left = right, y_left = y_right;
+        y_right = at_speed(right = low + golden * (high - low));
+      }
+    }
+  }
+  return sweep;
+}
+
+}  // namespace drev

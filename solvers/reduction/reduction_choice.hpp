@@ -1,0 +1,36 @@
+#pragma once
+/// Whether a modal reduction pays, and with how many modes.
+///
+/// Error, from the loads' spectrum beforehand: a mode j that is left out has its static part in the static
+/// shapes, and lacks
+///
+///   |c_j| (sum_h |f_jh|/omega_j^2 |1/(1 - r^2 + 2 i zeta r) - 1| + |f_j(0)|/omega_j^2),   r = w_h/omega_j
+///
+/// in a channel: f_jh harmonics of the loads on the mode, zeta 0.01, and what rings when loads set in at the
+/// start. Contacts ask for modes up to within^(-1/4) times the frequency of their closed stiffness on the
+/// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; LeftOutModes gives a better
+/// one with the run.
+///
+/// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
+/// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solvers/reduction/reduction.hpp"
+
+namespace drev {
+
+struct ReductionChoice {
+  std::optional<Reduction> reduction = {};  ///< only where the gain is above 1.5
+  double gain = 0.0;                        ///< predicted; 0 where nothing could be predicted
+  double error = 0.0;                       ///< estimated, relative, the largest of the channels'
+  std::string reason = {};                  ///< one sentence without full stop
+};
+
+/// within: relative, of the channels' peaks, 1e-6 to 0.5. channels: as LeftOutModes takes them, at least one.
+/// duration: of the run [s]. Throws ModelError for bad input.
+ReductionChoice choose_reduction(const System& system, double within,
+                                 const std::vector<std::string>& channels, double duration);
+
+}  // namespace drev

@@ -1,0 +1,106 @@
+#include "solvers/run/contact_statistics.hpp"
+
+#include <cmath>
+
+#include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/run/cubic_peak.hpp"
+
+namespace drev {
+
+namespace {
+
+/// Part of a step from x0 to x1 (linear) that lies inside the gap [-].
+double share_apart(double x0, double x1, const Gap& gap) {
+  const double low = std::min(x0, x1), high = std::max(x0, x1);
+  const double inside = std::min(high, gap.high) - std::max(low, gap.low);
+  if (high == low) return low >= gap.low && low <= gap.high ? 1.0 : 0.0;
+  return std::max(0.0, inside) / (high - low);
+}
+
+}  // namespace
+
+std::vector<double> equivalent_masses(const System& system) {
+  std::vector<double> all(system.scalars().size(), 0.0);
+  SparseCholesky mass;
+  Vector b, x;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    if (term.force->pieces().size() == 1) continue;
+    double flexibility = 0.0;
+    if (system.mass_is_diagonal()) {
+      for (const Entry& e : term.z)
+        flexibility += e.coeff * e.coeff / system.mass_values()[system.diagonal_slots()[at(e.index)]];
+    } else {
+      if (mass.status() == FactorStatus::not_computed) mass.factorize(system.pattern(), system.mass_values());
+      if (!mass.ok()) return all;
+      b.setZero(system.size());
+      for (const Entry& e : term.z) b[e.index] += e.coeff;
+      mass.solve(b, x);
+      flexibility = b.dot(x);
+    }
+    if (flexibility > 0.0) all[j] = 1.0 / flexibility;
+  }
+  return all;
+}
+
+void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,
+                    double equivalent_mass, ContactInterval& interval, ContactRecord& record) {
+  const auto side = [&gap](double x) { return x > gap.high ? 1 : x < gap.low ? -1 : 0; };
+  const int before = side(a.x), after = side(b.x);
+  if (before == after) return;
+  if (interval.met && before != 0)
+    (before > 0 ? record.front_force : record.back_force).add(interval.largest);
+  interval = {after != 0, force};
+  if (after == 0) return;
+  // x'^2 is linear in x under a constant acceleration.
+  const double part = ((after > 0 ? gap.high : gap.low) - a.x) / (b.x - a.x);
+  const double square = a.x_dot * a.x_dot + part * (b.x_dot * b.x_dot - a.x_dot * a.x_dot);
+  ++(after > 0 ? record.front_impacts : record.back_impacts);
+  (after > 0 ? record.front_speed : record.back_speed).add(std::sqrt(square));
+  record.impact_energy += 0.5 * equivalent_mass * square;
+}
+
+ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : inside_steps_(inside_steps) {
+  const std::vector<double> masses = equivalent_masses(system);
+  for (std::size_t j = 0; j < system.scalars().size(); ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    const auto gap = term.force->gap();
+    if (!gap) continue;
+    terms_.push_back(j);
+    gaps_.push_back(*gap);
+    masses_.push_back(masses[j]);
+    records_.push_back({.element = system.placements()[at(index(term.element))].name});
+  }
+  intervals_.resize(terms_.size());
+}
+
+void ContactStatistics::start(const Assembler& /*assembler*/, const StepPoint& point) {
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
+    records_[i].largest_force_time = point.state.t;
+  }
+}
+
+void ContactStatistics::step(const Assembler& /*assembler*/, const StepPoint& from, const StepPoint& to) {
+  const double h = to.state.t - from.state.t;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    const std::size_t j = terms_[i];
+    const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
+    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+    note_force(i, r1.y, to.state.t);
+    if (inside_steps_)
+      if (const auto peak = cubic_peak(r0.y, r0.dy_dx * a.x_dot, r1.y, r1.dy_dx * b.x_dot, h))
+        note_force(i, peak->value, from.state.t + peak->s * h);
+    records_[i].time_apart += h * share_apart(a.x, b.x, gaps_[i]);
+    note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
+  }
+}
+
+void ContactStatistics::note_force(std::size_t i, double y, double t) {
+  intervals_[i].largest = std::max(intervals_[i].largest, std::abs(y));
+  if (std::abs(y) <= records_[i].largest_force) return;
+  records_[i].largest_force = std::abs(y);
+  records_[i].largest_force_time = t;
+}
+
+}  // namespace drev

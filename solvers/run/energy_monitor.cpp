@@ -1,0 +1,85 @@
+#include "solvers/run/energy_monitor.hpp"
+
+#include <cmath>
+
+#include "solvers/linear/vector_kernels.hpp"
+
+namespace drev {
+
+EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
+    : assembler_(assembler),
+      mass_(assembler.system().pattern(), assembler.system().mass_values()),
+      damped_((assembler.system().damping_values().array() != 0.0).any()) {
+  balance_.kinetic = 0.5 * mass_.energy(start.state.v);
+  balance_.stored = stored(start);
+  start_energy_ = balance_.kinetic + balance_.stored;
+  balance_.given = balance_.scale = start_energy_;
+}
+
+double EnergyMonitor::stored(const StepPoint& point) const {
+  double sum =
+      0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) + point.general_energy;
+  for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
+  return sum;
+}
+
+void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
+  const System& system = assembler_.system();
+  auto [input, dissipated, by_stiffness] =
+      step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
+                damped_ ? from.cv.data() : nullptr, to.cv.data(), to.kz.data());
+  double stored = by_stiffness + to.general_energy, power = from.general_power + to.general_power;
+  for (std::size_t j = 0, m = system.scalars().size(); j < m; ++j) {
+    const ScalarTerm& term = system.scalars()[j];
+    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+    power += r0.dissipated_power + r1.dissipated_power;
+    stored += r1.stored_energy;
+    const bool partly_known = !term.u.empty() || term.phase_node >= 0;
+    if (!partly_known && !term.varies) continue;
+    const ScalarInput &in0 = from.inputs[j], &in1 = to.inputs[j];
+    // Known part of the deflection: prescribed ends and transmission error do work on the law.
+    if (partly_known) {
+      double by_unknowns = 0.0;
+      for (const Entry& e : term.z) by_unknowns += e.coeff * (to.state.z[e.index] - from.state.z[e.index]);
+      input += 0.5 * (r0.y + r1.y) * (in1.x - in0.x - by_unknowns);
+    }
+    // A law that varies: its energy changes at constant x too; mean over both orders of changing.
+    if (term.varies) {
+      const double v01 = term.force->evaluate({in0.x, in0.x_dot, in1.t, in1.angle}).stored_energy;
+      const double v10 = term.force->evaluate({in1.x, in1.x_dot, in0.t, in0.angle}).stored_energy;
+      input += 0.5 * ((v01 - r0.stored_energy) + (r1.stored_energy - v10));
+    }
+  }
+  enter(to, input, dissipated + 0.5 * h * power, stored);
+}
+
+void EnergyMonitor::step(const StepPoint& to, double input, double dissipated) {
+  enter(to, input, dissipated, stored(to));
+}
+
+void EnergyMonitor::enter(const StepPoint& to, double input, double dissipated, double stored) {
+  balance_.input += input;
+  balance_.dissipated += dissipated;
+  balance_.kinetic = 0.5 * mass_.energy(to.state.v);
+  balance_.stored = stored;
+  note(to.state.t);
+}
+
+void EnergyMonitor::restart(const StepPoint& before, const StepPoint& after) {
+  balance_.input += stored(after) - stored(before);
+  balance_.stored = stored(after);
+}
+
+void EnergyMonitor::note(double t) {
+  EnergyBalance& b = balance_;
+  const double energy = b.kinetic + b.stored;
+  b.imbalance = energy - start_energy_ - b.input + b.dissipated;
+  b.given = std::max({b.given, std::abs(b.input), b.dissipated});
+  b.scale = std::max({b.scale, b.given, energy});
+  if (!(std::abs(b.imbalance) <= std::abs(b.worst_imbalance))) {
+    b.worst_imbalance = b.imbalance;
+    b.worst_time = t;
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,33 @@
+#include "solvers/run/evaluated_state.hpp"
+
+#include "core/assembler.hpp"
+#include "solvers/linear/huge_pages.hpp"
+
+namespace drev {
+
+void make_room(StepPoint& point, int n) {
+  State& s = point.state;
+  for (Vector* x : {&s.z, &s.v, &s.a, &point.p, &point.kz, &point.cv, &point.total})
+    if (x->size() == 0) set_zeros(*x, n);
+}
+
+void evaluate_laws(const Assembler& assembler, StepPoint& point) {
+  const std::vector<ScalarTerm>& terms = assembler.system().scalars();
+  point.inputs.resize(terms.size());
+  point.responses.resize(terms.size());
+  for (std::size_t j = 0; j < terms.size(); ++j) {
+    point.inputs[j] = assembler.input(terms[j], point.state.z, point.state.v);
+    point.responses[j] = terms[j].force->evaluate(point.inputs[j]);
+  }
+}
+
+void add_law_forces(const System& system, const StepPoint& point, double factor, Vector& f) {
+  const ScalarResponse* r = point.responses.data();
+  double* force = f.data();
+  for (const ScalarTerm& term : system.scalars()) {
+    const double y = factor * (r++)->y;
+    for (const Entry& e : term.z) force[e.index] += e.coeff * y;
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,26 @@
+#pragma once
+/// What watches a run: recorder, peaks, contact statistics. An observer sees every accepted step and keeps
+/// no more than it needs, so that memory does not grow with the run.
+#include <limits>
+
+namespace drev {
+
+class Assembler;
+struct StepPoint;
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// Once, at the first point.
+  virtual void start(const Assembler& assembler, const StepPoint& point) = 0;
+  /// After every accepted step, or part of one; the assembler stands at to's time.
+  virtual void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) = 0;
+  /// The next time after t that must be seen exactly [s]: constant steps end there, controlled ones are
+  /// interpolated to the method's order.
+  virtual double next_stop(double /*t*/) const { return std::numeric_limits<double>::infinity(); }
+  /// Whether it reads accelerations, or loads and forces of the whole system (p, kz, cv, total). Where no
+  /// observer does, points inside a step of exact propagation have none: a is not a number there.
+  virtual bool needs_acceleration() const { return true; }
+};
+
+}  // namespace drev

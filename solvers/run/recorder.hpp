@@ -1,0 +1,45 @@
+#pragma once
+/// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Constant steps are
+/// cut so that they end there; controlled steps and exact propagation show their polynomial there.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/channel.hpp"
+#include "solvers/run/evaluated_state.hpp"
+#include "solvers/run/observer.hpp"
+
+namespace drev {
+
+class Recorder final : public Observer {
+ public:
+  /// every > 0 [s]. Throws ModelError for unknown channels or a bad interval.
+  Recorder(const System& system, const std::vector<std::string>& channels, double every);
+
+  /// Instead of keeping rows in memory, hands each to the sink (to write it out).
+  void set_sink(std::function<void(double t, const std::vector<double>& row)> sink) {
+    sink_ = std::move(sink);
+  }
+
+  void start(const Assembler& assembler, const StepPoint& point) override;
+  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  double next_stop(double t) const override;
+  bool needs_acceleration() const override;
+
+  const std::vector<Channel>& channels() const { return channels_; }
+  const std::vector<double>& times() const { return times_; }
+  /// Samples of channel c, one per time.
+  const std::vector<double>& samples(std::size_t c) const { return samples_[c]; }
+
+ private:
+  void record(const Assembler& assembler, const StepPoint& point);
+
+  std::vector<Channel> channels_;
+  double every_ = 0.0, start_ = 0.0;
+  long next_ = 0;
+  std::vector<double> times_, row_;
+  std::vector<std::vector<double>> samples_;
+  std::function<void(double, const std::vector<double>&)> sink_;
+};
+
+}  // namespace drev

@@ -1,0 +1,13 @@
+#pragma once
+/// Checks of what every run is given: the state it starts from and its span of time.
+#include "core/error.hpp"
+#include "core/state.hpp"
+
+namespace drev {
+
+/// Findings for a state that does not fit the system: sizes, numbers that are not finite.
+void check_state(const System& system, const State& state, ParameterCheck& check);
+/// Reports a run that has no beginning or no time: t_start finite, t_end finite and greater [s].
+void check_span(double t_start, double t_end, ParameterCheck& check);
+
+}  // namespace drev

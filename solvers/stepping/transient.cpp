@@ -1,0 +1,410 @@
+#include "solvers/stepping/transient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/run/energy_monitor.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/run/run_checks.hpp"
+#include "solvers/run/run_verdict.hpp"
+#include "solvers/stepping/located_step.hpp"
+#include "solvers/stepping/stability_limit.hpp"
+#include "solvers/stepping/step_control.hpp"
+#include "solvers/stepping/step_energy.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr long kProgressSteps = 100;
+constexpr double kSameTime = 1e-9;     // relative to the step
+constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
+constexpr double kLargestStep = 0.05;  // of the run
+constexpr double kLeastStep = 1e-9;    // of the run: not rejected for its error
+constexpr double kStanding = 1e-3;     // of a step: changes within it are counted together
+constexpr double kCoarseSteps = 200;   // of the run that finds the scales
+constexpr double kLeastShare = 1e-3;   // of the energy error for one step
+constexpr int kEnergyTries = 3;
+
+/// One run: the loop over stops, the steps between them, and what is kept about it.
+class Run {
+ public:
+  Run(const System& system, const TransientOptions& options, State& state,
+      const std::vector<Observer*>& observers)
+      : system_(system),
+        options_(options),
+        observers_(observers),
+        stepper_(make_stepper(system, options.scheme, step_options(options))),
+        equation_(stepper_->equation()),
+        located_(system, *stepper_) {
+    now_->state = std::move(state);
+    now_->state.t = options.t_start;
+    for (StepPoint& point : points_) make_room(point, system.size());
+    summary_.scheme = options.scheme.name;
+    summary_.step = options.step;
+    summary_.tolerance = options.tolerance;
+    locates_ = options.locate_contacts.value_or(options.tolerance > 0.0);
+    same_ = kSameTime * (options.step > 0.0 ? options.step : kLargestStep * duration());
+    if (options.tolerance > 0.0) set_control();
+  }
+
+  RunSummary run() {
+    stepper_->start(*now_);
+    EnergyMonitor energy(equation_.assembler(), *now_);
+    energy_ = &energy;
+    for (Observer* o : observers_) o->start(equation_.assembler(), *now_);
+    if (control_) control_->look_at(now_->state);
+    if (!now_->state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
+    while (running() && now_->state.t < options_.t_end) run_to_next_stop();
+    summary_.t_end = now_->state.t;
+    summary_.load_passes = equation_.load_passes();
+    summary_.factorizations += equation_.factorizations();
+    summary_.newton_on_contacts = equation_.dense_contacts();
+    summary_.solves = coarse_solves_ + equation_.solves();
+    summary_.energy = energy.balance();
+    if (equation_.clock().on()) {
+      equation_.clock().enter(Phase::observers);
+      const PhaseClock& clock = equation_.clock();
+      summary_.phases = {{"loads", clock.seconds(Phase::loads)},
+                         {"linear", clock.seconds(Phase::linear)},
+                         {"contacts", clock.seconds(Phase::contacts)},
+                         {"balance", clock.seconds(Phase::balance)},
+                         {"observers", clock.seconds(Phase::observers)}};
+    }
+    judge_energy(summary_, options_.energy_tolerance);
+    return summary_;
+  }
+
+  State take_state() { return std::move(now_->state); }
+
+  static StepOptions step_options(const TransientOptions& o) {
+    StepOptions options = o.newton;
+    options.varying_steps = o.tolerance > 0.0;
+    return options;
+  }
+
+ private:
+  bool running() const { return summary_.status == RunStatus::success; }
+  double duration() const { return options_.t_end - options_.t_start; }
+
+  void set_control() {
+    const StepScheme& scheme = options_.scheme;
+    double fastest = 0.0;
+    for (const std::complex<double>& lambda : fast_eigenvalues(system_))
+      fastest = std::max(fastest, std::abs(lambda));
+    StepControl::Options o{.tolerance = options_.tolerance,
+                           .duration = duration(),
+                           .largest = kLargestStep * duration(),
+                           .order = scheme.order(),
+                           .on_grid = !scheme.is_explicit()};
+    if (options_.step > 0.0) o.largest = options_.step;
+    o.largest = std::min(o.largest, stability_limit(system_, scheme));
+    o.first = o.largest;
+    if (options_.step == 0.0 && fastest > 0.0) o.first = std::min(o.first, kChosenStep / fastest);
+    // The embedded formulas of the methods of high order are one order lower.
+    if (scheme.tableau && scheme.tableau->e.size() > 0 && o.order > 2) --o.order;
+    control_.emplace(system_, o);
+    // Scales before there is any motion to measure them by.
+    class Coarse final : public Observer {
+     public:
+      explicit Coarse(StepControl& control) : control_(control) {}
+      void start(const Assembler&, const StepPoint& point) override { control_.expect(point.state); }
+      void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
+        control_.expect(to.state);
+      }
+
+     private:
+      StepControl& control_;
+    } coarse(*control_);
+    State state = now_->state;
+    const RunSummary run = simulate(system_,
+                                    {.scheme = bathe(),
+                                     .step = duration() / kCoarseSteps,
+                                     .t_start = options_.t_start,
+                                     .t_end = options_.t_end,
+                                     .newton = options_.newton},
+                                    state, {&coarse});
+    coarse_solves_ = run.solves;
+    energy_floor_ = StepControl::kExpected * run.energy.scale;
+    summary_.factorizations = run.factorizations;
+  }
+
+  void run_to_next_stop() {
+    const double t = now_->state.t;
+    const auto& breaks = system_.breakpoints();
+    const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
+    double stop = options_.t_end;
+    if (next_break != breaks.end()) stop = std::min(stop, *next_break);
+    if (!control_)
+      for (const Observer* o : observers_) {
+        const double wanted = o->next_stop(t);
+        if (wanted > t + same_) stop = std::min(stop, wanted);
+      }
+    // Stops that differ by rounding are one.
+    if (options_.t_end - stop <= same_) stop = options_.t_end;
+    const bool at_break = next_break != breaks.end() && *next_break - stop <= same_;
+    if (at_break) stop = *next_break;
+    if (control_ || locates_)
+      while (running() && now_->state.t < stop) free_step(stop, at_break);
+    else
+      constant_steps(stop, at_break);
+    if (at_break && running() && now_->state.t < options_.t_end) {
+      *next_ = *now_;
+      stepper_->start(*now_);
+      energy_->restart(*next_, *now_);
+    }
+  }
+
+  /// Just before a breakpoint the loads have their old values.
+  static double evaluation_time(double t, bool at_break) {
+    return at_break ? std::nextafter(t, -std::numeric_limits<double>::infinity()) : t;
+  }
+
+  void constant_steps(double stop, bool at_break) {
+    const double t = now_->state.t;
+    const double count = std::max(1.0, std::ceil((stop - t) / options_.step - 1e-6));
+    const double h = (stop - t) / count;
+    for (double i = 1.0; i <= count && running(); i += 1.0) {
+      const bool last = i == count;
+      const double t_new = last ? stop : t + i * h;
+      advance(h, t_new, evaluation_time(t_new, last && at_break), 0);
+    }
+  }
+
+  void advance(double h, double t_new, double t_evaluate, int depth) {
+    const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_);
+    summary_.iterations += result.iterations;
+    if (result.status == NewtonStatus::converged) return accept(h, t_evaluate);
+    if (depth == options_.max_halvings) return last_resort(result.status, h, t_new, t_evaluate);
+    ++summary_.halved;
+    const double middle = now_->state.t + 0.5 * h;
+    advance(0.5 * h, middle, middle, depth + 1);
+    if (running()) advance(0.5 * h, t_new, t_evaluate, depth + 1);
+  }
+
+  /// A step that no shortening makes solvable: a force that jumps is taken inside its jump; else the end.
+  void last_resort(NewtonStatus status, double h, double t_new, double t_evaluate) {
+    if (status == NewtonStatus::no_root) {
+      const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_, true);
+      summary_.iterations += result.iterations;
+      if (result.status == NewtonStatus::converged) {
+        summary_.fallbacks += result.inside_jump;
+        return accept(h, t_evaluate);
+      }
+      status = result.status;
+    }
+    if (status == NewtonStatus::not_finite) return fail(RunStatus::not_finite, to_text(status));
+    fail(RunStatus::no_convergence, std::string(to_text(status)) + " even with h = " + to_text(h) + " s");
+  }
+
+  /// A controlled step, or one that ends at a contact change, or both.
+  void free_step(double stop, bool at_break) {
+    const double remaining = stop - now_->state.t;
+    double h = control_ ? control_->next(remaining)
+                        : remaining / std::max(1.0, std::ceil(remaining / options_.step - 1e-6));
+    for (int i = 0; !control_ && i < failures_; ++i) h *= 0.5;
+    const bool whole = h == remaining;
+    const double t_new = whole ? stop : now_->state.t + h;
+    const double t_evaluate = evaluation_time(t_new, whole && at_break);
+    LocatedStep::Result made;
+    const bool standing = changes_here_ > 20 + 20 * static_cast<int>(system_.scalars().size());
+    if (locates_ && !standing) {
+      made = located_.step(*now_, h, t_new, t_evaluate, *next_);
+    } else {
+      made.newton = stepper_->step(*now_, h, t_new, t_evaluate, *next_);
+      made.h = h;
+    }
+    summary_.iterations += made.newton.iterations;
+    if (made.newton.status != NewtonStatus::converged) {
+      equation_.start_from(*now_);
+      if (failures_ == options_.max_halvings) {
+        failures_ = 0;
+        return last_resort(made.newton.status, h, t_new, t_evaluate);
+      }
+      ++failures_;
+      ++summary_.halved;
+      if (control_) control_->failed(h);
+      return;
+    }
+    if (made.h > 0.0) {
+      const bool cut = made.h != h;
+      const double t_end = cut ? next_->state.t : t_evaluate;
+      if (control_ && !passes(made.h, !cut && !whole)) return;
+      failures_ = 0;
+      if (made.h > kStanding * h) changes_here_ = 0;
+      accept(made.h, t_end);
+    }
+    if (made.reached && running()) pass(*made.reached, made.tau, stop);
+  }
+
+  /// Error and energy of a controlled step; rejects it if it does not pass.
+  bool passes(double h, bool as_planned) {
+    stepper_->estimate(*now_, *next_, h, e_z_, e_v_);
+    const double error = control_->error(next_->state, e_z_, e_v_, h);
+    // At a jump inside no step is short enough: the least one bounds what it adds.
+    const bool forced = !(error <= 1.0) && h <= kLeastStep * duration() && std::isfinite(error);
+    bool good = error <= 1.0 || forced;
+    if (!good) {
+      control_->rejected(h, error);
+    } else {
+      const EnergyBalance before = energy_->balance();
+      account(h);
+      const EnergyBalance& after = energy_->balance();
+      const double share = options_.energy_tolerance * std::max(after.scale, energy_floor_) *
+                           std::max(h / duration(), kLeastShare);
+      good = !(std::abs(after.imbalance - before.imbalance) > share) || energy_tries_ == kEnergyTries;
+      energy_->restore(before);
+      if (!good) ++energy_tries_, control_->shorten(h);
+    }
+    if (good) {
+      energy_tries_ = 0;
+      summary_.forced += forced;
+      control_->look_at(next_->state);
+      control_->accepted(h, error, as_planned);
+      return true;
+    }
+    ++summary_.rejected;
+    equation_.start_from(*now_);
+    if (h <= kLeastStep * duration() && !std::isfinite(error))
+      fail(RunStatus::not_finite, "the estimated error");
+    return false;
+  }
+
+  /// Over a contact change.
+  void pass(const ContactLocator::Crossing& crossing, double tau, double stop) {
+    ++changes_here_;
+    if (!(now_->state.t + 2.0 * tau < stop)) return pass_at_stop();
+    const double h = located_.hop(crossing, tau, *now_, *next_);
+    ++summary_.located;
+    energy_->step(*now_, *next_, h);
+    observe(h, next_->state.t);
+    std::swap(now_, next_);
+  }
+
+  /// A change within rounding of the stop: the step there is not located.
+  void pass_at_stop() { changes_here_ = std::numeric_limits<int>::max() / 2; }
+
+  /// Enters the step into the energy balance.
+  void account(double h) {
+    equation_.clock().enter(Phase::balance);
+    if (options_.scheme.tableau) {
+      const auto [input, dissipated] = step_energy_.over(equation_, *now_, *next_, h);
+      energy_->step(*next_, input, dissipated);
+    } else {
+      energy_->step(*now_, *next_, h);
+    }
+  }
+
+  /// Shows the step to the observers, controlled ones with the times wanted inside it.
+  void observe(double h, double t_evaluate) {
+    equation_.clock().enter(Phase::observers);
+    if (observers_.empty()) return;
+    Assembler& assembler = equation_.assembler();
+    const StepPoint* last = now_;
+    while (control_) {
+      double wanted = std::numeric_limits<double>::infinity();
+      for (const Observer* o : observers_)
+        if (const double t = o->next_stop(last->state.t); t > last->state.t) wanted = std::min(wanted, t);
+      if (!(wanted < next_->state.t)) break;
+      StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
+      StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
+          .at((wanted - now_->state.t) / h, point.state);
+      point.state.t = wanted;
+      assembler.set_time(wanted);
+      equation_.evaluate(now_->state.history, point);
+      for (Observer* o : observers_) o->step(assembler, *last, point);
+      last = &point;
+    }
+    assembler.set_time(t_evaluate);
+    for (Observer* o : observers_) o->step(assembler, *last, *next_);
+  }
+
+  void accept(double h, double t_evaluate) {
+    ++summary_.steps;
+    account(h);
+    if (!std::isfinite(energy_->balance().imbalance)) return not_finite();
+    observe(h, t_evaluate);
+    std::swap(now_, next_);
+    if (options_.progress && summary_.steps % kProgressSteps == 0 &&
+        !options_.progress((now_->state.t - options_.t_start) / duration()))
+      return fail(RunStatus::interrupted, "interrupted");
+    check_growth(summary_, system_.name(), now_->state.t, energy_->balance(), options_.energy_growth_limit);
+  }
+
+  /// A motion that is not finite has no energy.
+  void not_finite() {
+    for (int k = 0; k < system_.size(); ++k)
+      if (!std::isfinite(next_->state.z[k]) || !std::isfinite(next_->state.v[k]))
+        return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
+    fail(RunStatus::not_finite, "the energy");
+  }
+
+  void fail(RunStatus status, const std::string& what) {
+    end_run(summary_, system_.name(), now_->state.t, status, what);
+  }
+
+  const System& system_;
+  const TransientOptions& options_;
+  const std::vector<Observer*>& observers_;
+  std::unique_ptr<Stepper> stepper_;
+  StepEquation& equation_;
+  LocatedStep located_;
+  std::optional<StepControl> control_;
+  StepEnergy step_energy_;
+  StepPoint points_[2], inside_[2];
+  StepPoint *now_ = &points_[0], *next_ = &points_[1];
+  Vector e_z_, e_v_;
+  EnergyMonitor* energy_ = nullptr;
+  RunSummary summary_;
+  bool locates_ = false;
+  double same_ = 0.0;
+  long coarse_solves_ = 0;
+  double energy_floor_ = 0.0;  // J
+  int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;
+};
+
+}  // namespace
+
+void check_options(const System& system, const TransientOptions& o, const State& state) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/transient", findings);
+  const bool controlled = o.tolerance != 0.0;
+  if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
+  if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
+  check_span(o.t_start, o.t_end, check);
+  if (o.max_halvings < 0 || o.max_halvings > 40)
+    check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
+  check.positive("energy_tolerance", o.energy_tolerance, "");
+  check_state(system, state, check);
+  if (findings.empty() && !controlled) {
+    const double limit = stability_limit(system, o.scheme);
+    if (o.step > limit * (1.0 + 1e-9))
+      check.fail(
+          "step", to_text(o.step), "s",
+          "is above the stability limit of " + o.scheme.name + " for this system, " + to_text(limit) + " s");
+  }
+  if (!findings.empty()) throw ModelError(findings);
+}
+
+RunSummary simulate(const System& system, const TransientOptions& options, State& state,
+                    const std::vector<Observer*>& observers) {
+  check_options(system, options, state);
+  Run run(system, options, state, observers);
+  try {
+    RunSummary summary = run.run();
+    state = run.take_state();
+    return summary;
+  } catch (...) {  // a user's function threw: the last accepted state is not lost
+    state = run.take_state();
+    throw;
+  }
+}
+
+RunSummary simulate(const System& system, const TransientOptions& options,
+                    const std::vector<Observer*>& observers) {
+  State state = State::initial(system, options.t_start);
+  return simulate(system, options, state, observers);
+}
+
+}  // namespace drev

@@ -1,0 +1,262 @@
+// history.csv: exactly the times asked for, the library's own values, 17 digits; and what is left when
+// something goes wrong.
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "models/scene.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/transient.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::Process;
+using drev::test::read_file;
+using drev::test::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Table {
+  std::string header;
+  std::vector<std::vector<double>> rows;
+  std::size_t longest = 0;  ///< significant digits of the longest number
+};
+
+std::size_t significant_digits(const std::string& text) {
+  std::size_t digits = 0;
+  for (const char c : text.substr(0, text.find('e')))
+    if (c >= '0' && c <= '9' && (digits > 0 || c != '0')) ++digits;
+  return digits;
+}
+
+Table read_table(const std::filesystem::path& path) {
+  Table table;
+  std::istringstream file(read_file(path));
+  std::getline(file, table.header);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream cells(line);
+    table.rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      char* end = nullptr;
+      table.rows.back().push_back(std::strtod(cell.c_str(), &end));
+      CHECK(*end == '\0');
+      table.longest = std::max(table.longest, significant_digits(cell));
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("history.csv has the times asked for and the library's values") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> channels{"mass_2.velocity_m_per_s", "mass_1.position_m", "spring_1.force_N",
+                                          "mass_2-mass_1.distance_m"};
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=2.5", "--step", "0.001",
+                                 "--every", "0.017", "--out", (folder / "deep/result").string(), "--record",
+                                 "mass_2.velocity_m_per_s,mass_1.position_m", "--record",
+                                 "spring_1.force_N,mass_2-mass_1.distance_m"});
+  CHECK(run.exit_code == 0);
+  CHECK(contains(run.out, "every 0.017 s"));
+  const Table table = read_table(folder / "deep/result/history.csv");
+  CHECK(table.header ==
+        "time_s,mass_2.velocity_m_per_s,mass_1.position_m,spring_1.force_N,"
+        "mass_2-mass_1.distance_m");
+  CHECK(table.longest == 17);
+
+  const drev::SceneEntry& entry = drev::find_scene("two_mass_backlash");
+  drev::Settings settings(entry.name, entry.settings);
+  settings.set("duration_s", "2.5");
+  const drev::Scene scene = entry.build(settings);
+  const drev::System system = scene.model.build();
+  drev::Recorder recorder(system, channels, 0.017);
+  drev::simulate(system, {.step = 0.001, .t_end = 2.5}, {&recorder});
+  REQUIRE(table.rows.size() == 148);  // 0 to 147 * 0.017 = 2.499
+  REQUIRE(recorder.times().size() == table.rows.size());
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    REQUIRE(table.rows[k].size() == 1 + channels.size());
+    CHECK(table.rows[k][0] == static_cast<double>(k) * 0.017);
+    for (std::size_t c = 0; c < channels.size(); ++c) CHECK(table.rows[k][c + 1] == recorder.samples(c)[k]);
+  }
+  const Json summary = Json::parse(read_file(folder / "deep/result/summary.json"));
+  CHECK(summary.at("status") == "success");
+  CHECK_FALSE(std::filesystem::exists(folder / "deep/result/history.partial.csv"));
+}
+
+TEST_CASE("The default interval is a round number, and the last row is the end of the run") {
+  const TemporaryFolder folder;
+  const auto run =
+      drev_command({"run", "two_inertia", "--set", "duration_s=0.3", "--out", (folder / "r").string()});
+  CHECK(run.exit_code == 0);
+  CHECK(contains(run.out, "every 0.0002 s"));
+  const Table table = read_table(folder / "r/history.csv");
+  REQUIRE(table.rows.size() == 1501);
+  CHECK(table.rows.back()[0] == 1500 * 0.0002);
+  const drev::SceneEntry& entry = drev::find_scene("two_inertia");
+  for (const std::string& channel : entry.build(drev::Settings(entry.name, entry.settings)).channels)
+    CHECK(contains(table.header, "," + channel));
+}
+
+TEST_CASE("A file that cannot be written is refused before the run") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "file") << "x";
+  // A run that would take minutes: it must not start.
+  const auto run = drev_command(
+      {"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "file/below").string()});
+  CHECK(run.exit_code == 3);
+  CHECK(contains(run.err, "cannot write"));
+  CHECK(run.out.empty());
+  CHECK(drev_command({"run", "two_inertia", "--out", (folder / "file").string()}).exit_code == 3);
+}
+
+TEST_CASE("A full disk is an error, and the old result stays") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "r");
+  std::filesystem::create_symlink("/dev/full", folder / "r/history.partial.csv");
+  std::ofstream(folder / "r/history.csv") << "old\n";
+  SECTION("at the end") {
+    const auto run = drev_command({"run", "two_inertia", "--out", (folder / "r").string()});
+    CHECK(run.exit_code == 3);
+    CHECK(contains(run.err, "history.partial.csv: No space left on device"));
+  }
+  SECTION("on the way: the run is given up") {
+    const auto run = drev_command({"run", "camshaft", "--set", "duration_s=1000", "--every", "1e-5", "--out",
+                                   (folder / "r").string(), "--json"});
+    CHECK(run.exit_code == 3);
+    CHECK(contains(run.err, "No space left on device"));
+    CHECK(Json::parse(run.out).at("status") == "output_error");
+  }
+  CHECK(read_file(folder / "r/history.csv") == "old\n");
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.json"));
+}
+
+TEST_CASE("A history.h5 that does not fit on the disk leaves the rest") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "r");
+  std::filesystem::create_symlink("/dev/full", folder / "r/history.partial.h5");
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=0.1", "--out",
+                                 (folder / "r").string(), "--format", "hdf5"});
+  CHECK(run.exit_code == 3);
+  CHECK(contains(run.err, "history.partial.h5"));
+  CHECK(std::filesystem::exists(folder / "r/history.csv"));
+  CHECK(std::filesystem::exists(folder / "r/summary.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/history.h5"));
+}
+
+TEST_CASE("Standard output on a full disk is an error") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  CHECK(Process({"list"}, "/dev/full").wait().exit_code == 3);
+  CHECK(Process({"run", "two_inertia", "--json"}, "/dev/full").wait().exit_code == 3);
+}
+
+TEST_CASE("An interrupted run leaves what it had") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const TemporaryFolder folder;
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--out",
+                         (folder / "r").string(), "--json"});
+  // The file grows as the run goes.
+  const auto partial = folder / "r/history.partial.csv";
+  for (int i = 0; i < 1000; ++i) {
+    std::error_code missing;
+    if (std::filesystem::file_size(partial, missing) > 1000 && !missing) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  process.send(signal);
+  const auto run = process.wait();
+  CHECK(run.exit_code == 130);
+  CHECK(contains(run.err, "RUN INTERRUPTED"));
+  CHECK(contains(run.err, "history.partial.csv"));
+  CHECK(Json::parse(run.out).at("status") == "interrupted");
+  CHECK_FALSE(std::filesystem::exists(folder / "r/history.csv"));
+  const Table table = read_table(partial);
+  // 1000 bytes are five rows at least.
+  REQUIRE(table.rows.size() >= 5);
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    REQUIRE(table.rows[k].size() == table.rows[0].size());
+    REQUIRE(table.rows[k][0] == static_cast<double>(k) * 0.0001);
+  }
+}
+
+TEST_CASE("A killed run leaves a readable part that says so, beside the result before it") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto kill_one = [&](const std::string& channel) {
+    const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--record",
+                           channel, "--out", out});
+    for (int i = 0; i < 1000; ++i) {
+      std::error_code missing;
+      if (std::filesystem::file_size(folder / "r/history.partial.csv", missing) > 1000 && !missing) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    process.send(SIGKILL);
+    CHECK(process.wait().exit_code == -1);
+  };
+  const auto partial = [&] { return Json::parse(read_file(folder / "r/summary.partial.json")); };
+
+  kill_one("end.angle_rad");
+  CHECK(partial().at("status") == "running");
+  CHECK(contains(partial().at("reason"), "killed"));
+  CHECK(partial().at("model") == "camshaft");
+  CHECK(partial().at("settings").at("duration_s") == 10000);
+  CHECK(partial().at("record") == Json::array({"end.angle_rad"}));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.json"));
+  CHECK(read_table(folder / "r/history.partial.csv").rows.size() >= 5);
+  const auto refused = drev_command({"report", out, "--out", (folder / "a.html").string()});
+  CHECK(refused.exit_code == 2);
+  CHECK(contains(refused.err, "did not come to its end (running: " + out + "/summary.partial.json)"));
+
+  // The next run takes the leftovers' place.
+  CHECK(drev_command({"run", "two_inertia", "--out", out, "--format", "hdf5"}).exit_code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.partial.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/history.partial.csv"));
+  const std::string before = read_file(folder / "r/summary.json");
+  CHECK(Json::parse(before).at("status") == "success");
+
+  // One more that is killed leaves that result, and is not mistaken for it.
+  kill_one("fuel_1.angle_rad");
+  CHECK(read_file(folder / "r/summary.json") == before);
+  CHECK(partial().at("record") == Json::array({"fuel_1.angle_rad"}));
+  const auto report = drev_command({"report", out, "--out", (folder / "a.html").string()});
+  CHECK(report.exit_code == 0);
+  CHECK(contains(report.err, "is of an older run; the last run there did not come to its end (running"));
+
+  // A text that was being written when a process was killed is in nobody's way.
+  std::ofstream(folder / "r/summary.partial.json.next") << "{";
+  const auto last = drev_command({"run", "two_inertia", "--out", out});
+  CHECK(last.exit_code == 0);
+  CHECK(contains(last.err, "history.h5 is of an older run"));
+  CHECK_FALSE(std::filesystem::exists(folder / "r/summary.partial.json.next"));
+}
+
+TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::filesystem::create_symlink("/dev/full", folder / "r/summary.partial.json.next");
+  process.send(SIGTERM);
+  const auto run = process.wait();
+  CHECK(run.exit_code == 130);
+  CHECK(contains(run.err, "summary.partial.json: No space left on device"));
+  CHECK(Json::parse(read_file(folder / "r/summary.partial.json")).at("status") == "running");
+}
+
+TEST_CASE("Two runs do not write one file") {
+  const TemporaryFolder folder;
+  const Process first({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto second = drev_command({"run", "two_inertia", "--out", (folder / "r").string()});
+  first.send(SIGTERM);
+  CHECK(first.wait().exit_code == 130);
+  CHECK(second.exit_code == 3);
+  CHECK(contains(second.err, "another process is writing it"));
+}

@@ -1,0 +1,63 @@
+// Growth of small differences against closed forms and a published chaotic oscillator.
+#include "solvers/accuracy/error_growth.hpp"
+
+#include <cmath>
+
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "tests/catch.hpp"
+#include "tests/problems/chaotic_oscillator.hpp"
+
+using namespace drev;
+
+TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
+  Model m("damped");
+  m.add_node("m", NodeKind::translational);
+  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
+  m.add<GroundSpring>("spring", {"m"}, {.stiffness = 25.0});
+  m.add<Dashpot>("c", {"m"}, {.damping = 0.2});
+  m.set_initial("m", 1.0, 0.0);
+  const System system = m.build();
+  const Growth g = measure_growth(system, {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 200.0});
+  CHECK(g.status == RunStatus::success);
+  CHECK(g.t.size() == 400);
+  CHECK(std::abs(g.rate + 0.1) < 0.01);
+  CHECK(g.growth.back() < 3.0);
+  CHECK(g.time_of(10.0) == HUGE_VAL);
+}
+
+TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
+  // Published: 0.10947 a unit of time.
+  const Growth g = measure_growth(
+      chaotic_oscillator(),
+      {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 2000 * kTwoPi, .pieces = 4000});
+  CHECK(g.status == RunStatus::success);
+  CHECK(g.rate == Approx(0.10947).margin(std::max(0.003, 1.5 * g.rate_error)));
+  CHECK(g.rate_error < 0.01);
+  // 1e-12 grows to 0.05 after 31 to 41 periods.
+  const double periods = g.time_of(0.05 / 1e-12) / kTwoPi;
+  CHECK(periods > 25.0);
+  CHECK(periods < 50.0);
+}
+
+TEST_CASE("Growth: controlled steps, which differ for states that hardly do, give the exponent too") {
+  const Growth g = measure_growth(
+      chaotic_oscillator(),
+      {.method = {.name = "dormand_prince", .tolerance = 1e-4}, .t_end = 500 * kTwoPi, .pieces = 1000});
+  CHECK(g.status == RunStatus::success);
+  CHECK(g.rate == Approx(0.10947).margin(std::max(0.003, 1.5 * g.rate_error)));
+  CHECK(g.rate_error < 0.02);
+}
+
+TEST_CASE("Batch means: interval of independent samples") {
+  // 0, 1, 0, 1, ...: every batch of an even number has mean 1/2.
+  std::vector<double> even(400);
+  for (std::size_t i = 0; i < even.size(); ++i) even[i] = static_cast<double>(i % 2);
+  CHECK(batch_mean(even).mean == Approx(0.5));
+  CHECK(batch_mean(even).half_width == Approx(0.0).margin(1e-15));
+  // Two batches 1 and 3: mean 2, s / sqrt(2) = 1, t(1 degree) = 12.706.
+  const MeanInterval two = batch_mean({1.0, 3.0}, 2);
+  CHECK(two.mean == 2.0);
+  CHECK(two.half_width == Approx(12.706));
+  CHECK(std::isinf(batch_mean({1.0}).half_width));
+}

@@ -1,0 +1,154 @@
+/// Damped modes against closed forms.
+#include "solvers/modes/damped_modes.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "core/units.hpp"
+#include "elements/dashpot.hpp"
+#include "elements/gear_mesh.hpp"
+#include "elements/ground_spring.hpp"
+#include "elements/inertia.hpp"
+#include "elements/rayleigh_damping.hpp"
+#include "elements/shaft_spring.hpp"
+#include "solvers/modes/modes.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+Model free_chain(int n) {
+  Model model("chain");
+  for (int i = 0; i < n; ++i) {
+    const std::string node = "n" + std::to_string(i);
+    model.add_node(node);
+    model.add<Inertia>("J" + std::to_string(i), {node}, {.inertia = 0.5});
+    if (i > 0)
+      model.add<ShaftSpring>("k" + std::to_string(i), {"n" + std::to_string(i - 1), node},
+                             {.stiffness = 1000.0});
+  }
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("One oscillator, under- and overdamped", "[damped_modes]") {
+  const auto solve = [](double damping) {
+    Model model("oscillator");
+    model.add_node("n");
+    model.add<Inertia>("m", {"n"}, {.inertia = 1.6});
+    model.add<GroundSpring>("k", {"n"}, {.stiffness = 4000.0, .damping = damping});
+    return solve_damped_modes(model.build());
+  };
+  const DampedModeSet under = solve(8.0);
+  REQUIRE(under.modes.size() == 1);
+  CHECK(under.rigid_modes == 0);
+  CHECK(under.modes[0].lambda.real() == Approx(-2.5).epsilon(1e-14));
+  CHECK(under.modes[0].lambda.imag() == Approx(std::sqrt(2500.0 - 6.25)).epsilon(1e-14));
+  CHECK(under.modes[0].natural_frequency_Hz == Approx(50.0 / kTwoPi).epsilon(1e-14));
+  CHECK(under.modes[0].frequency_Hz == Approx(std::sqrt(2493.75) / kTwoPi).epsilon(1e-14));
+  CHECK(under.modes[0].damping_ratio == Approx(0.05).epsilon(1e-13));
+  CHECK(under.shapes(0, 0) == std::complex<double>(1.0, 0.0));
+
+  const DampedModeSet over = solve(200.0);  // xi = 1.25: lambda = 50 (-1.25 +- 0.75)
+  CHECK(over.modes.empty());
+  REQUIRE(over.real_lambda.size() == 2);
+  CHECK(over.real_lambda[0] == Approx(-25.0).epsilon(1e-13));
+  CHECK(over.real_lambda[1] == Approx(-100.0).epsilon(1e-13));
+}
+
+TEST_CASE("Rayleigh damping of a free chain: every mode's ratio", "[damped_modes]") {
+  const int n = 30;
+  const double a = 3.0, b = 2e-4;
+  Model model = free_chain(n);
+  model.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = a, .beta_stiffness = b});
+  const DampedModeSet set = solve_damped_modes(model.build());
+  CHECK(set.rigid_modes == 1);
+  REQUIRE(set.modes.size() == 29);
+  for (int j = 1; j < n; ++j) {
+    const double w = 2.0 * std::sqrt(2000.0) * std::sin(j * kPi / (2 * n));
+    const DampedMode& mode = set.modes[static_cast<std::size_t>(j - 1)];
+    CHECK(mode.natural_frequency_Hz == Approx(w / kTwoPi).epsilon(1e-11));
+    CHECK(mode.damping_ratio == Approx(a / (2 * w) + b * w / 2).epsilon(1e-11));
+  }
+  // the rigid-body motion's rate decays with a
+  REQUIRE(set.real_lambda.size() == 1);
+  CHECK(set.real_lambda[0] == Approx(-a).epsilon(1e-12));
+}
+
+TEST_CASE("A free chain without damping: the double zero does not split", "[damped_modes]") {
+  const DampedModeSet set = solve_damped_modes(free_chain(50).build());
+  CHECK(set.modes.size() == 49);
+  REQUIRE(set.real_lambda.size() == 1);
+  CHECK(std::abs(set.real_lambda[0]) < 1e-10);
+  for (const DampedMode& mode : set.modes) CHECK(std::abs(mode.damping_ratio) < 1e-12);
+}
+
+TEST_CASE("A dashpot that is not proportional", "[damped_modes]") {
+  // Two free discs J = 2 and 3, k = 600, dashpot c = 4 beside: relative motion with the reduced
+  // inertia 1.2; then a dashpot to ground on one disc: the characteristic polynomial by hand.
+  Model model("two discs");
+  model.add_node("a");
+  model.add_node("b");
+  model.add<Inertia>("Ja", {"a"}, {.inertia = 2.0});
+  model.add<Inertia>("Jb", {"b"}, {.inertia = 3.0});
+  model.add<ShaftSpring>("k", {"a", "b"}, {.stiffness = 600.0, .damping = 4.0});
+  const DampedModeSet relative = solve_damped_modes(model.build());
+  REQUIRE(relative.modes.size() == 1);
+  CHECK(relative.modes[0].lambda.real() == Approx(-4.0 / 2.4).epsilon(1e-13));
+  CHECK(std::abs(relative.modes[0].lambda) == Approx(std::sqrt(500.0)).epsilon(1e-13));
+
+  model.add<Dashpot>("drag", {"a"}, {.damping = 7.0});
+  const DampedModeSet dragged = solve_damped_modes(model.build());
+  CHECK(dragged.rigid_modes == 1);
+  REQUIRE(dragged.modes.size() == 1);
+  REQUIRE(dragged.real_lambda.size() == 1);
+  for (const std::complex<double> l :
+       {dragged.modes[0].lambda, std::complex<double>(dragged.real_lambda[0])}) {
+    const std::complex<double> shaft = 600.0 + 4.0 * l;
+    // determinant over l: (2 l^2 + 7 l + s)(3 l^2 + s) - s^2 = l [6 l^3 + 21 l^2 + 5 s l + 7 s]
+    const std::complex<double> rest = 6.0 * l * l * l + 21.0 * l * l + 5.0 * shaft * l + 7.0 * shaft;
+    CHECK(std::abs(rest) < 1e-11 * 7.0 * 600.0 * 500.0);
+  }
+}
+
+TEST_CASE("Closed contacts bring their damping, open ones do not", "[damped_modes]") {
+  Model model("mesh");
+  model.add_node("a");
+  model.add_node("b");
+  model.add<Inertia>("Ja", {"a"}, {.inertia = 0.01});
+  model.add<Inertia>("Jb", {"b"}, {.inertia = 0.04});
+  model.add<GearMesh>("mesh", {"a", "b"},
+                      {.base_radius_1 = 0.05,
+                       .base_radius_2 = 0.1,
+                       .stiffness = 1e8,
+                       .normal_backlash = 1e-4,
+                       .damping = 2000.0});
+  const System system = model.build();
+  const DampedModeSet closed = solve_damped_modes(system);
+  REQUIRE(closed.modes.size() == 1);
+  // 1/m = 0.05^2/0.01 + 0.1^2/0.04 = 0.5: w^2 = k/2, xi = c/(2 m w)
+  const double w = std::sqrt(0.5e8);
+  CHECK(std::abs(closed.modes[0].lambda) == Approx(w).epsilon(1e-13));
+  CHECK(closed.modes[0].damping_ratio == Approx(2000.0 / (4.0 * w)).epsilon(1e-11));
+  const DampedModeSet open = solve_damped_modes(system, {.contact = Contact::open});
+  CHECK(open.rigid_modes == 2);
+  CHECK(open.modes.empty());
+  CHECK(open.real_lambda == std::vector<double>{0.0, 0.0});
+}
+
+TEST_CASE("Undamped frequencies are those of solve_modes; the limit is kept", "[damped_modes]") {
+  const System system = free_chain(20).build();
+  const DampedModeSet damped = solve_damped_modes(system);
+  const ModeSet modes = solve_modes(system, {.count = 19});
+  for (int j = 0; j < 19; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    CHECK(damped.modes[i].frequency_Hz == Approx(modes.frequency_Hz[i]).epsilon(1e-11));
+    const Vector shape = modes.shapes.col(j) / modes.shapes.col(j).cwiseAbs().maxCoeff();
+    const Vector other = damped.shapes.col(j).real();
+    CHECK(std::min((shape - other).norm(), (shape + other).norm()) < 1e-9);
+    CHECK(damped.shapes.col(j).imag().norm() < 1e-9);
+  }
+  CHECK_THROWS_AS(solve_damped_modes(system, {.size_limit = 19}), ModelError);
+}

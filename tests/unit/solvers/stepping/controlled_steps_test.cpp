@@ -1,0 +1,153 @@
+// Steps controlled by their estimated error: the estimate against the true local error, the tolerance
+// against the true error, outputs between steps, stops, energy.
+#include <cmath>
+
+#include "core/system.hpp"
+#include "core/units.hpp"
+#include "elements/catalogue.hpp"
+#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
+#include "solvers/run/recorder.hpp"
+#include "solvers/stepping/stability_limit.hpp"
+#include "solvers/stepping/stepper.hpp"
+#include "solvers/stepping/transient.hpp"
+#include "tests/catch.hpp"
+#include "tests/problems/unit_oscillator.hpp"
+#include "tests/published/read_csv.hpp"
+
+using namespace drev;
+
+TEST_CASE("The estimate is the true local error on smooth steps") {
+  // u = cos 2 pi t from t = 0.1: one step against the closed form. Methods with an embedded formula of lower
+  // order estimate that formula's error; there the estimate must be no smaller than the method's own.
+  const System system = unit_oscillator().build();
+  struct Expected {
+    const char* method;
+    double h;
+    bool own;  // estimates the method's own error
+  };
+  for (const Expected& e : {Expected{"average_acceleration", 0.008, true}, Expected{"bathe:0.8", 0.008, true},
+                            Expected{"tr_bdf2", 0.008, true}, Expected{"rk4", 0.01, true},
+                            Expected{"sdirk4", 0.02, false}, Expected{"dormand_prince", 0.03, false}}) {
+    INFO(e.method);
+    const auto stepper = make_stepper(system, step_scheme(e.method), {});
+    StepPoint from, to;
+    from.state = State::initial(system, 0.1);
+    from.state.z[0] = std::cos(kTwoPi * 0.1);
+    from.state.v[0] = -kTwoPi * std::sin(kTwoPi * 0.1);
+    stepper->start(from);
+    const double t = 0.1 + e.h;
+    REQUIRE(stepper->step(from, e.h, t, t, to).status == NewtonStatus::converged);
+    Vector e_z, e_v;
+    stepper->estimate(from, to, e.h, e_z, e_v);
+    const double true_z = to.state.z[0] - std::cos(kTwoPi * t);
+    const double true_v = to.state.v[0] + kTwoPi * std::sin(kTwoPi * t);
+    if (e.own) {
+      CHECK(e_z[0] / true_z == Approx(1.0).margin(0.07));
+      CHECK(e_v[0] / true_v == Approx(1.0).margin(0.07));
+    } else {
+      CHECK(std::abs(e_z[0]) > std::abs(true_z));
+      CHECK(std::abs(e_v[0]) > std::abs(true_v));
+    }
+  }
+}
+
+TEST_CASE("Controlled steps: the error of case B at 2 s stays below the tolerance and falls with it") {
+  // Exact curve in extended precision (published/data); two contact changes up to 2 s.
+  Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
+  s.set("k_1_N_per_m", "2000");
+  s.set("k_2_N_per_m", "1000");
+  s.set("half_gap_1_m", "0.05");
+  s.set("half_gap_2_m", "0.03");
+  const System system = two_mass_backlash_entry().build(s).model.build();
+  Vector exact(2);
+  for (const auto& row : read_csv("case_B_100N.csv"))
+    if (std::stod(row[0]) == 2.0) exact << std::stod(row[1]), std::stod(row[2]);
+  for (const char* method : {"average_acceleration", "hht:0.1", "generalized_alpha:0.8", "bathe:0.8",
+                             "tr_bdf2", "sdirk4", "rk4", "dormand_prince", "central_difference"}) {
+    double last = 0.0;
+    for (const double tolerance : {1e-3, 1e-4}) {
+      State state = State::initial(system);
+      const RunSummary run =
+          simulate(system, {.scheme = step_scheme(method), .tolerance = tolerance, .t_end = 2.0}, state);
+      const double error = (state.z - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>();
+      INFO(method << ", tolerance " << tolerance << ": " << error << ", " << run.brief_report());
+      CHECK(run.ok());
+      CHECK(run.located == 2);
+      CHECK(run.fallbacks == 0);
+      CHECK(error < tolerance);
+      CHECK(run.rejected < 20 + run.steps / 50);
+      if (last > 0.0) CHECK(error < 0.3 * last);
+      last = error;
+    }
+  }
+}
+
+TEST_CASE("Controlled steps: outputs between them have the method's order, stops are hit") {
+  Model m = unit_oscillator();
+  m.set_initial("m", 1.0, 0.0);
+  m.add<AppliedTorque>("none", {"m"}, {.torque = [](double) { return 0.0; }, .breakpoints = {0.3}});
+  const System system = m.build();
+  for (const char* method : {"generalized_alpha:0.8", "tr_bdf2", "sdirk4", "dormand_prince"}) {
+    Recorder r(system, {"m.position_m", "m.velocity_m_per_s"}, 0.0333);
+    const RunSummary run =
+        simulate(system, {.scheme = step_scheme(method), .tolerance = 1e-5, .t_end = 2.0}, {&r});
+    INFO(method << ": " << run.brief_report());
+    CHECK(run.ok());
+    REQUIRE(r.times().size() == 61);
+    for (std::size_t i = 0; i < r.times().size(); ++i) {
+      CHECK(r.times()[i] == static_cast<double>(i) * 0.0333);
+      CHECK(r.samples(0)[i] == Approx(std::cos(kTwoPi * r.times()[i])).margin(2e-5));
+      CHECK(r.samples(1)[i] == Approx(-kTwoPi * std::sin(kTwoPi * r.times()[i])).margin(2e-4));
+    }
+  }
+}
+
+TEST_CASE("Controlled steps: a part 10^4 times as fast that hardly moves does not fix the steps of sdirk4") {
+  // A light mass on a stiff spring rides on an oscillator of 1 Hz. Explicit steps would be bounded by it.
+  Model m = unit_oscillator();
+  m.add_node("light", NodeKind::translational);
+  m.add<Inertia>("light mass", {"light"}, {.inertia = 1e-4});
+  m.add<ShaftSpring>("stiff", {"m", "light"}, {.stiffness = 4e5, .damping = 0.4});
+  m.set_initial("m", 1.0, 0.0);
+  m.set_initial("light", 1.0, 0.0);
+  const System system = m.build();
+  State state = State::initial(system);
+  const RunSummary run =
+      simulate(system, {.scheme = step_scheme("sdirk4"), .tolerance = 1e-3, .t_end = 2.0}, state);
+  INFO(run.brief_report());
+  CHECK(run.ok());
+  CHECK(state.z[0] == Approx(1.0).margin(3e-3));  // period raised by the light mass, 1 + 5e-5
+  CHECK(static_cast<double>(run.steps) < 0.1 * 2.0 / stability_limit(system, step_scheme("rk4")));
+}
+
+TEST_CASE("A force that jumps at an unknown time is passed, and said") {
+  // A load that jumps without a breakpoint: no step over it is short enough for its share of the tolerance.
+  Model m = unit_oscillator();
+  m.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return t < 0.37 ? 0.0 : 1.0; }});
+  const System system = m.build();
+  for (const char* method : {"average_acceleration", "tr_bdf2", "rk4", "dormand_prince"}) {
+    State state = State::initial(system);
+    const RunSummary run =
+        simulate(system, {.scheme = step_scheme(method), .tolerance = 1e-4, .t_end = 1.0}, state);
+    INFO(method << ": " << run.brief_report());
+    CHECK(run.ok());
+    CHECK(run.forced >= 1);
+    CHECK(run.forced < 20);
+    const double static_z = 1.0 / (kTwoPi * kTwoPi);
+    CHECK(state.z[0] == Approx(static_z * (1 - std::cos(kTwoPi * 0.63))).margin(1e-3 * static_z));
+  }
+}
+
+TEST_CASE("A tolerance whose share of a step is below rounding does not end the run") {
+  // Average acceleration asks for h = (12 tolerance/(T w^3))^(1/2) = 7e-8 s: a share of 7e-21 of the rate.
+  const System system = unit_oscillator().build();
+  State state = State::initial(system);
+  state.v[0] = 1.0;
+  const RunSummary run = simulate(
+      system,
+      {.tolerance = 1e-11, .t_end = 100.0, .progress = [calls = 0](double) mutable { return ++calls < 20; }},
+      state);
+  INFO(run.brief_report());
+  CHECK(run.status == RunStatus::interrupted);
+  CHECK(state.v[0] == Approx(std::cos(kTwoPi * state.t)).epsilon(1e-11));
+}
