@@ -25,21 +25,21 @@ constexpr double kSteadyPart = 0.2;
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Time of the turn after which the loads repeat themselves; 0: not known.
-double turn_time(const Scene& scene, const System& system) {
+double turn_time(const ModelCase& model_case, const System& system) {
   const auto& reference = system.reference();
-  if (!reference || !(scene.static_turn > 0.0)) return 0.0;
-  const double speed = std::abs(reference->at(scene.duration).rate);
-  return speed > 0.0 ? scene.static_turn / speed : 0.0;
+  if (!reference || !(model_case.static_turn > 0.0)) return 0.0;
+  const double speed = std::abs(reference->at(model_case.duration).rate);
+  return speed > 0.0 ? model_case.static_turn / speed : 0.0;
 }
 
 class Ladder {
  public:
-  Ladder(const Scene& scene, const AdviseOptions& options)
-      : scene_(scene),
+  Ladder(const ModelCase& model_case, const AdviseOptions& options)
+      : scene_(model_case),
         options_(options),
-        full_(scene.model.build()),
+        full_(model_case.model.build()),
         evidence_(full_),
-        figure_(figure_options(scene, full_, options)) {
+        figure_(figure_options(model_case, full_, options)) {
     figure_.watch = evidence_.channels();
   }
 
@@ -271,7 +271,7 @@ class Ladder {
     advice_.sentence = evidence_.sentence(advice_);
   }
 
-  const Scene& scene_;
+  const ModelCase& scene_;
   const AdviseOptions& options_;
   System full_;
   Evidence evidence_;
@@ -283,25 +283,26 @@ class Ladder {
 
 }  // namespace
 
-FigureOptions figure_options(const Scene& scene, const System& system, const AdviseOptions& options) {
+FigureOptions figure_options(const ModelCase& model_case, const System& system,
+                             const AdviseOptions& options) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/advise", findings);
   check.within("within", options.within, 1e-4, 0.5, "");
-  FigureOptions figure{.t_end = scene.duration,
-                       .step = std::min(scene.default_step, scene.duration),
+  FigureOptions figure{.t_end = model_case.duration,
+                       .step = std::min(model_case.default_step, model_case.duration),
                        .accuracy = kAccuracy * options.within};
   std::string text = options.figure;
   if (text.starts_with("steady ")) {
     text = text.substr(7);
-    const double turns = kSteadyTurns * turn_time(scene, system);
-    const double last = turns > 0.0 ? turns : kSteadyPart * scene.duration;
-    figure.from = scene.duration - std::min(last, 0.5 * scene.duration);
+    const double turns = kSteadyTurns * turn_time(model_case, system);
+    const double last = turns > 0.0 ? turns : kSteadyPart * model_case.duration;
+    figure.from = model_case.duration - std::min(last, 0.5 * model_case.duration);
   }
   const std::string channel = text.starts_with("peak ") ? text.substr(5) : text;
-  if (text == "peak deflection" && !scene.deflection.empty())
-    figure.channels = {scene.deflection};
-  else if (text == "peak torque" && !scene.torques.empty())
-    figure.channels = scene.torques;
+  if (text == "peak deflection" && !model_case.deflection.empty())
+    figure.channels = {model_case.deflection};
+  else if (text == "peak torque" && !model_case.torques.empty())
+    figure.channels = model_case.torques;
   else if (channel.find('.') != std::string::npos)
     figure.channels = {channel};
   else
@@ -313,6 +314,8 @@ FigureOptions figure_options(const Scene& scene, const System& system, const Adv
   return figure;
 }
 
-Advice advise(const Scene& scene, const AdviseOptions& options) { return Ladder(scene, options).run(); }
+Advice advise(const ModelCase& model_case, const AdviseOptions& options) {
+  return Ladder(model_case, options).run();
+}
 
 }  // namespace drev

@@ -6,23 +6,23 @@
 ///               distributed ones; for figures of the steady state the periodic response in place of a run
 ///
 /// Promise of a rung that holds:  |figure - figure of the full model| <= within |figure of the full model|,
-/// with the errors of both figures counted against it. Of a scene whose runs depend on the last digit of
+/// with the errors of both figures counted against it. Of a model case whose runs depend on the last digit of
 /// their start the errors are the intervals that hold a single run in 95 % of all cases.
 ///
 /// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
-/// does so for this scene and this figure (docs/fidelity.md).
+/// does so for this model case and this figure (docs/fidelity.md).
 #include <string>
 #include <vector>
 
 #include "advice/recipe.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev {
 
 struct AdviseOptions {
-  /// "peak deflection", "peak torque" (the scene's), "peak CHANNEL"; "steady peak ..." counts the last turns
-  /// only: two of the scene's static_turn, or the last fifth of the run.
+  /// "peak deflection", "peak torque" (the model case's), "peak CHANNEL"; "steady peak ..." counts the last turns
+  /// only: two of the model case's static_turn, or the last fifth of the run.
   std::string figure = "peak deflection";
   double within = 0.02;  ///< relative, 1e-4 to 0.5
 };
@@ -51,10 +51,10 @@ struct Advice {
   const Rung& full() const { return rungs.back(); }
 };
 
-/// What the figure counts, in the names of the scene's model. Throws ModelError for one that cannot be.
-FigureOptions figure_options(const Scene& scene, const System& system, const AdviseOptions& options);
+/// What the figure counts, in the names of the model case's model. Throws ModelError for one that cannot be.
+FigureOptions figure_options(const ModelCase& model_case, const System& system, const AdviseOptions& options);
 
 /// Throws ModelError for a figure or limit that cannot be, SolverError where the full model cannot be run.
-Advice advise(const Scene& scene, const AdviseOptions& options);
+Advice advise(const ModelCase& model_case, const AdviseOptions& options);
 
 }  // namespace drev

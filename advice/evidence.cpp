@@ -34,7 +34,7 @@ std::string percent(double part) { return number(100.0 * part, "%.2g") + " %"; }
 Evidence::Evidence(const System& system) : system_(system), flanks_(flanks_at_start(system)) {
   const std::vector<Channel> all = all_channels(system);
   for (const Channel& c : all)
-    if (c.force_of() >= 0 && system.scalars()[at(c.force_of())].force->gap()) channels_.push_back(c.name());
+    if (c.force_of() >= 0 && system.scalars()[idx(c.force_of())].force->gap()) channels_.push_back(c.name());
 }
 
 std::string Evidence::contacts(const std::vector<Peak>& forces) const {
@@ -69,7 +69,7 @@ std::string Evidence::parametric() const {
   if (f.size() > kModes) f.resize(kModes);
   std::string text;
   for (const ScalarTerm& term : system_.scalars()) {
-    const Placement& p = system_.placements()[at(index(term.element))];
+    const ElementInstance& p = system_.element_instances()[idx(index(term.element))];
     const auto* mesh = dynamic_cast<const GearMesh*>(p.element.get());
     if (mesh == nullptr || !mesh->params().stiffness.varies()) continue;
     const double tooth = to_hz(mesh->params().teeth_1 * std::abs(system_.ratio(term.phase_node)) * speed);

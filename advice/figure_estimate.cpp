@@ -31,11 +31,11 @@ class FigureWatch final : public Observer {
  public:
   FigureWatch(const System& system, const FigureOptions& o)
       : peak_(find_channels(system, o.channels)), from_(o.from) {}
-  void start(const Assembler& assembler, const StepPoint& point) override {
+  void start(const Assembler& assembler, const EvaluatedState& point) override {
     begun_ = point.state.t >= from_;
     if (begun_) peak_.start(assembler, point);
   }
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override {
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
     if (begun_) return peak_.step(assembler, from, to);
     begun_ = to.state.t >= from_;
     if (begun_) peak_.start(assembler, to);

@@ -17,16 +17,16 @@ namespace {
 
 using ElementPtr = std::shared_ptr<const Element>;
 
-std::vector<std::string> names_of(const Model& model, const Placement& p) {
+std::vector<std::string> names_of(const Model& model, const ElementInstance& p) {
   std::vector<std::string> names;
   for (const NodeRef& ref : p.nodes) names.push_back(model.name_of(ref));
   return names;
 }
 
 /// Adds elements that stand for one of the model's.
-using Place = std::function<void(Model& to, const Placement&, const std::vector<NodeRef>& nodes)>;
+using Place = std::function<void(Model& to, const ElementInstance&, const std::vector<NodeRef>& nodes)>;
 
-void place_same(Model& to, const Placement& p, const std::vector<NodeRef>& nodes) {
+void place_same(Model& to, const ElementInstance& p, const std::vector<NodeRef>& nodes) {
   to.add(p.name, nodes, p.element);
 }
 
@@ -34,14 +34,14 @@ void place_same(Model& to, const Placement& p, const std::vector<NodeRef>& nodes
 Model copy(const Model& model, const Place& place, const std::set<std::string>& gone = {}) {
   Model to(model.name());
   std::set<std::string> internal;
-  for (const Placement& p : model.placements())
-    for (const NodeId id : p.internal) internal.insert(model.node_names().at(at(index(id))));
+  for (const ElementInstance& p : model.element_instances())
+    for (const NodeId id : p.internal) internal.insert(model.node_names().at(idx(index(id))));
   const auto& names = model.node_names();
   for (std::size_t i = 0; i < names.size(); ++i)
     if (!internal.contains(names[i]) && !gone.contains(names[i]))
       to.add_node(names[i], model.node_kinds()[i]);
   const auto is_gone = [&](const std::string& name) { return gone.contains(name); };
-  for (const Placement& p : model.placements()) {
+  for (const ElementInstance& p : model.element_instances()) {
     const std::vector<std::string> nodes = names_of(model, p);
     if (std::none_of(nodes.begin(), nodes.end(), is_gone)) place(to, p, {nodes.begin(), nodes.end()});
   }
@@ -75,7 +75,7 @@ Starts starts_of(const Model& model) {
   Starts starts;
   for (int i = 0; i < system.node_count(); ++i) {
     const MotionPoint p = assembler.node_motion(i, state);
-    starts[system.node_names()[at(i)]] = {p.value, p.rate};
+    starts[system.node_names()[idx(i)]] = {p.value, p.rate};
   }
   return starts;
 }
@@ -84,29 +84,29 @@ Starts starts_of(const Model& model) {
 void set_starts(Model& to, const Starts& starts) {
   if (starts.empty()) return;
   const System system = to.build();
-  std::vector<bool> set(at(system.size()), false);
+  std::vector<bool> set(idx(system.size()), false);
   for (int i = 0; i < system.node_count(); ++i) {
     const int unknown = system.node_map(i).unknown;
-    const auto start = starts.find(system.node_names()[at(i)]);
-    if (unknown < 0 || start == starts.end() || set[at(unknown)]) continue;
-    set[at(unknown)] = true;
+    const auto start = starts.find(system.node_names()[idx(i)]);
+    if (unknown < 0 || start == starts.end() || set[idx(unknown)]) continue;
+    set[idx(unknown)] = true;
     to.set_initial(start->first, start->second.q, start->second.v);
   }
 }
 
 /// Parts of the model that the elements with `ties` hold together, per node.
 std::vector<int> parts_of(const Model& model, const System& system,
-                          const std::function<bool(const Placement&)>& ties) {
-  std::vector<Closure> closures;
-  for (const Placement& p : model.placements()) {
+                          const std::function<bool(const ElementInstance&)>& ties) {
+  std::vector<Closure> speed_ratio_constraints;
+  for (const ElementInstance& p : model.element_instances()) {
     if (!ties(p)) continue;
     std::vector<int> nodes;
     for (const NodeRef& ref : p.nodes) nodes.push_back(system.node_of(ref));
     for (const NodeId id : p.internal) nodes.push_back(index(id));
     for (std::size_t k = 1; k < nodes.size(); ++k)
-      closures.push_back({.first = nodes[0], .second = nodes[k]});
+      speed_ratio_constraints.push_back({.first = nodes[0], .second = nodes[k]});
   }
-  return connected_components(system.node_count(), closures, true);
+  return connected_components(system.node_count(), speed_ratio_constraints, true);
 }
 
 double turning(const System& system, int node) {
@@ -116,19 +116,20 @@ double turning(const System& system, int node) {
 
 /// Turns a part as a rigid body, so that `node` starts at q, v.
 void turn_part(const System& system, const std::vector<int>& part, int node, Start to, Starts& starts) {
-  const Start from = starts.at(system.node_names()[at(node)]);
+  const Start from = starts.at(system.node_names()[idx(node)]);
   for (int i = 0; i < system.node_count(); ++i) {
-    if (part[at(i)] != part[at(node)]) continue;
+    if (part[idx(i)] != part[idx(node)]) continue;
     const double n = turning(system, i) / turning(system, node);
-    Start& start = starts.at(system.node_names()[at(i)]);
+    Start& start = starts.at(system.node_names()[idx(i)]);
     start.q += n * (to.q - from.q), start.v += n * (to.v - from.v);
   }
 }
 
 /// The copy in which `change` replaces elements (null: left as they are); nothing if it replaces none.
-std::optional<Model> replace(const Model& model, const std::function<ElementPtr(const Placement&)>& change) {
+std::optional<Model> replace(const Model& model,
+                             const std::function<ElementPtr(const ElementInstance&)>& change) {
   bool any = false;
-  Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
+  Model to = copy(model, [&](Model& m, const ElementInstance& p, const std::vector<NodeRef>& nodes) {
     const ElementPtr changed = change(p);
     any |= changed != nullptr;
     m.add(p.name, nodes, changed ? changed : p.element);
@@ -139,7 +140,7 @@ std::optional<Model> replace(const Model& model, const std::function<ElementPtr(
 }
 
 template <class E>
-const E* as(const Placement& p) {
+const E* as(const ElementInstance& p) {
   return dynamic_cast<const E*>(p.element.get());
 }
 
@@ -179,13 +180,15 @@ Flanks flanks_at_start(const System& system) {
     const auto gap = term.force->gap();
     if (!gap) continue;
     const double x = assembler.input(term, state.z, state.v).x;
-    flanks[system.placements()[at(index(term.element))].name] = x >= gap->high ? 1 : x <= gap->low ? -1 : 0;
+    flanks[system.element_instances()[idx(index(term.element))].name] = x >= gap->high  ? 1
+                                                                        : x <= gap->low ? -1
+                                                                                        : 0;
   }
   return flanks;
 }
 
 std::optional<Model> without_backlash(const Model& model, const Flanks& flanks) {
-  return replace(model, [&](const Placement& p) -> ElementPtr {
+  return replace(model, [&](const ElementInstance& p) -> ElementPtr {
     const auto found = flanks.find(p.name);
     const int flank = found == flanks.end() ? 0 : found->second;
     if (const auto* mesh = as<GearMesh>(p); mesh != nullptr && gapped(*mesh)) {
@@ -203,7 +206,7 @@ std::optional<Model> without_backlash(const Model& model, const Flanks& flanks) 
 }
 
 std::optional<Model> with_mean_stiffness(const Model& model) {
-  return replace(model, [](const Placement& p) -> ElementPtr {
+  return replace(model, [](const ElementInstance& p) -> ElementPtr {
     const auto* mesh = as<GearMesh>(p);
     if (mesh == nullptr || !mesh->params().stiffness.varies()) return nullptr;
     GearMesh::Params params = mesh->params();
@@ -213,14 +216,14 @@ std::optional<Model> with_mean_stiffness(const Model& model) {
 }
 
 std::optional<Model> with_rigid_meshes(const Model& model) {
-  const auto is_mesh = [](const Placement& p) { return as<GearMesh>(p) != nullptr; };
-  if (std::none_of(model.placements().begin(), model.placements().end(), is_mesh)) return {};
-  const auto ratio_of = [](const Placement& p) {
+  const auto is_mesh = [](const ElementInstance& p) { return as<GearMesh>(p) != nullptr; };
+  if (std::none_of(model.element_instances().begin(), model.element_instances().end(), is_mesh)) return {};
+  const auto ratio_of = [](const ElementInstance& p) {
     const GearMesh& mesh = *as<GearMesh>(p);
     const double ratio = mesh.base_radius_1() / mesh.base_radius_2();
     return mesh.params().internal ? ratio : -ratio;
   };
-  Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
+  Model to = copy(model, [&](Model& m, const ElementInstance& p, const std::vector<NodeRef>& nodes) {
     if (!is_mesh(p)) return place_same(m, p, nodes);
     m.add(p.name, nodes, std::make_shared<const IdealGear>(IdealGear::Params{.ratio = ratio_of(p)}));
   });
@@ -228,21 +231,22 @@ std::optional<Model> with_rigid_meshes(const Model& model) {
   if (starts.empty()) return to;
   // What the meshes' compliance and gaps had turned, part by part from what is driven.
   const System system = model.build();
-  const std::vector<int> part = parts_of(model, system, [&](const Placement& p) { return !is_mesh(p); });
+  const std::vector<int> part =
+      parts_of(model, system, [&](const ElementInstance& p) { return !is_mesh(p); });
   std::set<int> settled;
-  for (const int node : driven_nodes(model, system)) settled.insert(part[at(node)]);
+  for (const int node : driven_nodes(model, system)) settled.insert(part[idx(node)]);
   if (settled.empty()) settled.insert(part.front());
   for (bool going_on = true; going_on;) {
     going_on = false;
-    for (const Placement& p : model.placements()) {
+    for (const ElementInstance& p : model.element_instances()) {
       if (!is_mesh(p)) continue;
       int a = system.node_of(p.nodes[0]), b = system.node_of(p.nodes[1]);
       double ratio = ratio_of(p);
-      if (settled.contains(part[at(a)]) == settled.contains(part[at(b)])) continue;
-      if (settled.contains(part[at(b)])) std::swap(a, b), ratio = 1.0 / ratio;
-      const Start from = starts.at(system.node_names()[at(a)]);
+      if (settled.contains(part[idx(a)]) == settled.contains(part[idx(b)])) continue;
+      if (settled.contains(part[idx(b)])) std::swap(a, b), ratio = 1.0 / ratio;
+      const Start from = starts.at(system.node_names()[idx(a)]);
       turn_part(system, part, b, {ratio * from.q, ratio * from.v}, starts);
-      settled.insert(part[at(b)]);
+      settled.insert(part[idx(b)]);
       going_on = true;
     }
   }
@@ -259,7 +263,7 @@ std::vector<std::string> nodes_of(const Model& model, const std::vector<std::str
     for (std::size_t cut = name.find('-'); cut != std::string::npos; cut = name.find('-', cut + 1))
       if (nodes.contains(name.substr(0, cut)) && nodes.contains(name.substr(cut + 1)))
         found.insert({name.substr(0, cut), name.substr(cut + 1)});
-    for (const Placement& p : model.placements())
+    for (const ElementInstance& p : model.element_instances())
       if (name == p.name || (p.element->internal_nodes() > 0 && name.starts_with(p.name + "_")))
         for (const std::string& node : names_of(model, p)) found.insert(node);
   }
@@ -273,21 +277,21 @@ std::optional<Model> with_drive_held(const Model& model, const std::vector<std::
 
   std::set<std::string> best;
   int held = -1;
-  for (std::size_t cut = 0; cut < model.placements().size(); ++cut) {
-    if (as<GearMesh>(model.placements()[cut]) == nullptr) continue;
-    const std::vector<int> part =
-        parts_of(model, system, [&](const Placement& p) { return &p != &model.placements()[cut]; });
-    const int kept = part[at(system.node(wanted.front()))];
-    const auto inside = [&](int node) { return part[at(node)] == kept; };
+  for (std::size_t cut = 0; cut < model.element_instances().size(); ++cut) {
+    if (as<GearMesh>(model.element_instances()[cut]) == nullptr) continue;
+    const std::vector<int> part = parts_of(
+        model, system, [&](const ElementInstance& p) { return &p != &model.element_instances()[cut]; });
+    const int kept = part[idx(system.node(wanted.front()))];
+    const auto inside = [&](int node) { return part[idx(node)] == kept; };
     const bool all_wanted = std::all_of(wanted.begin(), wanted.end(),
                                         [&](const std::string& node) { return inside(system.node(node)); });
     if (!all_wanted || std::any_of(driven.begin(), driven.end(), inside)) continue;
-    const std::vector<std::string> ends = names_of(model, model.placements()[cut]);
+    const std::vector<std::string> ends = names_of(model, model.element_instances()[cut]);
     const int a = system.node(ends[0]), b = system.node(ends[1]);
     if (inside(a) == inside(b)) continue;
     std::set<std::string> gone;
     for (int i = 0; i < system.node_count(); ++i)
-      if (!inside(i)) gone.insert(system.node_names()[at(i)]);
+      if (!inside(i)) gone.insert(system.node_names()[idx(i)]);
     if (gone.size() <= best.size()) continue;
     best = std::move(gone);
     held = inside(a) ? a : b;
@@ -295,7 +299,7 @@ std::optional<Model> with_drive_held(const Model& model, const std::vector<std::
   if (held < 0) return {};
 
   Model to = copy(model, place_same, best);
-  const std::string& node = system.node_names()[at(held)];
+  const std::string& node = system.node_names()[idx(held)];
   to.hold(node);
   if (system.reference()) {
     const double ratio = system.ratio(held);
@@ -307,7 +311,7 @@ std::optional<Model> with_drive_held(const Model& model, const std::vector<std::
     to.set_reference(node, std::move(motion));
   }
   if (Starts starts = starts_of(model); !starts.empty()) {
-    turn_part(system, std::vector<int>(at(system.node_count()), 0), held, {}, starts);
+    turn_part(system, std::vector<int>(idx(system.node_count()), 0), held, {}, starts);
     set_starts(to, starts);
   }
   return to;
@@ -322,7 +326,7 @@ std::string torque_of(const std::string& shaft, int segment) {
 }
 
 /// Its node at a position from 0 to `segments`.
-std::string node_at(const Model& model, const Placement& p, int position, int segments) {
+std::string node_at(const Model& model, const ElementInstance& p, int position, int segments) {
   if (position == 0) return model.name_of(p.nodes[0]);
   if (position == segments) return model.name_of(p.nodes[1]);
   return p.name + "_" + std::to_string(position);
@@ -336,7 +340,7 @@ std::optional<RenamedModel> with_coarser_shafts(const Model& model, int finest) 
   const Starts before = starts_of(model);
   Starts starts = before;
   std::map<std::string, std::string> renamed;
-  Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
+  Model to = copy(model, [&](Model& m, const ElementInstance& p, const std::vector<NodeRef>& nodes) {
     const auto* shaft = as<DistributedShaft>(p);
     if (shaft == nullptr || shaft->params().segments == 1) return place_same(m, p, nodes);
     DistributedShaft::Params params = shaft->params();
@@ -363,7 +367,7 @@ std::optional<RenamedModel> with_coarser_shafts(const Model& model, int finest) 
 
 std::optional<RenamedModel> with_lumped_shafts(const Model& model) {
   std::map<std::string, std::string> renamed;
-  Model to = copy(model, [&](Model& m, const Placement& p, const std::vector<NodeRef>& nodes) {
+  Model to = copy(model, [&](Model& m, const ElementInstance& p, const std::vector<NodeRef>& nodes) {
     const auto* shaft = as<DistributedShaft>(p);
     if (shaft == nullptr || !has_inertia(*shaft)) return place_same(m, p, nodes);
     const int n = shaft->params().segments;
@@ -382,7 +386,7 @@ std::optional<RenamedModel> with_lumped_shafts(const Model& model) {
 
 int finest_shaft(const Model& model) {
   int finest = 0;
-  for (const Placement& p : model.placements())
+  for (const ElementInstance& p : model.element_instances())
     if (const auto* shaft = as<DistributedShaft>(p); shaft != nullptr && has_inertia(*shaft))
       finest = std::max(finest, shaft->params().segments);
   return finest;

@@ -56,7 +56,7 @@ void Assembler::external_of_motions(Vector& p) const {
   if (system_.any_prescribed_moves()) {
     const MatrixSet& zu = system_.coupling_zu();
     for (int k = 0; k < system_.prescribed_count(); ++k) {
-      const MotionPoint& u = u_[at(k)];
+      const MotionPoint& u = u_[idx(k)];
       for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it) p[it.row()] -= it.value() * u.acceleration;
       for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) p[it.row()] -= it.value() * u.rate;
       for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it) p[it.row()] -= it.value() * u.value;
@@ -67,7 +67,7 @@ void Assembler::external_of_motions(Vector& p) const {
 void Assembler::external_known(Vector& p) const {
   external_of_motions(p);
   for (const int l : system_.known_loads()) {
-    const LoadTerm& term = system_.loads()[at(l)];
+    const LoadTerm& term = system_.loads()[idx(l)];
     add_torque(system_.node_map(term.node),
                load(term, system_.initial_deviation(), system_.initial_rate()).torque, p);
   }
@@ -101,15 +101,15 @@ void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
   p = known_;
   if (tables) add_tables(z, p);
   for (const int l : system_.moving_loads()) {
-    const LoadTerm& term = system_.loads()[at(l)];
+    const LoadTerm& term = system_.loads()[idx(l)];
     add_torque(system_.node_map(term.node), load(term, z, v).torque, p);
   }
 }
 
 void Assembler::add_given(const ScalarTerm& term, ScalarInput& in) const {
   for (const Entry& e : term.u) {
-    in.x += e.coeff * u_[at(e.index)].value;
-    in.x_dot += e.coeff * u_[at(e.index)].rate;
+    in.x += e.coeff * u_[idx(e.index)].value;
+    in.x_dot += e.coeff * u_[idx(e.index)].rate;
   }
   if (term.phase_node < 0) return;
   const double n = system_.ratio(term.phase_node);
@@ -146,8 +146,8 @@ LocalResponse Assembler::respond(const GeneralTerm& g, const Vector& z, const Ve
   for (Eigen::Index i = 0; i < n; ++i) {
     const NodeMap& map = system_.node_map(g.nodes[static_cast<std::size_t>(i)]);
     const bool free = map.unknown >= 0;
-    local.q[i] = map.coeff * (free ? z[map.unknown] : u_[at(map.prescribed)].value);
-    local.v[i] = map.coeff * (free ? v[map.unknown] : u_[at(map.prescribed)].rate);
+    local.q[i] = map.coeff * (free ? z[map.unknown] : u_[idx(map.prescribed)].value);
+    local.v[i] = map.coeff * (free ? v[map.unknown] : u_[idx(map.prescribed)].rate);
   }
   local.history = {history.data() + g.history_begin, size};
   LocalResponse r;

@@ -27,7 +27,7 @@ class Assembler {
   void stand_at_angle(double phi);
   double time() const { return t_; }
   const MotionPoint& nominal() const { return nominal_; }
-  const MotionPoint& prescribed(int k) const { return u_[at(k)]; }
+  const MotionPoint& prescribed(int k) const { return u_[idx(k)]; }
 
   /// Deviation, its rate and acceleration of a node.
   MotionPoint node_motion(int node, const State& s) const;
@@ -102,7 +102,7 @@ class Assembler {
   /// coeff times this is the node's deviation, or its rate with v for z.
   double over_coeff(const NodeMap& map, const Vector& z, double MotionPoint::*known) const {
     if (map.unknown >= 0) return z[map.unknown];
-    return map.row < 0 ? u_[at(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
+    return map.row < 0 ? u_[idx(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
   }
   void add_tables(const Vector& z, Vector& p) const;
   void external_known(Vector& p) const;  // the part of p that is the same for all motions

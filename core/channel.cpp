@@ -24,7 +24,7 @@ class ChannelFinder {
     }
     for (std::size_t j = 0; j < system.scalars().size(); ++j) {
       const ScalarTerm& s = system.scalars()[j];
-      const Placement& p = system.placements()[at(index(s.element))];
+      const ElementInstance& p = system.element_instances()[idx(index(s.element))];
       const bool turns = !s.along_line_of_action && rotational(s.nodes.front().index);
       add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force, static_cast<int>(j),
           s.along_line_of_action);
@@ -88,7 +88,7 @@ class ChannelFinder {
     const auto add_node = [&](std::vector<Entry>& row, int node, double coeff) {
       for (const Entry& e : system_.row_of(node)) row.push_back({e.index, coeff * e.coeff});
       const int known = system_.node_map(node).prescribed;
-      if (known >= 0 && system_.prescribed()[at(known)].at) c.direct_ = false;  // it moves by itself
+      if (known >= 0 && system_.prescribed()[idx(known)].at) c.direct_ = false;  // it moves by itself
     };
     const auto add_row = [&](const std::vector<Entry>& nodes, std::vector<Entry>& row,
                              std::vector<Entry>& known) {
@@ -114,7 +114,7 @@ class ChannelFinder {
   }
   void add_node(int i) {
     using Kind = Channel::Kind;
-    const std::string& name = system_.node_names()[at(i)];
+    const std::string& name = system_.node_names()[idx(i)];
     const bool turns = rotational(i);
     add(name + (turns ? ".angle_rad" : ".position_m"), turns ? "rad" : "m", Kind::value, i);
     add(name + (turns ? ".speed_rad_per_s" : ".velocity_m_per_s"), turns ? "rad/s" : "m/s", Kind::rate, i);
@@ -129,7 +129,7 @@ class ChannelFinder {
   static std::string deflection_name(bool turns) { return turns ? ".deflection_rad" : ".deflection_m"; }
   static std::string deflection_unit(bool turns) { return turns ? "rad" : "m"; }
   bool rotational(int node) const { return system_.node_kind(node) == NodeKind::rotational; }
-  std::string element(ElementId id) const { return system_.placements()[at(index(id))].name; }
+  std::string element(ElementId id) const { return system_.element_instances()[idx(index(id))].name; }
   int node(const std::string& name) const {
     const auto& names = system_.node_names();
     const auto found = std::find(names.begin(), names.end(), name);
@@ -170,8 +170,8 @@ double ideal_ratio_torque(const Assembler& assembler, const State& s, int which)
   const System& system = assembler.system();
   Vector r = node_residual(assembler, s);
   std::vector<bool> done(system.ideal_ratios().size(), false);
-  std::vector<int> degree(at(system.node_count()), 0);
-  for (const IdealRatio& c : system.ideal_ratios()) ++degree[at(c.first)], ++degree[at(c.second)];
+  std::vector<int> degree(idx(system.node_count()), 0);
+  for (const IdealRatio& c : system.ideal_ratios()) ++degree[idx(c.first)], ++degree[idx(c.second)];
   for (std::size_t round = 0; round < done.size(); ++round)
     for (std::size_t i = 0; i < done.size(); ++i) {
       if (done[i]) continue;
@@ -180,15 +180,15 @@ double ideal_ratio_torque(const Assembler& assembler, const State& s, int which)
         const NodeMap& m = system.node_map(node);
         return m.prescribed >= 0 && system.prescribed_node(m.prescribed) == node;
       };
-      const bool leaf_second = degree[at(c.second)] == 1 && !is_prescribed(c.second);
-      const bool leaf_first = degree[at(c.first)] == 1 && !is_prescribed(c.first);
+      const bool leaf_second = degree[idx(c.second)] == 1 && !is_prescribed(c.second);
+      const bool leaf_first = degree[idx(c.first)] == 1 && !is_prescribed(c.first);
       if (!leaf_second && !leaf_first) continue;
       // b lambda + r = 0 at the leaf.
       const double lambda = leaf_second ? -r[c.second] / c.b_second : -r[c.first] / c.b_first;
       if (static_cast<int>(i) == which) return -lambda * c.b_second;
       r[c.first] += c.b_first * lambda;
       r[c.second] += c.b_second * lambda;
-      --degree[at(c.first)], --degree[at(c.second)];
+      --degree[idx(c.first)], --degree[idx(c.second)];
       done[i] = true;
     }
   return 0.0;
@@ -230,7 +230,7 @@ double reaction(const Assembler& assembler, const State& s, int k) {
 
 std::optional<double> Channel::rate(const Assembler& assembler, const State& state) const {
   if (kind_ == Kind::force) {
-    const ScalarTerm& term = assembler.system().scalars()[at(index_)];
+    const ScalarTerm& term = assembler.system().scalars()[idx(index_)];
     const ScalarInput in = assembler.input(term, state.z, state.v);
     const ScalarResponse r = term.force->evaluate(in);
     double x_dot_dot = 0.0;
@@ -276,11 +276,11 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
       return y;
     }
     case Kind::force:
-      return assembler.respond(system.scalars()[at(index_)], state.z, state.v).y;
+      return assembler.respond(system.scalars()[idx(index_)], state.z, state.v).y;
     case Kind::deflection:
-      return assembler.input(system.scalars()[at(index_)], state.z, state.v).x;
+      return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x;
     case Kind::load:
-      return assembler.load(system.loads()[at(index_)], state.z, state.v).torque;
+      return assembler.load(system.loads()[idx(index_)], state.z, state.v).torque;
     case Kind::ideal_ratio:
       return ideal_ratio_torque(assembler, state, index_);
   }

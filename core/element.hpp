@@ -32,7 +32,7 @@ struct LoadSpec {
 
 /// b^T n = 0: what the element asks of the nominal ratios n of its nodes, at most two of them. With
 /// one entry the node stands still nominally (it is tied to ground).
-struct ClosureSpec {
+struct SpeedRatioConstraint {
   LocalRow b;
   bool only_in_contact = false;  ///< no tie while the contact is open
 };
@@ -55,7 +55,7 @@ struct Terms {
   std::vector<ScalarSpec> scalars;
   std::vector<LoadSpec> loads;
   std::vector<const GeneralForce*> generals;
-  std::vector<ClosureSpec> closures;
+  std::vector<SpeedRatioConstraint> speed_ratio_constraints;
   /// Rows with b^T q = 0 exactly: ideal ratios, eliminated.
   std::vector<LocalRow> constraints;
   std::vector<OutputSpec> outputs;

@@ -10,7 +10,7 @@ namespace drev {
 /// One thing that is wrong: where, which parameter, its value and unit, and what is admissible.
 struct Finding {
   std::string place;      ///< model, element or node, e.g. "camshaft/mesh_1"
-  std::string parameter;  ///< as the API or the setting spells it; empty if none applies
+  std::string parameter;  ///< as the API or the parameter spells it; empty if none applies
   std::string value;      ///< as given, e.g. "-0.0001"
   std::string unit;       ///< SI unit, e.g. "m"; empty if it has none
   std::string range;      ///< what is admissible, e.g. "must be >= 0"

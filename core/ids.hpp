@@ -10,6 +10,6 @@ enum class ElementId : int {};  ///< position of an element in its Model, from 0
 constexpr int index(NodeId id) { return static_cast<int>(id); }
 constexpr int index(ElementId id) { return static_cast<int>(id); }
 /// Signed index into a std container (avoids sign conversions at every call).
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t idx(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace drev

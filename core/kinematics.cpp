@@ -18,17 +18,17 @@ struct Edges {
   std::vector<int> begin, closure;
 };
 
-Edges edges_of(int nodes, const std::vector<Closure>& closures) {
-  Edges e{std::vector<int>(at(nodes + 1), 0), {}};
-  for (const Closure& c : closures)
-    if (c.second >= 0) ++e.begin[at(c.first + 1)], ++e.begin[at(c.second + 1)];
+Edges edges_of(int nodes, const std::vector<Closure>& speed_ratio_constraints) {
+  Edges e{std::vector<int>(idx(nodes + 1), 0), {}};
+  for (const Closure& c : speed_ratio_constraints)
+    if (c.second >= 0) ++e.begin[idx(c.first + 1)], ++e.begin[idx(c.second + 1)];
   std::partial_sum(e.begin.begin(), e.begin.end(), e.begin.begin());
-  e.closure.resize(at(e.begin.back()));
+  e.closure.resize(idx(e.begin.back()));
   std::vector<int> next(e.begin.begin(), e.begin.end() - 1);
-  for (std::size_t c = 0; c < closures.size(); ++c) {
-    if (closures[c].second < 0) continue;
-    e.closure[at(next[at(closures[c].first)]++)] = static_cast<int>(c);
-    e.closure[at(next[at(closures[c].second)]++)] = static_cast<int>(c);
+  for (std::size_t c = 0; c < speed_ratio_constraints.size(); ++c) {
+    if (speed_ratio_constraints[c].second < 0) continue;
+    e.closure[idx(next[idx(speed_ratio_constraints[c].first)]++)] = static_cast<int>(c);
+    e.closure[idx(next[idx(speed_ratio_constraints[c].second)]++)] = static_cast<int>(c);
   }
   return e;
 }
@@ -38,19 +38,21 @@ struct Walk {
   std::vector<int> parent, parent_closure;
 };
 
-std::string loop_text(const Walk& walk, const std::vector<Placement>& placements,
-                      const std::vector<Closure>& closures, int a, int b, int closing) {
+std::string loop_text(const Walk& walk, const std::vector<ElementInstance>& element_instances,
+                      const std::vector<Closure>& speed_ratio_constraints, int a, int b, int closing) {
   // Elements on the tree paths from a and b to their common ancestor, then the closing element.
   std::vector<int> up_a, up_b;
-  for (int i = a; i >= 0; i = walk.parent[at(i)]) up_a.push_back(i);
-  for (int i = b; i >= 0; i = walk.parent[at(i)]) up_b.push_back(i);
+  for (int i = a; i >= 0; i = walk.parent[idx(i)]) up_a.push_back(i);
+  for (int i = b; i >= 0; i = walk.parent[idx(i)]) up_b.push_back(i);
   while (up_a.size() > 1 && up_b.size() > 1 && up_a[up_a.size() - 2] == up_b[up_b.size() - 2]) {
     up_a.pop_back();
     up_b.pop_back();
   }
-  const auto name = [&](int closure) { return placements[at(closures[at(closure)].element)].name; };
+  const auto name = [&](int closure) {
+    return element_instances[idx(speed_ratio_constraints[idx(closure)].element)].name;
+  };
   std::vector<std::string> names{name(closing)};
-  const auto name_above = [&](int node) { return name(walk.parent_closure[at(node)]); };
+  const auto name_above = [&](int node) { return name(walk.parent_closure[idx(node)]); };
   for (std::size_t i = 0; i + 1 < up_b.size(); ++i) names.push_back(name_above(up_b[i]));
   for (std::size_t i = up_a.size() - 1; i-- > 0;) names.push_back(name_above(up_a[i]));
   std::string text;
@@ -60,86 +62,89 @@ std::string loop_text(const Walk& walk, const std::vector<Placement>& placements
 
 }  // namespace
 
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures, bool with_contacts) {
-  std::vector<int> root(at(nodes));
+std::vector<int> connected_components(int nodes, const std::vector<Closure>& speed_ratio_constraints,
+                                      bool with_contacts) {
+  std::vector<int> root(idx(nodes));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int i) {
-    while (root[at(i)] != i) i = root[at(i)] = root[at(root[at(i)])];
+    while (root[idx(i)] != i) i = root[idx(i)] = root[idx(root[idx(i)])];
     return i;
   };
-  for (const Closure& c : closures)
+  for (const Closure& c : speed_ratio_constraints)
     if (c.second >= 0 && (with_contacts || !c.only_in_contact)) {
       const int a = find(c.first), b = find(c.second);
-      root[at(std::max(a, b))] = std::min(a, b);
+      root[idx(std::max(a, b))] = std::min(a, b);
     }
-  std::vector<int> component(at(nodes)), number(at(nodes), -1);
+  std::vector<int> component(idx(nodes)), number(idx(nodes), -1);
   int next = 0;
   for (int i = 0; i < nodes; ++i) {
-    int& n = number[at(find(i))];
+    int& n = number[idx(find(i))];
     if (n < 0) n = next++;
-    component[at(i)] = n;
+    component[idx(i)] = n;
   }
   return component;
 }
 
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
-                       const std::vector<Placement>& placements, const std::vector<Closure>& closures,
-                       int reference, std::vector<Finding>& findings) {
+                       const std::vector<ElementInstance>& element_instances,
+                       const std::vector<Closure>& speed_ratio_constraints, int reference,
+                       std::vector<Finding>& findings) {
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
-  k.component = connected_components(nodes, closures, true);
-  k.ratio.assign(at(nodes), 0.0);
-  const Edges edges = edges_of(nodes, closures);
+  k.component = connected_components(nodes, speed_ratio_constraints, true);
+  k.ratio.assign(idx(nodes), 0.0);
+  const Edges edges = edges_of(nodes, speed_ratio_constraints);
 
-  Walk walk{std::vector<double>(at(nodes), 0.0), std::vector<int>(at(nodes), -1),
-            std::vector<int>(at(nodes), -1)};
-  std::vector<bool> seen(at(nodes), false), reported(closures.size(), false);
+  Walk walk{std::vector<double>(idx(nodes), 0.0), std::vector<int>(idx(nodes), -1),
+            std::vector<int>(idx(nodes), -1)};
+  std::vector<bool> seen(idx(nodes), false), reported(speed_ratio_constraints.size(), false);
   const auto walk_from = [&](int start, double ratio) {
     std::queue<int> queue;
     queue.push(start);
-    seen[at(start)] = true;
-    walk.relative[at(start)] = ratio;
+    seen[idx(start)] = true;
+    walk.relative[idx(start)] = ratio;
     while (!queue.empty()) {
       const int i = queue.front();
       queue.pop();
-      for (int e = edges.begin[at(i)]; e < edges.begin[at(i + 1)]; ++e) {
-        const int c = edges.closure[at(e)];
-        const Closure& row = closures[at(c)];
+      for (int e = edges.begin[idx(i)]; e < edges.begin[idx(i + 1)]; ++e) {
+        const int c = edges.closure[idx(e)];
+        const Closure& row = speed_ratio_constraints[idx(c)];
         const bool forward = row.first == i;
         const int to = forward ? row.second : row.first;
         const double factor = -row.b_first / row.b_second;
-        const double n = (forward ? factor : 1.0 / factor) * walk.relative[at(i)];
-        const double known = walk.relative[at(to)];
-        if (!seen[at(to)]) {
-          seen[at(to)] = true;
-          walk.relative[at(to)] = n;
-          walk.parent[at(to)] = i;
-          walk.parent_closure[at(to)] = c;
+        const double n = (forward ? factor : 1.0 / factor) * walk.relative[idx(i)];
+        const double known = walk.relative[idx(to)];
+        if (!seen[idx(to)]) {
+          seen[idx(to)] = true;
+          walk.relative[idx(to)] = n;
+          walk.parent[idx(to)] = i;
+          walk.parent_closure[idx(to)] = c;
           queue.push(to);
         } else if (std::abs(n - known) > kRatioTolerance * std::max(std::abs(n), std::abs(known)) &&
-                   !reported[at(c)]) {
-          reported[at(c)] = true;
-          findings.push_back(
-              {model + "/" + placements[at(row.element)].name, "nominal ratio of " + node_names[at(to)],
-               to_text(n), "",
-               "but the rest of the loop gives " + to_text(known) +
-                   "; this loop cannot turn: " + loop_text(walk, placements, closures, i, to, c)});
+                   !reported[idx(c)]) {
+          reported[idx(c)] = true;
+          findings.push_back({model + "/" + element_instances[idx(row.element)].name,
+                              "nominal ratio of " + node_names[idx(to)], to_text(n), "",
+                              "but the rest of the loop gives " + to_text(known) +
+                                  "; this loop cannot turn: " +
+                                  loop_text(walk, element_instances, speed_ratio_constraints, i, to, c)});
         }
       }
     }
   };
   if (reference >= 0) walk_from(reference, 1.0);
   for (int i = 0; i < nodes; ++i)
-    if (!seen[at(i)]) walk_from(i, 1.0);
+    if (!seen[idx(i)]) walk_from(i, 1.0);
 
   if (reference < 0) return k;
-  const int moving = k.component[at(reference)];
+  const int moving = k.component[idx(reference)];
   for (int i = 0; i < nodes; ++i)
-    if (k.component[at(i)] == moving) k.ratio[at(i)] = walk.relative[at(i)];
-  for (const Closure& row : closures)
-    if (row.second < 0 && k.component[at(row.first)] == moving)
-      findings.push_back({model + "/" + placements[at(row.element)].name, "node", node_names[at(row.first)],
-                          "", "turns with the reference shaft and cannot be tied to ground by a spring"});
+    if (k.component[idx(i)] == moving) k.ratio[idx(i)] = walk.relative[idx(i)];
+  for (const Closure& row : speed_ratio_constraints)
+    if (row.second < 0 && k.component[idx(row.first)] == moving)
+      findings.push_back({model + "/" + element_instances[idx(row.element)].name, "node",
+                          node_names[idx(row.first)], "",
+                          "turns with the reference shaft and cannot be tied to ground by a spring"});
   return k;
 }
 

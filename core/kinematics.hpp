@@ -1,5 +1,5 @@
 #pragma once
-/// Nominal kinematics: theta_i = n_i phi(t) + q_i. The ratios n follow from the closures b^T n = 0 of
+/// Nominal kinematics: theta_i = n_i phi(t) + q_i. The ratios n follow from the speed_ratio_constraints b^T n = 0 of
 /// shafts, meshes and ideal gears, walked as a graph from the reference node. A loop whose ratios
 /// contradict each other cannot turn and is an error that names the loop.
 #include <string>
@@ -26,13 +26,15 @@ struct Kinematics {
 
 /// Finds the ratios; reports contradicting loops and reference motion of grounded parts.
 /// reference < 0: nothing moves nominally and all ratios are 0.
-/// model: its name; placements: for the names of the elements.
+/// model: its name; element_instances: for the names of the elements.
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
-                       const std::vector<Placement>& placements, const std::vector<Closure>& closures,
-                       int reference, std::vector<Finding>& findings);
+                       const std::vector<ElementInstance>& element_instances,
+                       const std::vector<Closure>& speed_ratio_constraints, int reference,
+                       std::vector<Finding>& findings);
 
-/// Components of the graph of nodes under the closures; those only_in_contact are left out if
+/// Components of the graph of nodes under the speed_ratio_constraints; those only_in_contact are left out if
 /// with_contacts is false. Returns the component of each node, numbered from 0.
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& closures, bool with_contacts);
+std::vector<int> connected_components(int nodes, const std::vector<Closure>& speed_ratio_constraints,
+                                      bool with_contacts);
 
 }  // namespace drev

@@ -27,7 +27,8 @@ class LawElement final : public Element {
   }
   void describe(int nodes, Terms& terms) const override {
     terms.scalars.push_back({.b = relative_motion(nodes), .force = &force_});
-    terms.closures.push_back({.b = relative_motion(nodes), .only_in_contact = force_.gap().has_value()});
+    terms.speed_ratio_constraints.push_back(
+        {.b = relative_motion(nodes), .only_in_contact = force_.gap().has_value()});
   }
 
  private:

@@ -40,8 +40,8 @@ ElementId Model::place(std::string name, NodeList nodes, std::shared_ptr<const E
   const NodeRange internal{static_cast<int>(node_names_->size()),
                            element ? std::max(0, element->internal_nodes()) : 0};
   for (int i = 1; i <= internal.count; ++i) add_node(name + "_" + std::to_string(i));
-  own(placements_).push_back({std::move(name), std::move(element), std::move(nodes), internal});
-  return ElementId{static_cast<int>(placements_->size()) - 1};
+  own(element_instances_).push_back({std::move(name), std::move(element), std::move(nodes), internal});
+  return ElementId{static_cast<int>(element_instances_->size()) - 1};
 }
 
 void Model::hold(NodeRef node) { prescriptions_.push_back({std::move(node), {}, {}}); }

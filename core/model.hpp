@@ -51,7 +51,7 @@ class NodeList {
   NodeList& operator=(NodeList other) noexcept;
 
   int size() const { return given_ ? static_cast<int>(given_->size()) : (ids_[0] >= 0) + (ids_[1] >= 0); }
-  NodeRef operator[](int i) const { return given_ ? (*given_)[at(i)] : NodeRef(NodeId{ids_[at(i)]}); }
+  NodeRef operator[](int i) const { return given_ ? (*given_)[idx(i)] : NodeRef(NodeId{ids_[idx(i)]}); }
   NodeRef front() const { return (*this)[0]; }
   ByPosition<NodeList> begin() const { return {this, 0}; }
   ByPosition<NodeList> end() const { return {this, size()}; }
@@ -71,7 +71,7 @@ struct NodeRange {
 };
 
 /// One element in its place.
-struct Placement {
+struct ElementInstance {
   std::string name;
   std::shared_ptr<const Element> element;
   NodeList nodes;
@@ -127,7 +127,7 @@ class Model {
     return ref.id ? node_names_->at(static_cast<std::size_t>(*ref.id)) : ref.name;
   }
   const std::vector<NodeKind>& node_kinds() const { return node_kinds_; }
-  const std::vector<Placement>& placements() const { return *placements_; }
+  const std::vector<ElementInstance>& element_instances() const { return *element_instances_; }
   const std::vector<Prescription>& prescriptions() const { return prescriptions_; }
   const std::vector<Initial>& initials() const { return initials_; }
   const std::vector<std::pair<NodeRef, Motion>>& references() const { return references_; }
@@ -145,7 +145,8 @@ class Model {
   std::string name_;
   std::shared_ptr<std::vector<std::string>> node_names_ = std::make_shared<std::vector<std::string>>();
   std::vector<NodeKind> node_kinds_;
-  std::shared_ptr<std::vector<Placement>> placements_ = std::make_shared<std::vector<Placement>>();
+  std::shared_ptr<std::vector<ElementInstance>> element_instances_ =
+      std::make_shared<std::vector<ElementInstance>>();
   std::vector<Prescription> prescriptions_;
   std::vector<Initial> initials_;
   std::vector<std::pair<NodeRef, Motion>> references_;

@@ -19,13 +19,13 @@ class NameIndex {
             const std::function<void(int, bool)>& entered = {})
       : name_of_(std::move(name_of)) {
     std::size_t size = 4;
-    while (size < 2 * at(count)) size *= 2;
+    while (size < 2 * idx(count)) size *= 2;
     table_.resize(size);
     // The table lies outside the caches: its places are called for some names ahead.
     constexpr int kAhead = 16;
     std::array<std::uint32_t, kAhead> hashes{};
     for (int i = -kAhead; i < count; ++i) {
-      std::uint32_t& hash = hashes[at(i + kAhead) % kAhead];
+      std::uint32_t& hash = hashes[idx(i + kAhead) % kAhead];
       if (i >= 0) {
         const bool first = insert(i, hash);
         if (entered) entered(i, first);

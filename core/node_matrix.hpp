@@ -12,8 +12,8 @@ class NodeMatrix {
   /// Adds value at (i, j) and, for i != j, at (j, i).
   void add(int i, int j, double value) {
     if (i != j) return pairs_.push_back({i, j, value});
-    if (diagonal_.size() <= at(i)) diagonal_.resize(at(i + 1));
-    diagonal_[at(i)] += value;
+    if (diagonal_.size() <= idx(i)) diagonal_.resize(idx(i + 1));
+    diagonal_[idx(i)] += value;
   }
   /// Calls visit(i, j, factor value) for every entry of both triangles; more than once for some.
   template <class Visit>

@@ -30,7 +30,7 @@ std::vector<Entry> System::row_of(int node) const {
 }
 
 void System::map_load(int number) {
-  const LoadTerm& term = loads_[at(number)];
+  const LoadTerm& term = loads_[idx(number)];
   const NodeMap& map = node_map(term.node);
   const bool follows = term.load->depends_on_motion();
   loads_depend_on_motion_ |= follows;
@@ -47,8 +47,8 @@ int System::slot(int row, int col) const {
 }
 
 void System::find_slots() {
-  diagonal_slots_.resize(at(size()));
-  for (int k = 0; k < size(); ++k) diagonal_slots_[at(k)] = slot(k, k);
+  diagonal_slots_.resize(idx(size()));
+  for (int k = 0; k < size(); ++k) diagonal_slots_[idx(k)] = slot(k, k);
   const auto only_diagonal = [this](const Vector& matrix) {
     const auto on_diagonal = std::count_if(diagonal_slots_.begin(), diagonal_slots_.end(),
                                            [&](int s) { return matrix[s] != 0.0; });
@@ -63,7 +63,7 @@ void System::find_slots() {
   }
   for (LoadTerm& l : loads_) {
     const int k = node_map(l.node).unknown;
-    l.slot = k >= 0 ? diagonal_slots_[at(k)] : -1;
+    l.slot = k >= 0 ? diagonal_slots_[idx(k)] : -1;
   }
   for (GeneralTerm& g : generals_) {
     g.slots.clear();
@@ -77,7 +77,7 @@ void System::find_slots() {
 
 std::vector<std::string> System::floating_parts(Contact contact) const {
   std::vector<std::string> names;
-  for (const int node : floating(contact)) names.push_back(node_names()[at(node)]);
+  for (const int node : floating(contact)) names.push_back(node_names()[idx(node)]);
   return names;
 }
 

@@ -108,8 +108,8 @@ class System {
   int prescribed_count() const { return static_cast<int>(prescribed_.size()); }
   int history_size() const { return history_size_; }
   const std::vector<std::string>& node_names() const { return *node_names_; }
-  NodeKind node_kind(int node) const { return node_kinds_[at(node)]; }
-  const NodeMap& node_map(int node) const { return node_map_[at(node)]; }
+  NodeKind node_kind(int node) const { return node_kinds_[idx(node)]; }
+  const NodeMap& node_map(int node) const { return node_map_[idx(node)]; }
   /// Rows of the nodes that have one; the first loaded_rows() of them are nodes with loads.
   const RowMatrix& rows() const { return rows_; }
   int loaded_rows() const { return loaded_rows_; }
@@ -120,20 +120,20 @@ class System {
   int node_of(const NodeRef& ref) const { return ref.id ? index(*ref.id) : node(ref.name); }
   /// Place of a node that is not prescribed among the unknowns and, behind them, rows().
   int place(const NodeMap& map) const { return map.unknown >= 0 ? map.unknown : size() + map.row; }
-  const std::vector<Placement>& placements() const { return *placements_; }
+  const std::vector<ElementInstance>& element_instances() const { return *element_instances_; }
   /// What the elements report, in their order; asked of them anew.
   std::vector<OutputTerm> outputs() const;
   /// A node that stands for unknown z[k], for messages.
-  const std::string& unknown_name(int k) const { return (*node_names_)[at(unknown_node_[at(k)])]; }
+  const std::string& unknown_name(int k) const { return (*node_names_)[idx(unknown_node_[idx(k)])]; }
 
   /// n_i: nominal ratio of the node to the reference shaft.
-  double ratio(int node) const { return ratio_[at(node)]; }
+  double ratio(int node) const { return ratio_[idx(node)]; }
   const std::optional<Motion>& reference() const { return reference_; }
   /// |phi'| at t = 0 [rad/s]; 0 without a reference shaft.
   double reference_speed() const;
   /// Motions u_k of the prescribed nodes; empty function: u = 0.
   const std::vector<Motion>& prescribed() const { return prescribed_; }
-  int prescribed_node(int k) const { return prescribed_node_[at(k)]; }
+  int prescribed_node(int k) const { return prescribed_node_[idx(k)]; }
   bool any_prescribed_moves() const { return any_prescribed_moves_; }
 
   /// Union of all element cliques, structurally symmetric; its values are not used.
@@ -185,7 +185,7 @@ class System {
 
  private:
   friend class SystemBuilder;
-  friend class SystemProjector;
+  friend class RitzProjector;
   System() = default;
   /// Puts load `number` with those that external() evaluates alike.
   void map_load(int number);
@@ -197,9 +197,9 @@ class System {
   void find_slots();
 
   std::string name_;
-  std::shared_ptr<const std::vector<std::string>> node_names_;  // the model's, as the placements
+  std::shared_ptr<const std::vector<std::string>> node_names_;  // the model's, as the element_instances
   std::vector<NodeKind> node_kinds_;
-  std::shared_ptr<const std::vector<Placement>> placements_;
+  std::shared_ptr<const std::vector<ElementInstance>> element_instances_;
   std::vector<NodeMap> node_map_;
   RowMatrix rows_;
   int loaded_rows_ = 0;

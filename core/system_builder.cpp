@@ -42,7 +42,7 @@ void SystemBuilder::check_names() {
   system_.name_ = model_.name();
   system_.node_names_ = model_.node_names_;
   system_.node_kinds_ = model_.node_kinds();
-  system_.placements_ = model_.placements_;
+  system_.element_instances_ = model_.element_instances_;
   if (model_.node_names().empty())
     findings_.push_back({model_.name(), "nodes", "0", "", "the model is empty; add nodes"});
   const auto check = [this](const char* what, const std::string& name, bool first) {
@@ -54,9 +54,9 @@ void SystemBuilder::check_names() {
   const auto name_of_node = [this](int i) -> const std::string& { return node_name(i); };
   node_by_name_ = NameIndex(system_.node_count(), name_of_node,
                             [&](int i, bool first) { check("node name", node_name(i), first); });
-  const std::vector<Placement>& placements = model_.placements();
-  const auto name_of = [&](int e) -> const std::string& { return placements[at(e)].name; };
-  NameIndex(static_cast<int>(placements.size()), name_of,
+  const std::vector<ElementInstance>& element_instances = model_.element_instances();
+  const auto name_of = [&](int e) -> const std::string& { return element_instances[idx(e)].name; };
+  NameIndex(static_cast<int>(element_instances.size()), name_of,
             [&](int e, bool first) { check("element name", name_of(e), first); });
 }
 
@@ -112,8 +112,8 @@ void SystemBuilder::resolve_motions() {
 }
 
 void SystemBuilder::find_nominal_motion() {
-  Kinematics kinematics = find_ratios(model_.name(), model_.node_names(), model_.placements(), closures_,
-                                      reference_node_, findings_);
+  Kinematics kinematics = find_ratios(model_.name(), model_.node_names(), model_.element_instances(),
+                                      closures_, reference_node_, findings_);
   system_.ratio_ = std::move(kinematics.ratio);
   system_.floating_closed_ = floating_parts(kinematics.component, Contact::closed);
   system_.floating_open_ =
@@ -142,13 +142,13 @@ std::vector<int> SystemBuilder::floating_parts(const std::vector<int>& component
   std::vector<bool> counted(component.size(), false);  // as tied or floating, by component
   for (const Closure& row : closures_)
     if (row.second < 0 && (contact == Contact::closed || !row.only_in_contact))
-      counted[at(component[at(row.first)])] = true;
+      counted[idx(component[idx(row.first)])] = true;
   for (const int node : resolved_prescriptions_)
-    if (node >= 0) counted[at(component[at(node)])] = true;
+    if (node >= 0) counted[idx(component[idx(node)])] = true;
   std::vector<int> floating;
   for (int i = 0; i < static_cast<int>(component.size()); ++i) {
-    if (counted[at(component[at(i)])]) continue;
-    counted[at(component[at(i)])] = true;
+    if (counted[idx(component[idx(i)])]) continue;
+    counted[idx(component[idx(i)])] = true;
     floating.push_back(i);
   }
   return floating;
@@ -160,21 +160,21 @@ void SystemBuilder::check_inertias() {
     findings_.push_back(
         {model_.name(), "unknowns", "0", "", "every node is prescribed; nothing is left to compute"});
   if (inertia_in_doubt_) return;
-  std::vector<double> inertia(at(unknowns), 0.0);
-  std::vector<bool> in_doubt(at(unknowns), false);
+  std::vector<double> inertia(idx(unknowns), 0.0);
+  std::vector<bool> in_doubt(idx(unknowns), false);
   for (const int node : faulty_nodes_)
-    if (const int k = system_.node_map_[at(node)].unknown; k >= 0) in_doubt[at(k)] = true;
+    if (const int k = system_.node_map_[idx(node)].unknown; k >= 0) in_doubt[idx(k)] = true;
   for (const NodeMatrix& mass : mass_)
     mass.for_each(1.0, [&](int i, int j, double value) {
-      const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
-      if (a.unknown >= 0 && a.unknown == b.unknown) inertia[at(a.unknown)] += value * a.coeff * b.coeff;
+      const NodeMap &a = system_.node_map_[idx(i)], &b = system_.node_map_[idx(j)];
+      if (a.unknown >= 0 && a.unknown == b.unknown) inertia[idx(a.unknown)] += value * a.coeff * b.coeff;
     });
   for (int k = 0; k < unknowns; ++k) {
-    const int node = system_.unknown_node_[at(k)];
-    if (inertia[at(k)] > 0.0 || in_doubt[at(k)]) continue;
+    const int node = system_.unknown_node_[idx(k)];
+    if (inertia[idx(k)] > 0.0 || in_doubt[idx(k)]) continue;
     if (node_by_name_.find(node_name(node)) != node) continue;  // its name is used twice
-    const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
-    findings_.push_back({place(node_name(node)), turns ? "inertia" : "mass", to_text(inertia[at(k)]),
+    const bool turns = system_.node_kinds_[idx(node)] == NodeKind::rotational;
+    findings_.push_back({place(node_name(node)), turns ? "inertia" : "mass", to_text(inertia[idx(k)]),
                          turns ? "kg m^2" : "kg",
                          "every node that is not prescribed needs an inertia > 0: add one, or replace the "
                          "springs on both sides by one"});
@@ -193,10 +193,10 @@ void SystemBuilder::set_initial() {
     const int node = resolve(initial.node, model_.name(), "initial condition");
     if (node < 0) continue;
     ParameterCheck check(place(node_name(node)), findings_);
-    const bool turns = system_.node_kinds_[at(node)] == NodeKind::rotational;
+    const bool turns = system_.node_kinds_[idx(node)] == NodeKind::rotational;
     check.finite("initial deviation", initial.deviation, turns ? "rad" : "m");
     check.finite("initial rate", initial.rate, turns ? "rad/s" : "m/s");
-    const NodeMap& map = system_.node_map_[at(node)];
+    const NodeMap& map = system_.node_map_[idx(node)];
     if (map.unknown < 0) {
       check.fail("initial deviation", to_text(initial.deviation), turns ? "rad" : "m",
                  "the node is prescribed; its motion is given");
@@ -204,7 +204,7 @@ void SystemBuilder::set_initial() {
     }
     double& z = system_.initial_z_[map.unknown];
     double& v = system_.initial_v_[map.unknown];
-    int& by = set_by[at(map.unknown)];
+    int& by = set_by[idx(map.unknown)];
     if (by >= 0 && differ(map.coeff * z, initial.deviation))
       check.fail("initial deviation", to_text(initial.deviation), turns ? "rad" : "m",
                  "but that of " + node_name(by) + " gives " + to_text(map.coeff * z));

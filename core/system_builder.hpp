@@ -22,9 +22,9 @@ class SystemBuilder {
   void resolve_motions();
   void check_motion(const Motion& motion, const std::string& place, const std::string& parameter);
   void describe_elements();
-  std::vector<int> resolve_nodes(const Placement& p, bool& usable);
-  bool check_terms(const Terms& terms, const std::vector<int>& nodes, const Placement& p);
-  bool check_kinds(const Placement& p, const std::vector<int>& nodes);
+  std::vector<int> resolve_nodes(const ElementInstance& p, bool& usable);
+  bool check_terms(const Terms& terms, const std::vector<int>& nodes, const ElementInstance& p);
+  bool check_kinds(const ElementInstance& p, const std::vector<int>& nodes);
   // Nominal motion, elimination, and what must hold of the whole. These pass over faulty elements, so
   // that all findings come at once.
   void find_nominal_motion();
@@ -43,7 +43,7 @@ class SystemBuilder {
 
   void keep(int element, const std::vector<int>& nodes, const Terms& terms);
   static void keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix, NodeMatrix& sum);
-  const std::string& node_name(int node) const { return model_.node_names()[at(node)]; }
+  const std::string& node_name(int node) const { return model_.node_names()[idx(node)]; }
   std::shared_ptr<const SparseMatrix> pattern() const;
   /// Calls visit(i, j, value) for every entry of M, C, K (0, 1, 2), Rayleigh damping included.
   template <class Visit>

@@ -17,7 +17,7 @@ std::vector<Entry> over_nodes(const LocalRow& row, const std::vector<int>& nodes
 
 }  // namespace
 
-std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) {
+std::vector<int> SystemBuilder::resolve_nodes(const ElementInstance& p, bool& usable) {
   std::vector<int> nodes;
   for (int i = 0; i < p.nodes.size(); ++i) {
     const NodeRef ref = p.nodes[i];
@@ -39,8 +39,8 @@ std::vector<int> SystemBuilder::resolve_nodes(const Placement& p, bool& usable) 
 
 void SystemBuilder::describe_elements() {
   Terms zero(0), terms(0);  // kept, so that elements of one size allocate their matrices once
-  for (int e = 0; e < static_cast<int>(model_.placements().size()); ++e) {
-    const Placement& p = model_.placements()[at(e)];
+  for (int e = 0; e < static_cast<int>(model_.element_instances().size()); ++e) {
+    const ElementInstance& p = model_.element_instances()[idx(e)];
     bool usable = true;
     const std::vector<int> nodes = resolve_nodes(p, usable);
     const bool resolved = std::count(nodes.begin(), nodes.end(), -1) == 0;
@@ -124,7 +124,8 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     if (b.size() > 1) row.second = b[1].index, row.b_second = b[1].coeff;
     closures_.push_back(row);
   };
-  for (const ClosureSpec& c : terms.closures) add_closure(over_nodes(c.b, nodes), c.only_in_contact);
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
+    add_closure(over_nodes(c.b, nodes), c.only_in_contact);
   for (const LocalRow& row : terms.constraints) {
     const std::vector<Entry> b = over_nodes(row, nodes);
     add_closure(b, false);
@@ -141,12 +142,12 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     term.element = id;
     term.force = s.force;
     term.nodes = over_nodes(s.b, nodes);
-    term.phase_node = s.phase_node < 0 ? -1 : nodes[at(s.phase_node)];
+    term.phase_node = s.phase_node < 0 ? -1 : nodes[idx(s.phase_node)];
     term.along_line_of_action = s.along_line_of_action;
     term.varies = s.force->varies();
     system_.scalars_.push_back(std::move(term));
   }
-  for (const LoadSpec& l : terms.loads) system_.loads_.push_back({id, nodes[at(l.node)], l.load, -1});
+  for (const LoadSpec& l : terms.loads) system_.loads_.push_back({id, nodes[idx(l.node)], l.load, -1});
   for (const GeneralForce* g : terms.generals) {
     system_.generals_.push_back({id, g, nodes, system_.history_size_, {}});
     system_.history_size_ += g->history_size();
@@ -155,10 +156,10 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
 }
 
 std::vector<OutputTerm> System::outputs() const {
-  const NameIndex by_name(node_count(), [this](int i) -> const std::string& { return node_names()[at(i)]; });
+  const NameIndex by_name(node_count(), [this](int i) -> const std::string& { return node_names()[idx(i)]; });
   std::vector<OutputTerm> outputs;
-  for (std::size_t e = 0; e < placements().size(); ++e) {
-    const Placement& p = placements()[e];
+  for (std::size_t e = 0; e < element_instances().size(); ++e) {
+    const ElementInstance& p = element_instances()[e];
     std::vector<int> nodes;
     for (const NodeRef& ref : p.nodes) nodes.push_back(ref.id ? index(*ref.id) : by_name.find(ref.name));
     for (const NodeId id : p.internal) nodes.push_back(index(id));
@@ -179,7 +180,7 @@ std::vector<OutputTerm> System::outputs() const {
   return outputs;
 }
 
-bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes, const Placement& p) {
+bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes, const ElementInstance& p) {
   const std::size_t before = findings_.size();
   const auto n = static_cast<Eigen::Index>(nodes.size());
   const auto fail = [&](const std::string& what, std::string value, std::string range) {
@@ -218,7 +219,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
     if (entries > 0 && s.along_line_of_action)
       for (Eigen::Index i = 0; i < n; ++i) {
         const int node = nodes[static_cast<std::size_t>(i)];
-        if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[at(node)] != NodeKind::rotational)
+        if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[idx(node)] != NodeKind::rotational)
           findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node), "",
                                "is translational; a gear needs a rotational node"});
       }
@@ -237,7 +238,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       fail("general force", std::to_string(n) + " nodes",
            "must have at most " + std::to_string(kMaxLocalDofs));
   }
-  for (const ClosureSpec& c : terms.closures)
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
     if (row("closure", c.b, false) > 2) fail("closure", "", "may tie at most two nodes");
   for (const LocalRow& b : terms.constraints) {
     const int entries = row("constraint", b, false);
@@ -256,11 +257,11 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
   return findings_.size() == before;
 }
 
-bool SystemBuilder::check_kinds(const Placement& p, const std::vector<int>& nodes) {
+bool SystemBuilder::check_kinds(const ElementInstance& p, const std::vector<int>& nodes) {
   if (p.element->mixes_kinds()) return true;
   for (const int node : nodes) {
-    const NodeKind first = system_.node_kinds_[at(nodes.front())];
-    if (system_.node_kinds_[at(node)] == first) continue;
+    const NodeKind first = system_.node_kinds_[idx(nodes.front())];
+    if (system_.node_kinds_[idx(node)] == first) continue;
     const bool turns = first == NodeKind::rotational;
     findings_.push_back({place(p.name), "node", node_name(node), "",
                          std::string("is ") + (turns ? "translational" : "rotational") + " and " +

@@ -36,33 +36,33 @@ void SystemBuilder::eliminate() {
     double factor;
     std::size_t ratio;
   };
-  std::vector<std::vector<Tie>> ties(system_.ideal_ratios_.empty() ? 0 : at(nodes));
+  std::vector<std::vector<Tie>> ties(system_.ideal_ratios_.empty() ? 0 : idx(nodes));
   for (std::size_t number = 0; number < system_.ideal_ratios_.size(); ++number) {
     const IdealRatio& r = system_.ideal_ratios_[number];
-    ties[at(r.first)].push_back({r.second, -r.b_first / r.b_second, number});
-    ties[at(r.second)].push_back({r.first, -r.b_second / r.b_first, number});
+    ties[idx(r.first)].push_back({r.second, -r.b_first / r.b_second, number});
+    ties[idx(r.second)].push_back({r.first, -r.b_second / r.b_first, number});
   }
 
   // Every set of nodes tied by ideal ratios has one unknown: that of its prescribed node, or its first.
-  system_.node_map_.assign(at(nodes), {});
-  std::vector<bool> placed(at(nodes), false);
+  system_.node_map_.assign(idx(nodes), {});
+  std::vector<bool> placed(idx(nodes), false);
   std::vector<bool> tie_used(system_.ideal_ratios_.size(), false);
   const auto spread = [&](int start, NodeMap map) {
     std::queue<int> queue;
     queue.push(start);
-    placed[at(start)] = true;
-    system_.node_map_[at(start)] = map;
+    placed[idx(start)] = true;
+    system_.node_map_[idx(start)] = map;
     while (!queue.empty()) {
       const int i = queue.front();
       queue.pop();
       if (ties.empty()) continue;
-      for (const auto& [to, factor, ratio] : ties[at(i)]) {
-        if (placed[at(to)]) continue;
-        placed[at(to)] = true;
+      for (const auto& [to, factor, ratio] : ties[idx(i)]) {
+        if (placed[idx(to)]) continue;
+        placed[idx(to)] = true;
         tie_used[ratio] = true;
-        NodeMap next = system_.node_map_[at(i)];
+        NodeMap next = system_.node_map_[idx(i)];
         next.coeff *= factor;
-        system_.node_map_[at(to)] = next;
+        system_.node_map_[idx(to)] = next;
         queue.push(to);
       }
     }
@@ -70,7 +70,7 @@ void SystemBuilder::eliminate() {
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const int node = resolved_prescriptions_[i];
     if (node < 0) continue;
-    if (placed[at(node)]) {
+    if (placed[idx(node)]) {
       findings_.push_back({place(node_name(node)), "prescribed motion", "", "",
                            "a node tied to this one by ideal gears is prescribed already"});
       continue;
@@ -83,22 +83,23 @@ void SystemBuilder::eliminate() {
     spread(node, {.unknown = -1, .prescribed = k, .coeff = 1.0});
   }
   for (int i = 0; i < nodes; ++i)
-    if (!placed[at(i)]) {
+    if (!placed[idx(i)]) {
       system_.unknown_node_.push_back(i);
       spread(i, {.unknown = static_cast<int>(system_.unknown_node_.size()) - 1});
     }
   for (std::size_t r = 0; r < tie_used.size(); ++r)
     if (!tie_used[r])
-      findings_.push_back({place(model_.placements()[at(index(system_.ideal_ratios_[r].element))].name),
-                           "ideal gear", "", "",
-                           "closes a loop of ideal gears: the torque in such a loop is "
-                           "undetermined; make one of them elastic"});
+      findings_.push_back(
+          {place(model_.element_instances()[idx(index(system_.ideal_ratios_[r].element))].name), "ideal gear",
+           "", "",
+           "closes a loop of ideal gears: the torque in such a loop is "
+           "undetermined; make one of them elastic"});
 }
 
 void SystemBuilder::map_terms() {
   for (ScalarTerm& term : system_.scalars_)
     for (const Entry& e : term.nodes) {
-      const NodeMap& map = system_.node_map_[at(e.index)];
+      const NodeMap& map = system_.node_map_[idx(e.index)];
       if (map.unknown >= 0) add_entry(term.z, map.unknown, e.coeff * map.coeff);
       if (map.prescribed >= 0) add_entry(term.u, map.prescribed, e.coeff * map.coeff);
     }
@@ -118,7 +119,7 @@ void SystemBuilder::for_each_entry(int matrix, const Visit& visit) const {
 
 std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
   const int n = static_cast<int>(system_.unknown_node_.size());
-  const auto unknown = [this](int node) { return system_.node_map_[at(node)].unknown; };
+  const auto unknown = [this](int node) { return system_.node_map_[idx(node)].unknown; };
   const auto for_each = [&](const auto& visit) {
     for (int k = 0; k < n; ++k) visit(k, k);
     for (int matrix = 0; matrix < 3; ++matrix)
@@ -134,18 +135,18 @@ std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
         for (const int j : g.nodes)
           if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j)) visit(unknown(i), unknown(j));
   };
-  std::vector<int> begin(at(n + 1), 0);
-  for_each([&](int, int column) { ++begin[at(column + 1)]; });
+  std::vector<int> begin(idx(n + 1), 0);
+  for_each([&](int, int column) { ++begin[idx(column + 1)]; });
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<int> rows(at(begin.back()));
+  std::vector<int> rows(idx(begin.back()));
   std::vector<int> next(begin.begin(), begin.end() - 1);
-  for_each([&](int row, int column) { rows[at(next[at(column)]++)] = row; });
+  for_each([&](int row, int column) { rows[idx(next[idx(column)]++)] = row; });
   const auto p = std::make_shared<SparseMatrix>(n, n);
   int entries = 0;
   for (int j = 0; j < n; ++j) {
-    const auto first = rows.begin() + begin[at(j)];
-    std::sort(first, rows.begin() + begin[at(j + 1)]);
-    const auto last = std::unique(first, rows.begin() + begin[at(j + 1)]);
+    const auto first = rows.begin() + begin[idx(j)];
+    std::sort(first, rows.begin() + begin[idx(j + 1)]);
+    const auto last = std::unique(first, rows.begin() + begin[idx(j + 1)]);
     std::copy(first, last, rows.begin() + entries);
     p->outerIndexPtr()[j] = entries;
     entries += static_cast<int>(last - first);
@@ -160,7 +161,7 @@ std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
 Vector SystemBuilder::values_on_pattern(int matrix) const {
   Vector v = Vector::Zero(system_.pattern_->nonZeros());
   for_each_entry(matrix, [&](int i, int j, double value) {
-    const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
+    const NodeMap &a = system_.node_map_[idx(i)], &b = system_.node_map_[idx(j)];
     if (a.unknown >= 0 && b.unknown >= 0) v[system_.slot(a.unknown, b.unknown)] += value * a.coeff * b.coeff;
   });
   return v;
@@ -173,7 +174,7 @@ void SystemBuilder::assemble_matrices() {
   const bool keep_nodes = !system_.ideal_ratios_.empty();
   for (int which = 0; which < 3; ++which)
     for_each_entry(which, [&](int i, int j, double value) {
-      const NodeMap &a = system_.node_map_[at(i)], &b = system_.node_map_[at(j)];
+      const NodeMap &a = system_.node_map_[idx(i)], &b = system_.node_map_[idx(j)];
       const double v = value * a.coeff * b.coeff;
       if (a.unknown >= 0 && b.prescribed >= 0) zu[which].emplace_back(a.unknown, b.prescribed, v);
       if (a.prescribed >= 0 && b.prescribed >= 0) uu[which].emplace_back(a.prescribed, b.prescribed, v);
@@ -185,7 +186,7 @@ void SystemBuilder::assemble_matrices() {
   if (keep_nodes) system_.node_drag_ = Vector::Zero(system_.node_count());
   const auto add_nominal = [&](const NodeMatrix& matrix, Vector& rows, Vector* nodes) {
     matrix.for_each(1.0, [&](int i, int j, double value) {
-      const NodeMap& map = system_.node_map_[at(i)];
+      const NodeMap& map = system_.node_map_[idx(i)];
       const double force = value * system_.ratio(j);
       rows[map.unknown >= 0 ? map.unknown : nz + map.prescribed] += map.coeff * force;
       if (nodes) (*nodes)[i] += force;
@@ -224,7 +225,7 @@ void SystemBuilder::check_values() {
   finite("damping matrix", system_.damping_);
   finite("stiffness matrix", system_.stiffness_);
   for (int i = 0; i < system_.node_count(); ++i) {
-    const double coeff = system_.node_map_[at(i)].coeff;
+    const double coeff = system_.node_map_[idx(i)].coeff;
     if (!std::isfinite(coeff) || coeff == 0.0 || !std::isfinite(system_.ratio(i)))
       findings_.push_back({place(node_name(i)), "ratio", to_text(coeff), "",
                            "the ratios of gears up to this node multiply to what a number cannot "

@@ -341,12 +341,13 @@ void check_matrix(const char* name, const Eigen::MatrixXd& m, double tolerance, 
 
 /// Columns: nominal motions n with b^T n = 0 for every closure and constraint.
 Eigen::MatrixXd nominal_motions(const Terms& terms, int nodes) {
-  const auto rows = terms.closures.size() + terms.constraints.size();
+  const auto rows = terms.speed_ratio_constraints.size() + terms.constraints.size();
   if (rows == 0) return Eigen::MatrixXd::Identity(nodes, nodes);
   Eigen::MatrixXd all(static_cast<Eigen::Index>(rows), nodes);
   Eigen::Index r = 0;
   // Scaled: base radii of a few millimetres are no rounding errors.
-  for (const ClosureSpec& c : terms.closures) all.row(r++) = c.b.normalized().transpose();
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
+    all.row(r++) = c.b.normalized().transpose();
   for (const LocalRow& b : terms.constraints) all.row(r++) = b.normalized().transpose();
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(all);
   if (lu.dimensionOfKernel() == 0) return Eigen::MatrixXd::Zero(nodes, 0);
@@ -358,13 +359,14 @@ void check_closures(const Terms& terms, int nodes, double tolerance, Findings& o
   if (n.cols() == 0) return;
   const double strain = (terms.stiffness * n).cwiseAbs().maxCoeff();
   const double size = terms.stiffness.cwiseAbs().maxCoeff() * n.cwiseAbs().maxCoeff();
-  out.require(strain <= tolerance * size, "closures",
+  out.require(strain <= tolerance * size, "speed_ratio_constraints",
               "a nominal motion that satisfies them strains the stiffness matrix: K n = " + to_text(strain));
   for (const ScalarSpec& s : terms.scalars) {
     const double x = (s.b.transpose() * n).cwiseAbs().maxCoeff();
     // A law that only damps may slip nominally, as a dashpot does.
     if (s.force->evaluate({.x = 1.0}).y == s.force->evaluate({.x = -1.0}).y) continue;
-    out.require(x <= tolerance * s.b.cwiseAbs().maxCoeff() * n.cwiseAbs().maxCoeff(), "closures",
+    out.require(x <= tolerance * s.b.cwiseAbs().maxCoeff() * n.cwiseAbs().maxCoeff(),
+                "speed_ratio_constraints",
                 "a nominal motion that satisfies them deflects a law: b^T n = " + to_text(x));
   }
 }
@@ -388,7 +390,7 @@ bool check_description(const Terms& terms, int nodes, Findings& out) {
   for (const LoadSpec& l : terms.loads)
     require(l.load != nullptr && l.node >= 0 && l.node < nodes, "load", "has no law or no node");
   for (const GeneralForce* g : terms.generals) require(g != nullptr, "general force", "has no law");
-  for (const ClosureSpec& c : terms.closures) {
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) {
     require(c.b.size() == nodes, "closure row", expected);
     const auto entries = (c.b.array() != 0.0).count();
     require(entries == 1 || entries == 2, "closure row",

@@ -16,8 +16,8 @@
 ///   passivity     dissipated power >= 0 and equal to (y(x, x') - y(x, 0)) x'
 ///   purity        the same input gives the same bits, whatever was evaluated between
 ///   matrices      M, C, K symmetric and positive semi-definite
-///   closures      no constant stiffness and no law sees a nominal motion n that satisfies the
-///                 closures: K n = 0, b^T n = 0
+///   speed_ratio_constraints      no constant stiffness and no law sees a nominal motion n that satisfies the
+///                 speed_ratio_constraints: K n = 0, b^T n = 0
 ///   descriptions  sizes, node numbers, ascending kinks, closed slopes finite and >= 0
 /// Random numbers come from a fixed seed: the same element gives the same report anywhere.
 #include <string>

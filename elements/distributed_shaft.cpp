@@ -68,7 +68,7 @@ void DistributedShaft::describe(int nodes, Terms& terms) const {
     terms.stiffness(b, a) -= k;
     terms.outputs.push_back(
         {.suffix = std::to_string(s + 1), .stiffness = k * row, .damping = LocalRow::Zero(nodes)});
-    terms.closures.push_back({.b = std::move(row)});
+    terms.speed_ratio_constraints.push_back({.b = std::move(row)});
   }
   terms.rayleigh = true;
 }

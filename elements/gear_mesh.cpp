@@ -102,7 +102,7 @@ void GearMesh::describe(int nodes, Terms& terms) const {
   const bool phased = params_.stiffness.varies() || params_.transmission_error.varies();
   terms.scalars.push_back(
       {.b = b, .force = this, .phase_node = phased ? 0 : -1, .along_line_of_action = true});
-  terms.closures.push_back({.b = b, .only_in_contact = law_.has_gap()});
+  terms.speed_ratio_constraints.push_back({.b = b, .only_in_contact = law_.has_gap()});
 }
 
 ScalarResponse GearMesh::evaluate(const ScalarInput& in) const {

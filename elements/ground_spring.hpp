@@ -30,7 +30,7 @@ class GroundSpring final : public Element {
     const LocalRow b = relative_motion(nodes);
     terms.stiffness(0, 0) = params_.stiffness;
     terms.damping(0, 0) = params_.damping;
-    terms.closures.push_back({.b = b});
+    terms.speed_ratio_constraints.push_back({.b = b});
     terms.outputs.push_back(
         {.suffix = "", .stiffness = params_.stiffness * b, .damping = params_.damping * b});
   }

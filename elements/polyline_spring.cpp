@@ -139,7 +139,7 @@ void PolylineSpring::check(ParameterCheck& check) const {
 
 void PolylineSpring::describe(int nodes, Terms& terms) const {
   terms.scalars.push_back({.b = relative_motion(nodes), .force = this});
-  terms.closures.push_back({.b = relative_motion(nodes), .only_in_contact = gap_.has_value()});
+  terms.speed_ratio_constraints.push_back({.b = relative_motion(nodes), .only_in_contact = gap_.has_value()});
 }
 
 }  // namespace drev

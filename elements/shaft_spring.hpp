@@ -32,7 +32,7 @@ class ShaftSpring final : public Element {
     terms.stiffness = params_.stiffness * b * b.transpose();
     terms.damping = params_.damping * b * b.transpose();
     terms.rayleigh = true;
-    terms.closures.push_back({.b = b});
+    terms.speed_ratio_constraints.push_back({.b = b});
     terms.outputs.push_back(
         {.suffix = "", .stiffness = params_.stiffness * b, .damping = params_.damping * b});
   }

@@ -11,7 +11,7 @@ page="$root/docs/which_method.md"
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 
-# chart NAME MODEL [settings]: docs/pictures/which_NAME.svg, which_NAME_work.svg, and the table between
+# chart NAME MODEL [parameters]: docs/pictures/which_NAME.svg, which_NAME_work.svg, and the table between
 # <!-- NAME --> and <!-- end --> in the page.
 chart() {
   local name="$1"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds drev and runs the camshaft. On a fresh Debian 12 or Ubuntu 24.04 it installs what it needs first.
 #
-#   scripts/run.sh [settings of `drev run camshaft`]     e.g. scripts/run.sh --out result
+#   scripts/run.sh [parameters of `drev run camshaft`]     e.g. scripts/run.sh --out result
 #
 # Results go to results/camshaft unless --out says otherwise.
 set -euo pipefail

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::app {
 
@@ -17,18 +17,18 @@ inline Json number(const std::optional<double>& value) { return value ? number(*
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// Numbers as numbers, everything else as text.
-inline Json setting_value(const Setting& setting, const std::string& text) {
+inline Json setting_value(const Parameter& parameter, const std::string& text) {
   double value = 0.0;
-  if (setting.kind == Setting::Kind::number && read_number(text, value)) return number(value);
-  if (setting.kind == Setting::Kind::integer && read_number(text, value)) return static_cast<long>(value);
+  if (parameter.kind == Parameter::Kind::number && read_number(text, value)) return number(value);
+  if (parameter.kind == Parameter::Kind::integer && read_number(text, value)) return static_cast<long>(value);
   return text;
 }
 
 /// {name: value, ...}
-inline Json settings_object(const Settings& settings) {
+inline Json settings_object(const Parameters& parameters) {
   Json object = Json::object();
-  for (std::size_t i = 0; i < settings.known().size(); ++i)
-    object[settings.known()[i].name] = setting_value(settings.known()[i], settings.values()[i]);
+  for (std::size_t i = 0; i < parameters.known().size(); ++i)
+    object[parameters.known()[i].name] = setting_value(parameters.known()[i], parameters.values()[i]);
   return object;
 }
 

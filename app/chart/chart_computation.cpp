@@ -20,7 +20,7 @@ constexpr double kGrowthTolerance = 1e-13;
 
 /// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
 double periods_of(const ModelRequest& model, std::string& reason) {
-  const double duration = model.scene.duration;
+  const double duration = model.model_case.duration;
   for (const ScalarTerm& term : model.system.scalars())
     if (term.force->gap()) return duration;
   try {
@@ -40,7 +40,7 @@ double periods_of(const ModelRequest& model, std::string& reason) {
 
 ChartResult compute_chart(const ChartRequest& request) {
   const System& system = request.model.system;
-  const Scene& scene = request.model.scene;
+  const ModelCase& model_case = request.model.model_case;
   ChartResult result;
   double horizon = periods_of(request.model, result.horizon_reason);
   Progress shown;
@@ -48,9 +48,9 @@ ChartResult compute_chart(const ChartRequest& request) {
     shown.update(part);
     return !interrupted();
   };
-  Method method = choose_method(system, horizon, std::min(scene.default_step, horizon)).method;
+  Method method = choose_method(system, horizon, std::min(model_case.default_step, horizon)).method;
   if (method.exact()) method.tolerance = kGrowthTolerance;
-  const Growth growth = measure_growth(
+  const ErrorGrowth growth = measure_error_growth(
       system, {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
   if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
     horizon = comparable;
@@ -68,9 +68,9 @@ ChartResult compute_chart(const ChartRequest& request) {
                                .most_seconds = request.limit,
                                .progress = progress};
   result.quantity = "all deflections";
-  if (!scene.deflection.empty()) {
-    options.channels = {scene.deflection};
-    result.quantity = scene.deflection;
+  if (!model_case.deflection.empty()) {
+    options.channels = {model_case.deflection};
+    result.quantity = model_case.deflection;
   }
   result.data = work_precision(system, options);
   return result;

@@ -51,12 +51,12 @@ std::string conclusion(const WorkPrecision& data, double accuracy) {
          digits(next->seconds / std::max(best->point->seconds, 1e-9), 2) + " times as much.";
 }
 
-/// The settings that are not the default: "drive held, ...".
-std::string changed_settings(const Settings& settings) {
+/// The parameters that are not the default: "drive held, ...".
+std::string changed_settings(const Parameters& parameters) {
   std::vector<std::string> items;
-  for (std::size_t i = 0; i < settings.known().size(); ++i)
-    if (settings.values()[i] != settings.known()[i].default_text)
-      items.push_back(settings.known()[i].name + " " + settings.values()[i]);
+  for (std::size_t i = 0; i < parameters.known().size(); ++i)
+    if (parameters.values()[i] != parameters.known()[i].default_text)
+      items.push_back(parameters.known()[i].name + " " + parameters.values()[i]);
   return items.empty() ? "" : ", " + join(items);
 }
 
@@ -65,7 +65,7 @@ std::string changed_settings(const Settings& settings) {
 std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   const WorkPrecision& data = r.data;
   const std::string name = request.model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(settings_text(request.model.parameters), name.size() + 2) + "\n";
   text += labelled("Error", "of " + r.quantity + ", the largest over the samples from 0 to " +
                                 short_digits(data.t_end, 4) + " s, over its peak, " + digits(data.peak, 4) +
                                 " " + data.unit);
@@ -96,7 +96,7 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
   const WorkPrecision& data = r.data;
   Json object;
   object["model"] = request.model.entry->name;
-  object["settings"] = settings_object(request.model.settings);
+  object["parameters"] = settings_object(request.model.parameters);
   object["quantity"] = r.quantity;
   object["t_end_s"] = number(data.t_end);
   object["horizon"] = text_or_null(r.horizon_reason);
@@ -169,7 +169,7 @@ std::string chart_as_svg(const ChartRequest& request, const ChartResult& r, Char
                       .x = {shortest, longest},
                       .y = {r.data.agreement, r.data.agreement}});
   const std::string name = request.model.entry->name;
-  return svg_chart({.title = name + changed_settings(request.model.settings) + ": error of " + r.quantity +
+  return svg_chart({.title = name + changed_settings(request.model.parameters) + ": error of " + r.quantity +
                              " from 0 to " + short_digits(r.data.t_end, 3) + " s",
                     .x_label = axis == ChartAxis::time ? "processor time [s]" : "linear solves",
                     .y_label = "largest error over peak",

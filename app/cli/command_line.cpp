@@ -11,7 +11,7 @@
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/help_texts.hpp"
 #include "app/cli/model_list.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev::app {
 
@@ -35,7 +35,8 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
       sub.add_option("MODEL", raw.models, meaning)->option_text("...");
     else
       sub.add_option("MODEL", raw.model, meaning)->option_text(" ");
-    sub.add_option("--set", raw.sets, "Changes settings; as often as needed")->option_text("NAME=VALUE ...");
+    sub.add_option("--set", raw.sets, "Changes parameters; as often as needed")
+        ->option_text("NAME=VALUE ...");
   }
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
   sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
@@ -88,7 +89,7 @@ bool names_model(const std::string& word) {
   return is_built_in(word) || std::filesystem::exists(word, error);
 }
 
-/// --set a=1 MODEL: models came to stand among the settings.
+/// --set a=1 MODEL: models came to stand among the parameters.
 void find_models_among_sets(Raw& raw, bool several) {
   for (auto set = raw.sets.begin(); set != raw.sets.end();) {
     if (set->find('=') == std::string::npos && (raw.models.empty() || (several && names_model(*set)))) {
@@ -100,7 +101,7 @@ void find_models_among_sets(Raw& raw, bool several) {
   }
 }
 
-/// MODEL a=1: a setting without --set.
+/// MODEL a=1: a parameter without --set.
 void find_sets_among_models(Raw& raw, std::vector<Finding>& findings) {
   std::erase_if(raw.models, [&](const std::string& word) {
     const bool set = word.find('=') != std::string::npos && !names_model(word);
@@ -117,12 +118,12 @@ void take_sets(const Raw& raw, CommandLine& line) {
       continue;
     }
     const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
-    const auto same = std::find_if(line.settings.begin(), line.settings.end(),
-                                   [&](const auto& setting) { return setting.first == name; });
-    if (same != line.settings.end())
+    const auto same = std::find_if(line.parameters.begin(), line.parameters.end(),
+                                   [&](const auto& parameter) { return parameter.first == name; });
+    if (same != line.parameters.end())
       line.findings.push_back({kCommandLine, "--set", text, "", "was set already, to " + same->second});
     else
-      line.settings.emplace_back(name, value);
+      line.parameters.emplace_back(name, value);
   }
 }
 
@@ -171,7 +172,7 @@ int no_command(const CLI::App& app) {
   std::cerr << "drev: '" << word << "' is no "
             << (looks_like_option(word) ? "option of drev itself" : "command");
   std::vector<std::string> models;
-  for (const SceneEntry& entry : scenes()) models.push_back(entry.name);
+  for (const ModelEntry& entry : ready_made_models()) models.push_back(entry.name);
   if (std::find(models.begin(), models.end(), word) != models.end())
     std::cerr << "; did you mean 'drev run " << word << "'?\n";
   else if (looks_like_option(word))

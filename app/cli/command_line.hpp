@@ -17,8 +17,8 @@ inline constexpr const char* kCommandLine = "command line";  ///< the place that
 struct CommandLine {
   const CommandEntry* command = nullptr;
   std::string model = {};  ///< name or file, the first of several; empty: not given
-  std::vector<std::pair<std::string, std::string>> settings = {};  ///< of --set name=value
-  std::map<std::string, std::vector<std::string>> options = {};    ///< those given, with their values
+  std::vector<std::pair<std::string, std::string>> parameters = {};  ///< of --set name=value
+  std::map<std::string, std::vector<std::string>> options = {};      ///< those given, with their values
   std::map<std::string, std::string> from_file = {};  ///< options that a model file gave: where it says so
   bool json = false;
   bool quiet = false;  ///< nothing to standard output; what is wrong still goes to standard error

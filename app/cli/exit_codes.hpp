@@ -5,7 +5,7 @@ namespace drev::app {
 enum ExitCode : int {
   kSuccess = 0,
   kNotTrusted = 1,  ///< the run failed numerically, or its energy balance is off
-  kBadInput = 2,    ///< options, settings, model or channels that cannot be
+  kBadInput = 2,    ///< options, parameters, model or channels that cannot be
   kNotWritten = 3,  ///< an output could not be written
   kInterrupted = 130
 };
@@ -14,7 +14,7 @@ inline constexpr const char* kExitCodesHelp =
     "Exit codes:\n"
     "  0    success\n"
     "  1    the result is not to be trusted (energy balance off), or the computation failed\n"
-    "  2    bad input: option, setting, model or channel; every fault found is listed\n"
+    "  2    bad input: option, parameter, model or channel; every fault found is listed\n"
     "  3    an output could not be written\n"
     "  130  interrupted\n";
 

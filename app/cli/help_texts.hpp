@@ -22,7 +22,7 @@ inline constexpr const char* kMethodsHelp =
 inline constexpr const char* kMainExamples =
     "Examples:\n"
     "  drev list                          the models\n"
-    "  drev list camshaft                 its settings and channels\n"
+    "  drev list camshaft                 its parameters and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
     "  drev run camshaft --report a.html  the report of it, a page for any browser\n"
@@ -114,7 +114,7 @@ inline constexpr const char* kExportExamples =
     "  drev export two_inertia\n"
     "  drev export camshaft --set cylinders=6 --out camshaft_6.toml\n"
     "\n"
-    "The file holds the model as the settings make it, in SI units with every digit: running it gives\n"
+    "The file holds the model as the parameters make it, in SI units with every digit: running it gives\n"
     "the same results to the last bit.\n";
 
 inline constexpr const char* kStudyExamples =

@@ -7,7 +7,7 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/model_file/tree.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev::app {
 
@@ -90,7 +90,8 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
 }  // namespace
 
 bool is_built_in(const std::string& word) {
-  return std::any_of(scenes().begin(), scenes().end(), [&](const SceneEntry& e) { return e.name == word; });
+  return std::any_of(ready_made_models().begin(), ready_made_models().end(),
+                     [&](const ModelEntry& e) { return e.name == word; });
 }
 
 bool is_model_directory(const std::string& word) {

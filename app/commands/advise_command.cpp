@@ -23,7 +23,7 @@ std::string rung_row(const Rung& rung, std::size_t width, bool chosen) {
 
 std::string as_text(const AdviseRequest& request, const Advice& advice) {
   const std::string& name = request.model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(request.model.settings), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(settings_text(request.model.parameters), name.size() + 2) + "\n";
   std::size_t width = 5;
   for (const Rung& rung : advice.rungs) width = std::max(width, rung.name.size());
   text += "  " + pad_right("model", width) + pad_left("[" + advice.unit + "]", 13) +
@@ -32,14 +32,14 @@ std::string as_text(const AdviseRequest& request, const Advice& advice) {
     text += rung_row(advice.rungs[i], width, i == advice.chosen);
   text += "\n" + wrap(advice.sentence, 0);
   if (!advice.best().evidence.empty()) text += "\nEvidence: " + wrap(advice.best().evidence + ".", 10);
-  if (!request.model.scene.note.empty()) text += "\n" + wrap(request.model.scene.note, 0);
+  if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
   return text;
 }
 
 Json as_json(const AdviseRequest& request, const Advice& advice) {
   Json object;
   object["model"] = request.model.entry->name;
-  object["settings"] = settings_object(request.model.settings);
+  object["parameters"] = settings_object(request.model.parameters);
   object["figure"] = advice.figure;
   object["unit"] = advice.unit;
   object["within"] = number(advice.within);
@@ -65,7 +65,7 @@ Json as_json(const AdviseRequest& request, const Advice& advice) {
   }
   object["chosen"] = advice.best().name;
   object["advice"] = advice.sentence;
-  object["note"] = text_or_null(request.model.scene.note);
+  object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }
 
@@ -73,7 +73,7 @@ Json as_json(const AdviseRequest& request, const Advice& advice) {
 
 int advise_command(const CommandLine& line) {
   const AdviseRequest request = request_advise(line);
-  const Advice advice = advise(request.model.scene, request.options);
+  const Advice advice = advise(request.model.model_case, request.options);
   print(line.json ? json_text(as_json(request, advice)) : as_text(request, advice));
   return kSuccess;
 }

@@ -39,8 +39,8 @@ int check_command(const CommandLine& line) {
   for (const CommandLine& run : runs) try {
       const RunRequest request = request_run(run);
       if (&run != &runs.front()) continue;
-      nodes = request.model.scene.model.node_names().size();
-      elements = request.model.scene.model.placements().size();
+      nodes = request.model.model_case.model.node_names().size();
+      elements = request.model.model_case.model.element_instances().size();
     } catch (const ModelError& error) {
       for (const Finding& finding : error.findings())
         if (said.insert(finding.text()).second) findings.push_back(finding);

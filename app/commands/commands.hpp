@@ -25,7 +25,7 @@ struct OptionEntry {
 struct CommandEntry {
   const char* name;
   const char* summary;
-  bool takes_model = true;    ///< MODEL, and --set for its settings
+  bool takes_model = true;    ///< MODEL, and --set for its parameters
   bool takes_models = false;  ///< more than one, too: line.list("MODEL")
   std::vector<OptionEntry> options = {};
   std::string footer = {};

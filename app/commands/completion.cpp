@@ -6,22 +6,22 @@
 #include "app/model_file/model_file.hpp"
 #include "core/channel.hpp"
 #include "core/system.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/stepping/step_scheme.hpp"
 
 namespace drev::app {
 
 namespace {
 
-/// The model that the words name: its scene, and its file if it is one. Both null: none, or a file with
+/// The model that the words name: its model case, and its file if it is one. Both null: none, or a file with
 /// faults.
 struct TypedModel {
-  std::shared_ptr<const SceneEntry> entry = {};
+  std::shared_ptr<const ModelEntry> entry = {};
   std::shared_ptr<const ModelFile> file = {};
 };
 
 TypedModel model_in(const std::vector<std::string>& words) {
-  for (const SceneEntry& entry : scenes())
+  for (const ModelEntry& entry : ready_made_models())
     if (std::find(words.begin(), words.end(), entry.name) != words.end())
       return {{std::shared_ptr<const void>(), &entry}};
   for (const std::string& word : words) try {
@@ -34,21 +34,21 @@ TypedModel model_in(const std::vector<std::string>& words) {
   return {};
 }
 
-std::vector<std::string> settings_of(const SceneEntry& entry, const std::string& word) {
+std::vector<std::string> settings_of(const ModelEntry& entry, const std::string& word) {
   std::vector<std::string> offered;
   const std::size_t equals = word.find('=');
-  for (const Setting& setting : entry.settings) {
-    if (equals == word.npos) offered.push_back(setting.name + "=");
-    if (word.substr(0, equals) != setting.name) continue;
-    for (const std::string& choice : setting.choices) offered.push_back(setting.name + "=" + choice);
+  for (const Parameter& parameter : entry.parameters) {
+    if (equals == word.npos) offered.push_back(parameter.name + "=");
+    if (word.substr(0, equals) != parameter.name) continue;
+    for (const std::string& choice : parameter.choices) offered.push_back(parameter.name + "=" + choice);
   }
   return offered;
 }
 
-std::vector<std::string> channels_of(const SceneEntry& entry, const std::string& word) {
+std::vector<std::string> channels_of(const ModelEntry& entry, const std::string& word) {
   const std::size_t comma = word.rfind(',');
   const std::string before = comma == word.npos ? "" : word.substr(0, comma + 1);
-  const System system = entry.build(Settings(entry.name, entry.settings)).model.build();
+  const System system = entry.build(Parameters(entry.name, entry.parameters)).model.build();
   std::vector<std::string> offered;
   for (const Channel& channel : all_channels(system)) offered.push_back(before + channel.name());
   return offered;
@@ -97,7 +97,7 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
       return values_of(entry, model, word);
   }
   if (command->takes_model && !model.entry)
-    for (const SceneEntry& entry : scenes()) offered.push_back(entry.name);
+    for (const ModelEntry& entry : ready_made_models()) offered.push_back(entry.name);
   return offered;
 }
 

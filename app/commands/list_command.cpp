@@ -13,15 +13,17 @@ namespace {
 
 std::string models_as_text() {
   std::size_t width = 0;
-  for (const SceneEntry& entry : scenes()) width = std::max(width, entry.name.size() + 2);
+  for (const ModelEntry& entry : ready_made_models()) width = std::max(width, entry.name.size() + 2);
   std::string text;
-  for (const SceneEntry& entry : scenes()) text += pad_right(entry.name, width) + wrap(entry.summary, width);
-  return text + "\ndrev list MODEL shows a model's settings and channels.\n";
+  for (const ModelEntry& entry : ready_made_models())
+    text += pad_right(entry.name, width) + wrap(entry.summary, width);
+  return text + "\ndrev list MODEL shows a model's parameters and channels.\n";
 }
 
 std::string models_as_json() {
   Json list = Json::array();
-  for (const SceneEntry& entry : scenes()) list.push_back({{"name", entry.name}, {"summary", entry.summary}});
+  for (const ModelEntry& entry : ready_made_models())
+    list.push_back({{"name", entry.name}, {"summary", entry.summary}});
   return json_text({{"models", std::move(list)}});
 }
 
@@ -56,22 +58,22 @@ bool has_kind(const System& system, NodeKind kind) {
 }
 
 std::string model_as_text(const ModelRequest& model) {
-  const SceneEntry& entry = *model.entry;
+  const ModelEntry& entry = *model.entry;
   std::size_t name = 0, standard = 9, range = 0;  // "default" and two blanks
-  const auto default_of = [](const Setting& s) {
+  const auto default_of = [](const Parameter& s) {
     return s.default_text + (s.unit.empty() ? "" : " " + s.unit);
   };
-  for (const Setting& s : entry.settings) {
+  for (const Parameter& s : entry.parameters) {
     name = std::max(name, s.name.size() + 2);
     standard = std::max(standard, default_of(s).size() + 2);
     if (s.range().size() < 32) range = std::max(range, s.range().size() + 2);
   }
   std::string text = entry.name + ": " + wrap(entry.summary, entry.name.size() + 2);
-  if (!entry.settings.empty())
-    text += "\n" + pad_right("Setting", name + 2) + pad_right("default", standard) +
+  if (!entry.parameters.empty())
+    text += "\n" + pad_right("Parameter", name + 2) + pad_right("default", standard) +
             pad_right("range", range) + "meaning\n";
   const std::size_t indent = 2 + name + standard + range;
-  for (const Setting& s : entry.settings) {
+  for (const Parameter& s : entry.parameters) {
     text += "  " + pad_right(s.name, name) + pad_right(default_of(s), standard);
     if (s.range().size() + 2 > range)
       text += s.range() + "\n" + std::string(indent, ' ');
@@ -79,36 +81,37 @@ std::string model_as_text(const ModelRequest& model) {
       text += pad_right(s.range(), range);
     text += wrap(s.meaning, indent);
   }
-  text += "\nSimulated: " + short_digits(model.scene.duration, 6) + " s in steps of " +
-          short_digits(model.scene.default_step, 4) + " s unless --step says otherwise.\n";
+  text += "\nSimulated: " + short_digits(model.model_case.duration, 6) + " s in steps of " +
+          short_digits(model.model_case.default_step, 4) + " s unless --step says otherwise.\n";
   if (model.file && !model.file->run_names().empty())
     text += "Runs, named by --run: " + join(model.file->run_names()) + ".\n";
-  text += "\nChannels recorded unless --record says otherwise:\n  " + wrap(join(model.scene.channels), 2);
+  text +=
+      "\nChannels recorded unless --record says otherwise:\n  " + wrap(join(model.model_case.channels), 2);
   text += "Channels that can be recorded, written NAME.quantity:\n" + channels_as_text(model.system);
   if (has_kind(model.system, NodeKind::rotational))
     text += "  NODE-NODE.twist_rad: the first node's angle less the second's\n";
   if (has_kind(model.system, NodeKind::translational))
     text += "  NODE-NODE.distance_m: the first node's position less the second's\n";
-  if (!model.scene.note.empty()) text += "\n" + wrap(model.scene.note, 0);
+  if (!model.model_case.note.empty()) text += "\n" + wrap(model.model_case.note, 0);
   return text;
 }
 
-std::string kind_text(Setting::Kind kind) {
+std::string kind_text(Parameter::Kind kind) {
   switch (kind) {
-    case Setting::Kind::number:
+    case Parameter::Kind::number:
       return "number";
-    case Setting::Kind::integer:
+    case Parameter::Kind::integer:
       return "integer";
-    case Setting::Kind::choice:
+    case Parameter::Kind::choice:
       return "choice";
-    case Setting::Kind::order:
+    case Parameter::Kind::order:
       return "order";
   }
   return "";
 }
 
-Json setting_as_json(const Setting& s) {
-  const bool numeric = s.kind == Setting::Kind::number || s.kind == Setting::Kind::integer;
+Json setting_as_json(const Parameter& s) {
+  const bool numeric = s.kind == Parameter::Kind::number || s.kind == Parameter::Kind::integer;
   return {{"name", s.name},
           {"kind", kind_text(s.kind)},
           {"unit", text_or_null(s.unit)},
@@ -124,23 +127,23 @@ std::string model_as_json(const ModelRequest& model) {
   Json object;
   object["model"] = model.entry->name;
   object["summary"] = model.entry->summary;
-  object["settings"] = Json::array();
-  for (const Setting& s : model.entry->settings) object["settings"].push_back(setting_as_json(s));
+  object["parameters"] = Json::array();
+  for (const Parameter& s : model.entry->parameters) object["parameters"].push_back(setting_as_json(s));
   object["runs"] = model.file ? Json(model.file->run_names()) : Json::array();
-  object["duration_s"] = number(model.scene.duration);
-  object["default_step_s"] = number(model.scene.default_step);
-  object["default_channels"] = model.scene.channels;
+  object["duration_s"] = number(model.model_case.duration);
+  object["default_step_s"] = number(model.model_case.default_step);
+  object["default_channels"] = model.model_case.channels;
   object["channels"] = Json::array();
   for (const Channel& c : all_channels(model.system))
     object["channels"].push_back({{"name", c.name()}, {"unit", c.unit()}});
-  object["note"] = text_or_null(model.scene.note);
+  object["note"] = text_or_null(model.model_case.note);
   return json_text(object);
 }
 
 }  // namespace
 
 int list_command(const CommandLine& line) {
-  if (line.model.empty() && line.settings.empty() && line.findings.empty()) {
+  if (line.model.empty() && line.parameters.empty() && line.findings.empty()) {
     print(line.json ? models_as_json() : models_as_text());
     return kSuccess;
   }

@@ -13,14 +13,14 @@ namespace {
 
 std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::string& contact) {
   const std::string& name = model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(model.settings), name.size() + 2);
+  std::string text = name + ": " + wrap(settings_text(model.parameters), name.size() + 2);
   text += "contacts " + contact + ", " + std::to_string(modes.rigid_modes) +
           (modes.rigid_modes == 1 ? " rigid mode (0 Hz)\n\n" : " rigid modes (0 Hz)\n\n");
   if (modes.frequency_Hz.empty()) return text + "no elastic mode\n";
   text += "mode   frequency [Hz]\n";
   for (std::size_t i = 0; i < modes.frequency_Hz.size(); ++i)
     text += pad_left(std::to_string(i + 1), 4) + pad_left(digits(modes.frequency_Hz[i], 7), 17) + "\n";
-  if (!model.scene.note.empty()) text += "\n" + wrap(model.scene.note, 0);
+  if (!model.model_case.note.empty()) text += "\n" + wrap(model.model_case.note, 0);
   return text;
 }
 
@@ -33,11 +33,11 @@ int modes_command(const CommandLine& line) {
   if (line.json) {
     Json object = result_object("modes");
     object["model"] = request.model.entry->name;
-    object["settings"] = settings_object(request.model.settings);
+    object["parameters"] = settings_object(request.model.parameters);
     object["frequencies_Hz"] = modes.frequency_Hz;
     object["rigid_modes"] = modes.rigid_modes;
     object["contact"] = contact;
-    object["note"] = text_or_null(request.model.scene.note);
+    object["note"] = text_or_null(request.model.model_case.note);
     print(json_text(object));
   } else {
     print(as_text(request.model, modes, contact));

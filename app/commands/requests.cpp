@@ -24,11 +24,11 @@ void take_findings(const ModelError& error, std::vector<Finding>& findings) {
   findings.insert(findings.end(), error.findings().begin(), error.findings().end());
 }
 
-/// The settings that are right; what is wrong with the others goes to findings.
-Settings right_settings(const SceneEntry& entry, const CommandLine& line, std::vector<Finding>& findings) {
-  Settings right(entry.name, entry.settings);
-  for (const auto& [name, value] : line.settings) {
-    Settings probe(entry.name, entry.settings);
+/// The parameters that are right; what is wrong with the others goes to findings.
+Parameters right_settings(const ModelEntry& entry, const CommandLine& line, std::vector<Finding>& findings) {
+  Parameters right(entry.name, entry.parameters);
+  for (const auto& [name, value] : line.parameters) {
+    Parameters probe(entry.name, entry.parameters);
     probe.set(name, value);
     try {
       probe.check();
@@ -42,15 +42,15 @@ Settings right_settings(const SceneEntry& entry, const CommandLine& line, std::v
 
 std::vector<std::string> model_names() {
   std::vector<std::string> names;
-  for (const SceneEntry& entry : scenes()) names.push_back(entry.name);
+  for (const ModelEntry& entry : ready_made_models()) names.push_back(entry.name);
   return names;
 }
 
 /// Null, and a finding, if there is no such built-in model.
-const SceneEntry* find_built_in(const std::string& name, std::vector<Finding>& findings) {
+const ModelEntry* find_built_in(const std::string& name, std::vector<Finding>& findings) {
   const std::vector<std::string> names = model_names();
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return &scenes()[static_cast<std::size_t>(found - names.begin())];
+  if (found != names.end()) return &ready_made_models()[static_cast<std::size_t>(found - names.begin())];
   const std::string hint = did_you_mean(name, names);
   // What is like no model may be the value of an option that does not exist.
   if (findings.empty() || !hint.empty())
@@ -97,7 +97,7 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
   }
   try {
     std::shared_ptr<const ModelFile> file;
-    std::shared_ptr<const SceneEntry> entry;
+    std::shared_ptr<const ModelEntry> entry;
     if (is_model_file(line.model)) {
       file = std::make_shared<const ModelFile>(line.model, line.option("--run").value_or(""));
       entry = {file, &file->entry()};
@@ -108,10 +108,10 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
         findings.push_back(
             {kCommandLine, "--run", *run, "", "is for model files only; " + line.model + " is built in"});
     }
-    Settings settings = right_settings(*entry, line, findings);
-    Scene scene = entry->build(settings);
-    System system = scene.model.build();
-    return ModelRequest{entry, file, std::move(settings), std::move(scene), std::move(system)};
+    Parameters parameters = right_settings(*entry, line, findings);
+    ModelCase model_case = entry->build(parameters);
+    System system = model_case.model.build();
+    return ModelRequest{entry, file, std::move(parameters), std::move(model_case), std::move(system)};
   } catch (const ModelError& error) {
     take_findings(error, findings);
     return {};
@@ -140,7 +140,7 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
     find_channels(model.system, *line.list("--record"));
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
-      if (!all_settings_right) finding.range += " (with the settings that are right)";
+      if (!all_settings_right) finding.range += " (with the parameters that are right)";
       findings.push_back(std::move(finding));
     }
   }
@@ -242,8 +242,8 @@ Method stepping(const std::string& name, const CommandLine& line, double step,
 /// alone for exact propagation, or controlled steps where that cannot be.
 MethodChoice find_method(const std::optional<ModelRequest>& model, const CommandLine& line,
                          std::vector<Finding>& findings) {
-  const double duration = model ? model->scene.duration : 1.0;
-  const double step = model ? std::min(model->scene.default_step, duration) : 0.0;
+  const double duration = model ? model->model_case.duration : 1.0;
+  const double step = model ? std::min(model->model_case.default_step, duration) : 0.0;
   if (line.option("--method") && *line.option("--method") != "exact")
     return {stepping(*line.option("--method"), line, step, findings), "asked for"};
   if (line.option("--step") && line.option("--tolerance") && !line.option("--method")) {
@@ -268,7 +268,7 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
 
 /// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
 void take_file_options(const ModelRequest& model, CommandLine& line) {
-  const RunOptions file = model.file->run_options(model.settings);
+  const RunOptions file = model.file->run_options(model.parameters);
   const auto given = [&](const char* option) { return line.options.contains(option); };
   const auto take = [&](const char* option) {
     const auto value = file.values.find(option);
@@ -316,7 +316,7 @@ RunRequest request_run(const CommandLine& given) {
   if (model && model->file) take_file_options(*model, line);
   const bool settings_right = findings.size() == before;
 
-  const double duration = model ? model->scene.duration : 1.0;
+  const double duration = model ? model->model_case.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
   const MethodChoice method = find_method(model, line, findings);
@@ -357,7 +357,7 @@ RunRequest request_run(const CommandLine& given) {
   if (model) check_channels(*model, line, settings_right, findings);
   blame_file(line, findings);
   if (!findings.empty()) refuse(std::move(findings));
-  std::vector<std::string> record = line.list("--record").value_or(model->scene.channels);
+  std::vector<std::string> record = line.list("--record").value_or(model->model_case.channels);
   return {std::move(*model),
           chosen,
           accuracy,
@@ -425,7 +425,7 @@ AdviseRequest request_advise(const CommandLine& line) {
     options.within =
         read_part("--within", *text, 1e-4, 0.5, "must be from 0.01% to 50%, or 1e-4 to 0.5", findings);
   if (model) try {
-      figure_options(model->scene, model->system, options);
+      figure_options(model->model_case, model->system, options);
     } catch (const ModelError& error) {
       for (Finding finding : error.findings()) {
         finding.place = kCommandLine;

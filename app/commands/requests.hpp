@@ -1,5 +1,5 @@
 #pragma once
-/// From a command line to something that can be done: the model built with its settings, numbers checked.
+/// From a command line to something that can be done: the model built with its parameters, numbers checked.
 /// Everything wrong with a command line is thrown as one ModelError.
 #include <memory>
 #include <optional>
@@ -10,18 +10,18 @@
 #include "app/cli/command_line.hpp"
 #include "app/model_file/model_file.hpp"
 #include "core/system.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/method_choice.hpp"
 #include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 
-/// A model with settings, built.
+/// A model with parameters, built.
 struct ModelRequest {
-  std::shared_ptr<const SceneEntry> entry;
+  std::shared_ptr<const ModelEntry> entry;
   std::shared_ptr<const ModelFile> file;  ///< null for a built-in model
-  Settings settings;
-  Scene scene;
+  Parameters parameters;
+  ModelCase model_case;
   System system;
 };
 

@@ -124,8 +124,8 @@ class Batch {
   void start(std::size_t i) {
     OneOfMany& run = many_.runs[i];
     std::vector<std::string> arguments{"run", run.model.model, "--out=" + run.folder, "--json"};
-    for (const auto& settings : {line_.settings, run.varied})
-      for (const auto& [name, value] : settings) {
+    for (const auto& parameters : {line_.parameters, run.varied})
+      for (const auto& [name, value] : parameters) {
         arguments.push_back("--set");
         arguments.push_back(name + "=" + value);
       }
@@ -201,7 +201,7 @@ std::vector<OneOfMany> all_runs(const std::vector<NamedModel>& models, const std
                                : models.size() > 1 ? model.name + "," + varied
                                                    : varied;
       runs.push_back(
-          {.model = {name, model.model}, .varied = variant.settings, .folder = folder + "/" + name});
+          {.model = {name, model.model}, .varied = variant.parameters, .folder = folder + "/" + name});
     }
   return runs;
 }
@@ -220,9 +220,9 @@ int run_many(const CommandLine& line) {
   const std::vector<Variant> variants =
       read_variants(line.list("--vary").value_or(std::vector<std::string>{}), findings);
   if (!variants.empty())
-    for (const auto& [name, value] : variants.front().settings)
-      if (std::any_of(line.settings.begin(), line.settings.end(),
-                      [&name = name](const auto& setting) { return setting.first == name; }))
+    for (const auto& [name, value] : variants.front().parameters)
+      if (std::any_of(line.parameters.begin(), line.parameters.end(),
+                      [&name = name](const auto& parameter) { return parameter.first == name; }))
         findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
   if (!line.option("--out"))
     findings.push_back(
@@ -241,8 +241,8 @@ int run_many(const CommandLine& line) {
     CommandLine first = line;
     if (!list.models.empty()) first.model = list.models.front().model;
     first.options.erase("--jobs");
-    const auto& settings = variants.front().settings;
-    first.settings.insert(first.settings.end(), settings.begin(), settings.end());
+    const auto& parameters = variants.front().parameters;
+    first.parameters.insert(first.parameters.end(), parameters.begin(), parameters.end());
     request_run(first);
   }
 

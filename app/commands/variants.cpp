@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::app {
 
@@ -43,7 +43,7 @@ std::string read_values(const std::string& text, std::vector<std::string>& value
 
 std::string Variant::name() const {
   std::vector<std::string> parts;
-  for (const auto& [name, value] : settings) parts.push_back(name + "=" + value);
+  for (const auto& [name, value] : parameters) parts.push_back(name + "=" + value);
   return join(parts, ",");
 }
 
@@ -57,10 +57,10 @@ std::vector<Variant> read_variants(const std::vector<std::string>& words, std::v
     const std::string name = word.substr(0, equals);
     std::vector<std::string> values;
     const std::string wrong = read_values(word.substr(std::min(equals + 1, word.size())), values);
-    const auto& settings = variants.front().settings;
+    const auto& parameters = variants.front().parameters;
     if (name.empty() || !wrong.empty()) {
       refuse(wrong.empty() ? "must be NAME=A,B,C or NAME=FIRST:STEP:LAST" : wrong);
-    } else if (std::any_of(settings.begin(), settings.end(),
+    } else if (std::any_of(parameters.begin(), parameters.end(),
                            [&](const auto& s) { return s.first == name; })) {
       refuse(name + " is varied already");
     } else if (static_cast<double>(variants.size() * values.size()) > kMostVariants) {
@@ -70,7 +70,7 @@ std::vector<Variant> read_variants(const std::vector<std::string>& words, std::v
       for (const Variant& variant : variants)
         for (const std::string& value : values) {
           all.push_back(variant);
-          all.back().settings.emplace_back(name, value);
+          all.back().parameters.emplace_back(name, value);
         }
       variants = std::move(all);
     }

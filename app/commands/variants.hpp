@@ -1,5 +1,5 @@
 #pragma once
-/// Values that --vary gives to settings: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where the
+/// Values that --vary gives to parameters: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where the
 /// steps lead to it.
 #include <string>
 #include <utility>
@@ -10,12 +10,12 @@
 namespace drev::app {
 
 struct Variant {
-  std::vector<std::pair<std::string, std::string>> settings;
-  /// "backlash_mm=0.1,engine_rpm=750"; empty without settings.
+  std::vector<std::pair<std::string, std::string>> parameters;
+  /// "backlash_mm=0.1,engine_rpm=750"; empty without parameters.
   std::string name() const;
 };
 
-/// Every combination, the last setting varying fastest; one Variant without settings where there are no
+/// Every combination, the last parameter varying fastest; one Variant without parameters where there are no
 /// words.
 std::vector<Variant> read_variants(const std::vector<std::string>& words, std::vector<Finding>& findings);
 

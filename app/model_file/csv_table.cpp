@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::app {
 

@@ -137,54 +137,54 @@ class DocumentReader {
                "a parameter's name has letters, digits and _ only, and is not pi or position");
         continue;
       }
-      Setting setting{.name = entry.key,
-                      .default_text = "0",
-                      .unit = unit_suffix(entry.key),
-                      .low = -kNoLimit,
-                      .high = kNoLimit};
+      Parameter parameter{.name = entry.key,
+                          .default_text = "0",
+                          .unit = unit_suffix(entry.key),
+                          .low = -kNoLimit,
+                          .high = kNoLimit};
       const Value& value = entry.value;
       if (value.is(Value::Kind::table))
-        read_parameter_table(value, where, setting);
+        read_parameter_table(value, where, parameter);
       else
-        take_number(value, where, setting);
+        take_number(value, where, parameter);
       // The file that includes another has the last word.
       const auto same = std::find_if(doc_.parameters.begin(), doc_.parameters.end(),
-                                     [&](const Setting& s) { return s.name == entry.key; });
+                                     [&](const Parameter& s) { return s.name == entry.key; });
       if (same != doc_.parameters.end())
-        *same = setting;
+        *same = parameter;
       else
-        doc_.parameters.push_back(setting);
+        doc_.parameters.push_back(parameter);
     }
   }
 
-  bool take_number(const Value& value, const std::string& where, Setting& setting) {
+  bool take_number(const Value& value, const std::string& where, Parameter& parameter) {
     if (value.numeric() && std::isfinite(value.number)) {
-      setting.default_text = to_text(value.number);
+      parameter.default_text = to_text(value.number);
       return true;
     }
     refuse(value.at, where, "must be a finite number, not " + kind_name(value));
     return false;
   }
 
-  void read_parameter_table(const Value& table, const std::string& where, Setting& setting) {
+  void read_parameter_table(const Value& table, const std::string& where, Parameter& parameter) {
     const std::vector<std::string> known{"default", "min", "max", "whole", "meaning"};
     const Value* given = nullptr;
     for (const Entry& entry : table.entries) {
-      Setting bound;
+      Parameter bound;
       const Value& value = entry.value;
       const std::string place = where + "." + entry.key;
       if (entry.key == "default") {
-        if (take_number(value, place, setting)) given = &value;
+        if (take_number(value, place, parameter)) given = &value;
       } else if (entry.key == "min") {
-        if (take_number(value, place, bound)) setting.low = value.number;
+        if (take_number(value, place, bound)) parameter.low = value.number;
       } else if (entry.key == "max") {
-        if (take_number(value, place, bound)) setting.high = value.number;
+        if (take_number(value, place, bound)) parameter.high = value.number;
       } else if (entry.key == "whole") {
         if (!value.is(Value::Kind::boolean)) refuse(value.at, place, "must be true or false");
-        if (value.flag) setting.kind = Setting::Kind::integer;
+        if (value.flag) parameter.kind = Parameter::Kind::integer;
       } else if (entry.key == "meaning") {
         if (!value.is(Value::Kind::text)) refuse(value.at, place, "must be a text in quotes");
-        setting.meaning = value.text;
+        parameter.meaning = value.text;
       } else {
         refuse(entry.at, place, "is unknown here" + did_you_mean(entry.key, known));
       }
@@ -192,11 +192,11 @@ class DocumentReader {
     if (table.find("default") == nullptr) refuse(table.at, where, "lacks default");
     if (given == nullptr) return;
     const double number = given->number;
-    if (setting.low > setting.high)
+    if (parameter.low > parameter.high)
       refuse(table.at, where, "has a min above its max");
-    else if (number < setting.low || number > setting.high)
+    else if (number < parameter.low || number > parameter.high)
       refuse(given->at, where + ".default", to_text(number) + " is not between min and max");
-    if (setting.kind == Setting::Kind::integer && number != std::floor(number))
+    if (parameter.kind == Parameter::Kind::integer && number != std::floor(number))
       refuse(given->at, where + ".default", to_text(number) + " is no whole number");
   }
 

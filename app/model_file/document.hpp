@@ -5,7 +5,7 @@
 #include <map>
 
 #include "app/model_file/tree.hpp"
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::app {
 
@@ -21,7 +21,7 @@ struct Block {
 struct Document {
   std::string name, summary, note;
   Position at;  ///< of the file
-  std::vector<Setting> parameters;
+  std::vector<Parameter> parameters;
   std::map<std::string, std::vector<double>> lists;
   std::map<std::string, const Value*> tables;
   std::vector<Block> blocks;  ///< in the order in which they count: what is included comes first

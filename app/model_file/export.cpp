@@ -15,11 +15,11 @@ namespace {
 
 class SceneWriter {
  public:
-  SceneWriter(const Scene& scene) : scene_(scene), model_(scene.model) {}
+  SceneWriter(const ModelCase& model_case) : scene_(model_case), model_(model_case.model) {}
 
-  std::string text(const SceneEntry& entry, const Settings& settings) {
+  std::string text(const ModelEntry& entry, const Parameters& parameters) {
     const std::string nodes = write_nodes(), elements = write_elements();
-    std::string head = "# Written by drev export " + entry.name + settings_of(settings) + ".\n";
+    std::string head = "# Written by drev export " + entry.name + settings_of(parameters) + ".\n";
     head += "format = " + std::to_string(kFormat) + "\nname = " + toml_text(model_.name()) + "\n";
     if (!entry.summary.empty()) head += "summary = " + toml_text(entry.summary) + "\n";
     if (!scene_.note.empty()) head += "note = " + toml_text(scene_.note) + "\n";
@@ -29,11 +29,11 @@ class SceneWriter {
   }
 
  private:
-  static std::string settings_of(const Settings& settings) {
+  static std::string settings_of(const Parameters& parameters) {
     std::string all;
-    for (std::size_t i = 0; i < settings.known().size(); ++i)
-      if (settings.values()[i] != settings.known()[i].default_text)
-        all += (all.empty() ? " --set " : " ") + settings.known()[i].name + "=" + settings.values()[i];
+    for (std::size_t i = 0; i < parameters.known().size(); ++i)
+      if (parameters.values()[i] != parameters.known()[i].default_text)
+        all += (all.empty() ? " --set " : " ") + parameters.known()[i].name + "=" + parameters.values()[i];
     return all;
   }
 
@@ -64,8 +64,8 @@ class SceneWriter {
       node.initial_rate = initial.rate;
     }
     std::vector<bool> internal(model_.node_names().size(), false);
-    for (const Placement& placement : model_.placements())
-      for (const NodeId node : placement.internal) internal[at(index(node))] = true;
+    for (const ElementInstance& placement : model_.element_instances())
+      for (const NodeId node : placement.internal) internal[idx(index(node))] = true;
     std::string text = "[nodes]\n";
     for (std::size_t i = 0; i < internal.size(); ++i) {
       if (internal[i]) continue;
@@ -107,7 +107,7 @@ class SceneWriter {
 
   std::string write_elements() {
     std::string text = "[elements]\n";
-    for (const Placement& placement : model_.placements()) {
+    for (const ElementInstance& placement : model_.element_instances()) {
       const std::string& name = checked(placement.name);
       std::vector<std::string> nodes;
       for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(model_.name_of(ref)));
@@ -147,7 +147,7 @@ class SceneWriter {
     return text;
   }
 
-  const Scene& scene_;
+  const ModelCase& scene_;
   const Model& model_;
   TableStore store_;
   std::map<std::string, NodeKind> kinds_;
@@ -156,8 +156,8 @@ class SceneWriter {
 
 }  // namespace
 
-std::string export_scene(const SceneEntry& entry, const Settings& settings, const Scene& scene) {
-  return SceneWriter(scene).text(entry, settings);
+std::string export_scene(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case) {
+  return SceneWriter(model_case).text(entry, parameters);
 }
 
 }  // namespace drev::app

@@ -1,12 +1,12 @@
 #pragma once
-/// A scene as a model file: every number in SI with the digits that read back to the same double.
+/// A model case as a model file: every number in SI with the digits that read back to the same double.
 #include <string>
 
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev::app {
 
 /// Throws ModelError for what a file cannot hold: functions of one's own, elements of one's own.
-std::string export_scene(const SceneEntry& entry, const Settings& settings, const Scene& scene);
+std::string export_scene(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case);
 
 }  // namespace drev::app

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/model_file/case_reader.hpp"
 #include "app/model_file/part.hpp"
-#include "app/model_file/scene_reader.hpp"
 
 namespace drev::app {
 
@@ -24,30 +24,30 @@ ModelFile::ModelFile(const std::string& text, const std::string& path, const std
   document_ = document;
   if (!findings.empty()) {
     // What else is wrong, as far as it can be told with the defaults.
-    const FileScene rest = read_scene(*document, Settings(entry_.name, entry_.settings), run);
+    const FileCase rest = read_case(*document, Parameters(entry_.name, entry_.parameters), run);
     findings.insert(findings.end(), rest.findings.begin(), rest.findings.end());
     limit_findings(findings, document->at);
     throw ModelError(std::move(findings));
   }
-  entry_.build = [document, run](Settings settings) {
-    settings.check();
-    FileScene result = read_scene(*document, settings, run);
-    if (!result.scene) throw ModelError(std::move(result.findings));
-    return std::move(*result.scene);
+  entry_.build = [document, run](Parameters parameters) {
+    parameters.check();
+    FileCase result = read_case(*document, parameters, run);
+    if (!result.model_case) throw ModelError(std::move(result.findings));
+    return std::move(*result.model_case);
   };
 }
 
-RunOptions ModelFile::run_options(const Settings& settings) const {
-  return read_scene(*document_, settings, run_, true).options;
+RunOptions ModelFile::run_options(const Parameters& parameters) const {
+  return read_case(*document_, parameters, run_, true).options;
 }
 
 std::vector<std::string> ModelFile::run_names() const { return document_->run_names(); }
 
 bool is_model_file(const std::string& model) {
   if (model.ends_with(".toml")) return true;
-  const auto built_in = [&](const SceneEntry& entry) { return entry.name == model; };
+  const auto built_in = [&](const ModelEntry& entry) { return entry.name == model; };
   std::error_code error;
-  return std::none_of(scenes().begin(), scenes().end(), built_in) &&
+  return std::none_of(ready_made_models().begin(), ready_made_models().end(), built_in) &&
          std::filesystem::is_regular_file(model, error);
 }
 

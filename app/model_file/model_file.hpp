@@ -1,5 +1,5 @@
 #pragma once
-/// A model file as a scene: the model with its parameters as settings, and its runs. docs/model_file.md
+/// A model file as a model case: the model with its parameters, and its runs. docs/model_file.md
 /// describes the format.
 #include <map>
 #include <memory>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/model_file/tree.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev::app {
 
@@ -29,14 +29,14 @@ class ModelFile {
   ModelFile(const std::string& text, const std::string& path, const std::string& run);
 
   /// Its build() throws ModelError by file, line and column.
-  const SceneEntry& entry() const { return entry_; }
-  RunOptions run_options(const Settings& settings) const;
+  const ModelEntry& entry() const { return entry_; }
+  RunOptions run_options(const Parameters& parameters) const;
   std::vector<std::string> run_names() const;
 
  private:
   std::shared_ptr<const Document> document_;
   std::string run_;
-  SceneEntry entry_;
+  ModelEntry entry_;
 };
 
 /// Whether a MODEL of the command line means a file: it ends in .toml, or names a file and no built-in model.

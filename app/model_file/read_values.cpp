@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::app {
 

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "core/channel.hpp"
+#include "core/element.hpp"
 #include "elements/not_given.hpp"
 
 namespace drev::app {
@@ -35,7 +36,8 @@ bool matches(const std::string& pattern, const std::string& name) {
 /// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques.
 std::vector<std::string> carried(const System& system) {
   std::unordered_map<std::string, std::string_view> types;
-  for (const Placement& placement : system.placements()) types[placement.name] = placement.element->type();
+  for (const ElementInstance& placement : system.element_instances())
+    types[placement.name] = placement.element->type();
   const auto carries = [&](const std::string& object) {
     const auto whole = types.find(object);
     if (whole != types.end())
@@ -159,20 +161,21 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
   return found;
 }
 
-void RunSection::complete(Scene& scene, const System& system, ReadContext& context) const {
-  scene.duration = params_.duration;
-  scene.default_step = params_.step;
-  scene.static_turn = params_.static_turn;
+void RunSection::complete(ModelCase& model_case, const System& system, ReadContext& context) const {
+  model_case.duration = params_.duration;
+  model_case.default_step = params_.step;
+  model_case.static_turn = params_.static_turn;
   if (!params_.deflection.empty()) {
     if (params_.deflection.find('*') != std::string::npos)
       context.findings.push_back(
           fault_at(entry("deflection")->value.at, "run.deflection", "must be one channel, without '*'"));
     else
       channels("deflection", {params_.deflection}, system, context);
-    scene.deflection = params_.deflection;
+    model_case.deflection = params_.deflection;
   }
-  scene.torques = entry("torques") ? channels("torques", params_.torques, system, context) : carried(system);
-  scene.channels =
+  model_case.torques =
+      entry("torques") ? channels("torques", params_.torques, system, context) : carried(system);
+  model_case.channels =
       entry("record") ? channels("record", params_.record, system, context) : node_motions(system);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// [run] of a model file and the named runs inside it.
+#include "app/model_file/case_reader.hpp"
 #include "app/model_file/field_reader.hpp"
-#include "app/model_file/scene_reader.hpp"
 #include "core/system.hpp"
 
 namespace drev::app {
@@ -13,7 +13,7 @@ class RunSection {
 
   RunOptions options() const;
   /// What the runs of the model need to know. Channels that do not exist are findings.
-  void complete(Scene& scene, const System& system, ReadContext& context) const;
+  void complete(ModelCase& model_case, const System& system, ReadContext& context) const;
 
  private:
   struct Params {

@@ -132,7 +132,7 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
 
   Json list = Json::array();
   for (const double order : shown) list.push_back({{"order", order}, {"of", "loads"}});
-  for (const Placement& placement : system.placements())
+  for (const ElementInstance& placement : system.element_instances())
     if (const auto* mesh = dynamic_cast<const GearMesh*>(placement.element.get());
         mesh != nullptr && mesh->params().teeth_1 > 0) {
       const int gear = system.node_of(placement.nodes.front());

@@ -33,11 +33,11 @@ std::string now() {
 /// The command that gives this run again.
 std::string command_of(const RunRequest& request, const RunResult& result) {
   const Method& method = result.method;
-  const Settings& settings = request.model.settings;
+  const Parameters& parameters = request.model.parameters;
   std::string text = "drev run " + request.words;
-  for (std::size_t i = 0; i < settings.known().size(); ++i)
-    if (settings.values()[i] != settings.known()[i].default_text)
-      text += " --set " + settings.known()[i].name + "=" + settings.values()[i];
+  for (std::size_t i = 0; i < parameters.known().size(); ++i)
+    if (parameters.values()[i] != parameters.known()[i].default_text)
+      text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
   text += " --method " + method.name;
   if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
   if (method.step > 0.0) text += " --step " + to_text(method.step);
@@ -46,16 +46,16 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
   return text;
 }
 
-Json inputs_array(const Settings& settings) {
+Json inputs_array(const Parameters& parameters) {
   Json inputs = Json::array();
-  for (std::size_t i = 0; i < settings.known().size(); ++i) {
-    const Setting& setting = settings.known()[i];
-    inputs.push_back({{"name", setting.name},
-                      {"value", settings.values()[i]},
-                      {"default", setting.default_text},
-                      {"unit", setting.unit},
-                      {"range", setting.range()},
-                      {"meaning", setting.meaning}});
+  for (std::size_t i = 0; i < parameters.known().size(); ++i) {
+    const Parameter& parameter = parameters.known()[i];
+    inputs.push_back({{"name", parameter.name},
+                      {"value", parameters.values()[i]},
+                      {"default", parameter.default_text},
+                      {"unit", parameter.unit},
+                      {"range", parameter.range()},
+                      {"meaning", parameter.meaning}});
   }
   return inputs;
 }
@@ -104,7 +104,7 @@ Json history_object(const ReportHistory& history) {
 double report_interval(const RunRequest& request, const Method& method) {
   if (request.report_every) return *request.report_every;
   if (!(method.tolerance > 0.0)) return 0.0;
-  const double duration = request.model.scene.duration, about = duration / kRunSamples;
+  const double duration = request.model.model_case.duration, about = duration / kRunSamples;
   const double cycle = cycle_of(request.model);
   if (!(cycle > 2.0 * about) || cycle > duration) return about;
   // A number of samples a cycle that transforms are fast for.
@@ -120,15 +120,15 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   data["command"] = command_of(request, result);
   data["about"] = m.entry->summary;
   data["warning"] = warning_of(result);
-  data["inputs"] = inputs_array(m.settings);
+  data["inputs"] = inputs_array(m.parameters);
   data["result"] = run_object(request, result);
-  data["model"] = model_object(m.scene.model, m.system);
+  data["model"] = model_object(m.model_case.model, m.system);
   data["modes"] = Json::array();
   data["campbell"] = nullptr;
   double highest = 0.0;
   if (result.modes) {
     data["modes"] = modes_object(m.system, *result.modes);
-    data["campbell"] = campbell_object(m.scene.model, m.system, *result.modes, m.scene.duration);
+    data["campbell"] = campbell_object(m.model_case.model, m.system, *result.modes, m.model_case.duration);
     if (result.modes->count() > 0) highest = kAboveModes * result.modes->frequency_Hz.back();
   }
   highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);

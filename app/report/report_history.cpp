@@ -32,16 +32,16 @@ ReportHistory::ReportHistory(const System& system, const std::vector<std::string
     if (const auto gap = system.scalars()[j].force->gap()) {
       terms_.push_back(j);
       gaps_.push_back(*gap);
-      bands_.push_back({system.placements()[at(index(system.scalars()[j].element))].name, {}, {}});
+      bands_.push_back({system.element_instances()[idx(index(system.scalars()[j].element))].name, {}, {}});
     }
 }
 
-void ReportHistory::start(const Assembler& assembler, const StepPoint& point) {
+void ReportHistory::start(const Assembler& assembler, const EvaluatedState& point) {
   start_ = point.state.t;
   sample(assembler, point);
 }
 
-void ReportHistory::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void ReportHistory::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const double x0 = from.inputs[terms_[i]].x, x1 = to.inputs[terms_[i]].x;
@@ -57,7 +57,7 @@ double ReportHistory::next_stop(double /*t*/) const {
   return start_ + static_cast<double>(samples_) * every_;
 }
 
-void ReportHistory::sample(const Assembler& assembler, const StepPoint& point) {
+void ReportHistory::sample(const Assembler& assembler, const EvaluatedState& point) {
   const State& state = point.state;
   if (in_group_ == 0) open_group(state.t);
   const bool full = tail_times_.size() == tail_places_;

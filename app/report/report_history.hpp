@@ -25,8 +25,8 @@ class ReportHistory final : public Observer {
   /// every >= 0 [s]; 0: every step, for methods whose steps an output time would cut.
   ReportHistory(const System& system, const std::vector<std::string>& channels, double every);
 
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
 
   /// One curve: a channel, or an energy.
@@ -57,7 +57,7 @@ class ReportHistory final : public Observer {
 
  private:
   std::size_t tail_place(std::size_t i) const { return (oldest_ + i) % tail_times_.size(); }
-  void sample(const Assembler& assembler, const StepPoint& point);
+  void sample(const Assembler& assembler, const EvaluatedState& point);
   void open_group(double t);
   void join_neighbours();
 

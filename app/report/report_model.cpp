@@ -13,14 +13,14 @@ constexpr double kSumRounding = 1e-9;  // relative, of sums that should be zero
 constexpr std::size_t kSharesShown = 3;
 constexpr double kShareShown = 0.005;
 
-std::vector<int> nodes_of(const Placement& placement, const System& system) {
+std::vector<int> nodes_of(const ElementInstance& placement, const System& system) {
   std::vector<int> nodes;
   for (const NodeRef& node : placement.nodes) nodes.push_back(system.node_of(node));
   for (const NodeId node : placement.internal) nodes.push_back(static_cast<int>(node));
   return nodes;
 }
 
-Terms terms_of(const Placement& placement, int nodes) {
+Terms terms_of(const ElementInstance& placement, int nodes) {
   Terms terms(nodes);
   placement.element->describe(nodes, terms);
   return terms;
@@ -31,7 +31,7 @@ class Drawing {
  public:
   explicit Drawing(const System& system) : inertia_(static_cast<std::size_t>(system.node_count())) {}
 
-  void add(const Placement& placement, const std::vector<int>& nodes) {
+  void add(const ElementInstance& placement, const std::vector<int>& nodes) {
     placement_ = &placement;
     nodes_ = &nodes;
     const int n = static_cast<int>(nodes.size());
@@ -101,7 +101,7 @@ class Drawing {
     for (int i = 1; i < static_cast<int>(nodes_->size()); ++i) joint("other", {i - 1, i});
   }
 
-  const Placement* placement_ = nullptr;
+  const ElementInstance* placement_ = nullptr;
   const std::vector<int>* nodes_ = nullptr;
   std::vector<double> inertia_;
 };
@@ -118,7 +118,8 @@ double potential(const Terms& terms, const Eigen::VectorXd& q) {
 
 Json model_object(const Model& model, const System& system) {
   Drawing drawing(system);
-  for (const Placement& placement : model.placements()) drawing.add(placement, nodes_of(placement, system));
+  for (const ElementInstance& placement : model.element_instances())
+    drawing.add(placement, nodes_of(placement, system));
   Json nodes = Json::array();
   for (int i = 0; i < system.node_count(); ++i) {
     const int prescribed = system.node_map(i).prescribed;
@@ -136,14 +137,15 @@ Json model_object(const Model& model, const System& system) {
 
 Json modes_object(const System& system, const ModeSet& modes) {
   std::vector<std::vector<int>> nodes;
-  for (const Placement& placement : system.placements()) nodes.push_back(nodes_of(placement, system));
+  for (const ElementInstance& placement : system.element_instances())
+    nodes.push_back(nodes_of(placement, system));
   Json list = Json::array();
   for (int m = 0; m < modes.count(); ++m) {
     const Eigen::VectorXd shape = modes.shapes.col(m);
     std::vector<std::pair<double, std::string>> shares;
     double sum = 0.0;
     for (std::size_t e = 0; e < nodes.size(); ++e) {
-      const Placement& placement = system.placements()[e];
+      const ElementInstance& placement = system.element_instances()[e];
       Eigen::VectorXd q(static_cast<Eigen::Index>(nodes[e].size()));
       for (std::size_t i = 0; i < nodes[e].size(); ++i) q[static_cast<Eigen::Index>(i)] = shape[nodes[e][i]];
       const double energy = potential(terms_of(placement, static_cast<int>(nodes[e].size())), q);

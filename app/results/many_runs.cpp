@@ -26,7 +26,7 @@ std::string shown(const OneOfMany& run, const std::vector<std::pair<const char*,
   return {};
 }
 
-/// In quotes where it has commas (a name of several settings), quotes or line ends (RFC 4180).
+/// In quotes where it has commas (a name of several parameters), quotes or line ends (RFC 4180).
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

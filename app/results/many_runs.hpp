@@ -11,7 +11,7 @@ namespace drev::app {
 
 struct OneOfMany {
   NamedModel model;
-  std::vector<std::pair<std::string, std::string>> varied;  ///< settings of --vary
+  std::vector<std::pair<std::string, std::string>> varied;  ///< parameters of --vary
   std::string folder;
   /// That of its summary, or not_started, running, bad_input, killed.
   std::string status = "not_started";
@@ -36,7 +36,7 @@ struct ManyRuns {
 
 /// runs.json, as docs/results.schema.json describes it.
 std::string many_as_json(const ManyRuns& many);
-/// runs.csv: a row a run, with its settings of --vary and its figures.
+/// runs.csv: a row a run, with its parameters of --vary and its figures.
 std::string many_as_csv(const ManyRuns& many);
 std::string many_as_text(const ManyRuns& many);
 

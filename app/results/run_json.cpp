@@ -150,7 +150,7 @@ Json head_object(const RunRequest& request, const std::string& scheme, const Met
                  const std::string& status, const std::string& reason) {
   Json object = result_object("run");
   object["model"] = request.model.entry->name;
-  object["settings"] = settings_object(request.model.settings);
+  object["parameters"] = settings_object(request.model.parameters);
   object["method"] = scheme;
   object["method_reason"] = request.method_reason;
   object["step_s"] = method.step > 0.0 ? number(method.step) : Json();
@@ -192,7 +192,7 @@ Json run_object(const RunRequest& request, const RunResult& r) {
                       {"reduction_s", number(r.reduction_time)},
                       {"accuracy_s", number(r.accuracy_time)},
                       {"simulation_s", number(r.run_time)}};
-  object["note"] = text_or_null(request.model.scene.note);
+  object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }
 
@@ -205,10 +205,10 @@ std::string running_as_json(const RunRequest& request) {
       head_object(request, request.method.name, request.method, "running",
                   "the run has not ended: it still goes on, its process was killed, or the disk was full");
   object["process"] = ::getpid();
-  object["duration_s"] = number(request.model.scene.duration);
+  object["duration_s"] = number(request.model.model_case.duration);
   object["record"] = request.record;
   object["every_s"] = number(request.every);
-  object["note"] = text_or_null(request.model.scene.note);
+  object["note"] = text_or_null(request.model.model_case.note);
   return json_text(object);
 }
 

@@ -20,7 +20,7 @@ std::string value_text(const Largest& l) {
 /// The element, and between which nodes it is.
 std::string place_text(const Model& model, const Largest& l) {
   const std::string place = l.place();
-  for (const Placement& placement : model.placements()) {
+  for (const ElementInstance& placement : model.element_instances()) {
     if (placement.name != place) continue;
     std::vector<std::string> nodes;
     for (const NodeRef& node : placement.nodes) nodes.push_back(model.name_of(node));
@@ -52,9 +52,9 @@ std::string modes_row(const RunResult& r) {
                                       std::to_string(r.modes->rigid_modes) + " rigid; contacts closed");
 }
 
-std::string force_rows(const Scene& scene, const RunResult& r) {
-  const Model& model = scene.model;
-  const bool torque = scene.torques.empty() || scene.torques.front().ends_with("_Nm");
+std::string force_rows(const ModelCase& model_case, const RunResult& r) {
+  const Model& model = model_case.model;
+  const bool torque = model_case.torques.empty() || model_case.torques.front().ends_with("_Nm");
   const std::string name = torque ? "torque" : "force";
   std::string text;
   if (r.force)
@@ -194,10 +194,10 @@ std::string accuracy_rows(double asked, const AccuracyResult& a) {
 
 }  // namespace
 
-std::string settings_text(const Settings& settings) {
+std::string settings_text(const Parameters& parameters) {
   std::vector<std::string> items;
-  for (std::size_t i = 0; i < settings.known().size(); ++i)
-    items.push_back(settings.known()[i].name + " " + settings.values()[i]);
+  for (std::size_t i = 0; i < parameters.known().size(); ++i)
+    items.push_back(parameters.known()[i].name + " " + parameters.values()[i]);
   return join(items);
 }
 
@@ -212,11 +212,11 @@ std::string warning_of(const RunResult& r) {
 
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
-  const Model& model = request.model.scene.model;
+  const Model& model = request.model.model_case.model;
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
-          wrap(settings_text(request.model.settings), request.model.entry->name.size() + 2);
+          wrap(settings_text(request.model.parameters), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);
   if (r.deflection)
     text += labelled("Largest deflection", value_text(*r.deflection) + " " +
@@ -224,13 +224,13 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
                                                short_digits(r.deflection->at, 4) + " s");
   if (!r.force && !r.ok())
     text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
-  text += force_rows(request.model.scene, r) + contact_rows(r) + energy_row(s.energy);
+  text += force_rows(request.model.model_case, r) + contact_rows(r) + energy_row(s.energy);
   text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
   text += labelled("Why this method", r.method_reason);
   text += labelled("Reduction", r.reduction.reason);
   text += labelled("Effort", effort_text(r));
   if (r.accuracy) text += accuracy_rows(*request.accuracy, *r.accuracy);
-  if (!request.model.scene.note.empty()) text += labelled("Note", request.model.scene.note);
+  if (!request.model.model_case.note.empty()) text += labelled("Note", request.model.model_case.note);
   return text;
 }
 

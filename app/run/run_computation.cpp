@@ -48,7 +48,7 @@ void add_modes(const System& system, RunResult& result) {
 }
 
 void add_static_force(const ModelRequest& model, const std::vector<Channel>& torques, RunResult& result) {
-  if (model.scene.static_turn == 0.0 || torques.empty()) {
+  if (model.model_case.static_turn == 0.0 || torques.empty()) {
     result.static_reason = "this model has no turn over which it would be sought";
     return;
   }
@@ -58,8 +58,8 @@ void add_static_force(const ModelRequest& model, const std::vector<Channel>& tor
   }
   const Timer timer;
   try {
-    result.static_force =
-        largest_of(torques, static_sweep(model.system, torques, 0.0, model.scene.static_turn, kStaticAngles));
+    result.static_force = largest_of(
+        torques, static_sweep(model.system, torques, 0.0, model.model_case.static_turn, kStaticAngles));
     if (!result.static_force) result.static_reason = "it is not finite";
   } catch (const SolverError& error) {
     result.static_reason = error.what();
@@ -81,14 +81,14 @@ std::vector<Contacts> contacts_of(const System& system, const ContactStatistics&
 
 /// Figures with their errors; false: the run failed, as the result says.
 bool find_accuracy(const RunRequest& request, RunResult& result) {
-  const Scene& scene = request.model.scene;
+  const ModelCase& model_case = request.model.model_case;
   Progress shown;
   const Timer timer;
   try {
     result.accuracy = run_to_accuracy(request.model.system, {.accuracy = *request.accuracy,
-                                                             .t_end = scene.duration,
-                                                             .deflection = scene.deflection,
-                                                             .torques = scene.torques,
+                                                             .t_end = model_case.duration,
+                                                             .deflection = model_case.deflection,
+                                                             .torques = model_case.torques,
                                                              .cycle = cycle_of(request.model),
                                                              .method = request.method,
                                                              .progress = [&](double part) {
@@ -109,9 +109,9 @@ bool find_accuracy(const RunRequest& request, RunResult& result) {
 
 /// What is shown of the run: a reduction keeps the error of each of them.
 std::vector<std::string> shown_channels(const RunRequest& request) {
-  const Scene& scene = request.model.scene;
-  std::vector<std::string> names = scene.torques;
-  if (!scene.deflection.empty()) names.push_back(scene.deflection);
+  const ModelCase& model_case = request.model.model_case;
+  std::vector<std::string> names = model_case.torques;
+  if (!model_case.deflection.empty()) names.push_back(model_case.deflection);
   for (const Channel& c : mesh_channels(request.model.system)) names.push_back(c.name());
   if (request.out || request.report) names.insert(names.end(), request.record.begin(), request.record.end());
   std::sort(names.begin(), names.end());
@@ -137,7 +137,7 @@ RunPlan plan_run(const RunRequest& request) {
   const Timer timer;
   ReductionTrial trial = try_reduction(system, {.within = *request.reduce,
                                                 .channels = channels,
-                                                .duration = request.model.scene.duration,
+                                                .duration = request.model.model_case.duration,
                                                 .method = request.method,
                                                 .any_method = request.any_method,
                                                 .progress = [](double) { return !interrupted(); }});
@@ -169,28 +169,28 @@ std::vector<Channel> mesh_channels(const System& system) {
 
 double cycle_of(const ModelRequest& model) {
   const auto& reference = model.system.reference();
-  if (!reference || !reference->at || !(model.scene.static_turn > 0.0)) return 0.0;
+  if (!reference || !reference->at || !(model.model_case.static_turn > 0.0)) return 0.0;
   const double speed = reference->at(0.0).rate;
-  if (speed == 0.0 || reference->at(model.scene.duration).rate != speed) return 0.0;
-  return model.scene.static_turn / std::abs(speed);
+  if (speed == 0.0 || reference->at(model.model_case.duration).rate != speed) return 0.0;
+  return model.model_case.static_turn / std::abs(speed);
 }
 
 RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFile* history,
                       ReportHistory* report) {
   const System &full = request.model.system, &system = system_of(request, plan);
-  const Scene& scene = request.model.scene;
+  const ModelCase& model_case = request.model.model_case;
   RunResult result;
   result.method = plan.method;
   result.method_reason = plan.method_reason;
   result.reduction = plan.note;
   result.reduction_time = plan.time;
   add_modes(full, result);
-  add_static_force(request.model, find_channels(full, scene.torques), result);
+  add_static_force(request.model, find_channels(full, model_case.torques), result);
 
-  const std::vector<Channel> torques = find_channels(system, scene.torques);
+  const std::vector<Channel> torques = find_channels(system, model_case.torques);
 
   std::vector<Channel> deflections;
-  if (!scene.deflection.empty()) deflections = find_channels(system, {scene.deflection});
+  if (!model_case.deflection.empty()) deflections = find_channels(system, {model_case.deflection});
   // Exact propagation and controlled steps take long ones: their peaks may lie inside.
   const bool inside = plan.method.tolerance > 0.0;
   Peaks torque_peaks(torques, inside), deflection_peaks(deflections, inside);
@@ -213,7 +213,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFil
       return !interrupted() && (history == nullptr || history->error().empty());
     };
     result.summary =
-        run_method(system, result.method, {.t_end = scene.duration, .progress = progress}, observers);
+        run_method(system, result.method, {.t_end = model_case.duration, .progress = progress}, observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {

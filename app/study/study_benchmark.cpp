@@ -16,7 +16,7 @@ namespace {
 struct Case {
   const char* source;
   const char* name;
-  SettingList settings;
+  ParameterValues parameters;
 };
 const Case kCases[] = {
     {"Figure 4.8", "no backlash", {{"k_2_N_per_m", "2000"}, {"half_gap_1_m", "0"}, {"half_gap_2_m", "0"}}},
@@ -47,7 +47,7 @@ StudyGroup study_benchmark() {
   std::vector<std::string> worst_texts, largest_texts;
   bool agree = true;
   for (const Case& c : kCases) {
-    const System system = build_scene("two_mass_backlash", c.settings).model.build();
+    const System system = build_case("two_mass_backlash", c.parameters).model.build();
     const Recorder stepped = history(system, source_method()),
                    coarse = history(system, exact_method(kBenchmarkCoarse)),
                    fine = history(system, exact_method(kBenchmarkFine));
@@ -80,8 +80,8 @@ StudyGroup study_benchmark() {
   const auto fastest = [](const System& system) {
     return solve_modes(system, {.count = system.size()}).frequency_Hz.back();
   };
-  const double here = fastest(build_scene("two_mass_backlash", {}).model.build()),
-               there = fastest(build_scene("camshaft", {}).model.build());
+  const double here = fastest(build_case("two_mass_backlash", {}).model.build()),
+               there = fastest(build_case("camshaft", {}).model.build());
   group.verdicts = {
       "\"The two solutions are generally in agreement\": **it " + stands(agree) +
       ".** Average acceleration at 1 ms stays within " + join(worst_texts, ", ") +

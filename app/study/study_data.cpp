@@ -20,8 +20,9 @@ constexpr double kFrequencyRounding =
 constexpr double kNear = 5e-4;  // of critical: what 1 % may be off
 
 double first_frequency(int cylinders, const char* drive) {
-  const Scene scene = build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", drive}});
-  return solve_modes(scene.model.build(), {.count = 1}).omega(0);
+  const ModelCase model_case =
+      build_case("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", drive}});
+  return solve_modes(model_case.model.build(), {.count = 1}).omega(0);
 }
 
 Known exact(double value) { return {value, kFrequencyRounding * std::abs(value)}; }

@@ -102,7 +102,7 @@ Search search_orders(int cylinders, const std::string& source,
   shown.push_back({order_text(all[0].order), "-", "-", "least steady deflection of all; "});
   shown.push_back({order_text(lightest.order), "-", "-", "least steady torque of all; "});
   const std::string default_order = order_text(default_firing_order(cylinders));
-  std::vector<SettingList> cases;
+  std::vector<ParameterValues> cases;
   for (const Shown& s : shown)
     cases.push_back({{"cylinders", std::to_string(cylinders)},
                      {"drive", "held"},

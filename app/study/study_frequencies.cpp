@@ -66,9 +66,9 @@ StudyGroup study_frequencies() {
   bool shapes_right = true;
   StudyTable table{"First five modes"};
   for (int cylinders = 6; cylinders <= 10; ++cylinders) {
-    const Scene scene =
-        build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "free"}});
-    const ModeSet modes = solve_modes(scene.model.build(), {.count = kModes});
+    const ModelCase model_case =
+        build_case("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "free"}});
+    const ModeSet modes = solve_modes(model_case.model.build(), {.count = kModes});
     first.push_back(modes.frequency_Hz[0]);
     const auto* printed = std::find_if(published::kFreeModes.begin(), published::kFreeModes.end(),
                                        [&](const auto& p) { return p.cylinders == cylinders; });

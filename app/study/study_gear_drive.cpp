@@ -18,8 +18,8 @@ namespace {
 constexpr int kRuns = 4;    // of each case that rattles
 constexpr int kPieces = 8;  // of a period of mesh 2: both meshes jump at eighths of it
 
-SettingList gears(const char* damping, double backlash_mm, const char* stiffness = "mean",
-                  int cylinders = 9) {
+ParameterValues gears(const char* damping, double backlash_mm, const char* stiffness = "mean",
+                      int cylinders = 9) {
   return {{"cylinders", std::to_string(cylinders)},
           {"damping", damping},
           {"backlash_mm", short_digits(backlash_mm, 6)},
@@ -28,10 +28,10 @@ SettingList gears(const char* damping, double backlash_mm, const char* stiffness
 
 /// Free motion's growth with gaps closed and stepped stiffness [1/s].
 double growth_at(double engine_rpm, const char* damping, int pieces = kPieces) {
-  SettingList settings = gears(damping, 0.0, "step");
-  settings.insert(settings.end(), {{"loads", "source"}, {"engine_rpm", short_digits(engine_rpm, 8)}});
+  ParameterValues parameters = gears(damping, 0.0, "step");
+  parameters.insert(parameters.end(), {{"loads", "source"}, {"engine_rpm", short_digits(engine_rpm, 8)}});
   const double period = 60.0 / engine_rpm * 68.0 / 59.0 / 34.0;  // of mesh 2, two of mesh 1
-  return largest_floquet_exponent(build_scene("camshaft", settings).model.build(), period, pieces);
+  return largest_floquet_exponent(build_case("camshaft", parameters).model.build(), period, pieces);
 }
 
 std::string off_balance(const CamshaftFigures& f) {
@@ -72,21 +72,21 @@ void add_contacts(StudyTable& table, const published::GearDrive& p, const std::s
 }
 
 GearStudy run_gear_study() {
-  std::vector<SettingList> rattling{gears("undamped", 0.15), gears("case_2", 0.15),
-                                    gears("case_3_corrected", 0.15), gears("case_1", 0.15, "step"),
-                                    gears("case_1", 0.15, "mean", 8)};
+  std::vector<ParameterValues> rattling{gears("undamped", 0.15), gears("case_2", 0.15),
+                                        gears("case_3_corrected", 0.15), gears("case_1", 0.15, "step"),
+                                        gears("case_1", 0.15, "mean", 8)};
   for (const auto& p : published::kBacklash) rattling.push_back(gears("case_1", p.gap));
   const std::vector<CamshaftCase> rattle = run_cases(rattling, kRuns);
   const auto held = [](const char* damping, int cylinders) {
-    return SettingList{{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
+    return ParameterValues{{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
   };
   const std::vector<CamshaftCase> smooth =
       run_cases({held("case_1", 9), held("undamped", 9), gears("case_1", 0.0), gears("undamped", 0.0),
                  held("case_1", 8)},
                 2);
-  SettingList varying = gears("case_1", 0.0, "step");
+  ParameterValues varying = gears("case_1", 0.0, "step");
   varying.push_back({"loads", "source"});
-  const System eight = build_scene("camshaft", gears("case_1", 0.15, "mean", 8)).model.build();
+  const System eight = build_case("camshaft", gears("case_1", 0.15, "mean", 8)).model.build();
   return {.held = smooth[0],
           .held_undamped = smooth[1],
           .tight = smooth[2],

@@ -14,7 +14,7 @@ namespace drev::app {
 namespace {
 
 struct Damping {
-  const char* setting;
+  const char* parameter;
   const char* name;
 };
 constexpr Damping kDampings[] = {{"undamped", "undamped"},
@@ -27,7 +27,7 @@ constexpr double kConverged = 0.05;  // of an amplification
 constexpr double kMatters = 0.1;     // of an amplification, what damping takes
 constexpr double kResonant = 0.05;   // from an order: nearer is not far from it
 
-SettingList held(int cylinders, const char* damping) {
+ParameterValues held(int cylinders, const char* damping) {
   return {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
 }
 
@@ -45,11 +45,11 @@ struct Shaft {
 /// Largest torque of the shaft turning at 15 rpm, the source's "static" one, at its step; second revolution.
 double slow_torque(int cylinders) {
   constexpr double kRevolution = 4.0;  // s
-  SettingList settings = held(cylinders, "case_1");
-  settings.insert(settings.end(), {{"loads", "source"}, {"engine_rpm", "30"}});
-  const Scene scene = build_scene("camshaft", settings);
-  const System system = scene.model.build();
-  WindowPeaks torque(find_channels(system, scene.torques), false, kRevolution, kRevolution);
+  ParameterValues parameters = held(cylinders, "case_1");
+  parameters.insert(parameters.end(), {{"loads", "source"}, {"engine_rpm", "30"}});
+  const ModelCase model_case = build_case("camshaft", parameters);
+  const System system = model_case.model.build();
+  WindowPeaks torque(find_channels(system, model_case.torques), false, kRevolution, kRevolution);
   run_watched(system, source_method(), 2.0 * kRevolution, {&torque});
   return torque.amplitudes().at(0);
 }
@@ -145,10 +145,10 @@ StudyGroup study_held() {
       "largest twist from the first to the last cam; torque: largest of all sections; "
       "amplification: torque over "
       "the largest static torque. Converged: exact propagation, the error from two tolerances.";
-  std::vector<SettingList> all;
+  std::vector<ParameterValues> all;
   for (const auto& p : published::kTransient)
-    for (const Damping& damping : kDampings) all.push_back(held(p.cylinders, damping.setting));
-  SettingList feedback = held(9, "case_1");
+    for (const Damping& damping : kDampings) all.push_back(held(p.cylinders, damping.parameter));
+  ParameterValues feedback = held(9, "case_1");
   feedback.push_back({"loads", "actual"});
   all.push_back(feedback);
   const std::vector<CamshaftCase> cases = run_cases(all, 2);
@@ -156,10 +156,10 @@ StudyGroup study_held() {
   std::vector<Shaft> shafts;
   for (std::size_t s = 0; s < published::kTransient.size(); ++s) {
     const auto& p = published::kTransient[s];
-    SettingList settings = held(p.cylinders, "case_1");
-    settings.push_back({"loads", "source"});
+    ParameterValues parameters = held(p.cylinders, "case_1");
+    parameters.push_back({"loads", "source"});
     shafts.push_back(rows(p, &cases[s * std::size(kDampings)],
-                          static_torque(build_scene("camshaft", settings)), slow_torque(p.cylinders)));
+                          static_torque(build_case("camshaft", parameters)), slow_torque(p.cylinders)));
     constexpr const char* kSpectra[] = {"Figure 5.15", "Figure 5.14", "Figure 5.13"};
     shafts.back().largest_order = add_orders(p, kSpectra[s], shafts.back().table);
     group.tables.push_back(shafts.back().table);
@@ -175,7 +175,7 @@ StudyGroup study_held() {
          "by " + percent(actual.torque().value, fixed.torque().value)}}});
 
   const auto first_mode = [](int cylinders) {
-    return solve_modes(build_scene("camshaft", held(cylinders, "undamped")).model.build(), {.count = 1})
+    return solve_modes(build_case("camshaft", held(cylinders, "undamped")).model.build(), {.count = 1})
         .frequency_Hz[0];
   };
   const auto shown = [](double f) { return shown_at_step(f, published::kStep); };

@@ -24,12 +24,12 @@ double true_one(double shown_Hz, double h) { return to_hz(2.0 / h * std::tan(0.5
 /// The held camshaft without loads, let go with its free end turned.
 System let_go(int cylinders) {
   const Model full =
-      build_scene("camshaft",
-                  {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}})
+      build_case("camshaft",
+                 {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}})
           .model;
   Model model("let_go");
   for (const std::string& node : full.node_names()) model.add_node(node);
-  for (const Placement& p : full.placements())
+  for (const ElementInstance& p : full.element_instances())
     if (!p.name.starts_with("cam_")) model.add(p.name, p.nodes, p.element);
   model.hold("gear");
   model.set_initial("end", kStart, 0.0);

@@ -35,7 +35,8 @@ struct RunUp {
 
 RunUp run_one(int cylinders, const char* damping, const Method& method) {
   const RayleighCase rayleigh = rayleigh_case(damping, cylinders);
-  const Scene held = build_scene("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}});
+  const ModelCase held =
+      build_case("camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}});
   Model model("run_up");
   add_camshaft(
       model,

@@ -71,11 +71,11 @@ WindowPeaks::WindowPeaks(std::vector<Channel> channels, bool inside_steps, doubl
       length_(length),
       window_(start > 0.0 ? -1 : 0) {}
 
-void WindowPeaks::start(const Assembler& assembler, const StepPoint& point) {
+void WindowPeaks::start(const Assembler& assembler, const EvaluatedState& point) {
   peaks_.start(assembler, point);
 }
 
-void WindowPeaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void WindowPeaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   peaks_.step(assembler, from, to);
   if (to.state.t < edge(window_ + 1) - 1e-9 * length_) return;
   largest_ = std::max(largest_, amplitude());
@@ -86,16 +86,17 @@ void WindowPeaks::step(const Assembler& assembler, const StepPoint& from, const 
 
 namespace {
 
-CamshaftFigures make_run(const SettingList& settings, const Method& method, double nudge) {
-  Scene scene = build_scene("camshaft", settings);
-  if (nudge != 0.0) scene.model.set_initial("end", nudge, 0.0);
-  const System system = scene.model.build();
+CamshaftFigures make_run(const ParameterValues& parameters, const Method& method, double nudge) {
+  ModelCase model_case = build_case("camshaft", parameters);
+  if (nudge != 0.0) model_case.model.set_initial("end", nudge, 0.0);
+  const System system = model_case.model.build();
   const bool inside = method.exact();
-  Peaks deflection(find_channels(system, {scene.deflection}));
-  Peaks torque(find_channels(system, scene.torques));
-  const double revolution = scene.static_turn / system.reference_speed();
-  WindowPeaks settled_deflection(find_channels(system, {scene.deflection}), inside, kSettled, revolution);
-  WindowPeaks settled_torque(find_channels(system, scene.torques), inside, kSettled, revolution);
+  Peaks deflection(find_channels(system, {model_case.deflection}));
+  Peaks torque(find_channels(system, model_case.torques));
+  const double revolution = model_case.static_turn / system.reference_speed();
+  WindowPeaks settled_deflection(find_channels(system, {model_case.deflection}), inside, kSettled,
+                                 revolution);
+  WindowPeaks settled_torque(find_channels(system, model_case.torques), inside, kSettled, revolution);
   ContactStatistics contacts(system, inside);
   std::vector<Observer*> observers{&contacts};
   // Constant steps would be cut at the windows' ends, and a run that rattles be another.
@@ -104,7 +105,7 @@ CamshaftFigures make_run(const SettingList& settings, const Method& method, doub
   else
     observers.insert(observers.end(), {&deflection, &torque});
   CamshaftFigures figures;
-  figures.summary = run_watched(system, method, scene.duration, observers);
+  figures.summary = run_watched(system, method, model_case.duration, observers);
   figures.deflection = to_deg(inside ? settled_deflection.largest() : deflection.peaks()[0].amplitude());
   figures.torque = inside ? settled_torque.largest() : torque.peaks()[torque.largest()].amplitude();
   figures.settled_deflection = to_deg(mean_of(settled_deflection.amplitudes()).value);
@@ -118,10 +119,10 @@ CamshaftFigures make_run(const SettingList& settings, const Method& method, doub
 
 }  // namespace
 
-CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge) {
+CamshaftFigures run_camshaft(const ParameterValues& parameters, const Method& method, double nudge) {
   static std::mutex mutex;
   static std::map<std::string, std::shared_future<CamshaftFigures>> runs;
-  const std::string name = join(values_of(find_scene("camshaft"), settings).values()) + ", " +
+  const std::string name = join(values_of(find_model("camshaft"), parameters).values()) + ", " +
                            to_text(method) + ", " + short_digits(nudge, 17);
   std::promise<CamshaftFigures> promise;
   std::unique_lock lock(mutex);
@@ -134,7 +135,7 @@ CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, 
   entry->second = promise.get_future().share();
   lock.unlock();
   try {
-    const CamshaftFigures figures = make_run(settings, method, nudge);
+    const CamshaftFigures figures = make_run(parameters, method, nudge);
     promise.set_value(figures);
     return figures;
   } catch (...) {
@@ -164,7 +165,7 @@ std::string CamshaftCase::step_cell(Member member) const {
          ")";
 }
 
-std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int runs) {
+std::vector<CamshaftCase> run_cases(const std::vector<ParameterValues>& cases, int runs) {
   const bool statistic = runs > 2;
   const std::size_t at_step = statistic ? kStepRuns : 1, each = at_step + static_cast<std::size_t>(runs);
   std::vector<CamshaftCase> results(cases.size());
@@ -174,26 +175,27 @@ std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int r
     result.exact.resize(each - at_step);
   }
   for_all(cases.size() * each, [&](std::size_t i) {
-    SettingList settings{{"loads", "source"}};
-    for (const auto& setting : cases[i / each]) settings.push_back(setting);
+    ParameterValues parameters{{"loads", "source"}};
+    for (const auto& parameter : cases[i / each]) parameters.push_back(parameter);
     CamshaftCase& result = results[i / each];
     const std::size_t run = i % each;
     if (run < at_step) {
-      result.source[run] = run_camshaft(settings, source_method(), kNudge * static_cast<double>(run));
+      result.source[run] = run_camshaft(parameters, source_method(), kNudge * static_cast<double>(run));
       return;
     }
     const std::size_t k = run - at_step;
-    result.exact[k] = statistic ? run_camshaft(settings, exact_method(1e-10), kNudge * static_cast<double>(k))
-                                : run_camshaft(settings, exact_method(k == 0 ? kCoarse : kFine), 0.0);
+    result.exact[k] = statistic
+                          ? run_camshaft(parameters, exact_method(1e-10), kNudge * static_cast<double>(k))
+                          : run_camshaft(parameters, exact_method(k == 0 ? kCoarse : kFine), 0.0);
   });
   return results;
 }
 
-double static_torque(const Scene& scene) {
-  const System system = scene.model.build();
+double static_torque(const ModelCase& model_case) {
+  const System system = model_case.model.build();
   double largest = 0.0;
-  for (const Peak& peak :
-       static_sweep(system, find_channels(system, scene.torques), 0.0, scene.static_turn, kStaticAngles))
+  for (const Peak& peak : static_sweep(system, find_channels(system, model_case.torques), 0.0,
+                                       model_case.static_turn, kStaticAngles))
     largest = std::max(largest, peak.amplitude());
   return largest;
 }

@@ -8,7 +8,7 @@
 
 #include "app/study/study.hpp"
 #include "core/channel.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/method_choice.hpp"
 #include "solvers/run/evaluated_state.hpp"
 #include "solvers/run/peaks.hpp"
@@ -32,8 +32,8 @@ RunSummary run_watched(const System& system, const Method& method, double t_end,
 class WindowPeaks final : public Observer {
  public:
   WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start, double length);
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double /*t*/) const override { return edge(window_ + 1); }
   bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
   /// Of the windows that are over.
@@ -61,7 +61,7 @@ struct CamshaftFigures {
 };
 
 /// nudge: of the free end at the start [rad]. A run that another study has made is not made again.
-CamshaftFigures run_camshaft(const SettingList& settings, const Method& method, double nudge = 0.0);
+CamshaftFigures run_camshaft(const ParameterValues& parameters, const Method& method, double nudge = 0.0);
 
 /// A case at the source's step and by exact runs.
 struct CamshaftCase {
@@ -76,14 +76,14 @@ struct CamshaftCase {
   std::string step_cell(Member member) const;
 };
 
-/// Cases of the camshaft, each given by its settings (the source's loads unless they say otherwise).
+/// Cases of the camshaft, each given by its parameters (the source's loads unless they say otherwise).
 /// runs = 2: exact to two tolerances; an error is twice the difference. More, for motion that forgets its
 /// start: to one tolerance from starts 1e-9 rad apart; errors are intervals of the mean. At the source's step
 /// the same, with eight.
-std::vector<CamshaftCase> run_cases(const std::vector<SettingList>& cases, int runs);
+std::vector<CamshaftCase> run_cases(const std::vector<ParameterValues>& cases, int runs);
 
-/// Largest static torque of all sections over the scene's turn [N m].
-double static_torque(const Scene& scene);
+/// Largest static torque of all sections over the model case's turn [N m].
+double static_torque(const ModelCase& model_case);
 
 /// Mean of values with its 95 % interval (Student's t).
 Known mean_of(const std::vector<double>& values);

@@ -54,7 +54,7 @@ void add_camshaft(Model& m, const CamshaftParams& p) {
     m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = p.rayleigh_a, .beta_stiffness = p.rayleigh_b});
 }
 
-Scene build_camshaft(Settings s) {
+ModelCase build_camshaft(Parameters s) {
   const int cylinders = s.integer("cylinders");
   CamshaftParams p{.cylinders = cylinders, .twist_feedback = s.text("loads") == "actual"};
   if (s.text("firing_order") != "default") {
@@ -82,79 +82,80 @@ Scene build_camshaft(Settings s) {
   }
 
   const std::string n = std::to_string(cylinders);
-  Scene scene{.model = std::move(m)};
-  scene.duration = s.number("duration_s");
+  ModelCase model_case{.model = std::move(m)};
+  model_case.duration = s.number("duration_s");
   // Fastest mode 1.9 kHz with the gear held (5.3 kHz with the drive). At 1e-5 s average acceleration has its
   // period to 1.2e-3 and the first mode's, at 92 Hz, to 3e-6: four digits of the deflection with the gear
   // held (docs/validation.md).
   // Stiffer meshes make faster modes.
-  scene.default_step = 1e-5;
-  if (drive == "gears") scene.default_step /= std::sqrt(std::max(1.0, s.number("mesh_stiffness_factor")));
-  scene.note =
+  model_case.default_step = 1e-5;
+  if (drive == "gears")
+    model_case.default_step /= std::sqrt(std::max(1.0, s.number("mesh_stiffness_factor")));
+  model_case.note =
       "The camshaft's inertias, stiffnesses and cam torques are a reconstruction from published results, "
       "not the builder's data.";
-  scene.deflection = "inlet_" + n + "-fuel_1.twist_rad";
-  for (const Placement& placement : scene.model.placements())
-    if (placement.name.starts_with("shaft_")) scene.torques.push_back(placement.name + ".torque_Nm");
-  scene.static_turn = (drive == "gears" ? 2.0 : 1.0) * kTwoPi;
-  scene.channels = {scene.deflection, "fuel_1.angle_rad", "inlet_" + n + ".angle_rad", "end.angle_rad",
-                    "shaft_gear.torque_Nm"};
+  model_case.deflection = "inlet_" + n + "-fuel_1.twist_rad";
+  for (const ElementInstance& placement : model_case.model.element_instances())
+    if (placement.name.starts_with("shaft_")) model_case.torques.push_back(placement.name + ".torque_Nm");
+  model_case.static_turn = (drive == "gears" ? 2.0 : 1.0) * kTwoPi;
+  model_case.channels = {model_case.deflection, "fuel_1.angle_rad", "inlet_" + n + ".angle_rad",
+                         "end.angle_rad", "shaft_gear.torque_Nm"};
   if (drive == "gears") {
-    scene.channels.push_back("mesh_1.force_N");
-    scene.channels.push_back("mesh_2.force_N");
+    model_case.channels.push_back("mesh_1.force_N");
+    model_case.channels.push_back("mesh_2.force_N");
   }
-  return scene;
+  return model_case;
 }
 
-const SceneEntry& camshaft_entry() {
-  using Kind = Setting::Kind;
-  static const SceneEntry entry = [] {
-    std::vector<Setting> settings{{"cylinders", Kind::integer, "9", "", 6, 10, {}, "number of cylinders"},
-                                  {"drive",
-                                   Kind::choice,
-                                   "gears",
-                                   "",
-                                   0,
-                                   0,
-                                   {"gears", "held", "free"},
-                                   "gear drive with backlash, gear at constant speed, or nothing held"}};
-    for (Setting& setting : gear_drive_settings()) settings.push_back(std::move(setting));
-    settings.push_back({"damping",
-                        Kind::choice,
-                        "case_1",
-                        "",
-                        0,
-                        0,
-                        {"undamped", "case_1", "case_2", "case_3", "case_3_corrected"},
-                        "Rayleigh damping of the source, as printed or corrected"});
-    settings.push_back({"loads",
-                        Kind::choice,
-                        "actual",
-                        "",
-                        0,
-                        0,
-                        {"actual", "source"},
-                        "cam torques at the actual angle, or at the nominal one as in the source"});
-    settings.push_back({"firing_order",
-                        Kind::order,
-                        "default",
-                        "",
-                        0,
-                        0,
-                        {},
-                        "cylinders in firing order; default: the source's"});
-    settings.push_back({"engine_rpm",
-                        Kind::number,
-                        "750",
-                        "rpm",
-                        1,
-                        5000,
-                        {},
-                        "crankshaft speed; the camshaft turns at half of it"});
-    settings.push_back({"duration_s", Kind::number, "5", "s", 1e-9, 1e4, {}, "simulated time"});
-    return SceneEntry{
+const ModelEntry& camshaft_entry() {
+  using Kind = Parameter::Kind;
+  static const ModelEntry entry = [] {
+    std::vector<Parameter> parameters{{"cylinders", Kind::integer, "9", "", 6, 10, {}, "number of cylinders"},
+                                      {"drive",
+                                       Kind::choice,
+                                       "gears",
+                                       "",
+                                       0,
+                                       0,
+                                       {"gears", "held", "free"},
+                                       "gear drive with backlash, gear at constant speed, or nothing held"}};
+    for (Parameter& parameter : gear_drive_settings()) parameters.push_back(std::move(parameter));
+    parameters.push_back({"damping",
+                          Kind::choice,
+                          "case_1",
+                          "",
+                          0,
+                          0,
+                          {"undamped", "case_1", "case_2", "case_3", "case_3_corrected"},
+                          "Rayleigh damping of the source, as printed or corrected"});
+    parameters.push_back({"loads",
+                          Kind::choice,
+                          "actual",
+                          "",
+                          0,
+                          0,
+                          {"actual", "source"},
+                          "cam torques at the actual angle, or at the nominal one as in the source"});
+    parameters.push_back({"firing_order",
+                          Kind::order,
+                          "default",
+                          "",
+                          0,
+                          0,
+                          {},
+                          "cylinders in firing order; default: the source's"});
+    parameters.push_back({"engine_rpm",
+                          Kind::number,
+                          "750",
+                          "rpm",
+                          1,
+                          5000,
+                          {},
+                          "crankshaft speed; the camshaft turns at half of it"});
+    parameters.push_back({"duration_s", Kind::number, "5", "s", 1e-9, 1e4, {}, "simulated time"});
+    return ModelEntry{
         "camshaft", "marine diesel camshaft with its two-stage gear drive (reconstructed data): the main job",
-        settings, build_camshaft};
+        parameters, build_camshaft};
   }();
   return entry;
 }

@@ -7,7 +7,7 @@
 /// Cylinder k's cams run at -360 j/N degrees, j its place in the firing order counted from 0. Drive: gears
 /// (the two-stage gear drive, crank gear at constant speed), held (the camshaft's gear at constant speed), or
 /// free (nothing held: for free-free modes).
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev {
 
@@ -22,7 +22,7 @@ struct CamshaftParams {
 /// Adds the shaft from node "gear" to node "end" with its loads; nothing is prescribed.
 void add_camshaft(Model& model, const CamshaftParams& params);
 
-Scene build_camshaft(Settings settings);
-const SceneEntry& camshaft_entry();
+ModelCase build_camshaft(Parameters parameters);
+const ModelEntry& camshaft_entry();
 
 }  // namespace drev

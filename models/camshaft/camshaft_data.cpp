@@ -8,7 +8,7 @@
 
 #include "core/units.hpp"
 #include "elements/rayleigh_damping.hpp"
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev::data {
 extern const std::string_view camshaft_cam_torque;  // models/camshaft/data/cam_torque.csv

@@ -7,7 +7,7 @@
 
 #include "core/channel.hpp"
 #include "core/units.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/modes/modes.hpp"
 
 namespace drev {
@@ -41,16 +41,16 @@ int place_of(const std::vector<int>& order, int cylinder) {
 }  // namespace
 
 SteadyShaft::SteadyShaft(int cylinders) : cylinders_(cylinders) {
-  const Scene scene = build_scene(
+  const ModelCase model_case = build_case(
       "camshaft", {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", "undamped"}});
-  const System system = scene.model.build();
+  const System system = model_case.model.build();
   const ModeSet modes = solve_modes(system, {.count = system.size()});
   const Eigen::Index count = modes.count();
   lambda_.resize(count);
   for (int m = 0; m < modes.count(); ++m) lambda_[m] = modes.omega(m) * modes.omega(m);
 
-  std::vector<std::string> names{scene.deflection};
-  names.insert(names.end(), scene.torques.begin(), scene.torques.end());
+  std::vector<std::string> names{model_case.deflection};
+  names.insert(names.end(), model_case.torques.begin(), model_case.torques.end());
   outputs_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(names.size()), count);
   Eigen::Index row = 0;
   for (const Channel& channel : find_channels(system, names)) {

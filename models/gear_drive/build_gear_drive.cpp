@@ -56,8 +56,8 @@ void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveP
                    .mesh_phase = kSecondMeshPhase});
 }
 
-std::vector<Setting> gear_drive_settings() {
-  using Kind = Setting::Kind;
+std::vector<Parameter> gear_drive_settings() {
+  using Kind = Parameter::Kind;
   return {{"backlash_mm",
            Kind::number,
            "0.15",
@@ -92,7 +92,7 @@ std::vector<Setting> gear_drive_settings() {
            "of each mesh, in contact only, growing with penetration"}};
 }
 
-GearDriveParams gear_drive_params(const Settings& s) {
+GearDriveParams gear_drive_params(const Parameters& s) {
   const std::string& variation = s.text("mesh_stiffness");
   return {.normal_backlash = mm(s.number("backlash_mm")),
           .variation = variation == "step"      ? MeshVariation::step
@@ -102,7 +102,7 @@ GearDriveParams gear_drive_params(const Settings& s) {
           .mesh_damping = s.number("mesh_damping_Ns_per_m")};
 }
 
-Scene build_gear_drive(Settings s) {
+ModelCase build_gear_drive(Parameters s) {
   s.check();
   const double mean = s.number("torque_mean_Nm"), swing = s.number("torque_amplitude_Nm");
   const double order = s.number("torque_order");
@@ -122,32 +122,32 @@ Scene build_gear_drive(Settings s) {
           .channels = {"gear.angle_rad", "idler.angle_rad", "mesh_1.force_N", "mesh_2.force_N"}};
 }
 
-const SceneEntry& gear_drive_entry() {
-  using Kind = Setting::Kind;
-  static const SceneEntry entry = [] {
-    std::vector<Setting> settings = gear_drive_settings();
-    settings.push_back({"engine_rpm", Kind::number, "750", "rpm", 1, 5000, {}, "crankshaft speed"});
-    settings.push_back({"torque_mean_Nm",
-                        Kind::number,
-                        "-2000",
-                        "N m",
-                        -1e7,
-                        1e7,
-                        {},
-                        "mean torque on the camshaft gear; negative brakes it"});
-    settings.push_back({"torque_amplitude_Nm",
-                        Kind::number,
-                        "6000",
-                        "N m",
-                        0,
-                        1e7,
-                        {},
-                        "amplitude of the cyclic torque on the camshaft gear"});
-    settings.push_back(
+const ModelEntry& gear_drive_entry() {
+  using Kind = Parameter::Kind;
+  static const ModelEntry entry = [] {
+    std::vector<Parameter> parameters = gear_drive_settings();
+    parameters.push_back({"engine_rpm", Kind::number, "750", "rpm", 1, 5000, {}, "crankshaft speed"});
+    parameters.push_back({"torque_mean_Nm",
+                          Kind::number,
+                          "-2000",
+                          "N m",
+                          -1e7,
+                          1e7,
+                          {},
+                          "mean torque on the camshaft gear; negative brakes it"});
+    parameters.push_back({"torque_amplitude_Nm",
+                          Kind::number,
+                          "6000",
+                          "N m",
+                          0,
+                          1e7,
+                          {},
+                          "amplitude of the cyclic torque on the camshaft gear"});
+    parameters.push_back(
         {"torque_order", Kind::number, "9", "", 0.5, 100, {}, "cycles per camshaft revolution"});
-    settings.push_back({"duration_s", Kind::number, "1", "s", 1e-9, 1e4, {}, "simulated time"});
-    return SceneEntry{"gear_drive", "two-stage gear drive with backlash, hammered by a cyclic torque",
-                      settings, build_gear_drive};
+    parameters.push_back({"duration_s", Kind::number, "1", "s", 1e-9, 1e4, {}, "simulated time"});
+    return ModelEntry{"gear_drive", "two-stage gear drive with backlash, hammered by a cyclic torque",
+                      parameters, build_gear_drive};
   }();
   return entry;
 }

@@ -7,7 +7,7 @@
 /// the same sense. Stiffnesses are those of the source's finite-element study, taken along the line of
 /// action; the idler's 68 teeth correct a misprint (64). Inertias of crank gear and idler are typical
 /// values, not the builder's.
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev {
 
@@ -25,12 +25,12 @@ struct GearDriveParams {
 /// is the caller's. Nothing is prescribed.
 void add_gear_drive(Model& model, const std::string& camshaft_gear, const GearDriveParams& params);
 
-/// The settings of the drive, shared by the models that have one.
-std::vector<Setting> gear_drive_settings();
-GearDriveParams gear_drive_params(const Settings& settings);
+/// The parameters of the drive, shared by the models that have one.
+std::vector<Parameter> gear_drive_settings();
+GearDriveParams gear_drive_params(const Parameters& parameters);
 
 /// The drive alone: crank gear at constant speed, camshaft gear with its inertia and a torque on it.
-Scene build_gear_drive(Settings settings);
-const SceneEntry& gear_drive_entry();
+ModelCase build_gear_drive(Parameters parameters);
+const ModelEntry& gear_drive_entry();
 
 }  // namespace drev

@@ -12,9 +12,9 @@
 
 int main() {
   using namespace drev;
-  const SceneEntry& entry = gear_drive_entry();
-  const Scene scene = entry.build(Settings(entry.name, entry.settings));
-  const System system = scene.model.build();
+  const ModelEntry& entry = gear_drive_entry();
+  const ModelCase model_case = entry.build(Parameters(entry.name, entry.parameters));
+  const System system = model_case.model.build();
 
   const ModeSet closed = solve_modes(system, {.count = 2, .contact = Contact::closed});
   std::printf("modes with both meshes closed: %.1f and %.1f Hz\n", closed.frequency_Hz[0],
@@ -22,10 +22,11 @@ int main() {
   std::printf("with both open %d parts move freely\n", system.rigid_mode_count(Contact::open));
 
   ContactStatistics contacts(system);
-  const RunSummary run = simulate(system, {.step = scene.default_step, .t_end = scene.duration}, {&contacts});
+  const RunSummary run =
+      simulate(system, {.step = model_case.default_step, .t_end = model_case.duration}, {&contacts});
   for (const ContactRecord& c : contacts.records())
     std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time, at most %.0f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart / scene.duration,
+                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart / model_case.duration,
                 c.largest_force);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;

@@ -8,7 +8,7 @@
 
 namespace drev {
 
-Scene build_two_inertia(Settings s) {
+ModelCase build_two_inertia(Parameters s) {
   s.check();
   const double frequency = s.number("torque_frequency_Hz");
   const double amplitude = s.number("torque_amplitude_Nm");
@@ -37,9 +37,9 @@ Scene build_two_inertia(Settings s) {
           .channels = {"motor.angle_rad", "load.angle_rad", "shaft.torque_Nm"}};
 }
 
-const SceneEntry& two_inertia_entry() {
-  using Kind = Setting::Kind;
-  static const SceneEntry entry{
+const ModelEntry& two_inertia_entry() {
+  using Kind = Parameter::Kind;
+  static const ModelEntry entry{
       "two_inertia",
       "motor and load on one elastic shaft, driven by a sine torque: read this one first",
       {{"inertia_1_kg_m2", Kind::number, "0.012", "kg m^2", 1e-9, 1e9, {}, "of the motor"},

@@ -3,11 +3,11 @@
 ///
 ///   motor J_1 --- shaft k, c --- load J_2        free-free: one rigid mode and
 ///   f = sqrt(k (J_1 + J_2) / (J_1 J_2)) / (2 pi)
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev {
 
-Scene build_two_inertia(Settings settings);
-const SceneEntry& two_inertia_entry();
+ModelCase build_two_inertia(Parameters parameters);
+const ModelEntry& two_inertia_entry();
 
 }  // namespace drev

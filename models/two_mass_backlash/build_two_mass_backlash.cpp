@@ -7,7 +7,7 @@
 
 namespace drev {
 
-Scene build_two_mass_backlash(Settings s) {
+ModelCase build_two_mass_backlash(Parameters s) {
   s.check();
   const double force = s.number("force_N");
   // Gershgorin's bound of the fastest mode with both springs in contact.
@@ -29,7 +29,7 @@ Scene build_two_mass_backlash(Settings s) {
   return {.model = std::move(m),
           .duration = s.number("duration_s"),
           // h omega_2 = 0.002: average acceleration is off by 3e-7 m at 2 s (docs/validation.md).
-          // Stiffer or lighter settings keep omega h at 0.05 at most, so that impacts are resolved.
+          // Stiffer or lighter parameters keep omega h at 0.05 at most, so that impacts are resolved.
           .default_step = std::min(1e-4, 0.05 / fastest),
           .deflection = "mass_2-mass_1.distance_m",
           .torques = {"spring_1.force_N", "spring_2.force_N"},
@@ -37,9 +37,9 @@ Scene build_two_mass_backlash(Settings s) {
                        "mass_2.velocity_m_per_s", "spring_1.force_N", "spring_2.force_N"}};
 }
 
-const SceneEntry& two_mass_backlash_entry() {
-  using Kind = Setting::Kind;
-  static const SceneEntry entry{
+const ModelEntry& two_mass_backlash_entry() {
+  using Kind = Parameter::Kind;
+  static const ModelEntry entry{
       "two_mass_backlash",
       "two masses on springs with backlash, pulled and let go: the source's benchmark",
       {{"k_1_N_per_m", Kind::number, "2000", "N/m", 1e-6, 1e15, {}, "spring from ground to mass_1"},

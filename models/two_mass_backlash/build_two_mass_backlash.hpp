@@ -7,11 +7,11 @@
 /// released at once. The size of F is not printed in the source; 100 N is drev's choice.
 /// The published cases: zero backlash k 2000, 2000; A2 with half gaps 0.05, 0.05; B (the default) with k
 /// 2000, 1000 and half gaps 0.05, 0.03.
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 
 namespace drev {
 
-Scene build_two_mass_backlash(Settings settings);
-const SceneEntry& two_mass_backlash_entry();
+ModelCase build_two_mass_backlash(Parameters parameters);
+const ModelEntry& two_mass_backlash_entry();
 
 }  // namespace drev

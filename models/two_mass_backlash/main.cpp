@@ -12,14 +12,14 @@
 
 int main() {
   using namespace drev;
-  const SceneEntry& entry = two_mass_backlash_entry();
-  const Scene scene = entry.build(Settings(entry.name, entry.settings));
-  const System system = scene.model.build();
+  const ModelEntry& entry = two_mass_backlash_entry();
+  const ModelCase model_case = entry.build(Parameters(entry.name, entry.parameters));
+  const System system = model_case.model.build();
 
   Recorder recorder(system, {"mass_1.position_m", "mass_2.position_m"}, 0.5);
   ContactStatistics contacts(system);
-  const RunSummary run =
-      simulate(system, {.step = scene.default_step, .t_end = scene.duration}, {&recorder, &contacts});
+  const RunSummary run = simulate(system, {.step = model_case.default_step, .t_end = model_case.duration},
+                                  {&recorder, &contacts});
 
   std::printf("   t s      x_1 m      x_2 m\n");
   for (std::size_t i = 0; i < recorder.times().size(); ++i)

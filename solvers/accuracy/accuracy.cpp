@@ -82,9 +82,9 @@ class AccurateRun {
     Method for_growth = method;
     if (method.exact()) for_growth.tolerance = 1e-13;
     result_.growth =
-        measure_growth(system_, {.method = for_growth, .t_end = o_.t_end, .progress = [this](double p) {
-                                   return going_on(0.2 * p);
-                                 }});
+        measure_error_growth(system_, {.method = for_growth, .t_end = o_.t_end, .progress = [this](double p) {
+                                         return going_on(0.2 * p);
+                                       }});
     if (result_.growth.status != RunStatus::success) {
       result_.summary.status = result_.growth.status;
       result_.summary.reason = result_.growth.reason;

@@ -52,7 +52,7 @@ struct AccuracyResult {
   /// Every estimate keeps the accuracy and nothing had to be given as a statistic.
   bool reached = false;
   std::string reason;  ///< why not
-  Growth growth;
+  ErrorGrowth growth;
   double horizon = std::numeric_limits<double>::infinity();  ///< s
   Method coarse, fine;                                       ///< the two runs compared
   RunSummary summary;                                        ///< of the fine one

@@ -15,8 +15,8 @@ constexpr double kSameTime = 1e-9;  // relative to a batch
 class Stops final : public Observer {
  public:
   Stops(double begin, double distance) : begin_(begin), distance_(distance) {}
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler&, const StepPoint&, const StepPoint&) override {}
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
   double next_stop(double t) const override {
     return begin_ + distance_ * (std::floor((t - begin_) / distance_ + 1e-6) + 1.0);
   }
@@ -34,14 +34,14 @@ double hermite(double y_0, double r_0, double y_1, double r_1, double h, double 
 
 }  // namespace
 
-void PeakWatch::start(const Assembler& assembler, const StepPoint& point) {
+void PeakWatch::start(const Assembler& assembler, const EvaluatedState& point) {
   if (empty()) return;
   peaks_.start(assembler, point);
   value_ = peaks_.peaks()[peaks_.largest()].amplitude();
   time_ = end_ = point.state.t;
 }
 
-void PeakWatch::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void PeakWatch::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   if (empty()) return;
   peaks_.step(assembler, from, to);
   const Peak& peak = peaks_.peaks()[peaks_.largest()];
@@ -65,7 +65,7 @@ void PeakWatch::refine(const System& system, const Method& method) {
 
 EdgeWatch::EdgeWatch(const System& system) : system_(system) {}
 
-void EdgeWatch::step(const Assembler& /*assembler*/, const StepPoint& from, const StepPoint& to) {
+void EdgeWatch::step(const Assembler& /*assembler*/, const EvaluatedState& from, const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
   for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
     const auto gap = system_.scalars()[j].force->gap();
@@ -113,7 +113,7 @@ BatchWatch::BatchWatch(const System& system, std::vector<Channel> channels, doub
   for (const Channel& c : channels_) averages_.push_back({.channel = c.name(), .unit = c.unit()});
 }
 
-void BatchWatch::start(const Assembler& assembler, const StepPoint& point) {
+void BatchWatch::start(const Assembler& assembler, const EvaluatedState& point) {
   statistics_.start(assembler, point);
   begin_batch();
   done_ = point.state.t < begin_ - kSameTime * length_ ? 0 : 1;
@@ -121,7 +121,7 @@ void BatchWatch::start(const Assembler& assembler, const StepPoint& point) {
 
 double BatchWatch::next_stop(double /*t*/) const { return begin_ + done_ * length_; }
 
-void BatchWatch::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void BatchWatch::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   statistics_.step(assembler, from, to);
   const double h = to.state.t - from.state.t, same = kSameTime * length_;
   if (from.state.t < begin_ - same) {  // ahead of the first batch

@@ -14,8 +14,8 @@ namespace drev {
 class PeakWatch final : public Observer {
  public:
   explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels), true) {}
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
 
   bool empty() const { return peaks_.channels().empty(); }
   double value() const { return value_; }
@@ -42,8 +42,8 @@ struct EdgePassed {
 class EdgeWatch final : public Observer {
  public:
   explicit EdgeWatch(const System& system);
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   const std::vector<EdgePassed>& passed() const { return passed_; }
 
  private:
@@ -55,8 +55,8 @@ class EdgeWatch final : public Observer {
 class BatchWatch final : public Observer {
  public:
   BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end, int batches);
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
 
   /// Of one contact or channel: a value a batch.

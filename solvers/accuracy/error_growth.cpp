@@ -21,14 +21,14 @@ double student(int n) {
                                          2.306,  2.262, 2.228, 2.201, 2.179, 2.160, 2.145,
                                          2.131,  2.120, 2.110, 2.101, 2.093, 2.086};
   // Beyond: Cornish-Fisher's first terms, right to 1e-3.
-  return n <= 20 ? table[at(n - 1)] : 1.95996 + 2.3722 / n + 2.8225 / (static_cast<double>(n) * n);
+  return n <= 20 ? table[idx(n - 1)] : 1.95996 + 2.3722 / n + 2.8225 / (static_cast<double>(n) * n);
 }
 
 /// Largest |z| and |v| of a run.
 class Scale final : public Observer {
  public:
-  void start(const Assembler&, const StepPoint& point) override { note(point.state); }
-  void step(const Assembler&, const StepPoint&, const StepPoint& to) override { note(to.state); }
+  void start(const Assembler&, const EvaluatedState& point) override { note(point.state); }
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override { note(to.state); }
   double z() const { return z_ > 0.0 ? z_ : 1.0; }
   double v() const { return v_ > 0.0 ? v_ : 1.0; }
   double of(const Vector& dz, const Vector& dv) const {
@@ -71,13 +71,13 @@ MeanInterval batch_mean(const std::vector<double>& samples, int batches) {
   return {mean, student(static_cast<int>(count) - 1) * std::sqrt(squares / (k - 1.0) / k)};
 }
 
-double Growth::time_of(double factor) const {
+double ErrorGrowth::time_of(double factor) const {
   for (std::size_t k = 0; k < t.size(); ++k)
     if (growth[k] > factor) return t[k];
   return std::numeric_limits<double>::infinity();
 }
 
-double Growth::factor(double time) const {
+double ErrorGrowth::factor(double time) const {
   double grown = 1.0;
   for (std::size_t k = 0; k < t.size(); ++k) {
     grown = growth[k];
@@ -86,8 +86,8 @@ double Growth::factor(double time) const {
   return grown;
 }
 
-Growth measure_growth(const System& system, const GrowthOptions& o) {
-  Growth result;
+ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions& o) {
+  ErrorGrowth result;
   const int n = system.size();
   State base = State::initial(system);
   if (n == 0) return result;

@@ -13,7 +13,7 @@
 
 namespace drev {
 
-struct GrowthOptions {
+struct ErrorGrowthOptions {
   /// Constant steps or exact: one that does the same for states that are nearly the same. Controlled steps do
   /// not (their error is far above d_0): the whole run is made with them, the pieces with constant steps of
   /// sdirk4, half as long as theirs in the mean.
@@ -23,7 +23,7 @@ struct GrowthOptions {
   std::function<bool(double)> progress = {};
 };
 
-struct Growth {
+struct ErrorGrowth {
   std::vector<double> t;                ///< s, ends of the pieces that were run
   std::vector<double> growth;           ///< the largest separation up to t, over the first
   double rate = 0.0;                    ///< 1/s
@@ -37,7 +37,7 @@ struct Growth {
   double time_of(double factor) const;
 };
 
-Growth measure_growth(const System& system, const GrowthOptions& options);
+ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions& options);
 
 /// The model's initial state and beside it 1e-9 of the scales, in the i-th of arbitrary directions.
 State neighbour(const System& system, int i, double z_scale, double v_scale);

@@ -57,7 +57,7 @@ class Measurement {
       : system_(system), options_(options), channels_(options.channels) {
     if (channels_.empty())
       for (int i = 0; i < system.node_count(); ++i)
-        channels_.push_back(system.node_names()[at(i)] +
+        channels_.push_back(system.node_names()[idx(i)] +
                             (system.node_kind(i) == NodeKind::rotational ? ".angle_rad" : ".position_m"));
     result_.t_end = options.samples * options.sample_interval;
     result_.unit = find_channels(system, channels_).front().unit();
@@ -145,7 +145,7 @@ class Measurement {
     result_.agreement = difference(reference_, check) / result_.peak;
   }
 
-  std::vector<Method> settings(const std::string& name) const {
+  std::vector<Method> parameters(const std::string& name) const {
     std::vector<Method> all;
     if (name == "exact")
       for (int digits = 3; digits <= 12; ++digits)
@@ -161,7 +161,7 @@ class Measurement {
   WorkCurve curve(const std::string& name) {
     WorkCurve curve{.name = name, .points = {}};
     int below = 0;
-    for (const Method& method : settings(name)) {
+    for (const Method& method : parameters(name)) {
       WorkPoint p = point(method);
       if (result_.interrupted) break;
       below = p.ok && p.error < result_.agreement ? below + 1 : 0;

@@ -118,12 +118,12 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern, bool chain)
   };
   // From both ends a chain's solve is two chains of half the length, which run at once. No order of a whole
   // chain fills less.
-  for (int k = 0; k < n_; ++k) order[at(k)] = k % 2 == 0 ? k / 2 : n_ - 1 - k / 2;
+  for (int k = 0; k < n_; ++k) order[idx(k)] = k % 2 == 0 ? k / 2 : n_ - 1 - k / 2;
   std::vector<std::vector<int>> below = columns(pattern, order);
   std::vector<int> own(n), least(n);
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> amd;
   Eigen::AMDOrdering<int>()(pattern, amd);
-  for (int k = 0; k < n_; ++k) own[at(k)] = k, least[at(k)] = amd.indices()[k];
+  for (int k = 0; k < n_; ++k) own[idx(k)] = k, least[idx(k)] = amd.indices()[k];
   for (std::vector<int>& other : {std::ref(own), std::ref(least)})
     if (std::vector<std::vector<int>> c = columns(pattern, other); filled(c) < filled(below)) {
       below = std::move(c);
@@ -131,41 +131,41 @@ LaneFactor::LaneFactor(const SparseMatrix& pattern, bool chain)
     }
 
   std::vector<int> place(n);
-  for (int k = 0; k < n_; ++k) place[at(order[at(k)])] = k;
+  for (int k = 0; k < n_; ++k) place[idx(order[idx(k)])] = k;
   for (const int i : order) rows_.push_back({i, 0, 0});
   columns_ = rows_;
   std::vector<std::vector<int>> by_row(n);  // slots
   column_begin_.push_back(0);
   for (int k = 0; k < n_; ++k) {
-    for (const int i : below[at(k)]) {
-      by_row[at(i)].push_back(static_cast<int>(row_of_.size()));
+    for (const int i : below[idx(k)]) {
+      by_row[idx(i)].push_back(static_cast<int>(row_of_.size()));
       row_of_.push_back(i);
-      unknown_of_.push_back(order[at(i)]);
+      unknown_of_.push_back(order[idx(i)]);
     }
     column_begin_.push_back(static_cast<int>(row_of_.size()));
-    columns_[at(k)].others = static_cast<int>(below[at(k)].size());
-    if (!below[at(k)].empty()) columns_[at(k)].take_near(below[at(k)].front() - k);
+    columns_[idx(k)].others = static_cast<int>(below[idx(k)].size());
+    if (!below[idx(k)].empty()) columns_[idx(k)].take_near(below[idx(k)].front() - k);
   }
   for (int k = 0; k < n_; ++k) {
     int left = -1;
-    for (const int slot : by_row[at(k)]) {  // columns ascend with their slots
+    for (const int slot : by_row[idx(k)]) {  // columns ascend with their slots
       row_slot_.push_back(slot);
       const auto column = std::upper_bound(column_begin_.begin(), column_begin_.end(), slot) - 1;
       left = static_cast<int>(column - column_begin_.begin());
-      left_unknown_.push_back(order[at(left)]);
+      left_unknown_.push_back(order[idx(left)]);
     }
-    rows_[at(k)].others = static_cast<int>(by_row[at(k)].size());
-    if (left >= 0) rows_[at(k)].take_near(k - left);
+    rows_[idx(k)].others = static_cast<int>(by_row[idx(k)].size());
+    if (left >= 0) rows_[idx(k)].take_near(k - left);
   }
   const auto target = [&](int row, int column) {
     if (row == column) return -1 - row;
-    const auto& rows = below[at(column)];
-    return column_begin_[at(column)] +
+    const auto& rows = below[idx(column)];
+    return column_begin_[idx(column)] +
            static_cast<int>(std::lower_bound(rows.begin(), rows.end(), row) - rows.begin());
   };
   for (int j = 0; j < n_; ++j)
     for (int s = pattern.outerIndexPtr()[j]; s < pattern.outerIndexPtr()[j + 1]; ++s) {
-      const int row = place[at(pattern.innerIndexPtr()[s])], column = place[at(j)];
+      const int row = place[idx(pattern.innerIndexPtr()[s])], column = place[idx(j)];
       if (row < column) continue;
       pattern_slot_.push_back(s);
       pattern_target_.push_back(target(row, column));
@@ -183,16 +183,16 @@ std::vector<std::vector<int>> LaneFactor::columns(const SparseMatrix& pattern,
                                                   const std::vector<int>& order) const {
   const std::size_t n = order.size();
   std::vector<int> place(n);
-  for (std::size_t k = 0; k < n; ++k) place[at(order[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < n; ++k) place[idx(order[k])] = static_cast<int>(k);
   std::vector<std::vector<int>> all(n);
   for (std::size_t k = 0; k < n; ++k) {
     std::vector<int>& rows = all[k];  // holds what eliminated columns left to this one
     for (int s = pattern.outerIndexPtr()[order[k]]; s < pattern.outerIndexPtr()[order[k] + 1]; ++s)
-      if (const int i = place[at(pattern.innerIndexPtr()[s])]; i > static_cast<int>(k)) rows.push_back(i);
+      if (const int i = place[idx(pattern.innerIndexPtr()[s])]; i > static_cast<int>(k)) rows.push_back(i);
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
     if (!rows.empty()) {
-      std::vector<int>& parent = all[at(rows.front())];
+      std::vector<int>& parent = all[idx(rows.front())];
       parent.insert(parent.end(), rows.begin() + 1, rows.end());
     }
   }
@@ -206,25 +206,25 @@ void LaneFactor::factorize(const LaneArray& values) {
   std::fill(pivot_.begin(), pivot_.end(), zero);
   for (std::size_t e = 0; e < pattern_slot_.size(); ++e) {
     const int target = pattern_target_[e];
-    LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower[at(target)];
-    to.v += values[at(pattern_slot_[e])].v;
+    LaneRow& to = target < 0 ? pivot_[idx(-1 - target)] : lower[idx(target)];
+    to.v += values[idx(pattern_slot_[e])].v;
   }
   const LaneArray diagonal = pivot_;
   std::size_t update = 0;
   for (int k = 0; k < n_; ++k) {
-    const int begin = column_begin_[at(k)], end = column_begin_[at(k + 1)];
-    inverse[at(k)].v = 1.0 / pivot_[at(k)].v;
+    const int begin = column_begin_[idx(k)], end = column_begin_[idx(k + 1)];
+    inverse[idx(k)].v = 1.0 / pivot_[idx(k)].v;
     for (int a = begin; a < end; ++a) {
-      const Lanes scaled = lower[at(a)].v * inverse[at(k)].v;
+      const Lanes scaled = lower[idx(a)].v * inverse[idx(k)].v;
       for (int b = a; b < end; ++b) {
         const int target = update_target_[update++];
-        LaneRow& to = target < 0 ? pivot_[at(-1 - target)] : lower[at(target)];
-        to.v -= scaled * lower[at(b)].v;
+        LaneRow& to = target < 0 ? pivot_[idx(-1 - target)] : lower[idx(target)];
+        to.v -= scaled * lower[idx(b)].v;
       }
     }
-    for (int a = begin; a < end; ++a) lower[at(a)].v *= inverse[at(k)].v;
+    for (int a = begin; a < end; ++a) lower[idx(a)].v *= inverse[idx(k)].v;
   }
-  for (std::size_t e = 0; e < row_slot_.size(); ++e) by_rows_.rows[e] = lower[at(row_slot_[e])];
+  for (std::size_t e = 0; e < row_slot_.size(); ++e) by_rows_.rows[e] = lower[idx(row_slot_[e])];
   for (LaneValues* v : {&lower_, &by_rows_, &inverse_}) v->find_common();
   common_ = lower_.common.size() == lower.size() && inverse_.common.size() == inverse.size();
   for (int lane = 0; lane < kLanes; ++lane) {

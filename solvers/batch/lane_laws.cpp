@@ -31,14 +31,14 @@ LaneLaws::LaneLaws(const std::array<const System*, kLanes>& systems) : laws_(sys
     law.coefficients.resize(first.z.size());
     std::size_t most = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const ScalarTerm& term = systems[at(lane)]->scalars()[j];
-      law.terms[at(lane)] = &term;
+      const ScalarTerm& term = systems[idx(lane)]->scalars()[j];
+      law.terms[idx(lane)] = &term;
       for (std::size_t e = 0; e < term.z.size(); ++e) law.coefficients[e].v[lane] = term.z[e].coeff;
       const auto pieces = pieces_of(term);
       law.in_pieces = law.in_pieces && !pieces.empty();
       law.varies = law.varies || term.force->varies();
       law.has_known = law.has_known || term.phase_node >= 0 ||
-                      (!term.u.empty() && systems[at(lane)]->any_prescribed_moves());
+                      (!term.u.empty() && systems[idx(lane)]->any_prescribed_moves());
       for (const LawPiece& p : pieces) most = std::max(most, p.bounds.size());
     }
     if (law.in_pieces) {
@@ -71,8 +71,8 @@ void LaneLaws::take_known(const std::vector<Assembler>& assemblers) {
   for (Law& law : laws_) {
     if (!law.has_known) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Assembler& assembler = assemblers[at(lane)];
-      const ScalarTerm& term = *law.terms[at(lane)];
+      const Assembler& assembler = assemblers[idx(lane)];
+      const ScalarTerm& term = *law.terms[idx(lane)];
       double x = 0.0, x_dot = 0.0;
       for (const Entry& e : term.u) {
         x += e.coeff * assembler.prescribed(e.index).value;
@@ -94,9 +94,9 @@ void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneM
                            LanePointLaws& to) const {
   for (std::size_t j = 0; j < laws_.size(); ++j)
     for (int lane = 0; lane < kLanes; ++lane) {
-      const int node = laws_[j].terms[at(lane)]->phase_node;
+      const int node = laws_[j].terms[idx(lane)]->phase_node;
       if (node < 0) continue;
-      const Assembler& assembler = assemblers[at(lane)];
+      const Assembler& assembler = assemblers[idx(lane)];
       const NodeMap& map = assembler.system().node_map(node);
       const double q =
           map.unknown >= 0 ? motion.z(map.unknown, lane) : assembler.prescribed(map.prescribed).value;
@@ -106,8 +106,8 @@ void LaneLaws::take_angles(const std::vector<Assembler>& assemblers, const LaneM
 
 void LaneLaws::row(int law, LaneArray& b) const {
   std::fill(b.begin(), b.end(), LaneRow{});
-  const Law& l = laws_[at(law)];
-  for (std::size_t e = 0; e < l.unknowns.size(); ++e) b[at(l.unknowns[e])] = l.coefficients[e];
+  const Law& l = laws_[idx(law)];
+  for (std::size_t e = 0; e < l.unknowns.size(); ++e) b[idx(l.unknowns[e])] = l.coefficients[e];
 }
 
 void LaneLaws::set_compliance(const LaneArray& w, double kappa_x, double kappa_v) {
@@ -116,7 +116,7 @@ void LaneLaws::set_compliance(const LaneArray& w, double kappa_x, double kappa_v
     for (std::size_t j = 0; j < m; ++j) {
       Lanes sum{};
       for (std::size_t e = 0; e < laws_[i].unknowns.size(); ++e)
-        sum += laws_[i].coefficients[e].v * w[at(laws_[i].unknowns[e]) * m + j].v;
+        sum += laws_[i].coefficients[e].v * w[idx(laws_[i].unknowns[e]) * m + j].v;
       compliance_[i * m + j].v = sum;
     }
   kappa_x_ = kappa_x;
@@ -124,7 +124,7 @@ void LaneLaws::set_compliance(const LaneArray& w, double kappa_x, double kappa_v
 }
 
 void LaneLaws::find_piece(Law& law, int lane, double x, double x_dot) {
-  const ScalarForce& force = *law.terms[at(lane)]->force;
+  const ScalarForce& force = *law.terms[idx(lane)]->force;
   const auto pieces = force.product_pieces();
   auto found =
       std::find_if(pieces.begin(), pieces.end(), [&](const LawPiece& p) { return holds(p, x, x_dot); });
@@ -150,7 +150,7 @@ void LaneLaws::evaluate(const Law& law, double t, const LaneRow& x, const LaneRo
                         const LaneRow& angle, LaneRow& y, LaneRow& dy_dx, LaneRow& dy_dx_dot) {
   for (int lane = 0; lane < kLanes; ++lane) {
     const ScalarResponse r =
-        law.terms[at(lane)]->force->evaluate({x.v[lane], x_dot.v[lane], t, angle.v[lane]});
+        law.terms[idx(lane)]->force->evaluate({x.v[lane], x_dot.v[lane], t, angle.v[lane]});
     y.v[lane] = r.y;
     dy_dx.v[lane] = r.dy_dx;
     dy_dx_dot.v[lane] = r.dy_dx_dot;
@@ -262,7 +262,7 @@ void LaneLaws::energies(LanePointLaws& p) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     if (laws_[j].in_pieces) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const ScalarResponse r = laws_[j].terms[at(lane)]->force->evaluate(
+      const ScalarResponse r = laws_[j].terms[idx(lane)]->force->evaluate(
           {p.x[j].v[lane], p.x_dot[j].v[lane], p.t, p.angle[j].v[lane]});
       p.energy[j].v[lane] = r.stored_energy;
       p.power[j].v[lane] = r.dissipated_power;
@@ -275,7 +275,7 @@ void LaneLaws::forces(const LaneArray& y, LaneForces& by) const {
   by.values.assign(rows_.size(), {});
   for (std::size_t j = 0; j < laws_.size(); ++j)
     for (std::size_t e = 0; e < laws_[j].places.size(); ++e)
-      by.values[at(laws_[j].places[e])].v += laws_[j].coefficients[e].v * y[j].v;
+      by.values[idx(laws_[j].places[e])].v += laws_[j].coefficients[e].v * y[j].v;
 }
 
 void LaneLaws::add_extra_input(const LanePointLaws& from, const LaneRow* z_0, const LanePointLaws& to,
@@ -292,7 +292,7 @@ void LaneLaws::add_extra_input(const LanePointLaws& from, const LaneRow* z_0, co
     }
     if (!law.varies) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const ScalarForce& force = *law.terms[at(lane)]->force;
+      const ScalarForce& force = *law.terms[idx(lane)]->force;
       if (!force.varies()) continue;
       const double v01 =
           force.evaluate({from.x[j].v[lane], from.x_dot[j].v[lane], to.t, to.angle[j].v[lane]}).stored_energy;

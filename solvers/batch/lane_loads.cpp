@@ -22,7 +22,7 @@ double closest(const LoadTable& table) {
 
 }  // namespace
 
-LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(at(systems[0]->size())) {
+LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(idx(systems[0]->size())) {
   const System& first = *systems[0];
   std::vector<std::size_t> order;  // of the loads, by row
   const auto row_of = [&](std::size_t i) { return first.node_map(first.loads()[i].node).unknown; };
@@ -37,15 +37,15 @@ LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(a
     std::array<std::optional<LoadTable>, kLanes> tables;
     load.row = row_of(i);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const System& system = *systems[at(lane)];
+      const System& system = *systems[idx(lane)];
       const LoadTerm& term = system.loads()[i];
       const double coeff = system.node_map(term.node).coeff;
-      load.loads[at(lane)] = term.load;
+      load.loads[idx(lane)] = term.load;
       load.coeff.v[lane] = coeff;
       load.ratio.v[lane] = factors.ratio.v[lane] = system.ratio(term.node);
       factors.gain.v[lane] = term.load->depends_on_motion() ? coeff : 0.0;
       load.moves = load.moves || term.load->depends_on_motion();
-      tables[at(lane)] = term.load->table();
+      tables[idx(lane)] = term.load->table();
     }
     depend_on_motion_ = depend_on_motion_ || load.moves;
     const auto in_row = std::count(table_row_.begin(), table_row_.end(), load.row);
@@ -55,7 +55,7 @@ LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(a
       continue;
     }
     for (int lane = 0; lane < kLanes; ++lane) {
-      const LoadTable& table = *tables[at(lane)];
+      const LoadTable& table = *tables[idx(lane)];
       tables_.add(table, load.row, load.coeff.v[lane], factors.ratio.v[lane], factors.gain.v[lane]);
       factors.width.v[lane] = 0.5 * table.period / static_cast<double>(table.values.size());
       reach_.push_back(closest(table));
@@ -83,7 +83,7 @@ LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(a
       unloaded_.push_back(k);
   }
   for (std::size_t r = 0; r < rows_.size(); ++r)
-    if (groups_.empty() || rows_[r].end - rows_[at(groups_.back())].first > kBits)
+    if (groups_.empty() || rows_[r].end - rows_[idx(groups_.back())].first > kBits)
       groups_.push_back(static_cast<int>(r));
   groups_.push_back(static_cast<int>(rows_.size()));
   for (const System* system : systems)
@@ -94,7 +94,7 @@ void LaneLoads::set_time(const std::vector<Assembler>& assemblers) {
   t_ = assemblers[0].time();
   bool base = always_base_;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const MotionPoint& nominal = assemblers[at(lane)].nominal();
+    const MotionPoint& nominal = assemblers[idx(lane)].nominal();
     phi_.v[lane] = nominal.value;
     phi_rate_.v[lane] = nominal.rate;
     base = base || nominal.acceleration != 0.0;
@@ -102,7 +102,7 @@ void LaneLoads::set_time(const std::vector<Assembler>& assemblers) {
   moved_ = true;
   if (!base && base_is_zero_) return;
   for (int lane = 0; lane < kLanes; ++lane) {
-    assemblers[at(lane)].external_of_motions(motions_);
+    assemblers[idx(lane)].external_of_motions(motions_);
     for (std::size_t i = 0; i < base_.size(); ++i) base_[i].v[lane] = motions_[static_cast<Eigen::Index>(i)];
   }
   base_is_zero_ = !base;
@@ -113,7 +113,7 @@ bool LaneLoads::take_nearest(std::size_t table, int lane, const LaneMotion& moti
   const Factors<LaneRow>& f = factors_[table];
   Knot& k = knots_[table];
   const double angle = f.ratio.v[lane] * phi_.v[lane] + f.gain.v[lane] * motion.z(table_row_[table], lane);
-  const std::size_t entry = table * kLanes + at(lane);
+  const std::size_t entry = table * kLanes + idx(lane);
   const bool serves = std::abs(angle - k.angle.v[lane]) <= reach_[entry];
   const TableLoads::Nearest found = tables_.nearest(static_cast<int>(entry), angle);
   k.angle.v[lane] = found.angle;
@@ -129,7 +129,7 @@ void LaneLoads::evaluate_by_lane(const LaneMotion& motion, const LaneMask& open,
     for (int lane = 0; lane < kLanes; ++lane)
       if (open[lane] && load.moves == moving) {
         const double n = load.ratio.v[lane], c = load.coeff.v[lane];
-        load.torque.v[lane] = load.loads[at(lane)]
+        load.torque.v[lane] = load.loads[idx(lane)]
                                   ->evaluate({t_, n * phi_.v[lane], c * motion.z(load.row, lane),
                                               n * phi_rate_.v[lane] + c * motion.v(load.row, lane)})
                                   .torque;
@@ -192,13 +192,13 @@ void LaneLoads::evaluate(const LaneMotion& motion, const LaneMask& open, LaneArr
     if (evaluated_move_) evaluate_by_lane(motion, open, true);
   }
   if (moved_)
-    for (const int i : unloaded_) p[at(i)] = base_[at(i)];
+    for (const int i : unloaded_) p[idx(i)] = base_[idx(i)];
   moved_ = false;
   for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
     const int first = groups_[g], end = groups_[g + 1];
     LaneMask left;
     if (!LaneLoadKernels::evaluate(*this, first, end, motion, open, p.data(), left)) continue;
-    const auto begin = at(rows_[at(first)].first);
+    const auto begin = idx(rows_[idx(first)].first);
     LaneMask leapt{};  // a lane that did not keeps its sum: it does not depend on its neighbours
     for (int lane = 0; lane < kLanes; ++lane)
       for (auto bits = static_cast<std::uint64_t>(left[lane]); bits != 0; bits &= bits - 1)

@@ -114,7 +114,7 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
   for (LaneValues* a : {&mass, &damping, &stiffness}) a->rows.resize(slots.size());
   bool mass_is_diagonal = true, damping_is_diagonal = true;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const System& system = *systems[at(lane)];
+    const System& system = *systems[idx(lane)];
     mass_is_diagonal = mass_is_diagonal && system.mass_is_diagonal();
     damping_is_diagonal = damping_is_diagonal && system.damping_is_diagonal();
     for (std::size_t s = 0; s < slots.size(); ++s) {
@@ -138,7 +138,7 @@ void LaneMatrices::combine(const Weights& w, LaneArray& values) const {
     values[s].v = w.m * mass.rows[s].v + w.c * damping.rows[s].v + w.k * stiffness.rows[s].v;
 }
 
-void LanePoint::get(int lane, StepPoint& point) const {
+void LanePoint::get(int lane, EvaluatedState& point) const {
   const auto take = [&](const LaneArray& from, Vector& to) {
     to.resize(static_cast<Eigen::Index>(from.size()));
     for (std::size_t i = 0; i < from.size(); ++i) to[static_cast<Eigen::Index>(i)] = from[i].v[lane];
@@ -156,7 +156,7 @@ void LanePoint::get(int lane, StepPoint& point) const {
   }
 }
 
-void LanePoint::set(int lane, const StepPoint& point) {
+void LanePoint::set(int lane, const EvaluatedState& point) {
   const auto put = [&](const Vector& from, LaneArray& to) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i].v[lane] = from[static_cast<Eigen::Index>(i)];
   };

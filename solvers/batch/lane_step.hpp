@@ -25,13 +25,13 @@ struct LaneMatrices {
   bool chain = false;
 };
 
-/// StepPoint in lanes; total is there with alpha_f != 0 only, kz and cv not at all.
+/// EvaluatedState in lanes; total is there with alpha_f != 0 only, kz and cv not at all.
 struct LanePoint {
   LaneArray z, v, a, p, total;
   LanePointLaws laws;
   /// Copies a lane from and to a point of one variant.
-  void get(int lane, StepPoint& point) const;
-  void set(int lane, const StepPoint& point);
+  void get(int lane, EvaluatedState& point) const;
+  void set(int lane, const EvaluatedState& point);
 };
 
 /// EnergyBalance in lanes.

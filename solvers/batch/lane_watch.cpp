@@ -7,11 +7,11 @@ namespace drev {
 LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std::vector<std::string>& names)
     : watched_(names.size()), systems_(systems) {
   for (int lane = 0; lane < kLanes; ++lane) {
-    const std::vector<Channel> found = find_channels(*systems[at(lane)], names);
-    for (std::size_t i = 0; i < names.size(); ++i) watched_[i].channels[at(lane)] = found[i];
+    const std::vector<Channel> found = find_channels(*systems[idx(lane)], names);
+    for (std::size_t i = 0; i < names.size(); ++i) watched_[i].channels[idx(lane)] = found[i];
   }
   // A step takes a mesh's phase where it is predicted; a channel's value is of the phase at its end.
-  const auto phased = [&](int law) { return systems[0]->scalars()[at(law)].phase_node >= 0; };
+  const auto phased = [&](int law) { return systems[0]->scalars()[idx(law)].phase_node >= 0; };
   for (Watched& w : watched_) {
     const Channel& first = w.channels[0];
     const auto rows_of = [&](auto row, std::vector<int>& unknowns, LaneArray& coefficients) {
@@ -19,7 +19,7 @@ LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std
       coefficients.resize(unknowns.size());
       for (int lane = 0; lane < kLanes; ++lane)
         for (std::size_t e = 0; e < unknowns.size(); ++e)
-          coefficients[e].v[lane] = row(w.channels[at(lane)])[e].coeff;
+          coefficients[e].v[lane] = row(w.channels[idx(lane)])[e].coeff;
     };
     if (first.is_linear()) {
       w.kind = Watched::Kind::linear;
@@ -34,16 +34,16 @@ LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std
     }
   }
   std::array<std::vector<double>, kLanes> masses;
-  for (int lane = 0; lane < kLanes; ++lane) masses[at(lane)] = equivalent_masses(*systems[at(lane)]);
+  for (int lane = 0; lane < kLanes; ++lane) masses[idx(lane)] = equivalent_masses(*systems[idx(lane)]);
   for (std::size_t j = 0; j < systems[0]->scalars().size(); ++j) {
     if (!systems[0]->scalars()[j].force->gap()) continue;
     Contact c;
     c.law = static_cast<int>(j);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Gap gap = systems[at(lane)]->scalars()[j].force->gap().value_or(Gap{});
+      const Gap gap = systems[idx(lane)]->scalars()[j].force->gap().value_or(Gap{});
       c.low.v[lane] = gap.low;
       c.high.v[lane] = gap.high;
-      c.masses[at(lane)] = masses[at(lane)][j];
+      c.masses[idx(lane)] = masses[idx(lane)][j];
     }
     contacts_.push_back(c);
   }
@@ -104,19 +104,19 @@ void LaneWatch::value(const Watched& c, const std::vector<Assembler>& assemblers
     case Watched::Kind::linear:
       return LaneWatchKernels::sum(c, point, out);
     case Watched::Kind::force:
-      out = point.laws.y[at(c.law)];
+      out = point.laws.y[idx(c.law)];
       return;
     case Watched::Kind::deflection:
-      out = point.laws.x[at(c.law)];
+      out = point.laws.x[idx(c.law)];
       return;
     case Watched::Kind::other:
       break;
   }
-  StepPoint of_lane;
+  EvaluatedState of_lane;
   for (int lane = 0; lane < kLanes; ++lane) {
     point.get(lane, of_lane);
     of_lane.state.t = t;
-    out.v[lane] = c.channels[at(lane)].evaluate(assemblers[at(lane)], of_lane.state);
+    out.v[lane] = c.channels[idx(lane)].evaluate(assemblers[idx(lane)], of_lane.state);
   }
 }
 
@@ -128,7 +128,7 @@ void LaneWatch::start(const std::vector<Assembler>& assemblers, const LanePoint&
   }
   for (Contact& c : contacts_)
     for (int lane = 0; lane < kLanes; ++lane) {
-      c.force.v[lane] = std::abs(point.laws.y[at(c.law)].v[lane]);
+      c.force.v[lane] = std::abs(point.laws.y[idx(c.law)].v[lane]);
       c.force_time.v[lane] = t;
     }
 }
@@ -145,14 +145,14 @@ void LaneWatch::step(const std::vector<Assembler>& assemblers, const LanePoint& 
 }
 
 void LaneWatch::cross(Contact& c, const LanePointLaws& from, const LanePointLaws& to, const LaneMask& lanes) {
-  const std::size_t j = at(c.law);
+  const std::size_t j = idx(c.law);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (lanes[lane] == 0) continue;
-    ContactInterval interval{c.met[at(lane)], c.largest.v[lane]};
+    ContactInterval interval{c.met[idx(lane)], c.largest.v[lane]};
     note_crossings({c.low.v[lane], c.high.v[lane]}, {.x = from.x[j].v[lane], .x_dot = from.x_dot[j].v[lane]},
                    {.x = to.x[j].v[lane], .x_dot = to.x_dot[j].v[lane]}, std::abs(to.y[j].v[lane]),
-                   c.masses[at(lane)], interval, c.records[at(lane)]);
-    c.met[at(lane)] = interval.met;
+                   c.masses[idx(lane)], interval, c.records[idx(lane)]);
+    c.met[idx(lane)] = interval.met;
     c.largest.v[lane] = interval.largest;
   }
 }
@@ -167,9 +167,9 @@ std::vector<Peak> LaneWatch::peaks(int lane) const {
 std::vector<ContactRecord> LaneWatch::contacts(int lane) const {
   std::vector<ContactRecord> all;
   for (const Contact& c : contacts_) {
-    const System& system = *systems_[at(lane)];
-    ContactRecord r = c.records[at(lane)];
-    r.element = system.placements()[at(index(system.scalars()[at(c.law)].element))].name;
+    const System& system = *systems_[idx(lane)];
+    ContactRecord r = c.records[idx(lane)];
+    r.element = system.element_instances()[idx(index(system.scalars()[idx(c.law)].element))].name;
     r.time_apart = c.apart.v[lane];
     r.largest_force = c.force.v[lane];
     r.largest_force_time = c.force_time.v[lane];

@@ -47,10 +47,10 @@ Lockstep::Lockstep(const std::vector<const System*>& systems, const TransientOpt
       laws_(systems_),
       loads_(systems_),
       watch_(systems_, channels),
-      lambda_(at(laws_.count())) {
-  const std::size_t n = at(matrices_.n);
+      lambda_(idx(laws_.count())) {
+  const std::size_t n = idx(matrices_.n);
   for (const System* system : systems_) {
-    steppers_.push_back(std::make_unique<StepSolver>(*system, scheme_, options.newton));
+    steppers_.push_back(std::make_unique<GeneralizedAlpha>(*system, scheme_, options.newton));
     assemblers_.emplace_back(*system);
   }
   for (LanePoint* point : {&now_, &next_}) {
@@ -106,17 +106,17 @@ std::vector<VariantResult> Lockstep::run(const std::function<bool(double)>& go_o
 void Lockstep::start(double t, bool first) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!first && !alive(lane)) continue;
-    StepPoint& point = to_alone_;
+    EvaluatedState& point = to_alone_;
     if (first)
-      point.state = State::initial(*systems_[at(lane)], t);
+      point.state = State::initial(*systems_[idx(lane)], t);
     else
       now_.get(lane, point);
     point.state.t = t;
     if (!first) {
       from_alone_ = point;
-      assemblers_[at(lane)].multiply_stiffness(point.state.z, from_alone_.kz);
+      assemblers_[idx(lane)].multiply_stiffness(point.state.z, from_alone_.kz);
     }
-    StepSolver& stepper = *steppers_[at(lane)];
+    GeneralizedAlpha& stepper = *steppers_[idx(lane)];
     stepper.start(point);
     now_.set(lane, point);
     for (std::size_t j = 0; j < lambda_.size(); ++j) lambda_[j].v[lane] = point.responses[j].y;
@@ -126,11 +126,11 @@ void Lockstep::start(double t, bool first) {
       const EnergyBalance& b = monitors_.back()->balance();
       energy_.start.v[lane] = b.kinetic + b.stored;
     } else {
-      monitors_[at(lane)]->restore(energy_.get(lane));
-      monitors_[at(lane)]->restart(from_alone_, point);
+      monitors_[idx(lane)]->restore(energy_.get(lane));
+      monitors_[idx(lane)]->restart(from_alone_, point);
     }
-    energy_.set(lane, monitors_[at(lane)]->balance());
-    assemblers_[at(lane)].set_time(t);
+    energy_.set(lane, monitors_[idx(lane)]->balance());
+    assemblers_[idx(lane)].set_time(t);
     if (first && alive(lane) && !point.state.a.allFinite())
       fail(lane, t, RunStatus::not_finite, "the initial acceleration");
   }
@@ -147,16 +147,16 @@ void Lockstep::prepare(double h) {
   for (int lane = 0; lane < kLanes; ++lane)
     if (alive(lane) && !factor_.ok(lane)) {
       alive_[lane] = 0;
-      results_[at(lane)].error = systems_[at(lane)]->name() + ": the step matrix of " + scheme_.name +
-                                 " at h = " + to_text(h) +
-                                 " s is not positive definite; is a stiffness negative?";
+      results_[idx(lane)].error = systems_[idx(lane)]->name() + ": the step matrix of " + scheme_.name +
+                                  " at h = " + to_text(h) +
+                                  " s is not positive definite; is a stiffness negative?";
     }
-  const LaneArray zero(at(matrices_.n));
+  const LaneArray zero(idx(matrices_.n));
   LaneArray column(zero.size());
   for (int j = 0; j < laws_.count(); ++j) {
     laws_.row(j, column);
     factor_.solve(column.data(), 0.0, zero.data(), column.data());
-    for (std::size_t i = 0; i < column.size(); ++i) w_.rows[i * lambda_.size() + at(j)] = column[i];
+    for (std::size_t i = 0; i < column.size(); ++i) w_.rows[i * lambda_.size() + idx(j)] = column[i];
   }
   w_.find_common();
   laws_.set_compliance(w_.rows, weights.k, weights.c);
@@ -244,8 +244,8 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
   if (any(alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0)))
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!alive(lane)) continue;
-      RunSummary& s = results_[at(lane)].summary;
-      check_growth(s, systems_[at(lane)]->name(), t_, energy_.get(lane), options_.energy_growth_limit);
+      RunSummary& s = results_[idx(lane)].summary;
+      check_growth(s, systems_[idx(lane)]->name(), t_, energy_.get(lane), options_.energy_growth_limit);
       if (!s.ok()) finish_lane(lane, t_);
     }
 }
@@ -253,14 +253,14 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
 void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
   now_.get(lane, from_alone_);
   from_alone_.state.t = t_;
-  assemblers_[at(lane)].multiply_damping(from_alone_.state.v, from_alone_.cv);
-  StepEquation& equation = steppers_[at(lane)]->equation();
+  assemblers_[idx(lane)].multiply_damping(from_alone_.state.v, from_alone_.cv);
+  StepEquation& equation = steppers_[idx(lane)]->equation();
   equation.start_from(from_alone_);
   equation.expect_force(force_scale_.v[lane]);
-  monitors_[at(lane)]->restore(energy_.get(lane));
-  ++results_[at(lane)].steps_alone;
+  monitors_[idx(lane)]->restore(energy_.get(lane));
+  ++results_[idx(lane)].steps_alone;
   if (!advance_alone(lane, h, t_new, t_evaluate, 0)) return;
-  const StepPoint& end = from_alone_;  // of its last step
+  const EvaluatedState& end = from_alone_;  // of its last step
   next_.laws.t = t_evaluate;
   for (std::size_t j = 0; j < lambda_.size(); ++j) lambda_[j].v[lane] = end.responses[j].y;
   force_scale_.v[lane] = std::max<double>(force_scale_.v[lane], largest_force(end));
@@ -268,8 +268,8 @@ void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
 
 /// As a single run does (transient.cpp): halves steps that do not converge.
 bool Lockstep::advance_alone(int lane, double h, double t_new, double t_evaluate, int depth) {
-  StepSolver& stepper = *steppers_[at(lane)];
-  RunSummary& s = results_[at(lane)].summary;
+  GeneralizedAlpha& stepper = *steppers_[idx(lane)];
+  RunSummary& s = results_[idx(lane)].summary;
   NewtonResult result = stepper.step(from_alone_, h, t_new, t_evaluate, to_alone_);
   s.iterations += result.iterations;
   if (result.status == NewtonStatus::converged) return accept_alone(lane, h);
@@ -296,40 +296,40 @@ bool Lockstep::advance_alone(int lane, double h, double t_new, double t_evaluate
 
 bool Lockstep::accept_alone(int lane, double h) {
   const State& state = to_alone_.state;
-  const System& system = *systems_[at(lane)];
+  const System& system = *systems_[idx(lane)];
   for (int k = 0; k < system.size(); ++k)
     if (!std::isfinite(state.z[k]) || !std::isfinite(state.v[k])) {
       fail(lane, from_alone_.state.t, RunStatus::not_finite, "the motion of " + system.unknown_name(k));
       return false;
     }
-  monitors_[at(lane)]->step(from_alone_, to_alone_, h);
-  energy_.set(lane, monitors_[at(lane)]->balance());
+  monitors_[idx(lane)]->step(from_alone_, to_alone_, h);
+  energy_.set(lane, monitors_[idx(lane)]->balance());
   now_.set(lane, from_alone_);
   next_.set(lane, to_alone_);
   LaneMask this_lane{};
   this_lane[lane] = -1;
-  assemblers_[at(lane)].set_time(steppers_[at(lane)]->assembler().time());
+  assemblers_[idx(lane)].set_time(steppers_[idx(lane)]->assembler().time());
   watch_.step(assemblers_, now_, next_, h, state.t, this_lane);
   std::swap(from_alone_, to_alone_);
   return true;
 }
 
 void Lockstep::fail(int lane, double t, RunStatus status, const std::string& what) {
-  end_run(results_[at(lane)].summary, systems_[at(lane)]->name(), t, status, what);
+  end_run(results_[idx(lane)].summary, systems_[idx(lane)]->name(), t, status, what);
   finish_lane(lane, t);
 }
 
 /// The lane's result, from what it stands at at time t.
 void Lockstep::finish_lane(int lane, double t) {
-  VariantResult& r = results_[at(lane)];
+  VariantResult& r = results_[idx(lane)];
   RunSummary& s = r.summary;
-  StepPoint point;
+  EvaluatedState point;
   now_.get(lane, point);
   r.state = std::move(point.state);
   r.state.t = t;
   r.peaks = watch_.peaks(lane);
   r.contacts = watch_.contacts(lane);
-  const StepEquation& equation = steppers_[at(lane)]->equation();
+  const StepEquation& equation = steppers_[idx(lane)]->equation();
   s.t_end = t;
   s.steps += steps_;
   s.iterations += static_cast<long>(iterations_.v[lane]);

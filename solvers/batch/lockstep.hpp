@@ -43,7 +43,7 @@ class Lockstep {
   const TransientOptions& options_;
   StepScheme scheme_;
   std::vector<VariantResult> results_;
-  std::vector<std::unique_ptr<StepSolver>> steppers_;
+  std::vector<std::unique_ptr<GeneralizedAlpha>> steppers_;
   std::vector<std::unique_ptr<EnergyMonitor>> monitors_;
   std::vector<Assembler> assemblers_;
   LaneMatrices matrices_;
@@ -58,7 +58,7 @@ class Lockstep {
   LaneForces by_;
   LaneRow force_scale_, iterations_, passes_;
   LaneMask alive_{};
-  StepPoint from_alone_, to_alone_;
+  EvaluatedState from_alone_, to_alone_;
   double t_ = 0.0, h_ = 0.0;
   long steps_ = 0, factorizations_ = 0;
 };

@@ -23,7 +23,7 @@ class Topology {
       : nodes_(s.node_names()),
         outer_(s.pattern().outerIndexPtr(), s.pattern().outerIndexPtr() + s.size() + 1),
         inner_(s.pattern().innerIndexPtr(), s.pattern().innerIndexPtr() + s.pattern().nonZeros()) {
-    for (const Placement& p : s.placements()) elements_.push_back(describe(p));
+    for (const ElementInstance& p : s.element_instances()) elements_.push_back(describe(p));
     for (const ScalarTerm& t : s.scalars()) terms_.emplace(index(t.element), entries(t));
     for (int i = 0; i < s.node_count(); ++i) places_.push_back(place(s, i));
   }
@@ -52,7 +52,7 @@ class Topology {
   }
 
  private:
-  static std::string describe(const Placement& p) {
+  static std::string describe(const ElementInstance& p) {
     return std::string(p.element->type()) + " '" + p.name + "'";
   }
   static std::vector<int> entries(const ScalarTerm& t) {

@@ -100,7 +100,7 @@ class ExactRun {
   /// Where a step ends: s of the series, at a change or knot if there is one.
   struct End {
     double s = 1.0;
-    std::optional<LawPieces::Change> change = {};
+    std::optional<LawSeries::Change> change = {};
     bool at_knot = false;
   };
 
@@ -113,7 +113,7 @@ class ExactRun {
     const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop : std::min(from.t + s * got, stop);
 
-    const StepPoint& before = watch(t_new, s);
+    const EvaluatedState& before = watch(t_new, s);
     State& to = next_.state;
     to.t = t_new;
     to.history = from.history;
@@ -121,7 +121,7 @@ class ExactRun {
     if (!to.z.allFinite() || !to.v.allFinite()) return not_finite(to);
     const bool ahead_of_break = at_break && t_new == stop;
     evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity()) : t_new);
-    const SmoothLaws::Work smooth = smooth_.work(series_, s);
+    const ProjectedLaws::Work smooth = smooth_.work(series_, s);
     energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
                   series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated);
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
@@ -148,7 +148,7 @@ class ExactRun {
   End find_end(double remaining) {
     double h = std::min(remaining, growing_step_);
     if (h < remaining) h = remaining / std::ceil(remaining / h);
-    std::optional<LawPieces::Change> cut;
+    std::optional<LawSeries::Change> cut;
     for (int cuts = 0;; ++cuts) {
       h = expand(h);
       laws_.expand(series_, known_, smooth_);
@@ -180,8 +180,8 @@ class ExactRun {
   /// Shows the observers points inside a step to t_new (s of the series): where they asked for one, and
   /// close enough for a cubic between them to be off by at most 2e-5 of what moves with the fastest mode.
   /// Returns the last one.
-  const StepPoint& watch(double t_new, double s) {
-    const StepPoint* last = &now_;
+  const EvaluatedState& watch(double t_new, double s) {
+    const EvaluatedState* last = &now_;
     const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
@@ -197,7 +197,7 @@ class ExactRun {
       }
       if (!(t < t_new - same)) return *last;
       if (t == part) i += 1.0;
-      StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
+      EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
       point.state.t = t;
       point.state.history = now_.state.history;
       series_.evaluate(s * ((t - t_0) / length), point.state.z, point.state.v);
@@ -254,7 +254,7 @@ class ExactRun {
       if (got < h || last) return got;
       if (pass == kMaxPasses) return 0.5 * h;
       const double kinks = kProjected * share / std::max(projected_, share);
-      const KnownForces::Change change =
+      const LoadSeries::Change change =
           known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
       // In the shortest steps what is left is a jump that no one told of, or rounding.
       if (change.rest > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
@@ -271,28 +271,28 @@ class ExactRun {
     }
   }
 
-  void pass(const LawPieces::Change& change, double t) {
+  void pass(const LawSeries::Change& change, double t) {
     const int from = laws_.piece(change.law);
     laws_.pass(change);
     ++summary_.contact_changes;
     if (options_.on_change) options_.on_change({t, change.law, from, laws_.piece(change.law)});
-    count_change(system_.scalars()[at(change.law)].element, t);
+    count_change(system_.scalars()[idx(change.law)].element, t);
   }
 
   void count_change(ElementId element, double t) {
     if (++changes_here_ > change_limit_)
-      throw SolverError(where(t) + system_.placements()[at(index(element))].name +
+      throw SolverError(where(t) + system_.element_instances()[idx(index(element))].name +
                         " changes its piece to and fro without the motion going on");
   }
 
   /// Motion and laws only.
-  void evaluate_motion(StepPoint& point, double t) {
+  void evaluate_motion(EvaluatedState& point, double t) {
     assembler_.set_time(t);
     evaluate_laws(assembler_, point);
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void evaluate(StepPoint& point, double t) {
+  void evaluate(EvaluatedState& point, double t) {
     const State& s = point.state;
     assembler_.set_time(t);
     evaluate_laws(assembler_, point);
@@ -341,10 +341,10 @@ class ExactRun {
   const std::vector<Observer*>& observers_;
   Assembler assembler_;
   TaylorSeries series_;
-  KnownForces known_;
-  LawPieces laws_;
-  SmoothLaws smooth_;
-  StepPoint now_, next_, inside_[2];
+  LoadSeries known_;
+  LawSeries laws_;
+  ProjectedLaws smooth_;
+  EvaluatedState now_, next_, inside_[2];
   Vector rhs_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;

@@ -39,21 +39,21 @@ bool opposite(const LawBound& a, const LawBound& b) {
 
 }  // namespace
 
-LawPieces::LawPieces(const System& system) : system_(system), laws_(system.scalars().size()) {
+LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scalars().size()) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     laws_[j].pieces = pieces_or_stretches(term, term.force->pieces());
   }
 }
 
-void LawPieces::locate(const std::vector<ScalarInput>& inputs) {
+void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     laws_[j].piece = piece_at(laws_[j].pieces, inputs[j]);
     laws_[j].root = -1;
   }
 }
 
-void LawPieces::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
+void LawSeries::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
   std::size_t s = 0;
   for (const Entry& row : term.z)
     for (const Entry& col : term.z) {
@@ -64,7 +64,7 @@ void LawPieces::add(TaylorSeries& series, const ScalarTerm& term, double k, doub
     }
 }
 
-void LawPieces::add_to(TaylorSeries& series, const KnownForces& known, double h) const {
+void LawSeries::add_to(TaylorSeries& series, const LoadSeries& known, double h) const {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     const LawPiece& p = current(j);
@@ -83,7 +83,7 @@ void LawPieces::add_to(TaylorSeries& series, const KnownForces& known, double h)
   }
 }
 
-void LawPieces::add_stiffest(TaylorSeries& series) const {
+void LawSeries::add_stiffest(TaylorSeries& series) const {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     // A smooth law's stretches carry no force of their own.
@@ -96,7 +96,7 @@ void LawPieces::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-void LawPieces::expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth) {
+void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, const ProjectedLaws& smooth) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
@@ -126,7 +126,7 @@ void LawPieces::expand(const TaylorSeries& series, const KnownForces& known, con
   }
 }
 
-void LawPieces::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
+void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
   const std::size_t terms = law.x.size();
   g.resize(terms);
   for (std::size_t k = 0; k < terms; ++k) {
@@ -136,8 +136,8 @@ void LawPieces::bound_series(const Law& law, const LawBound& b, std::vector<doub
   g[0] += b.a;
 }
 
-bool LawPieces::falls_at_once(Law& law, const LawBound& b, int index) {
-  std::vector<double>& g = law.bounds[at(index)];
+bool LawSeries::falls_at_once(Law& law, const LawBound& b, int index) {
+  std::vector<double>& g = law.bounds[idx(index)];
   bound_series(law, b, g);
   if (index != law.root && g[0] > 0.0) return false;
   const auto size = [&](std::size_t k) {
@@ -156,7 +156,7 @@ bool LawPieces::falls_at_once(Law& law, const LawBound& b, int index) {
   return false;
 }
 
-std::optional<LawPieces::Change> LawPieces::change_at_once() {
+std::optional<LawSeries::Change> LawSeries::change_at_once() {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const LawPiece& p = current(j);
     laws_[j].bounds.resize(p.bounds.size());
@@ -167,7 +167,7 @@ std::optional<LawPieces::Change> LawPieces::change_at_once() {
   return std::nullopt;
 }
 
-std::optional<LawPieces::Change> LawPieces::first_change(double end) {
+std::optional<LawSeries::Change> LawSeries::first_change(double end) {
   std::optional<Change> first;
   for (std::size_t j = 0; j < laws_.size(); ++j)
     for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i)
@@ -178,26 +178,26 @@ std::optional<LawPieces::Change> LawPieces::first_change(double end) {
   return first;
 }
 
-double LawPieces::beyond_end(const Change& change) const {
-  const std::vector<double>& g = laws_[at(change.law)].bounds[at(change.bound)];
+double LawSeries::beyond_end(const Change& change) const {
+  const std::vector<double>& g = laws_[idx(change.law)].bounds[idx(change.bound)];
   return -polynomial_value(g, 1.0) / polynomial_slope(g, 1.0);
 }
 
-void LawPieces::pass(const Change& change) {
-  Law& law = laws_[at(change.law)];
-  const LawBound crossed = current(at(change.law)).bounds[at(change.bound)];
+void LawSeries::pass(const Change& change) {
+  Law& law = laws_[idx(change.law)];
+  const LawBound crossed = current(idx(change.law)).bounds[idx(change.bound)];
   law.piece = crossed.next;
   law.root = -1;
-  const std::vector<LawBound>& bounds = current(at(change.law)).bounds;
+  const std::vector<LawBound>& bounds = current(idx(change.law)).bounds;
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (opposite(crossed, bounds[i])) law.root = static_cast<int>(i);
 }
 
-void LawPieces::forget_roots() {
+void LawSeries::forget_roots() {
   for (Law& law : laws_) law.root = -1;
 }
 
-double LawPieces::dissipated(double s) const {
+double LawSeries::dissipated(double s) const {
   double sum = 0.0;
   std::vector<double> y;
   for (std::size_t j = 0; j < laws_.size(); ++j) {
@@ -209,7 +209,7 @@ double LawPieces::dissipated(double s) const {
   return sum;
 }
 
-double LawPieces::input(double s) const {
+double LawSeries::input(double s) const {
   double sum = 0.0;
   std::vector<double> y;
   for (std::size_t j = 0; j < laws_.size(); ++j) {

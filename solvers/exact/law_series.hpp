@@ -1,5 +1,5 @@
 #pragma once
-/// LawPieces: which piece of its law each scalar element is on, and when it leaves it.
+/// LawSeries: which piece of its law each scalar element is on, and when it leaves it.
 ///
 /// On a piece, y = y_0 + k x + c x': k and c go into the matrices, y_0 and what is known of x to
 /// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
@@ -15,7 +15,7 @@
 
 namespace drev {
 
-class LawPieces {
+class LawSeries {
  public:
   struct Change {
     double s = 0.0;  ///< where in the step
@@ -23,19 +23,19 @@ class LawPieces {
     int bound = 0;   ///< of its piece
   };
 
-  explicit LawPieces(const System& system);
+  explicit LawSeries(const System& system);
 
   /// Every law on the piece that its input is on.
   void locate(const std::vector<ScalarInput>& inputs);
-  int piece(int law) const { return laws_[at(law)].piece; }
+  int piece(int law) const { return laws_[idx(law)].piece; }
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
-  void add_to(TaylorSeries& series, const KnownForces& known, double h) const;
+  void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
   /// Adds the stiffest pieces of all laws, to bound the fastest rate.
   void add_stiffest(TaylorSeries& series) const;
 
   /// The deflections' series along the step.
-  void expand(const TaylorSeries& series, const KnownForces& known, const SmoothLaws& smooth);
+  void expand(const TaylorSeries& series, const LoadSeries& known, const ProjectedLaws& smooth);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
   /// The first change in (0, end].
@@ -61,7 +61,7 @@ class LawPieces {
     std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
     std::vector<std::vector<double>> bounds;  // series of the piece's bounds
   };
-  const LawPiece& current(std::size_t j) const { return laws_[j].pieces[at(laws_[j].piece)]; }
+  const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   bool falls_at_once(Law& law, const LawBound& bound, int index);
   void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;

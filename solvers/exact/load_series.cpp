@@ -22,16 +22,16 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 
 }  // namespace
 
-KnownForces::KnownForces(const System& system)
+LoadSeries::LoadSeries(const System& system)
     : system_(system),
       assembler_(system),
       stride_(TaylorSeries::stride(system)),
-      p_(at(kProjectionTerms * stride_)),
-      base_(at(3 * stride_)),
+      p_(idx(kProjectionTerms * stride_)),
+      base_(idx(3 * stride_)),
       projection_(stride_),
       last_(stride_),
       of_loads_(stride_),
-      u_(at(system.prescribed_count())) {
+      u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
     if (map.prescribed >= 0) continue;  // its work is the prescribed node's
@@ -44,7 +44,7 @@ KnownForces::KnownForces(const System& system)
   }
 }
 
-void KnownForces::move(double t, const Vector& z, const Vector& v) {
+void LoadSeries::move(double t, const Vector& z, const Vector& v) {
   t_ = t;
   assembler_.set_time(t);
   const MotionPoint& nominal = assembler_.nominal();
@@ -58,18 +58,18 @@ void KnownForces::move(double t, const Vector& z, const Vector& v) {
   }
 }
 
-void KnownForces::look_up(Linear& l, double direction) {
+void LoadSeries::look_up(Linear& l, double direction) {
   l.stretch = l.term->load->stretch(t_, l.angle, direction).value_or(LoadStretch{});
   l.t_0 = t_;
   l.angle_0 = l.angle;
 }
 
-void KnownForces::locate(double t, const Vector& z, const Vector& v) {
+void LoadSeries::locate(double t, const Vector& z, const Vector& v) {
   move(t, z, v);
   for (Linear& l : loads_) look_up(l, l.speed);
 }
 
-void KnownForces::advance(double t, const Vector& z, const Vector& v, bool whole) {
+void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole) {
   move(t, z, v);
   for (Linear& l : loads_) {
     if (whole && !l.watched) {
@@ -82,15 +82,15 @@ void KnownForces::advance(double t, const Vector& z, const Vector& v, bool whole
   }
 }
 
-void KnownForces::pass_knot() { look_up(loads_[at(leaving_)], leaving_direction_); }
+void LoadSeries::pass_knot() { look_up(loads_[idx(leaving_)], leaving_direction_); }
 
-void KnownForces::add_to(TaylorSeries& series, double h) {
+void LoadSeries::add_to(TaylorSeries& series, double h) {
   const int n = system_.size();
   h_ = h;
   degree_ = 2;
   projected_ = false;
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
-  const auto p = [&](int k, int row) -> double& { return p_[at(k * stride_ + row)]; };
+  const auto p = [&](int k, int row) -> double& { return p_[idx(k * stride_ + row)]; };
   const auto add = [&](int k, double factor, const Vector& values) {
     for (int i = 0; i < n; ++i) p(k, i) += factor * values[i];
   };
@@ -103,7 +103,7 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
     const MatrixSet& zu = system_.coupling_zu();
     for (int k = 0; k < system_.prescribed_count(); ++k) {
       const MotionPoint& u = assembler_.prescribed(k);
-      u_[at(k)] = over_step(u, h);
+      u_[idx(k)] = over_step(u, h);
       for (SparseMatrix::InnerIterator it(zu.mass, k); it; ++it)
         p(0, static_cast<int>(it.row())) -= it.value() * u.acceleration;
       for (SparseMatrix::InnerIterator it(zu.damping, k); it; ++it) {
@@ -111,7 +111,7 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
         p(1, static_cast<int>(it.row())) -= it.value() * u.acceleration * h;
       }
       for (SparseMatrix::InnerIterator it(zu.stiffness, k); it; ++it)
-        for (int i = 0; i < 3; ++i) p(i, static_cast<int>(it.row())) -= it.value() * u_[at(k)][at(i)];
+        for (int i = 0; i < 3; ++i) p(i, static_cast<int>(it.row())) -= it.value() * u_[idx(k)][idx(i)];
     }
   }
   for (const Linear& l : loads_) {
@@ -133,16 +133,16 @@ void KnownForces::add_to(TaylorSeries& series, double h) {
   }
 }
 
-double KnownForces::angle_term(const Place& l, const TaylorSeries& series, int k) const {
-  const double nominal = k < 3 ? l.ratio * phi_[at(k)] : 0.0;
+double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k) const {
+  const double nominal = k < 3 ? l.ratio * phi_[idx(k)] : 0.0;
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
+double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
   if (loads_.empty()) return 0.0;
   kinks_.clear();
   double gain = 0.0;
-  ranges_.resize(at(3 * stride_));
+  ranges_.resize(idx(3 * stride_));
   double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
   for (Linear& l : loads_) {
@@ -150,7 +150,7 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
     l.gain = 0.0;
     l.ahead = l.stretch;
     l.ahead_angle_0 = l.angle_0;
-    const auto row = at(l.row);
+    const auto row = idx(l.row);
     const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
     const double first = angle_term(l, series, 1);
     // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
@@ -174,9 +174,9 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
         break;
       }
       if (!have_theta) {
-        theta_.resize(at(series.degree() + 1));
+        theta_.resize(idx(series.degree() + 1));
         theta_[0] = l.angle;
-        for (int k = 1; k <= series.degree(); ++k) theta_[at(k)] = angle_term(l, series, k);
+        for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = angle_term(l, series, k);
         have_theta = true;
       }
       const double jump = next.angle_slope - l.ahead.angle_slope;
@@ -192,7 +192,7 @@ double KnownForces::find_kinks(const TaylorSeries& series, double tolerance) {
   return gain;
 }
 
-double KnownForces::project_smooth(const TaylorSeries& series) {
+double LoadSeries::project_smooth(const TaylorSeries& series) {
   if (smooth_.empty()) return 0.0;
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
@@ -211,8 +211,8 @@ double KnownForces::project_smooth(const TaylorSeries& series) {
   return gain;
 }
 
-KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws, bool first,
-                                         double tolerance) {
+LoadSeries::Change LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
+                                       double tolerance) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -231,7 +231,7 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
     for (int j = 0; j < kProjectionTerms; ++j)
       size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
     const double move = series.reach(row) * h_;
-    const auto kind = at(row < series.size() ? series.kind(row) : 0);
+    const auto kind = idx(row < series.size() ? series.kind(row) : 0);
     const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
     if (size > 0.0) change.size = std::max(change.size, move * size / scale);
     return scale > 0.0 ? move / scale : 0.0;
@@ -258,16 +258,16 @@ KnownForces::Change KnownForces::project(TaylorSeries& series, SmoothLaws& laws,
   return change;
 }
 
-void KnownForces::shorten(double r) {
+void LoadSeries::shorten(double r) {
   double power = 1.0;
   for (int k = 0; k < 3; ++k, power *= r) {
-    for (int i = 0; i < stride_; ++i) p_[at(k * stride_ + i)] *= power;
-    phi_[at(k)] *= power;
-    for (auto& u : u_) u[at(k)] *= power;
+    for (int i = 0; i < stride_; ++i) p_[idx(k * stride_ + i)] *= power;
+    phi_[idx(k)] *= power;
+    for (auto& u : u_) u[idx(k)] *= power;
   }
 }
 
-std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double end) {
+std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double end) {
   leaving_ = -1;
   std::optional<double> first;
   const auto degree = static_cast<std::size_t>(series.degree());
@@ -295,7 +295,7 @@ std::optional<double> KnownForces::first_knot(const TaylorSeries& series, double
   return first;
 }
 
-double KnownForces::work(const TaylorSeries& series, double s, const Vector& end) {
+double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end) {
   if (projected_) {
     // p_ by powers: what was projected beside what add_to() put there.
     (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());

@@ -1,5 +1,5 @@
 #pragma once
-/// KnownForces: loads, nominal motion and prescribed motions as polynomials over a step, for
+/// LoadSeries: loads, nominal motion and prescribed motions as polynomials over a step, for
 /// TaylorSeries.
 ///
 /// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope
@@ -9,15 +9,15 @@
 /// expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
 #include <optional>
 
+#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
-#include "solvers/exact/projection.hpp"
 #include "solvers/exact/taylor_series.hpp"
 
 namespace drev {
 
-class KnownForces {
+class LoadSeries {
  public:
-  explicit KnownForces(const System& system);
+  explicit LoadSeries(const System& system);
 
   /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start
   /// and after breakpoints.
@@ -39,21 +39,21 @@ class KnownForces {
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. tolerance: relative, of the kinks' moments.
-  Change project(TaylorSeries& series, SmoothLaws& laws, bool first, double tolerance);
+  Change project(TaylorSeries& series, ProjectedLaws& laws, bool first, double tolerance);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// The step became r h; only where nothing was projected.
   void shorten(double r);
 
   /// Prescribed motion k as a polynomial over the step.
-  const std::array<double, 3>& prescribed(int k) const { return u_[at(k)]; }
+  const std::array<double, 3>& prescribed(int k) const { return u_[idx(k)]; }
 
   /// First s in (0, end] (0 for a load about to leave backwards) at which a load whose angle may turn back
   /// leaves its stretch: the step must end there.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
   /// After first_knot() and advance() to it: that load goes on to the next stretch.
   void pass_knot();
-  ElementId knot_element() const { return loads_[at(leaving_)].term->element; }
+  ElementId knot_element() const { return loads_[idx(leaving_)].term->element; }
 
   /// Work of all these forces on the unknowns from 0 to s of the step, where they stand at `end` [J].
   double work(const TaylorSeries& series, double s, const Vector& end);
@@ -90,11 +90,11 @@ class KnownForces {
   std::vector<Linear> loads_;
   std::vector<Smooth> smooth_;
   int stride_;
-  std::vector<double> p_;         // by powers of s, without the loads' slopes: kProjectionTerms columns
-  std::vector<double> base_;      // of the series' right side, degrees 0 to 2, before projection
-  int degree_ = 2;                // of p_
-  Projection projection_, last_;  // of this pass, and the last
-  Projection of_loads_;           // of this pass, where there are laws too
+  std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
+  std::vector<double> base_;  // of the series' right side, degrees 0 to 2, before projection
+  int degree_ = 2;            // of p_
+  LegendreProjection projection_, last_;  // of this pass, and the last
+  LegendreProjection of_loads_;           // of this pass, where there are laws too
   KinkMoments kinks_;
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};

@@ -7,7 +7,7 @@
 
 namespace drev {
 
-SmoothLaws::SmoothLaws(const System& system)
+ProjectedLaws::ProjectedLaws(const System& system)
     : system_(system), assembler_(system), offsets_(system.scalars().size()) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
@@ -18,24 +18,24 @@ SmoothLaws::SmoothLaws(const System& system)
   }
 }
 
-double SmoothLaws::along(const ScalarTerm& term, const Vector& q) {
+double ProjectedLaws::along(const ScalarTerm& term, const Vector& q) {
   double sum = 0.0;
   for (const Entry& e : term.z) sum += e.coeff * q[e.index];
   return sum;
 }
 
-void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) {
+void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
   t_ = start.state.t;
   h_ = h;
   for (Law& law : laws_) {
     const ScalarTerm& term = *law.term;
-    const ScalarResponse& r = start.responses[at(law.index)];
+    const ScalarResponse& r = start.responses[idx(law.index)];
     law.k = r.dy_dx;
     law.c = r.dy_dx_dot;
     law.y = r.y;
     law.x = along(term, start.state.z);
     law.x_dot = along(term, start.state.v);
-    law.angle = start.inputs[at(law.index)].angle;
+    law.angle = start.inputs[idx(law.index)].angle;
     law.stored = r.stored_energy;
     std::size_t s = 0;
     double b_1 = 0.0;
@@ -50,12 +50,12 @@ void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) 
       series.right_side(0)[row.index] -= row.coeff * (law.y - law.k * law.x - law.c * law.x_dot);
     }
     // - e along the nominal angle, which is known.
-    std::vector<double>& offset = offsets_[at(law.index)];
+    std::vector<double>& offset = offsets_[idx(law.index)];
     offset.clear();
     if (term.phase_node < 0 || !system_.reference()) continue;
     const double ratio = system_.ratio(term.phase_node);
     const GaussRule& rule = gauss_rule();
-    Projection one(kLanes);
+    LegendreProjection one(kLanes);
     bool any = false;
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
       const double phi = system_.reference()->at(t_ + h * rule.s[q]).value;
@@ -64,13 +64,13 @@ void SmoothLaws::add_to(TaylorSeries& series, const StepPoint& start, double h) 
       one.add_node(q, 0, -e);
     }
     if (!any) continue;
-    std::vector<double> powers(at(kProjectionTerms * kLanes));
+    std::vector<double> powers(idx(kProjectionTerms * kLanes));
     one.add_powers(0, powers.data());
-    for (int k = 0; k < kProjectionTerms; ++k) offset.push_back(powers[at(k * kLanes)]);
+    for (int k = 0; k < kProjectionTerms; ++k) offset.push_back(powers[idx(k * kLanes)]);
   }
 }
 
-double SmoothLaws::project(const TaylorSeries& series, Projection& projection) {
+double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& projection) {
   if (laws_.empty()) return 0.0;
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
@@ -94,13 +94,13 @@ double SmoothLaws::project(const TaylorSeries& series, Projection& projection) {
   return gain;
 }
 
-std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double end) {
+std::optional<double> ProjectedLaws::first_knot(const TaylorSeries& series, double end) {
   std::optional<double> first;
   for (const Law& law : laws_) {
     if (law.term->phase_node < 0) continue;
     const NodeMap& map = system_.node_map(law.term->phase_node);
     assembler_.set_time(t_);
-    g_.assign(at(series.degree() + 1), 0.0);
+    g_.assign(idx(series.degree() + 1), 0.0);
     const auto add_known = [&](double factor, const MotionPoint& m) {
       g_[1] += factor * m.rate * h_;
       g_[2] += 0.5 * factor * m.acceleration * h_ * h_;
@@ -108,7 +108,7 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
     add_known(system_.ratio(law.term->phase_node), assembler_.nominal());
     if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
     for (const Entry& e : law.phase_row)
-      for (int k = 1; k <= series.degree(); ++k) g_[at(k)] += e.coeff * series.coefficient(k, e.index);
+      for (int k = 1; k <= series.degree(); ++k) g_[idx(k)] += e.coeff * series.coefficient(k, e.index);
     for (const double side : {1.0, -1.0}) {
       const std::optional<double> knot = law.term->force->next_knot(law.angle, side);
       if (!knot) continue;
@@ -125,7 +125,7 @@ std::optional<double> SmoothLaws::first_knot(const TaylorSeries& series, double 
   return first;
 }
 
-SmoothLaws::Work SmoothLaws::work(const TaylorSeries& series, double s) {
+ProjectedLaws::Work ProjectedLaws::work(const TaylorSeries& series, double s) {
   Work work;
   if (laws_.empty()) return work;
   const GaussRule& rule = gauss_rule();

@@ -1,5 +1,5 @@
 #pragma once
-/// SmoothLaws: laws that state no linear pieces (mesh stiffness by phase, transmission error, damping that
+/// ProjectedLaws: laws that state no linear pieces (mesh stiffness by phase, transmission error, damping that
 /// grows with penetration, a user's own), for TaylorSeries.
 ///
 /// Between its kinks() such a law is smooth. Its tangent at the step's start goes into the matrices; what
@@ -9,28 +9,28 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/exact/projection.hpp"
+#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/taylor_series.hpp"
 #include "solvers/run/evaluated_state.hpp"
 
 namespace drev {
 
-class SmoothLaws {
+class ProjectedLaws {
  public:
-  explicit SmoothLaws(const System& system);
+  explicit ProjectedLaws(const System& system);
 
   bool empty() const { return laws_.empty(); }
 
   /// Adds the tangents at the step's start, the point's inputs and responses; the step has h seconds.
-  void add_to(TaylorSeries& series, const StepPoint& start, double h);
+  void add_to(TaylorSeries& series, const EvaluatedState& start, double h);
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
-  double project(const TaylorSeries& series, Projection& projection);
+  double project(const TaylorSeries& series, LegendreProjection& projection);
   /// What projection leaves of law forces, by row, is judged there.
   const std::vector<int>& rows() const { return rows_; }
 
   /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
-  const std::vector<double>& offset(int law) const { return offsets_[at(law)]; }
+  const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);

@@ -29,10 +29,10 @@ TaylorSeries::TaylorSeries(const System& system)
   undamped_ = system.damping_values().isZero(0.0);
   base_main_damping_ = system.damping_is_diagonal() && main_ >= 0;
   diagonal_mass_ = system.mass_is_diagonal();
-  inverse_mass_.assign(at(stride_), 0.0);
+  inverse_mass_.assign(idx(stride_), 0.0);
   if (diagonal_mass_) {
     for (int i = 0; i < n_; ++i)
-      inverse_mass_[at(i)] = 1.0 / system.mass_values()[system.diagonal_slots()[at(i)]];
+      inverse_mass_[idx(i)] = 1.0 / system.mass_values()[system.diagonal_slots()[idx(i)]];
   } else {
     if (mass_.factorize(system.pattern(), system.mass_values()) != FactorStatus::success)
       throw SolverError(system.name() + ": the mass matrix is not positive definite");
@@ -43,10 +43,10 @@ TaylorSeries::TaylorSeries(const System& system)
     }
     mass_norm_ = row_sum.maxCoeff();
   }
-  std::vector<int> kinds(at(n_), 0);
+  std::vector<int> kinds(idx(n_), 0);
   for (int node = 0; node < system.node_count(); ++node)
     if (system.node_map(node).unknown >= 0 && system.node_kind(node) == NodeKind::translational)
-      kinds[at(system.node_map(node).unknown)] = 1;
+      kinds[idx(system.node_map(node).unknown)] = 1;
   const auto translational = std::count(kinds.begin(), kinds.end(), 1);
   if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
   find_rows();
@@ -58,7 +58,7 @@ void TaylorSeries::find_rows() {
   row_slopes_.setZero(m);
   row_mobility_.resize(m);
   row_reach_.resize(m);
-  with_rows_.assign(at(stride_), 0.0);
+  with_rows_.assign(idx(stride_), 0.0);
   for (int j = 0; j < m; ++j) {
     solve_in_ = system_.rows().row(j).transpose();
     solve_mass(solve_in_, solve_out_);
@@ -80,21 +80,21 @@ void TaylorSeries::find_storage() {
   for (auto& [offset, number] : offsets) {
     number = diagonals_.size();
     if (offset == 0) main_ = static_cast<int>(number);
-    diagonals_.push_back({offset, number * at(stride_)});
+    diagonals_.push_back({offset, number * idx(stride_)});
     pad_ = std::max(pad_, whole_lanes(std::abs(offset)));
   }
   position_.resize(entries);
   for (int row = 0; row < n_; ++row)
     for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
-      position_[at(s)] =
-          diagonals_.empty() ? at(s) : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + at(row);
-  const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * at(stride_);
+      position_[idx(s)] =
+          diagonals_.empty() ? idx(s) : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + idx(row);
+  const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * idx(stride_);
   k_base_.assign(length, 0.0);
   c_base_.assign(length, 0.0);
-  z_.assign(at(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
-  p_.assign(at(kProjectionTerms * stride_), 0.0);
-  zeros_.assign(at(stride_), 0.0);
-  sums_.assign(at(2 * stride_), 0.0);
+  z_.assign(idx(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
+  p_.assign(idx(kProjectionTerms * stride_), 0.0);
+  zeros_.assign(idx(stride_), 0.0);
+  sums_.assign(idx(2 * stride_), 0.0);
   k_ = k_base_;
   c_ = c_base_;
   for (const Diagonal& d : diagonals_) {
@@ -115,7 +115,7 @@ void TaylorSeries::reset() {
 }
 
 void TaylorSeries::add_damping(int slot, double value) {
-  c_[position_[at(slot)]] += value;
+  c_[position_[idx(slot)]] += value;
   damped_ = true;
   main_damping_ = false;
 }
@@ -127,14 +127,14 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
     const int* inner = system_.pattern().innerIndexPtr();
     for (int row = 0; row < n_; ++row) {
       double sum = 0.0;
-      for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values[at(s)] * x[inner[s]];
+      for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values[idx(s)] * x[inner[s]];
       out[row] -= factor * sum;
     }
     return;
   }
   for (const Diagonal& d : diagonals_) {
     if (main_only && d.offset != 0) continue;
-    for (int i = 0; i < n_; ++i) out[i] -= factor * values[d.values + at(i)] * x[i + d.offset];
+    for (int i = 0; i < n_; ++i) out[i] -= factor * values[d.values + idx(i)] * x[i + d.offset];
   }
 }
 
@@ -144,8 +144,8 @@ double TaylorSeries::bound_rates() {
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      k_sum += std::abs(k_[position_[at(s)]]);
-      c_sum += std::abs(c_[position_[at(s)]]);
+      k_sum += std::abs(k_[position_[idx(s)]]);
+      c_sum += std::abs(c_[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
     c_norm_ = std::max(c_norm_, c_sum * mobility(row));
@@ -191,7 +191,7 @@ TaylorSeries::Norm TaylorSeries::norm(const double* x) const {
   if (kinds_.empty()) return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
   Norm result{};
   for (int i = 0; i < n_; ++i) {
-    double& largest = result[at(kinds_[at(i)])];
+    double& largest = result[idx(kinds_[idx(i)])];
     largest = std::max(largest, std::abs(x[i]));
   }
   return result;
@@ -208,7 +208,7 @@ void TaylorSeries::note_scale(const Vector& z, const Vector& v) {
 void TaylorSeries::solve_mass(const Vector& rhs, Vector& out) {
   if (!diagonal_mass_) return mass_.solve(rhs, out);
   out.resize(n_);
-  for (int i = 0; i < n_; ++i) out[i] = rhs[i] * inverse_mass_[at(i)];
+  for (int i = 0; i < n_; ++i) out[i] = rhs[i] * inverse_mass_[idx(i)];
 }
 
 /// with_rows_ = p with the rows' forces less their slopes times x_0.
@@ -221,21 +221,21 @@ void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
 }
 
 TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
-  const double* p = k - 2 <= right_degree_ ? p_.data() + at((k - 2) * stride_) : zeros_.data();
+  const double* p = k - 2 <= right_degree_ ? p_.data() + idx((k - 2) * stride_) : zeros_.data();
   const double* x_0 = coefficients(k - 2);
   if (row_slopes_.size() > 0) {
     add_row_forces(p, x_0);
     p = with_rows_.data();
   }
   const double* x_1 = coefficients(k - 1);
-  double* next = z_.data() + at(pad_ + k * stride_);
+  double* next = z_.data() + idx(pad_ + k * stride_);
   const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
   if (!diagonals_.empty() && diagonal_mass_) {
     std::span<const DiagonalView> c(c_views_);
     if (!damped_)
       c = {};
     else if (main_damping_)
-      c = c.subspan(at(main_), 1);
+      c = c.subspan(idx(main_), 1);
     const double largest =
         series_term(stride_, k_views_, c, c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
     rows_of(next);
@@ -253,7 +253,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
-  const auto column = [&](int k) { return z_.data() + at(pad_ + k * stride_); };
+  const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
   for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
   for (int k = 0; k < 2; ++k) rows_of(column(k));
@@ -266,14 +266,14 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   const auto excess = [&](int k) {
     double largest = 0.0;
     for (std::size_t i = 0; i < 2; ++i)
-      if (sizes_[at(k)][i] > 0.0)
-        largest = std::max({largest, sizes_[at(k)][i] / (tolerance * z_scale[i]),
-                            k * sizes_[at(k)][i] / (h * tolerance * v_scale[i])});
+      if (sizes_[idx(k)][i] > 0.0)
+        largest = std::max({largest, sizes_[idx(k)][i] / (tolerance * z_scale[i]),
+                            k * sizes_[idx(k)][i] / (h * tolerance * v_scale[i])});
     return largest;
   };
   for (int k = 2; k <= kMaxDegree; ++k) {
     const Norm size = next_term(k, h);
-    sizes_[at(k)] = size;
+    sizes_[idx(k)] = size;
     for (std::size_t i = 0; i < 2; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i]);
       v_scale[i] = std::max(v_scale[i], k * size[i] / h);
@@ -300,7 +300,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
 }
 
 int TaylorSeries::energy_degree() const {
-  const auto rate = [&](int k) { return k * (sizes_[at(k)][0] + sizes_[at(k)][1]); };
+  const auto rate = [&](int k) { return k * (sizes_[idx(k)][0] + sizes_[idx(k)][1]); };
   double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
   for (int k = 2; k <= degree_; ++k) largest = std::max(largest, rate(k));
   int degree = degree_;
@@ -311,12 +311,12 @@ int TaylorSeries::energy_degree() const {
 double TaylorSeries::dissipated(double s) {
   if (undamped_) return 0.0;
   const int degree = energy_degree();
-  rates_.resize(at(degree * stride_));
-  forces_.assign(at(degree * stride_), 0.0);
+  rates_.resize(idx(degree * stride_));
+  forces_.assign(idx(degree * stride_), 0.0);
   for (int j = 1; j <= degree; ++j) {
     const double* z = coefficients(j);
-    double* rate = rates_.data() + at((j - 1) * stride_);
-    double* force = forces_.data() + at((j - 1) * stride_);
+    double* rate = rates_.data() + idx((j - 1) * stride_);
+    double* force = forces_.data() + idx((j - 1) * stride_);
     for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
     for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
     // The product reads beside the column: from the coefficients, which have room there.

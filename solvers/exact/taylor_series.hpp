@@ -18,7 +18,7 @@
 #include <array>
 
 #include "core/assembler.hpp"
-#include "solvers/exact/projection.hpp"
+#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
 
@@ -33,11 +33,11 @@ class TaylorSeries {
 
   /// K and C back to the system's own, the right side to zero; then add what the pieces add.
   void reset();
-  void add_stiffness(int slot, double value) { k_[position_[at(slot)]] += value; }
+  void add_stiffness(int slot, double value) { k_[position_[idx(slot)]] += value; }
   /// The same on the diagonal of a row.
   void add_row_stiffness(int row, double value) {
     if (row < n_)
-      add_stiffness(system_.diagonal_slots()[at(row)], value);
+      add_stiffness(system_.diagonal_slots()[idx(row)], value);
     else
       row_slopes_[row - n_] += value;
   }
@@ -48,7 +48,7 @@ class TaylorSeries {
   double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
   /// sets a higher one, up to kProjectionDegree, has written all of those above.
-  double* right_side(int k) { return p_.data() + at(k * stride_); }
+  double* right_side(int k) { return p_.data() + idx(k * stride_); }
   void set_right_degree(int degree) { right_degree_ = degree; }
 
   /// Takes the values that stand now as the largest there will be: bounds |M^-1 K| and |M^-1 C| by
@@ -66,7 +66,7 @@ class TaylorSeries {
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
   int stride() const { return stride_; }
   static int stride(const System& system) { return whole_lanes(system.size() + system.loaded_rows()); }
-  const double* coefficients(int k) const { return z_.data() + at(pad_ + k * stride_); }
+  const double* coefficients(int k) const { return z_.data() + idx(pad_ + k * stride_); }
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
@@ -83,11 +83,11 @@ class TaylorSeries {
   using Norm = std::array<double, 2>;
   const Norm& z_scale() const { return z_step_scale_; }
   const Norm& v_scale() const { return v_step_scale_; }
-  int kind(int row) const { return kinds_.empty() ? 0 : kinds_[at(row)]; }
+  int kind(int row) const { return kinds_.empty() ? 0 : kinds_[idx(row)]; }
   /// Upper estimate of the acceleration of a row by a force on it [1/(kg m^2) or 1/kg].
   double mobility(int row) const {
     if (row >= n_) return row_mobility_[row - n_];
-    return diagonal_mass_ ? inverse_mass_[at(row)] : mass_norm_;
+    return diagonal_mass_ ? inverse_mass_[idx(row)] : mass_norm_;
   }
   /// The same of the unknown that a force on a row moves most.
   double reach(int row) const { return row < n_ ? mobility(row) : row_reach_[row - n_]; }

@@ -1,6 +1,6 @@
 #pragma once
 /// Shared by the factorisations of this folder only: the one place that includes cholmod.h.
-/// Holds CHOLMOD's settings, the analysed factor and the pattern it was analysed for. Silent.
+/// Holds CHOLMOD's parameters, the analysed factor and the pattern it was analysed for. Silent.
 #include <cholmod.h>
 #include <vector>
 

@@ -19,7 +19,7 @@ using Run = LowFillPattern::Run;
 
 std::vector<int> inverse(const std::vector<int>& order) {
   std::vector<int> place(order.size());
-  for (std::size_t j = 0; j < order.size(); ++j) place[at(order[j])] = static_cast<int>(j);
+  for (std::size_t j = 0; j < order.size(); ++j) place[idx(order[j])] = static_cast<int>(j);
   return place;
 }
 
@@ -27,52 +27,52 @@ std::vector<int> inverse(const std::vector<int>& order) {
 std::vector<int> by_height(const SparseMatrix& p, const std::vector<int>& order) {
   const int n = static_cast<int>(order.size());
   const std::vector<int> place = inverse(order);
-  std::vector<int> parent(at(n), -1), ancestor(at(n), -1), height(at(n), 0);
+  std::vector<int> parent(idx(n), -1), ancestor(idx(n), -1), height(idx(n), 0);
   for (int j = 0; j < n; ++j)
-    for (int s = p.outerIndexPtr()[order[at(j)]]; s < p.outerIndexPtr()[order[at(j)] + 1]; ++s)
-      for (int i = place[at(p.innerIndexPtr()[s])]; i >= 0 && i < j;) {
-        const int next = ancestor[at(i)];
-        ancestor[at(i)] = j;
-        if (next < 0) parent[at(i)] = j;
+    for (int s = p.outerIndexPtr()[order[idx(j)]]; s < p.outerIndexPtr()[order[idx(j)] + 1]; ++s)
+      for (int i = place[idx(p.innerIndexPtr()[s])]; i >= 0 && i < j;) {
+        const int next = ancestor[idx(i)];
+        ancestor[idx(i)] = j;
+        if (next < 0) parent[idx(i)] = j;
         i = next;
       }
-  std::vector<int> first(at(n + 1), 0), sorted(at(n));
+  std::vector<int> first(idx(n + 1), 0), sorted(idx(n));
   for (int j = 0; j < n; ++j) {
-    if (parent[at(j)] >= 0) {
-      int& above = height[at(parent[at(j)])];
-      above = std::max(above, height[at(j)] + 1);
+    if (parent[idx(j)] >= 0) {
+      int& above = height[idx(parent[idx(j)])];
+      above = std::max(above, height[idx(j)] + 1);
     }
-    ++first[at(height[at(j)] + 1)];
+    ++first[idx(height[idx(j)] + 1)];
   }
-  for (int h = 0; h < n; ++h) first[at(h + 1)] += first[at(h)];
-  for (int j = 0; j < n; ++j) sorted[at(first[at(height[at(j)])]++)] = order[at(j)];
+  for (int h = 0; h < n; ++h) first[idx(h + 1)] += first[idx(h)];
+  for (int j = 0; j < n; ++j) sorted[idx(first[idx(height[idx(j)])]++)] = order[idx(j)];
   return sorted;
 }
 
 /// Columns of L; false where they fill too much.
 bool find_columns(const SparseMatrix& p, const std::vector<int>& place, LowFillPattern& s) {
   const int n = s.size;
-  std::vector<int> mark(at(n), -1), child(at(n), -1), sibling(at(n), -1);
-  s.begin.reserve(at(n + 1));
-  s.rows.reserve(at(n));
+  std::vector<int> mark(idx(n), -1), child(idx(n), -1), sibling(idx(n), -1);
+  s.begin.reserve(idx(n + 1));
+  s.rows.reserve(idx(n));
   s.begin.push_back(0);
   long products = 0;
   for (int j = 0; j < n; ++j) {
     const std::size_t start = s.rows.size();
     const auto take = [&](int i) {
-      if (i > j && mark[at(i)] != j) mark[at(i)] = j, s.rows.push_back(i);
+      if (i > j && mark[idx(i)] != j) mark[idx(i)] = j, s.rows.push_back(i);
     };
-    const int row = s.order[at(j)];
+    const int row = s.order[idx(j)];
     for (int e = p.outerIndexPtr()[row]; e < p.outerIndexPtr()[row + 1]; ++e)
-      take(place[at(p.innerIndexPtr()[e])]);
-    for (int c = child[at(j)]; c >= 0; c = sibling[at(c)])
-      for (int e = s.begin[at(c)]; e < s.begin[at(c + 1)]; ++e) take(s.rows[at(e)]);
+      take(place[idx(p.innerIndexPtr()[e])]);
+    for (int c = child[idx(j)]; c >= 0; c = sibling[idx(c)])
+      for (int e = s.begin[idx(c)]; e < s.begin[idx(c + 1)]; ++e) take(s.rows[idx(e)]);
     std::sort(s.rows.begin() + static_cast<std::ptrdiff_t>(start), s.rows.end());
     s.begin.push_back(static_cast<int>(s.rows.size()));
     if (s.rows.size() == start) continue;
     const int parent = s.rows[start];
-    sibling[at(j)] = child[at(parent)];
-    child[at(parent)] = j;
+    sibling[idx(j)] = child[idx(parent)];
+    child[idx(parent)] = j;
     const long count = static_cast<long>(s.rows.size() - start);
     products += count * (count - 1) / 2;
     if (products > kSmall && products > kProducts * n) return false;
@@ -81,29 +81,30 @@ bool find_columns(const SparseMatrix& p, const std::vector<int>& place, LowFillP
 }
 
 void find_slots(const SparseMatrix& p, const std::vector<int>& place, LowFillPattern& s) {
-  s.diagonal.assign(at(s.size), -1);
+  s.diagonal.assign(idx(s.size), -1);
   s.slot.assign(s.rows.size(), -1);
   const auto entry = [&](int row, int column) {
-    const auto first = s.rows.begin() + s.begin[at(column)], last = s.rows.begin() + s.begin[at(column + 1)];
+    const auto first = s.rows.begin() + s.begin[idx(column)],
+               last = s.rows.begin() + s.begin[idx(column + 1)];
     return static_cast<std::size_t>(std::lower_bound(first, last, row) - s.rows.begin());
   };
   for (int j = 0; j < s.size; ++j) {
-    const int row = s.order[at(j)];
+    const int row = s.order[idx(j)];
     for (int e = p.outerIndexPtr()[row]; e < p.outerIndexPtr()[row + 1]; ++e) {
-      const int i = place[at(p.innerIndexPtr()[e])];
-      if (i == j) s.diagonal[at(j)] = e;
+      const int i = place[idx(p.innerIndexPtr()[e])];
+      if (i == j) s.diagonal[idx(j)] = e;
       if (i > j) s.slot[entry(i, j)] = e;
     }
-    for (int a = s.begin[at(j)]; a < s.begin[at(j + 1)]; ++a)
-      for (int b = a + 1; b < s.begin[at(j + 1)]; ++b)
-        s.target.push_back(static_cast<int>(entry(s.rows[at(b)], s.rows[at(a)])));
+    for (int a = s.begin[idx(j)]; a < s.begin[idx(j + 1)]; ++a)
+      for (int b = a + 1; b < s.begin[idx(j + 1)]; ++b)
+        s.target.push_back(static_cast<int>(entry(s.rows[idx(b)], s.rows[idx(a)])));
   }
 }
 
 void find_runs(LowFillPattern& s) {
   const auto stride = [&](int j) {
-    const int count = s.begin[at(j + 1)] - s.begin[at(j)];
-    const int step = count == 1 ? s.rows[at(s.begin[at(j)])] - j : 0;
+    const int count = s.begin[idx(j + 1)] - s.begin[idx(j)];
+    const int step = count == 1 ? s.rows[idx(s.begin[idx(j)])] - j : 0;
     return step <= 2 ? step : 0;
   };
   int target = 0;
@@ -115,9 +116,9 @@ void find_runs(LowFillPattern& s) {
       s.runs.push_back({begin, end, step, target, end});
     int& reach = s.runs.back().reach;
     for (int j = begin; j < end; ++j) {
-      const int count = s.begin[at(j + 1)] - s.begin[at(j)];
+      const int count = s.begin[idx(j + 1)] - s.begin[idx(j)];
       target += count * (count - 1) / 2;
-      if (count > 0) reach = std::max(reach, s.rows[at(s.begin[at(j + 1)] - 1)] + 1);
+      if (count > 0) reach = std::max(reach, s.rows[idx(s.begin[idx(j + 1)] - 1)] + 1);
     }
     reach = std::max(reach, end);
   };
@@ -132,20 +133,20 @@ void find_runs(LowFillPattern& s) {
 /// A forest from its leaves inwards; empty where the pattern has a loop.
 std::vector<int> from_leaves(const SparseMatrix& p) {
   const int n = static_cast<int>(p.rows());
-  std::vector<int> degree(at(n)), order;
-  std::vector<bool> done(at(n), false);
-  order.reserve(at(n));
+  std::vector<int> degree(idx(n)), order;
+  std::vector<bool> done(idx(n), false);
+  order.reserve(idx(n));
   const auto neighbours = [&](int i, auto&& visit) {
     for (int s = p.outerIndexPtr()[i]; s < p.outerIndexPtr()[i + 1]; ++s)
       if (p.innerIndexPtr()[s] != i) visit(p.innerIndexPtr()[s]);
   };
   for (int i = 0; i < n; ++i) {
-    neighbours(i, [&](int) { ++degree[at(i)]; });
-    if (degree[at(i)] <= 1) order.push_back(i), done[at(i)] = true;
+    neighbours(i, [&](int) { ++degree[idx(i)]; });
+    if (degree[idx(i)] <= 1) order.push_back(i), done[idx(i)] = true;
   }
   for (std::size_t next = 0; next < order.size(); ++next)
     neighbours(order[next], [&](int i) {
-      if (!done[at(i)] && --degree[at(i)] <= 1) order.push_back(i), done[at(i)] = true;
+      if (!done[idx(i)] && --degree[idx(i)] <= 1) order.push_back(i), done[idx(i)] = true;
     });
   if (static_cast<int>(order.size()) < n) order.clear();
   return order;
@@ -333,7 +334,7 @@ bool LowFillFactor::factorize(const Vector& values, bool definite) {
   ratio_ = 1.0;
   worst_ = -1;
   for (int j = 0; j < s.size; ++j) {
-    const double lost = d_[j] * values[s.diagonal[at(j)]];  // A_jj / D_jj
+    const double lost = d_[j] * values[s.diagonal[idx(j)]];  // A_jj / D_jj
     if (!(ratio_ * lost <= 1.0)) ratio_ = 1.0 / lost, worst_ = j;
   }
   return true;
@@ -347,7 +348,8 @@ void LowFillFactor::solve(const Vector& b, Vector& x) {
                d_.data(),      l_.data(),      y_.data()};
   int taken = 0;  // not further ahead than needed: it is still in the cache then
   for (const Run& run : s.runs) {
-    if (run.reach > taken) gather(b.data(), s.order.data() + taken, at(run.reach - taken), y_.data() + taken);
+    if (run.reach > taken)
+      gather(b.data(), s.order.data() + taken, idx(run.reach - taken), y_.data() + taken);
     taken = std::max(taken, run.reach);
     solve_down(v, run);
   }
@@ -371,7 +373,7 @@ void LowFillFactor::weigh(const Vector& weight) {
   for (int j = 0; j < s.size; ++j) {
     const double w = weight[j];
     d_[j] /= w * w;
-    for (int e = s.begin[at(j)]; e < s.begin[at(j + 1)]; ++e) l_[e] *= weight[s.rows[at(e)]] / w;
+    for (int e = s.begin[idx(j)]; e < s.begin[idx(j + 1)]; ++e) l_[e] *= weight[s.rows[idx(e)]] / w;
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// P A P' = L D L' of a symmetric matrix that hardly fills, in flat arrays in the order of elimination.
-/// Internal to sparse_cholesky.cpp and inertia_count.cpp; what fills more is CHOLMOD's.
+/// Internal to sparse_cholesky.cpp and sturm_count.cpp; what fills more is CHOLMOD's.
 ///
 /// Order: a forest is eliminated from its leaves inwards, without any fill; a chain thus from both ends,
 /// which gives two recurrences that do not wait for each other. Patterns with loops take CHOLMOD's order

@@ -88,7 +88,7 @@ FactorStatus SparseCholesky::Impl::factorize(const SparseMatrix& pattern, const 
     return FactorStatus::pattern_changed;
   if (!values.allFinite()) return FactorStatus::not_finite;
   if (flat->factorize(values, true)) return FactorStatus::success;
-  failed_column = flat->pattern().order[at(flat->failed_place())];
+  failed_column = flat->pattern().order[idx(flat->failed_place())];
   return std::isnan(flat->failed_pivot()) ? FactorStatus::not_finite : FactorStatus::not_positive_definite;
 }
 
@@ -116,7 +116,7 @@ void SparseCholesky::Impl::check_pivots(const SparseMatrix& pattern, const Vecto
   }
   if (flat) {
     pivot_ratio = flat->pivot_ratio();
-    return judge_pivots(flat->worst_place() < 0 ? -1 : flat->pattern().order[at(flat->worst_place())]);
+    return judge_pivots(flat->worst_place() < 0 ? -1 : flat->pattern().order[idx(flat->worst_place())]);
   }
   const int n = cholmod->size();
   int worst = -1;

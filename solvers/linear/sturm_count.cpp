@@ -17,9 +17,9 @@ struct InertiaCounter::Impl {
   std::optional<LowFillFactor> flat;
   std::unique_ptr<CholmodFactor> cholmod;  // where the factor fills too much for flat arrays
 
-  void note(int row, double s, double sum, InertiaCount& count) const;
-  void count_flat(double s, InertiaCount& count);
-  void count_cholmod(double s, InertiaCount& count);
+  void note(int row, double s, double sum, SturmCount& count) const;
+  void count_flat(double s, SturmCount& count);
+  void count_cholmod(double s, SturmCount& count);
 };
 
 InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffness, const Vector& mass,
@@ -40,7 +40,7 @@ InertiaCounter::InertiaCounter(const SparseMatrix& pattern, const Vector& stiffn
 InertiaCounter::~InertiaCounter() = default;
 
 /// Takes the growth of the factor in one row.
-void InertiaCounter::Impl::note(int row, double s, double sum, InertiaCount& count) const {
+void InertiaCounter::Impl::note(int row, double s, double sum, SturmCount& count) const {
   double scale = 0.0;
   for (int e = pattern.outerIndexPtr()[row]; e < pattern.outerIndexPtr()[row + 1]; ++e)
     if (pattern.innerIndexPtr()[e] == row) scale = std::abs(stiffness[e]) + std::abs(s * mass[e]);
@@ -48,7 +48,7 @@ void InertiaCounter::Impl::note(int row, double s, double sum, InertiaCount& cou
   if (!(growth <= count.growth)) count.growth = growth;
 }
 
-void InertiaCounter::Impl::count_flat(double s, InertiaCount& count) {
+void InertiaCounter::Impl::count_flat(double s, SturmCount& count) {
   if (!flat->factorize(values, false)) {  // a pivot that is exactly zero
     count.growth = INFINITY;
     return;
@@ -59,13 +59,13 @@ void InertiaCounter::Impl::count_flat(double s, InertiaCount& count) {
     const double d = 1.0 / flat->inverse_pivots()[j];
     if (d < 0.0) ++count.below;
     row_sum[j] += std::abs(d);
-    for (int e = p.begin[at(j)]; e < p.begin[at(j + 1)]; ++e)
-      row_sum[p.rows[at(e)]] += flat->entries()[e] * flat->entries()[e] * std::abs(d);
+    for (int e = p.begin[idx(j)]; e < p.begin[idx(j + 1)]; ++e)
+      row_sum[p.rows[idx(e)]] += flat->entries()[e] * flat->entries()[e] * std::abs(d);
   }
-  for (int j = 0; j < p.size; ++j) note(p.order[at(j)], s, row_sum[j], count);
+  for (int j = 0; j < p.size; ++j) note(p.order[idx(j)], s, row_sum[j], count);
 }
 
-void InertiaCounter::Impl::count_cholmod(double s, InertiaCount& count) {
+void InertiaCounter::Impl::count_cholmod(double s, SturmCount& count) {
   const FactorStatus status = cholmod->factorize(pattern, values);
   if (status == FactorStatus::not_positive_definite) {  // a pivot that is exactly zero
     count.growth = INFINITY;
@@ -89,14 +89,14 @@ void InertiaCounter::Impl::count_cholmod(double s, InertiaCount& count) {
   for (int j = 0; j < n; ++j) note(cholmod->row(j), s, row_sum[j], count);
 }
 
-InertiaCount InertiaCounter::count_below(double s) {
+SturmCount InertiaCounter::count_below(double s) {
   constexpr double kLargestGrowth = 1e6;
   Impl& m = *impl_;
   m.values = m.stiffness - s * m.mass;
   if (!m.values.allFinite())
     throw SolverError("Sturm count at s = " + std::to_string(s) +
                       " (rad/s)^2: " + to_text(FactorStatus::not_finite));
-  InertiaCount count;
+  SturmCount count;
   if (m.flat)
     m.count_flat(s, count);
   else

@@ -18,7 +18,7 @@ namespace drev {
 
 struct LowFillPattern;
 
-struct InertiaCount {
+struct SturmCount {
   bool trusted = false;  ///< false: do not use below; take another s
   int below = 0;         ///< eigenvalues < s
   /// max_i (|L| |D| |L'|)_ii / (|K| + |s| M)_ii: how much larger than the matrix its factor became.
@@ -38,7 +38,7 @@ class InertiaCounter {
 
   /// s in (rad/s)^2. A zero pivot is not trusted; throws SolverError where values are not finite or
   /// memory is out.
-  InertiaCount count_below(double s);
+  SturmCount count_below(double s);
 
  private:
   struct Impl;

@@ -47,7 +47,7 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
   const int lworkl = ncv * (ncv + 8);
   Vector residual = shift_invert_start(n, problem.start), mass_times(n);
   Eigen::MatrixXd basis(n, ncv);
-  std::vector<double> workd(at(3 * n)), workl(at(lworkl));
+  std::vector<double> workd(idx(3 * n)), workl(idx(lworkl));
   a_int iparam[11] = {1, 0, problem.max_iterations, 1, 0, 0, 3, 0, 0, 0, 0};
   a_int ipntr[11] = {};
   a_int ido = 0, info = 1;  // info = 1: residual holds the start vector
@@ -82,7 +82,7 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
 
   Vector lambda(k);
   Eigen::MatrixXd vectors(n, k);
-  std::vector<a_int> select(at(ncv));
+  std::vector<a_int> select(idx(ncv));
   dseupd_c(1, "A", select.data(), lambda.data(), vectors.data(), n, problem.sigma, "G", n, "LM", k, 0.0,
            residual.data(), ncv, basis.data(), n, iparam, ipntr, workd.data(), workl.data(), lworkl, &info);
   if (info != 0) {
@@ -90,7 +90,7 @@ ShiftInvertResult arpack_shift_invert(const ShiftInvertProblem& problem) {
     result.reason = "dseupd: info = " + std::to_string(info);
     return result;
   }
-  std::vector<int> order(at(k));
+  std::vector<int> order(idx(k));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int a, int b) { return lambda[a] < lambda[b]; });
   result.lambda = lambda(order);

@@ -153,7 +153,7 @@ DREV_WIDEST void subtract(const double* q, int n, int count, const double* h, do
 /// The first columns of Q become those of Q S, strip by strip: Q is read from memory once. S: count x outs.
 DREV_WIDEST void combine(double* q, int n, int count, const double* s, int outs) {
   const std::ptrdiff_t next = n;
-  std::vector<double> strip(at(outs) * at(kShortStrip));
+  std::vector<double> strip(idx(outs) * idx(kShortStrip));
   for (int start = 0; start < n; start += kShortStrip) {
     const int rows = std::min(kShortStrip, n - start);
     for (int o = 0; o < outs; ++o) {
@@ -207,9 +207,9 @@ struct ShiftInvertLanczos::Impl {
         n_(problem.size),
         most_(std::min(n_, problem.basis > 0 ? problem.basis : 3 * problem.count + 40)),
         q_(n_, most_ + 1),
-        h_(at(2 * most_)),
-        omega_(at(most_ + 1), kEpsilon),
-        omega_old_(at(most_ + 1), kEpsilon) {
+        h_(idx(2 * most_)),
+        omega_(idx(most_ + 1), kEpsilon),
+        omega_old_(idx(most_ + 1), kEpsilon) {
     prefer_huge_pages(q_);
     if (problem.mass) mq_.resize(n_), mw_.resize(n_);
     q_.col(0) = shift_invert_start(n_, problem.start);
@@ -304,7 +304,7 @@ struct ShiftInvertLanczos::Impl {
     for (int pass = 0; pass < 2; ++pass) {
       norm();
       project(q_.data(), n_, columns_, mw(), mw(), h_.data());
-      for (int i = 0; i < columns_; ++i) subtract_and_project(h_[at(2 * i)], column(i), w(), n_, w());
+      for (int i = 0; i < columns_; ++i) subtract_and_project(h_[idx(2 * i)], column(i), w(), n_, w());
     }
     next_norm_ = norm();
     std::fill_n(omega_.begin(), columns_, kEpsilon);
@@ -315,17 +315,17 @@ struct ShiftInvertLanczos::Impl {
     std::vector<double> next(omega_.size(), kEpsilon);
     bool lost = false;
     for (int k = 0; k < j; ++k) {
-      const double before = k > 0 ? beta_[at(k - 1)] * omega_[at(k - 1)] : 0.0;
-      double sum = beta_[at(k)] * omega_[at(k + 1)] + (alpha_[at(k)] - alpha_[at(j)]) * omega_[at(k)] +
-                   before - (j > 0 ? beta_[at(j - 1)] * omega_old_[at(k)] : 0.0);
+      const double before = k > 0 ? beta_[idx(k - 1)] * omega_[idx(k - 1)] : 0.0;
+      double sum = beta_[idx(k)] * omega_[idx(k + 1)] + (alpha_[idx(k)] - alpha_[idx(j)]) * omega_[idx(k)] +
+                   before - (j > 0 ? beta_[idx(j - 1)] * omega_old_[idx(k)] : 0.0);
       sum = (sum + std::copysign(2.0 * kEpsilon * largest_, sum)) / beta;
-      next[at(k)] = sum;
+      next[idx(k)] = sum;
       lost = lost || !(std::abs(sum) < std::sqrt(kEpsilon));
     }
     omega_old_ = omega_;
     omega_ = std::move(next);
-    omega_[at(j + 1)] = 1.0;
-    omega_old_[at(j)] = 1.0;
+    omega_[idx(j + 1)] = 1.0;
+    omega_old_[idx(j)] = 1.0;
     return lost;
   }
 
@@ -348,7 +348,7 @@ struct ShiftInvertLanczos::Impl {
     theta_ = d_;
     Vector e = e_;
     if (!tridiagonal_eigen(theta_, e, z)) return false;
-    std::vector<int> order(at(columns_));
+    std::vector<int> order(idx(columns_));
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [this](int a, int b) { return theta_[a] > theta_[b]; });
     theta_ = Vector(theta_(order));

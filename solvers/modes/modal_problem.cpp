@@ -65,7 +65,7 @@ void products(const double* x, const double* y, int n, int count, double* g) {
 DREV_WIDEST void arrange(const double* x, int n, int count, const double* c, const int* place,
                          const double* weight, double* out) {
   const std::ptrdiff_t next = n;
-  std::vector<double> strip(at(count + 1) * at(kShortStrip));
+  std::vector<double> strip(idx(count + 1) * idx(kShortStrip));
   double* w = strip.data() + count * kShortStrip;
   for (int start = 0; start < n; start += kShortStrip) {
     const int rows = std::min(kShortStrip, n - start);
@@ -105,10 +105,10 @@ ModalProblem::ModalProblem(const System& system, Contact contact, ModesSummary& 
   const auto low_fill = shifted_.low_fill();
   if (!low_fill || !system.mass_is_diagonal()) return;
   weight_.resize(system.size());
-  place_.resize(at(system.size()));
+  place_.resize(idx(system.size()));
   for (int j = 0; j < system.size(); ++j) {
-    place_[at(low_fill->order[at(j)])] = j;
-    weight_[j] = 1.0 / std::sqrt(mass_[low_fill->diagonal[at(j)]]);
+    place_[idx(low_fill->order[idx(j)])] = j;
+    weight_[j] = 1.0 / std::sqrt(mass_[low_fill->diagonal[idx(j)]]);
   }
 }
 
@@ -277,12 +277,12 @@ void ModalProblem::refine(ModalPairs& pairs) const {
   struct Sums {
     double xmx = 0.0, xkx = 0.0, size = 0.0;
   };
-  std::vector<Sums> sums(at(n));
+  std::vector<Sums> sums(idx(n));
   for (int start = 0; start < p.rows(); start += kStrip) {
     const int end = std::min(start + kStrip, static_cast<int>(p.rows()));
     for (int j = 0; j < n; ++j) {
       const double* x = &pairs.vectors(0, j);
-      Sums& sum = sums[at(j)];
+      Sums& sum = sums[idx(j)];
       for (int row = start; row < end; ++row) {
         double mx = 0.0, kx = 0.0, k_size = 0.0;
         for (int s = outer[row]; s < outer[row + 1]; ++s) {
@@ -297,11 +297,11 @@ void ModalProblem::refine(ModalPairs& pairs) const {
       }
     }
   }
-  pairs.rigid.resize(at(n));
+  pairs.rigid.resize(idx(n));
   for (int j = 0; j < n; ++j) {
-    const auto& [xmx, xkx, size] = sums[at(j)];
+    const auto& [xmx, xkx, size] = sums[idx(j)];
     if (!(std::abs(xmx - 1.0) < kNormalised)) pairs.vectors.col(j) /= std::sqrt(xmx);
-    pairs.rigid[at(j)] = std::abs(xkx) <= kRounding * size;
+    pairs.rigid[idx(j)] = std::abs(xkx) <= kRounding * size;
     const double distance = pairs.lambda[j] - summary_.shift;
     if (distance * distance > -summary_.shift * lambda_max_) pairs.lambda[j] = xkx / xmx;
   }
@@ -310,14 +310,14 @@ void ModalProblem::refine(ModalPairs& pairs) const {
     for (int i = j; i > 0 && pairs.lambda[i] < pairs.lambda[i - 1]; --i) {
       std::swap(pairs.lambda[i], pairs.lambda[i - 1]);
       pairs.vectors.col(i).swap(pairs.vectors.col(i - 1));
-      pairs.rigid.swap(pairs.rigid[at(i)], pairs.rigid[at(i - 1)]);
+      pairs.rigid.swap(pairs.rigid[idx(i)], pairs.rigid[idx(i - 1)]);
     }
 }
 
 double ModalProblem::largest_residual(const ModalPairs& pairs, int first, int count) const {
   const SparseMatrix& p = system_.pattern();
   const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
-  std::vector<double> largest(at(count), 0.0), scale(at(count), 0.0);
+  std::vector<double> largest(idx(count), 0.0), scale(idx(count), 0.0);
   for (int start = 0; start < p.rows(); start += kStrip) {
     const int end = std::min(start + kStrip, static_cast<int>(p.rows()));
     for (int j = 0; j < count; ++j) {
@@ -329,13 +329,13 @@ double ModalProblem::largest_residual(const ModalPairs& pairs, int first, int co
           sum += kx - mx;
           size += std::abs(kx) + std::abs(mx);
         }
-        largest[at(j)] = std::max(largest[at(j)], std::abs(sum));
-        scale[at(j)] = std::max(scale[at(j)], size);
+        largest[idx(j)] = std::max(largest[idx(j)], std::abs(sum));
+        scale[idx(j)] = std::max(scale[idx(j)], size);
       }
     }
   }
   double worst = 0.0;
-  for (int j = 0; j < count; ++j) worst = std::max(worst, largest[at(j)] / scale[at(j)]);
+  for (int j = 0; j < count; ++j) worst = std::max(worst, largest[idx(j)] / scale[idx(j)]);
   return worst;
 }
 

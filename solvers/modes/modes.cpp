@@ -38,7 +38,7 @@ void check_rigid(const System& system, Contact contact, const ModalProblem& prob
   const int expected = static_cast<int>(parts.size());
   int found = 0;
   for (int j = 0; j < pairs.count(); ++j) {
-    if (pairs.rigid[at(j)])
+    if (pairs.rigid[idx(j)])
       ++found;
     else if (pairs.lambda[j] < 0.0)
       throw SolverError("modes of " + system.name() + ": omega^2 = " + to_text(pairs.lambda[j]) +
@@ -48,13 +48,14 @@ void check_rigid(const System& system, Contact contact, const ModalProblem& prob
   if (found == expected) return;
   std::string names;
   for (const std::string& part : parts) names += (names.empty() ? "" : ", ") + part;
-  throw SolverError("modes of " + system.name() + ": " + std::to_string(found) +
-                    " modes store no elastic energy, but the model has " + std::to_string(expected) +
-                    " parts free to turn" + (names.empty() ? "" : " (with node " + names + ")") +
-                    (found > expected
-                         ? ": an element that should connect has stiffness 0 in this contact state, "
-                           "or one too small beside the others"
-                         : ": an element ties a part to ground without saying so in its closures"));
+  throw SolverError(
+      "modes of " + system.name() + ": " + std::to_string(found) +
+      " modes store no elastic energy, but the model has " + std::to_string(expected) +
+      " parts free to turn" + (names.empty() ? "" : " (with node " + names + ")") +
+      (found > expected
+           ? ": an element that should connect has stiffness 0 in this contact state, "
+             "or one too small beside the others"
+           : ": an element ties a part to ground without saying so in its speed_ratio_constraints"));
 }
 
 /// First index beyond the modes [0, total) that lies above the one before it by more than `apart`,
@@ -71,7 +72,7 @@ std::optional<int> sturm_surplus(ModalProblem& problem, const Vector& lambda, in
                                  ModesSummary& summary) {
   for (const double fraction : {0.5, 0.382, 0.618, 0.236, 0.764}) {
     const double s = lambda[cut - 1] + fraction * (lambda[cut] - lambda[cut - 1]);
-    const InertiaCount count = problem.sturm().count_below(s);
+    const SturmCount count = problem.sturm().count_below(s);
     ++summary.factorizations;
     if (!count.trusted) continue;
     summary.sturm_point = s;
@@ -123,7 +124,7 @@ std::string ModesSummary::brief() const {
          ", " + std::to_string(solves) + " solves";
 }
 
-double ModeSet::omega(int mode) const { return hz(frequency_Hz[at(mode)]); }
+double ModeSet::omega(int mode) const { return hz(frequency_Hz[idx(mode)]); }
 
 ModeSet solve_modes(const System& system, const ModesOptions& options) {
   const int n = system.size();
@@ -169,7 +170,7 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
     ++summary.widened;
     int more = surplus + 1;
     if (cut < 0) {  // copies of the last mode, or its cluster, up to the end: how many says the count
-      const InertiaCount count =
+      const SturmCount count =
           problem.sturm().count_below(pairs.lambda[pairs.count() - 1] * (1.0 + kClusterEnd));
       ++summary.factorizations;
       more = std::max(count.trusted ? count.below + 1 - ask : 0, 1 + ask / 4);

@@ -50,7 +50,7 @@ HarmonicBalance::HarmonicBalance(const System& system, double period)
   assembler_.contact_values({0.0, 1.0, 0.0}, Contact::closed, closed_c_);
   scale_.resize(2 * system.size());
   for (int i = 0; i < system.size(); ++i) {
-    const int s = system.diagonal_slots()[at(i)];
+    const int s = system.diagonal_slots()[idx(i)];
     scale_[2 * i] = scale_[2 * i + 1] = std::abs(closed_k_[s]) + w_ * w_ * system.mass_values()[s];
   }
   std::set<int> varying;
@@ -82,16 +82,16 @@ HarmonicBalance::Samples HarmonicBalance::motion(const Harmonics& z, int derivat
   Samples all(z.rows(), samples);
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<Complex> lines(at(samples / 2 + 1)), factors;
+  std::vector<Complex> lines(idx(samples / 2 + 1)), factors;
   for (Eigen::Index n = 0; n < z.cols(); ++n)
     factors.push_back((n == 0 ? 1.0 : 0.5) * samples *
                       std::pow(Complex(0.0, w_ * static_cast<double>(n)), derivative));
-  std::vector<double> values(at(samples));
+  std::vector<double> values(idx(samples));
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
     for (std::size_t n = 0; n < factors.size(); ++n)
       lines[n] = z(i, static_cast<Eigen::Index>(n)) * factors[n];
     fft.inv(values, lines, samples);
-    for (int s = 0; s < samples; ++s) all(i, s) = values[at(s)];
+    for (int s = 0; s < samples; ++s) all(i, s) = values[idx(s)];
   }
   return all;
 }
@@ -102,11 +102,11 @@ HarmonicBalance::Harmonics HarmonicBalance::to_harmonics(const Samples& samples,
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<Complex> lines;
-  std::vector<double> values(at(count));
+  std::vector<double> values(idx(count));
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-    for (int s = 0; s < count; ++s) values[at(s)] = samples(i, s);
+    for (int s = 0; s < count; ++s) values[idx(s)] = samples(i, s);
     fft.fwd(lines, values);
-    for (int n = 0; n <= harmonics; ++n) all(i, n) = lines[at(n)] * ((n == 0 ? 1.0 : 2.0) / count);
+    for (int n = 0; n <= harmonics; ++n) all(i, n) = lines[idx(n)] * ((n == 0 ? 1.0 : 2.0) / count);
   }
   return all;
 }
@@ -125,7 +125,7 @@ HarmonicBalance::Samples HarmonicBalance::forces(const Samples& q, const Samples
     } else {
       assembler_.external_of_motions(p);
       for (const int l : loads_.others()) {
-        const LoadTerm& term = system_.loads()[at(l)];
+        const LoadTerm& term = system_.loads()[idx(l)];
         assembler_.add_torque(system_.node_map(term.node), assembler_.load(term, q_s, v_s).torque, p);
       }
     }
@@ -283,8 +283,8 @@ bool HarmonicBalance::direction(const Harmonics& right, int samples, Harmonics& 
     Harmonics next;
     if (!apply(basis.back(), samples, next)) return false;
     for (int j = 0; j < m; ++j) {
-      h(j, m - 1) = inner(basis[at(j)], next);
-      next -= h(j, m - 1) * basis[at(j)];
+      h(j, m - 1) = inner(basis[idx(j)], next);
+      next -= h(j, m - 1) * basis[idx(j)];
     }
     h(m, m - 1) = size(next);
     Vector right_side = Vector::Zero(m + 1);

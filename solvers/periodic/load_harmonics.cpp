@@ -73,7 +73,7 @@ LoadHarmonics::LoadHarmonics(const System& system) : system_(system) {
 
 void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q, const Eigen::MatrixXd& v,
                             Eigen::MatrixXd& mu) const {
-  const LoadTerm& term = system_.loads()[at(load)];
+  const LoadTerm& term = system_.loads()[idx(load)];
   const auto cells = static_cast<int>(q.cols());
   const double dt = kTwoPi / (w * cells), ratio = system_.ratio(term.node);
   const bool follows = term.load->depends_on_motion();
@@ -82,7 +82,7 @@ void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q, const 
     const int k = s % cells;
     MotionPoint theta{ratio * phi.value, ratio * phi.rate, 0.0};
     if (follows)
-      for (const Entry& e : rows_[at(load)]) {
+      for (const Entry& e : rows_[idx(load)]) {
         theta.value += e.coeff * q(e.index, k);
         theta.rate += e.coeff * v(e.index, k);
       }
@@ -147,7 +147,7 @@ void LoadHarmonics::add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixX
       const std::vector<double> of_m(mu.row(m).begin(), mu.row(m).end());
       fft.fwd(lines, of_m);
       for (Eigen::Index n = 0; n < out.cols(); ++n)
-        for (const Entry& e : rows_[at(l)])
+        for (const Entry& e : rows_[idx(l)])
           out(e.index, n) += e.coeff * weights(n, m) * lines[static_cast<std::size_t>(n)];
     }
   }

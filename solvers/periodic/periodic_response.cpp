@@ -120,7 +120,7 @@ std::string refusal(const System& system) {
     return "a part of the model floats freely (with " + floating.front() + ")";
   for (const GeneralTerm& term : system.generals())
     if (term.force->history_size() > 0)
-      return system.placements()[at(index(term.element))].name + " has a history, which is unknown";
+      return system.element_instances()[idx(index(term.element))].name + " has a history, which is unknown";
   return {};
 }
 

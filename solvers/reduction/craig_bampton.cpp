@@ -23,12 +23,12 @@ constexpr double kLanczosTolerance = 1e-14;
 
 SparseMatrix part(const SparseMatrix& pattern, const Vector& values, const std::vector<int>& rows,
                   const std::vector<int>& columns) {
-  std::vector<int> place(at(static_cast<int>(pattern.rows())), -1);
-  for (std::size_t i = 0; i < rows.size(); ++i) place[at(rows[i])] = static_cast<int>(i);
+  std::vector<int> place(idx(static_cast<int>(pattern.rows())), -1);
+  for (std::size_t i = 0; i < rows.size(); ++i) place[idx(rows[i])] = static_cast<int>(i);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t j = 0; j < columns.size(); ++j)
     for (int s = pattern.outerIndexPtr()[columns[j]]; s < pattern.outerIndexPtr()[columns[j] + 1]; ++s)
-      if (const int i = place[at(pattern.innerIndexPtr()[s])]; i >= 0)
+      if (const int i = place[idx(pattern.innerIndexPtr()[s])]; i >= 0)
         entries.emplace_back(i, static_cast<int>(j), values[s]);
   SparseMatrix m(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
   m.setFromTriplets(entries.begin(), entries.end());
@@ -54,7 +54,7 @@ std::vector<int> nodes_to_keep(const System& system, const std::vector<std::stri
   return {kept.begin(), kept.end()};
 }
 
-FixedInterface::FixedInterface(const System& system, std::vector<int> kept)
+CraigBampton::CraigBampton(const System& system, std::vector<int> kept)
     : system_(system), kept_(std::move(kept)) {
   for (int i = 0; i < system.size(); ++i)
     if (!std::binary_search(kept_.begin(), kept_.end(), i)) inside_.push_back(i);
@@ -64,7 +64,7 @@ FixedInterface::FixedInterface(const System& system, std::vector<int> kept)
   boundary_stiffness_ = part(p, system.stiffness_values(), inside_, kept_);
 }
 
-Matrix FixedInterface::basis(int modes, double up_to_Hz) {
+Matrix CraigBampton::basis(int modes, double up_to_Hz) {
   const auto b = static_cast<Eigen::Index>(kept_.size());
   const int n = static_cast<int>(inside_.size());
   Matrix inner(n, b);
@@ -72,7 +72,7 @@ Matrix FixedInterface::basis(int modes, double up_to_Hz) {
     if (factor_.factorize(stiffness_, values_of(stiffness_)) != FactorStatus::success) {
       const int column = factor_.failed_column();
       throw SolverError("reduction of " + system_.name() + ": the part with node " +
-                        system_.unknown_name(inside_[at(std::max(column, 0))]) +
+                        system_.unknown_name(inside_[idx(std::max(column, 0))]) +
                         " hangs on no kept node: keep one of its nodes");
     }
     Vector x;
@@ -100,7 +100,7 @@ Matrix FixedInterface::basis(int modes, double up_to_Hz) {
   return basis;
 }
 
-void FixedInterface::find_modes(int count) {
+void CraigBampton::find_modes(int count) {
   const int n = static_cast<int>(inside_.size());
   if (n > kDense && 2 * count + 1 < n) {
     ShiftInvertProblem problem;
@@ -120,7 +120,7 @@ void FixedInterface::find_modes(int count) {
       // No copy of a frequency is missing where the Sturm count agrees.
       const double point = found.lambda[count - 1] * (1.0 - 1e-6);
       const Vector k = values_of(stiffness_), m = values_of(mass_);
-      const InertiaCount below = InertiaCounter(stiffness_, k, m).count_below(point);
+      const SturmCount below = InertiaCounter(stiffness_, k, m).count_below(point);
       const auto expected = (found.lambda.array() < point).count();
       if (below.trusted && below.below == expected) {
         lambda_ = std::move(found.lambda);

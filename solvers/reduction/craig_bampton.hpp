@@ -9,10 +9,10 @@ namespace drev {
 /// Unknowns of the named nodes and of those of laws, their phases and general elements, ascending.
 std::vector<int> nodes_to_keep(const System& system, const std::vector<std::string>& names);
 
-class FixedInterface {
+class CraigBampton {
  public:
   /// Throws SolverError where a part hangs on no kept unknown.
-  FixedInterface(const System& system, std::vector<int> kept);
+  CraigBampton(const System& system, std::vector<int> kept);
 
   /// Kept unknowns first. modes: with them held, or where 0 those up to a frequency.
   Eigen::MatrixXd basis(int modes, double up_to_Hz);

@@ -47,13 +47,13 @@ Reduction modal(const System& system, const ReductionOptions& o) {
   Matrix basis = kept.vectors;
   Reduction r{.system = system, .modes = kept.elastic, .first_left_out_Hz = kept.first_left_out_Hz};
   if (o.static_correction && kept.elastic < elastic) {
-    const StaticShapes shapes = static_shapes(system, kept, o.static_accuracy);
+    const ResidualVectors shapes = residual_vectors(system, kept, o.static_accuracy);
     r.static_error = shapes.error;
     r.static_shapes = static_cast<int>(shapes.columns.cols());
     basis.conservativeResize(Eigen::NoChange, basis.cols() + shapes.columns.cols());
     basis.rightCols(shapes.columns.cols()) = shapes.columns;
   }
-  r.system = project(system, basis);
+  r.system = ritz_projection(system, basis);
   r.basis = std::move(basis);
   std::ostringstream text;
   text << r.modes << " of " << elastic << " modes";
@@ -66,13 +66,13 @@ Reduction modal(const System& system, const ReductionOptions& o) {
 }
 
 Reduction craig_bampton(const System& system, const ReductionOptions& o) {
-  FixedInterface fixed(system, nodes_to_keep(system, o.keep));
+  CraigBampton fixed(system, nodes_to_keep(system, o.keep));
   Reduction r{.system = system};
   r.basis = fixed.basis(o.modes, o.up_to_Hz);
   r.modes = fixed.modes();
   r.static_shapes = fixed.boundary();
   r.first_left_out_Hz = fixed.first_left_out_Hz();
-  r.system = project(system, r.basis);
+  r.system = ritz_projection(system, r.basis);
   std::ostringstream text;
   text << r.static_shapes << " unknowns kept and " << r.modes << " modes with them held";
   if (r.system.size() < system.size())

@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "core/projected_system.hpp"
+#include "core/ritz_projection.hpp"
 
 namespace drev {
 
@@ -50,7 +50,7 @@ struct Reduction {
   std::string what = {};           ///< one sentence for a summary, without full stop
 };
 
-/// Throws ModelError for options out of range and for what project() refuses, SolverError as solve_modes()
+/// Throws ModelError for options out of range and for what ritz_projection() refuses, SolverError as solve_modes()
 /// does and where a part hangs on no kept node.
 Reduction reduce(const System& system, const ReductionOptions& options);
 

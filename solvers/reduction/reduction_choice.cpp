@@ -42,7 +42,7 @@ class Predictor {
     Eigen::FFT<double> fft;
     std::vector<double> samples(kSamples);
     for (Eigen::Index j = 0; loads.cols() > 0 && j < loads.rows(); ++j) {
-      for (int i = 0; i < kSamples; ++i) samples[at(i)] = loads(j, i);
+      for (int i = 0; i < kSamples; ++i) samples[idx(i)] = loads(j, i);
       std::vector<Complex> lines;
       fft.fwd(lines, samples);
       lines.resize(kSamples / 2);
@@ -57,31 +57,31 @@ class Predictor {
     if (!modal_shares(system_, channel, modes_.vectors, z, v))
       throw ModelError({no_estimate(system_.name() + "/reduction", channel)});
     if (channel.force_of() >= 0) {
-      const ScalarForce& law = *system_.scalars()[at(channel.force_of())].force;
+      const ScalarForce& law = *system_.scalars()[idx(channel.force_of())].force;
       z *= law.closed_stiffness();
       v *= law.closed_damping();
     }
     const int count = modes_.count();
-    std::vector<double> lacks(at(count), 0.0);
+    std::vector<double> lacks(idx(count), 0.0);
     std::vector<Complex> whole(kSamples / 2);
     for (int j = 0; j < static_cast<int>(lines_.size()); ++j) {
       const double omega = modes_.omega(j), w2 = omega * omega;
       for (std::size_t h = 0; h < whole.size(); ++h) {
         const double w = kTwoPi * static_cast<double>(h) / length_, r = w / omega;
-        const Complex share = lines_[at(j)][h] / w2 * Complex(z[j], w * v[j]) * (h == 0 ? 0.5 : 1.0);
+        const Complex share = lines_[idx(j)][h] / w2 * Complex(z[j], w * v[j]) * (h == 0 ? 0.5 : 1.0);
         const Complex factor = 1.0 / Complex(1.0 - r * r, 2.0 * kDamping * r);
         whole[h] += share * factor;
-        lacks[at(j)] += std::abs(share) * std::abs(factor - 1.0);
+        lacks[idx(j)] += std::abs(share) * std::abs(factor - 1.0);
       }
-      lacks[at(j)] += (std::abs(z[j]) + omega * std::abs(v[j])) * start_[at(j)] / w2;
+      lacks[idx(j)] += (std::abs(z[j]) + omega * std::abs(v[j])) * start_[idx(j)] / w2;
     }
     const double peak = largest(whole);
     // What lies beyond the modes looked at: as much as their upper half, unless they are all.
     const bool all = count == system_.size() - modes_.rigid_modes;
     double beyond = 0.0;
-    for (int j = count / 2; j < count && !all; ++j) beyond += lacks[at(j)];
-    std::vector<double> errors(at(count + 1), beyond);
-    for (int m = count - 1; m >= 0; --m) errors[at(m)] = errors[at(m + 1)] + lacks[at(m)];
+    for (int j = count / 2; j < count && !all; ++j) beyond += lacks[idx(j)];
+    std::vector<double> errors(idx(count + 1), beyond);
+    for (int m = count - 1; m >= 0; --m) errors[idx(m)] = errors[idx(m + 1)] + lacks[idx(m)];
     for (double& e : errors) e = peak > 0.0 ? e / peak : 0.0;
     return errors;
   }
@@ -140,14 +140,15 @@ ReductionChoice choose_reduction(const System& system, double within,
   if (elastic < 2) return refuse("it has no mode to leave out");
   const ModeSet modes = solve_modes(system, {.count = std::min(elastic, kMostModes)});
   const Predictor predictor(system, modes, duration);
-  std::vector<double> errors(at(modes.count() + 1), 0.0);
+  std::vector<double> errors(idx(modes.count() + 1), 0.0);
   for (const Channel& channel : find_channels(system, channels)) {
     const std::vector<double> of_channel = predictor.errors(channel);
     for (std::size_t m = 0; m < errors.size(); ++m) errors[m] = std::max(errors[m], of_channel[m]);
   }
   const double contacts = contact_frequency(system) / std::pow(within, 0.25);
   int keep = 1;
-  while (keep <= modes.count() / 2 && (errors[at(keep)] > within || modes.frequency_Hz[at(keep)] < contacts))
+  while (keep <= modes.count() / 2 &&
+         (errors[idx(keep)] > within || modes.frequency_Hz[idx(keep)] < contacts))
     ++keep;
   std::ostringstream text;
   text.precision(2);
@@ -157,7 +158,7 @@ ReductionChoice choose_reduction(const System& system, double within,
     return refuse(text.str());
   }
   Reduction reduction = reduce(system, {.modes = keep, .static_accuracy = 0.5 * within});
-  choice.error = errors[at(keep)] + reduction.static_error;
+  choice.error = errors[idx(keep)] + reduction.static_error;
   const auto work = [](const System& s) { return fastest_rate(s) * cost(s); };
   choice.gain = work(system) / work(reduction.system);
   text << choice.gain << " times the speed is predicted, and an error of " << 100.0 * choice.error << " %";

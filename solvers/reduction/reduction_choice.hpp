@@ -8,7 +8,7 @@
 ///
 /// in a channel: f_jh harmonics of the loads on the mode, zeta 0.01, and what rings when loads set in at the
 /// start. Contacts ask for modes up to within^(-1/4) times the frequency of their closed stiffness on the
-/// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; LeftOutModes gives a better
+/// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; TruncationError gives a better
 /// one with the run.
 ///
 /// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
@@ -28,7 +28,7 @@ struct ReductionChoice {
   std::string reason = {};                  ///< one sentence without full stop
 };
 
-/// within: relative, of the channels' peaks, 1e-6 to 0.5. channels: as LeftOutModes takes them, at least one.
+/// within: relative, of the channels' peaks, 1e-6 to 0.5. channels: as TruncationError takes them, at least one.
 /// duration: of the run [s]. Throws ModelError for bad input.
 ReductionChoice choose_reduction(const System& system, double within,
                                  const std::vector<std::string>& channels, double duration);

@@ -50,7 +50,7 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
   const System& reduced = choice.reduction->system;
   const Method method = o.any_method ? choose_method(reduced, o.duration, o.method.step).method : o.method;
   try {
-    LeftOutModes left_out(system, *choice.reduction, o.channels);
+    TruncationError left_out(system, *choice.reduction, o.channels);
     const RunSummary run =
         run_method(reduced, method, {.t_end = o.duration, .progress = o.progress}, {&left_out});
     if (!run.ok())
@@ -62,7 +62,7 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
                                     [](const auto& s) { return s.force->pieces().size() != 1; });
     double growth = 1.0;
     if (pieces && !(method.exact() && run.contact_changes == 0)) {
-      const Growth grown = measure_growth(
+      const ErrorGrowth grown = measure_error_growth(
           reduced, {.method = method, .t_end = o.duration, .pieces = kGrowthPieces, .progress = o.progress});
       if (grown.status != RunStatus::success) return refuse("its trial: " + grown.reason);
       growth = grown.factor(o.duration);

@@ -128,7 +128,7 @@ KeptModes kept_modes(const System& system, int count, double up_to_Hz) {
                            : static_cast<int>(std::upper_bound(modes.frequency_Hz.begin(),
                                                                modes.frequency_Hz.end(), up_to_Hz) -
                                               modes.frequency_Hz.begin());
-  kept.first_left_out_Hz = kept.elastic < modes.count() ? modes.frequency_Hz[at(kept.elastic)]
+  kept.first_left_out_Hz = kept.elastic < modes.count() ? modes.frequency_Hz[idx(kept.elastic)]
                                                         : std::numeric_limits<double>::infinity();
   kept.vectors = beside(modes.rigid_vectors, modes.vectors.leftCols(kept.elastic));
   kept.lambda = Vector::Zero(kept.rigid + kept.elastic);
@@ -151,9 +151,9 @@ Matrix sampled_loads(const System& system, double duration, int count) {
   return samples;
 }
 
-StaticShapes static_shapes(const System& system, const KeptModes& modes, double accuracy) {
+ResidualVectors residual_vectors(const System& system, const KeptModes& modes, double accuracy) {
   Residual residual(system, modes);
-  StaticShapes found;
+  ResidualVectors found;
   found.columns.resize(system.size(), 0);
   const auto orthonormal_in_energy = [&](const Matrix& shapes, double least) -> Matrix {
     if (shapes.cols() == 0) return shapes;

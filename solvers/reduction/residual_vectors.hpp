@@ -15,12 +15,12 @@ struct KeptModes {
 /// count elastic modes, or where count is 0 those up to a frequency.
 KeptModes kept_modes(const System& system, int count, double up_to_Hz);
 
-struct StaticShapes {
+struct ResidualVectors {
   Eigen::MatrixXd columns;  ///< x' M x = 1, M- and K-orthogonal to each other and to the modes
   double error = 0.0;       ///< what is missing under the sampled loads, relative, in the energy norm
 };
 /// accuracy: of the deflection under the loads.
-StaticShapes static_shapes(const System& system, const KeptModes& modes, double accuracy);
+ResidualVectors residual_vectors(const System& system, const KeptModes& modes, double accuracy);
 
 /// Torques of the loads over the unknowns, at rest, at even times in (0, duration): one column a sample; no
 /// column without loads.

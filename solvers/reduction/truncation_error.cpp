@@ -42,7 +42,7 @@ bool modal_shares(const System& system, const Channel& channel, const Eigen::Mat
                   Vector& v) {
   const int law = std::max(channel.force_of(), channel.deflection_of());
   if (law < 0 && !channel.is_linear()) return false;
-  z = shares(law >= 0 ? system.scalars()[at(law)].z : channel.z_row(), modes);
+  z = shares(law >= 0 ? system.scalars()[idx(law)].z : channel.z_row(), modes);
   v = shares(channel.v_row(), modes);
   if (channel.force_of() >= 0) v = z;
   return true;
@@ -54,8 +54,8 @@ Finding no_estimate(const std::string& place, const Channel& channel) {
           "deflection"};
 }
 
-LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
-                           const std::vector<std::string>& channels, int count)
+TruncationError::TruncationError(const System& full, const Reduction& reduction,
+                                 const std::vector<std::string>& channels, int count)
     : full_(full), basis_(reduction.basis), assembler_(full) {
   const int elastic = full.elastic_mode_count();
   const int wanted =
@@ -98,14 +98,14 @@ LeftOutModes::LeftOutModes(const System& full, const Reduction& reduction,
   }
   asked_ = watched_.size();
   for (int l = 0; l < static_cast<int>(full.scalars().size()); ++l)
-    if (full.scalars()[at(l)].force->pieces().size() != 1)
+    if (full.scalars()[idx(l)].force->pieces().size() != 1)
       watched_.push_back({.law = l, .z = by_laws_.col(l), .v = by_laws_.col(l)});
   if (!findings.empty()) throw ModelError(findings);
   z_ = modes_.transpose() * assembler_.product(full.mass_values(), full.initial_deviation());
   v_ = modes_.transpose() * assembler_.product(full.mass_values(), full.initial_rate());
 }
 
-Vector LeftOutModes::force(const StepPoint& point) {
+Vector TruncationError::force(const EvaluatedState& point) {
   const State& y = point.state;
   const Vector z = basis_ * y.z, v = basis_ * y.v;
   Vector p;
@@ -122,12 +122,12 @@ Vector LeftOutModes::force(const StepPoint& point) {
   return f;
 }
 
-void LeftOutModes::start(const Assembler& assembler, const StepPoint& point) {
+void TruncationError::start(const Assembler& assembler, const EvaluatedState& point) {
   force_ = force(point);
   watch(assembler, point);
 }
 
-void LeftOutModes::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void TruncationError::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
   const Vector next = force(to);
   for (Eigen::Index j = 0; j < z_.size(); ++j)
@@ -136,29 +136,29 @@ void LeftOutModes::step(const Assembler& assembler, const StepPoint& from, const
   watch(assembler, to);
 }
 
-void LeftOutModes::watch(const Assembler& assembler, const StepPoint& point) {
+void TruncationError::watch(const Assembler& assembler, const EvaluatedState& point) {
   const Vector e_z = z_ - by_mass_ * point.state.z, e_v = v_ - by_mass_ * point.state.v;
   const Eigen::Index upper = z_.size() - z_.size() / 2;
   for (Watched& w : watched_) {
-    const double slope = w.law >= 0 ? point.responses[at(w.law)].dy_dx : 1.0;
-    const double damper = w.law >= 0 ? point.responses[at(w.law)].dy_dx_dot : 1.0;
+    const double slope = w.law >= 0 ? point.responses[idx(w.law)].dy_dx : 1.0;
+    const double damper = w.law >= 0 ? point.responses[idx(w.law)].dy_dx_dot : 1.0;
     const Vector e = slope * w.z.cwiseProduct(e_z) + damper * w.v.cwiseProduct(e_v);
     const double value =
-        w.channel ? w.channel->evaluate(assembler, point.state) : point.responses[at(w.law)].y;
+        w.channel ? w.channel->evaluate(assembler, point.state) : point.responses[idx(w.law)].y;
     w.peak = std::max(w.peak, std::abs(value));
     w.all = std::max(w.all, std::abs(e.sum()));
     w.upper = std::max(w.upper, std::abs(e.tail(upper).sum()));
   }
 }
 
-std::vector<ReductionErrorEstimate> LeftOutModes::estimates() const {
+std::vector<ReductionErrorEstimate> TruncationError::estimates() const {
   const double factor = watched_.size() > asked_ ? kOfContacts : kOfLinear;
   const auto error = [&](const Watched& w) { return factor * (w.all + (all_followed_ ? 0.0 : w.upper)); };
   // Forces of laws by the roots of their energies, F^2/k.
   double worst = 0.0, largest = 0.0;
   for (std::size_t i = asked_; i < watched_.size(); ++i) {
     const Watched& w = watched_[i];
-    const double k = full_.scalars()[at(w.law)].force->closed_stiffness();
+    const double k = full_.scalars()[idx(w.law)].force->closed_stiffness();
     if (!(k > 0.0)) continue;
     worst = std::max(worst, error(w) / std::sqrt(k));
     largest = std::max(largest, w.peak / std::sqrt(k));

@@ -37,16 +37,16 @@ bool modal_shares(const System& system, const Channel& channel, const Eigen::Mat
 /// What is said of those.
 Finding no_estimate(const std::string& place, const Channel& channel);
 
-class LeftOutModes final : public Observer {
+class TruncationError final : public Observer {
  public:
   /// Of a run of reduction.system from the model's initial conditions. Both must live as long. count: modes
   /// followed beyond those kept; 0: twice as many as are kept and 20. channels: deviations, rates, shaft
   /// torques, forces and deflections of laws; throws ModelError for others.
-  LeftOutModes(const System& full, const Reduction& reduction, const std::vector<std::string>& channels,
-               int count = 0);
+  TruncationError(const System& full, const Reduction& reduction, const std::vector<std::string>& channels,
+                  int count = 0);
 
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override { return false; }  // modal_shares() refuses what does
 
   std::vector<ReductionErrorEstimate> estimates() const;
@@ -59,8 +59,8 @@ class LeftOutModes final : public Observer {
     Vector z = {}, v = {};                // shares of the modes
     double peak = 0.0, all = 0.0, upper = 0.0;
   };
-  Vector force(const StepPoint& point);
-  void watch(const Assembler& assembler, const StepPoint& point);
+  Vector force(const EvaluatedState& point);
+  void watch(const Assembler& assembler, const EvaluatedState& point);
 
   const System& full_;
   const Eigen::MatrixXd& basis_;

@@ -29,7 +29,7 @@ std::vector<double> equivalent_masses(const System& system) {
     double flexibility = 0.0;
     if (system.mass_is_diagonal()) {
       for (const Entry& e : term.z)
-        flexibility += e.coeff * e.coeff / system.mass_values()[system.diagonal_slots()[at(e.index)]];
+        flexibility += e.coeff * e.coeff / system.mass_values()[system.diagonal_slots()[idx(e.index)]];
     } else {
       if (mass.status() == FactorStatus::not_computed) mass.factorize(system.pattern(), system.mass_values());
       if (!mass.ok()) return all;
@@ -69,19 +69,20 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : 
     terms_.push_back(j);
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
-    records_.push_back({.element = system.placements()[at(index(term.element))].name});
+    records_.push_back({.element = system.element_instances()[idx(index(term.element))].name});
   }
   intervals_.resize(terms_.size());
 }
 
-void ContactStatistics::start(const Assembler& /*assembler*/, const StepPoint& point) {
+void ContactStatistics::start(const Assembler& /*assembler*/, const EvaluatedState& point) {
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
     records_[i].largest_force_time = point.state.t;
   }
 }
 
-void ContactStatistics::step(const Assembler& /*assembler*/, const StepPoint& from, const StepPoint& to) {
+void ContactStatistics::step(const Assembler& /*assembler*/, const EvaluatedState& from,
+                             const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const std::size_t j = terms_[i];

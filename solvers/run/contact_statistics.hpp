@@ -60,8 +60,8 @@ class ContactStatistics final : public Observer {
   bool needs_acceleration() const override { return false; }
   /// inside_steps: as in Peaks, for forces.
   explicit ContactStatistics(const System& system, bool inside_steps = false);
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace drev {
 
-EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
+EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& start)
     : assembler_(assembler),
       mass_(assembler.system().pattern(), assembler.system().mass_values()),
       damped_((assembler.system().damping_values().array() != 0.0).any()) {
@@ -16,14 +16,14 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const StepPoint& start)
   balance_.given = balance_.scale = start_energy_;
 }
 
-double EnergyMonitor::stored(const StepPoint& point) const {
+double EnergyMonitor::stored(const EvaluatedState& point) const {
   double sum =
       0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) + point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }
 
-void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
+void EnergyMonitor::step(const EvaluatedState& from, const EvaluatedState& to, double h) {
   const System& system = assembler_.system();
   auto [input, dissipated, by_stiffness] =
       step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
@@ -53,11 +53,11 @@ void EnergyMonitor::step(const StepPoint& from, const StepPoint& to, double h) {
   enter(to, input, dissipated + 0.5 * h * power, stored);
 }
 
-void EnergyMonitor::step(const StepPoint& to, double input, double dissipated) {
+void EnergyMonitor::step(const EvaluatedState& to, double input, double dissipated) {
   enter(to, input, dissipated, stored(to));
 }
 
-void EnergyMonitor::enter(const StepPoint& to, double input, double dissipated, double stored) {
+void EnergyMonitor::enter(const EvaluatedState& to, double input, double dissipated, double stored) {
   balance_.input += input;
   balance_.dissipated += dissipated;
   balance_.kinetic = 0.5 * mass_.energy(to.state.v);
@@ -65,7 +65,7 @@ void EnergyMonitor::enter(const StepPoint& to, double input, double dissipated, 
   note(to.state.t);
 }
 
-void EnergyMonitor::restart(const StepPoint& before, const StepPoint& after) {
+void EnergyMonitor::restart(const EvaluatedState& before, const EvaluatedState& after) {
   balance_.input += stored(after) - stored(before);
   balance_.stored = stored(after);
 }

@@ -18,21 +18,21 @@ namespace drev {
 
 class EnergyMonitor {
  public:
-  EnergyMonitor(const Assembler& assembler, const StepPoint& start);
+  EnergyMonitor(const Assembler& assembler, const EvaluatedState& start);
   /// Accounts for one accepted step.
-  void step(const StepPoint& from, const StepPoint& to, double h);
+  void step(const EvaluatedState& from, const EvaluatedState& to, double h);
   /// The same where the method itself integrated what was put in and what dissipated in the step [J].
-  void step(const StepPoint& to, double input, double dissipated);
+  void step(const EvaluatedState& to, double input, double dissipated);
   /// The same point after a breakpoint: forces jumped, the state did not. Energy that a law's stored
   /// energy gained by the jump counts as input.
-  void restart(const StepPoint& before, const StepPoint& after);
+  void restart(const EvaluatedState& before, const EvaluatedState& after);
   const EnergyBalance& balance() const { return balance_; }
   /// Back to a balance kept before a step that is rejected.
   void restore(const EnergyBalance& balance) { balance_ = balance; }
 
  private:
-  double stored(const StepPoint& point) const;
-  void enter(const StepPoint& to, double input, double dissipated, double stored);
+  double stored(const EvaluatedState& point) const;
+  void enter(const EvaluatedState& to, double input, double dissipated, double stored);
   void note(double t);
 
   const Assembler& assembler_;

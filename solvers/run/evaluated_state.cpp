@@ -5,13 +5,13 @@
 
 namespace drev {
 
-void make_room(StepPoint& point, int n) {
+void make_room(EvaluatedState& point, int n) {
   State& s = point.state;
   for (Vector* x : {&s.z, &s.v, &s.a, &point.p, &point.kz, &point.cv, &point.total})
     if (x->size() == 0) set_zeros(*x, n);
 }
 
-void evaluate_laws(const Assembler& assembler, StepPoint& point) {
+void evaluate_laws(const Assembler& assembler, EvaluatedState& point) {
   const std::vector<ScalarTerm>& terms = assembler.system().scalars();
   point.inputs.resize(terms.size());
   point.responses.resize(terms.size());
@@ -21,7 +21,7 @@ void evaluate_laws(const Assembler& assembler, StepPoint& point) {
   }
 }
 
-void add_law_forces(const System& system, const StepPoint& point, double factor, Vector& f) {
+void add_law_forces(const System& system, const EvaluatedState& point, double factor, Vector& f) {
   const ScalarResponse* r = point.responses.data();
   double* force = f.data();
   for (const ScalarTerm& term : system.scalars()) {

@@ -10,7 +10,7 @@ namespace drev {
 class Assembler;
 
 /// A state with everything that was evaluated at it.
-struct StepPoint {
+struct EvaluatedState {
   State state;
   /// s; generalized-alpha's own a is of a time (alpha_m - alpha_f) times this later. 0: a is of state.t.
   double a_step = 0.0;
@@ -24,10 +24,10 @@ struct StepPoint {
 };
 
 /// Zeros for n unknowns where a vector has no entries yet.
-void make_room(StepPoint& point, int n);
+void make_room(EvaluatedState& point, int n);
 /// Inputs and responses of all laws at the point's motion and the assembler's time.
-void evaluate_laws(const Assembler& assembler, StepPoint& point);
+void evaluate_laws(const Assembler& assembler, EvaluatedState& point);
 /// f += factor B y with the point's responses.
-void add_law_forces(const System& system, const StepPoint& point, double factor, Vector& f);
+void add_law_forces(const System& system, const EvaluatedState& point, double factor, Vector& f);
 
 }  // namespace drev

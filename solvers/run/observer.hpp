@@ -6,15 +6,15 @@
 namespace drev {
 
 class Assembler;
-struct StepPoint;
+struct EvaluatedState;
 
 class Observer {
  public:
   virtual ~Observer() = default;
   /// Once, at the first point.
-  virtual void start(const Assembler& assembler, const StepPoint& point) = 0;
+  virtual void start(const Assembler& assembler, const EvaluatedState& point) = 0;
   /// After every accepted step, or part of one; the assembler stands at to's time.
-  virtual void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) = 0;
+  virtual void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) = 0;
   /// The next time after t that must be seen exactly [s]: constant steps end there, controlled ones are
   /// interpolated to the method's order.
   virtual double next_stop(double /*t*/) const { return std::numeric_limits<double>::infinity(); }

@@ -24,7 +24,7 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
   }
 }
 
-void Peaks::start(const Assembler& assembler, const StepPoint& point) {
+void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double value = channels_[c].evaluate(assembler, point.state);
     peaks_[c] = {value, point.state.t, value, point.state.t};
@@ -33,7 +33,7 @@ void Peaks::start(const Assembler& assembler, const StepPoint& point) {
   }
 }
 
-void Peaks::step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     Watched& w = watched_[c];
     const double value = w.two_entries ? w.sum(to.state.z) : channels_[c].evaluate(assembler, to.state);
@@ -61,8 +61,8 @@ bool Peaks::needs_acceleration() const {
   });
 }
 
-void Peaks::look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from,
-                        const StepPoint& to) {
+void Peaks::look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
+                        const EvaluatedState& to) {
   const auto rate = [&](const State& s) {
     return watched_[c].two_entries ? watched_[c].sum(s.v) : channels_[c].rate(assembler, s);
   };

@@ -27,8 +27,8 @@ class Peaks final : public Observer {
   /// their accuracy. Laws: a change of mesh phase or time inside the step is left out of the rate.
   explicit Peaks(std::vector<Channel> channels, bool inside_steps = false);
 
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override;
 
   const std::vector<Channel>& channels() const { return channels_; }
@@ -37,7 +37,8 @@ class Peaks final : public Observer {
   std::size_t largest() const;
 
  private:
-  void look_inside(std::size_t c, const Assembler& assembler, const StepPoint& from, const StepPoint& to);
+  void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
+                   const EvaluatedState& to);
 
   /// What a step needs of a channel, close together: there are many steps and few new peaks.
   struct Watched {

@@ -20,13 +20,13 @@ Recorder::Recorder(const System& system, const std::vector<std::string>& channel
   if (!findings.empty()) throw ModelError(findings);
 }
 
-void Recorder::start(const Assembler& assembler, const StepPoint& point) {
+void Recorder::start(const Assembler& assembler, const EvaluatedState& point) {
   start_ = point.state.t;
   next_ = 0;
   record(assembler, point);
 }
 
-void Recorder::step(const Assembler& assembler, const StepPoint& /*from*/, const StepPoint& to) {
+void Recorder::step(const Assembler& assembler, const EvaluatedState& /*from*/, const EvaluatedState& to) {
   // A stop that differs from k * every by rounding (t_end, a breakpoint) is that time.
   if (to.state.t >= next_stop(0.0) - kSameTime * every_) record(assembler, to);
 }
@@ -38,7 +38,7 @@ bool Recorder::needs_acceleration() const {
                      [](const Channel& c) { return c.value_needs_acceleration(); });
 }
 
-void Recorder::record(const Assembler& assembler, const StepPoint& point) {
+void Recorder::record(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) row_[c] = channels_[c].evaluate(assembler, point.state);
   ++next_;
   if (sink_) {

@@ -21,8 +21,8 @@ class Recorder final : public Observer {
     sink_ = std::move(sink);
   }
 
-  void start(const Assembler& assembler, const StepPoint& point) override;
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override;
+  void start(const Assembler& assembler, const EvaluatedState& point) override;
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
   bool needs_acceleration() const override;
 
@@ -32,7 +32,7 @@ class Recorder final : public Observer {
   const std::vector<double>& samples(std::size_t c) const { return samples_[c]; }
 
  private:
-  void record(const Assembler& assembler, const StepPoint& point);
+  void record(const Assembler& assembler, const EvaluatedState& point);
 
   std::vector<Channel> channels_;
   double every_ = 0.0, start_ = 0.0;

@@ -53,7 +53,7 @@ ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State&
   const NodeMap& map = system_.node_map(term.phase_node);
   double rate = sum(of_phase(term), state.v);
   if (map.prescribed >= 0)
-    if (const auto& known = system_.prescribed()[at(map.prescribed)].at)
+    if (const auto& known = system_.prescribed()[idx(map.prescribed)].at)
       rate += map.coeff * known(state.t).rate;
   if (const auto& nominal = system_.reference())
     rate += system_.ratio(term.phase_node) * nominal->at(state.t).rate;
@@ -63,11 +63,11 @@ ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State&
 double ContactLocator::acceleration(const ScalarTerm& term, const State& state) const {
   double a = sum(term.z, state.a);
   for (const Entry& e : term.u)
-    if (const auto& known = system_.prescribed()[at(e.index)].at) a += e.coeff * known(state.t).acceleration;
+    if (const auto& known = system_.prescribed()[idx(e.index)].at) a += e.coeff * known(state.t).acceleration;
   return a;
 }
 
-std::pair<double, double> ContactLocator::distance(const Crossing& c, const StepPoint& point) const {
+std::pair<double, double> ContactLocator::distance(const Crossing& c, const EvaluatedState& point) const {
   const ScalarTerm& term = system_.scalars()[c.law];
   const ScalarInput& in = point.inputs[c.law];
   const LawBound& b = c.bound;
@@ -79,7 +79,7 @@ std::pair<double, double> ContactLocator::distance(const Crossing& c, const Step
 std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& law, const ScalarInput& from,
                                                                      const Coefficients& x, double h) const {
   std::optional<Crossing> best;
-  for (const LawBound& b : law.pieces[at(piece_at(law.pieces, from))].bounds) {
+  for (const LawBound& b : law.pieces[idx(piece_at(law.pieces, from))].bounds) {
     Coefficients g;
     for (std::size_t k = 0; k < g.size(); ++k) g[k] = b.b_x * x[k];
     if (b.b_v != 0.0)
@@ -124,7 +124,8 @@ std::optional<ContactLocator::Crossing> ContactLocator::first_knot(std::size_t l
 }
 
 std::optional<ContactLocator::Crossing> ContactLocator::first(const StepPolynomial& motion,
-                                                              const StepPoint& from, const StepPoint& to,
+                                                              const EvaluatedState& from,
+                                                              const EvaluatedState& to,
                                                               Assembler& assembler) const {
   std::optional<Crossing> best;
   const auto take = [&](const std::optional<Crossing>& c) {
@@ -137,7 +138,7 @@ std::optional<ContactLocator::Crossing> ContactLocator::first(const StepPolynomi
   return best;
 }
 
-std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint& point, double h) const {
+std::optional<ContactLocator::Crossing> ContactLocator::predict(const EvaluatedState& point, double h) const {
   std::optional<Crossing> best;
   const auto take = [&](const std::optional<Crossing>& c) {
     if (c && (!best || c->s < best->s)) best = c;
@@ -159,13 +160,13 @@ std::optional<ContactLocator::Crossing> ContactLocator::predict(const StepPoint&
 }
 
 StepPolynomial::Coefficients ContactLocator::deflection(std::size_t law, const StepPolynomial& motion,
-                                                        const StepPoint& from, const StepPoint& to,
+                                                        const EvaluatedState& from, const EvaluatedState& to,
                                                         Assembler& assembler) const {
   const ScalarTerm& term = system_.scalars()[law];
   Coefficients x = motion.of(term.z);
   if (term.u.empty() && term.phase_node < 0) return x;
   const double h = motion.h();
-  const auto known = [&](const StepPoint& p) {
+  const auto known = [&](const EvaluatedState& p) {
     const ScalarInput& in = p.inputs[law];
     return Value{in.x - sum(term.z, p.state.z), h * (in.x_dot - sum(term.z, p.state.v))};
   };
@@ -177,13 +178,13 @@ StepPolynomial::Coefficients ContactLocator::deflection(std::size_t law, const S
 }
 
 StepPolynomial::Coefficients ContactLocator::phase(std::size_t law, const StepPolynomial& motion,
-                                                   const StepPoint& from, const StepPoint& to,
+                                                   const EvaluatedState& from, const EvaluatedState& to,
                                                    Assembler& assembler) const {
   const ScalarTerm& term = system_.scalars()[law];
   const std::vector<Entry> entries = of_phase(term);
   Coefficients x = motion.of(entries);
   const double h = motion.h();
-  const auto known = [&](const StepPoint& p) {
+  const auto known = [&](const EvaluatedState& p) {
     const Value all = angle(term, p.state, p.inputs[law].angle);
     return Value{all.value - sum(entries, p.state.z), h * (all.rate - sum(entries, p.state.v))};
   };

@@ -25,12 +25,12 @@ class ContactLocator {
 
   /// First crossing in the step, at 0 if the motion leaves a bound to the side it was not evaluated on. Moves
   /// the assembler's time.
-  std::optional<Crossing> first(const StepPolynomial& motion, const StepPoint& from, const StepPoint& to,
-                                Assembler& assembler) const;
+  std::optional<Crossing> first(const StepPolynomial& motion, const EvaluatedState& from,
+                                const EvaluatedState& to, Assembler& assembler) const;
   /// First crossing if the accelerations at a point stayed: z + v t + a t^2/2, up to h.
-  std::optional<Crossing> predict(const StepPoint& point, double h) const;
+  std::optional<Crossing> predict(const EvaluatedState& point, double h) const;
   /// The bound's value, > 0 on the side it comes from, and its rate.
-  std::pair<double, double> distance(const Crossing& c, const StepPoint& point) const;
+  std::pair<double, double> distance(const Crossing& c, const EvaluatedState& point) const;
 
  private:
   using Coefficients = StepPolynomial::Coefficients;
@@ -49,10 +49,10 @@ class ContactLocator {
   std::optional<Crossing> first_of_law(const Law& law, const ScalarInput& from, const Coefficients& x,
                                        double h) const;
   std::optional<Crossing> first_knot(std::size_t law, const Coefficients& angle) const;
-  Coefficients deflection(std::size_t law, const StepPolynomial& motion, const StepPoint& from,
-                          const StepPoint& to, Assembler& assembler) const;
-  Coefficients phase(std::size_t law, const StepPolynomial& motion, const StepPoint& from,
-                     const StepPoint& to, Assembler& assembler) const;
+  Coefficients deflection(std::size_t law, const StepPolynomial& motion, const EvaluatedState& from,
+                          const EvaluatedState& to, Assembler& assembler) const;
+  Coefficients phase(std::size_t law, const StepPolynomial& motion, const EvaluatedState& from,
+                     const EvaluatedState& to, Assembler& assembler) const;
   std::vector<Entry> of_phase(const ScalarTerm& term) const;
 
   const System& system_;

@@ -4,10 +4,10 @@
 
 namespace drev {
 
-NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
-                              bool accept_jump) {
+NewtonResult GeneralizedAlpha::step(const EvaluatedState& from, double h, double t_new, double t_evaluate,
+                                    EvaluatedState& to, bool accept_jump) {
   const StepScheme& c = equation_.scheme();
-  equation_.clock().enter(Phase::linear);
+  equation_.clock().enter(RunSection::linear);
   equation_.assembler().set_time(t_evaluate);
   const double shift = c.alpha_m - c.alpha_f;
   const bool carries_over = shift != 0.0 && equation_.options().varying_steps && from.a_step != h;
@@ -34,8 +34,8 @@ NewtonResult StepSolver::step(const StepPoint& from, double h, double t_new, dou
   return result;
 }
 
-NewtonResult StepSolver::step_from(const Vector& a, const StepPoint& from, double h, StepPoint& to,
-                                   bool accept_jump) {
+NewtonResult GeneralizedAlpha::step_from(const Vector& a, const EvaluatedState& from, double h,
+                                         EvaluatedState& to, bool accept_jump) {
   const StepScheme& c = equation_.scheme();
   const State& s = from.state;
   problem_.z_0.resize(s.z.size());
@@ -58,12 +58,13 @@ NewtonResult StepSolver::step_from(const Vector& a, const StepPoint& from, doubl
   problem_.accept_jump = accept_jump;
   const NewtonResult result = equation_.solve(problem_, to);
   if (result.status != NewtonStatus::converged) return result;
-  equation_.clock().enter(Phase::linear);
+  equation_.clock().enter(RunSection::linear);
   equation_.totals(from, a, to);
   return result;
 }
 
-void StepSolver::estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) {
+void GeneralizedAlpha::estimate(const EvaluatedState& from, const EvaluatedState& to, double h, Vector& e_z,
+                                Vector& e_v) {
   estimate_by_quadrature(from, to, h, e_z, e_v);
   equation_.filter(h, e_z, e_v);
 }

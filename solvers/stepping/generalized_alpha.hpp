@@ -11,15 +11,17 @@
 
 namespace drev {
 
-class StepSolver final : public Stepper {
+class GeneralizedAlpha final : public Stepper {
  public:
   using Stepper::Stepper;
-  NewtonResult step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
+  NewtonResult step(const EvaluatedState& from, double h, double t_new, double t_evaluate, EvaluatedState& to,
                     bool accept_jump = false) override;
-  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) override;
+  void estimate(const EvaluatedState& from, const EvaluatedState& to, double h, Vector& e_z,
+                Vector& e_v) override;
 
  private:
-  NewtonResult step_from(const Vector& a, const StepPoint& from, double h, StepPoint& to, bool accept_jump);
+  NewtonResult step_from(const Vector& a, const EvaluatedState& from, double h, EvaluatedState& to,
+                         bool accept_jump);
 
   StepEquation::Problem problem_;
   Vector known_, scratch_, a_0_, a_1_, a_shifted_;

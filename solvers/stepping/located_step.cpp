@@ -13,8 +13,8 @@ constexpr int kMaxHops = 10;
 constexpr double kBeyond = 1e-6, kFarther = 8.0;  // first part of a hop added where it falls short; growth
 }  // namespace
 
-LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_new, double t_evaluate,
-                                      StepPoint& to) {
+LocatedStep::Result LocatedStep::step(const EvaluatedState& from, double h, double t_new, double t_evaluate,
+                                      EvaluatedState& to) {
   const double landing = kLanding * h;
   Assembler& assembler = stepper_.equation().assembler();
   const int order = stepper_.equation().scheme().order();
@@ -70,8 +70,8 @@ LocatedStep::Result LocatedStep::step(const StepPoint& from, double h, double t_
   return result;
 }
 
-double LocatedStep::hop(const ContactLocator::Crossing& crossing, double tau, const StepPoint& from,
-                        StepPoint& to) {
+double LocatedStep::hop(const ContactLocator::Crossing& crossing, double tau, const EvaluatedState& from,
+                        EvaluatedState& to) {
   // Behind a jump the Taylor series is wrong: little is added at first.
   double more = std::max(4 * std::numeric_limits<double>::epsilon() * std::abs(from.state.t), kBeyond * tau);
   const State& s = from.state;

@@ -23,9 +23,10 @@ class LocatedStep {
   };
 
   /// As Stepper::step. Where the crossing cannot be closed in on (a graze), the step as it is.
-  Result step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to);
+  Result step(const EvaluatedState& from, double h, double t_new, double t_evaluate, EvaluatedState& to);
   /// Over the bound; `to` is started anew. Returns the time gone by [s].
-  double hop(const ContactLocator::Crossing& crossing, double tau, const StepPoint& from, StepPoint& to);
+  double hop(const ContactLocator::Crossing& crossing, double tau, const EvaluatedState& from,
+             EvaluatedState& to);
 
  private:
   Stepper& stepper_;

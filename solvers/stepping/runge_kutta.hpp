@@ -7,21 +7,22 @@ namespace drev {
 class RungeKutta final : public Stepper {
  public:
   RungeKutta(const System& system, const StepScheme& scheme, const StepOptions& options);
-  NewtonResult step(const StepPoint& from, double h, double t_new, double t_evaluate, StepPoint& to,
+  NewtonResult step(const EvaluatedState& from, double h, double t_new, double t_evaluate, EvaluatedState& to,
                     bool accept_jump = false) override;
   /// By the embedded formula; its own error if it is of lower order than the method. Where there is none, by
   /// quadrature. Implicit: filtered (Hosea and Shampine 1996), or fast modes at rest would count.
-  void estimate(const StepPoint& from, const StepPoint& to, double h, Vector& e_z, Vector& e_v) override;
+  void estimate(const EvaluatedState& from, const EvaluatedState& to, double h, Vector& e_z,
+                Vector& e_v) override;
 
  private:
   /// z_0 + h sum_j w_j v_j, v_0 + h sum_j w_j a_j over the first `count` stages.
-  void combine(const StepPoint& from, double h, const double* weights, Eigen::Index stride, int count,
+  void combine(const EvaluatedState& from, double h, const double* weights, Eigen::Index stride, int count,
                Vector& z, Vector& v) const;
 
   const ButcherTableau& tableau_;
   std::vector<Vector> rate_, acceleration_;  // v_i, a_i of the stages; explicit: and of the end
   StepEquation::Problem problem_;
-  StepPoint stage_;
+  EvaluatedState stage_;
 };
 
 }  // namespace drev

@@ -21,7 +21,7 @@ StepControl::StepControl(const System& system, const Options& options)
   for (int node = 0; node < system.node_count(); ++node) {
     const NodeMap& map = system.node_map(node);
     if (map.unknown < 0) continue;
-    kind_[at(map.unknown)] = system.node_kind(node) == NodeKind::translational;
+    kind_[idx(map.unknown)] = system.node_kind(node) == NodeKind::translational;
   }
   const Vector& direction = system.nominal_direction();
   if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0)

@@ -6,8 +6,8 @@
 
 namespace drev {
 
-std::pair<double, double> StepEnergy::over(StepEquation& equation, const StepPoint& from, const StepPoint& to,
-                                           double h) {
+std::pair<double, double> StepEnergy::over(StepEquation& equation, const EvaluatedState& from,
+                                           const EvaluatedState& to, double h) {
   struct Node {
     double s, weight;
   };

@@ -14,11 +14,11 @@ namespace drev {
 class StepEnergy {
  public:
   /// Input and dissipation [J] from `from` to `to`, h [s] apart; moves the assembler's time.
-  std::pair<double, double> over(StepEquation& equation, const StepPoint& from, const StepPoint& to,
+  std::pair<double, double> over(StepEquation& equation, const EvaluatedState& from, const EvaluatedState& to,
                                  double h);
 
  private:
-  StepPoint inside_;
+  EvaluatedState inside_;
 };
 
 }  // namespace drev

@@ -59,14 +59,14 @@ StepEquation::Factor& StepEquation::find_factor(double h) {
   Vector column(system_.size()), solved(system_.size());
   for (Eigen::Index j = 0; j < m; ++j) {
     column.setZero();
-    for (const Entry& e : system_.scalars()[at(static_cast<int>(j))].z) column[e.index] += e.coeff;
+    for (const Entry& e : system_.scalars()[idx(static_cast<int>(j))].z) column[e.index] += e.coeff;
     f->cholesky.solve(column, solved);
     f->w.col(j) = solved;
   }
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index j = 0; j < m; ++j) {
       compliance(i, j) = 0.0;
-      for (const Entry& e : system_.scalars()[at(static_cast<int>(i))].z)
+      for (const Entry& e : system_.scalars()[idx(static_cast<int>(i))].z)
         compliance(i, j) += e.coeff * f->w(e.index, j);
     }
   // x = z-part: beta h^2 b^T a; with a = a_linear - (1 - alpha_f) W lambda.
@@ -93,13 +93,13 @@ void StepEquation::solve_by_factor(Factor& f, const Vector& b, Vector& x) {
     invert(f);
 }
 
-void StepEquation::evaluate(const Vector& history, StepPoint& point, Vector* history_new) {
+void StepEquation::evaluate(const Vector& history, EvaluatedState& point, Vector* history_new) {
   evaluate_laws(assembler_, point);
   assembler_.external(point.state.z, point.state.v, point.p);
   evaluate_totals(history, point, history_new);
 }
 
-void StepEquation::evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new) {
+void StepEquation::evaluate_totals(const Vector& history, EvaluatedState& point, Vector* history_new) {
   const State& s = point.state;
   assembler_.multiply_stiffness(s.z, point.kz);
   assembler_.multiply_damping(s.v, point.cv);
@@ -136,19 +136,19 @@ void StepEquation::filter(double h, Vector& e_z, Vector& e_v) {
   e_z += (scheme_.beta / scheme_.gamma * h) * e_v;
 }
 
-void StepEquation::start_from(const StepPoint& point) {
+void StepEquation::start_from(const EvaluatedState& point) {
   for (std::size_t j = 0; j < point.responses.size(); ++j)
     lambda_[static_cast<Eigen::Index>(j)] = point.responses[j].y;
 }
 
-double largest_force(const StepPoint& point) {
+double largest_force(const EvaluatedState& point) {
   const int n = static_cast<int>(point.p.size());
   double largest = std::max(0.0, largest_of_both(n, point.p.data(), point.kz.data()));
   for (const ScalarResponse& r : point.responses) largest = std::max(largest, std::abs(r.y));
   return largest;
 }
 
-void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& to) {
+void StepEquation::totals(const EvaluatedState& from, const Vector& a_0, EvaluatedState& to) {
   if (!dense_) return evaluate_totals(from.state.history, to, nullptr);
   const StepScheme& c = scheme_;
   const double* cv = nullptr;
@@ -169,7 +169,7 @@ void StepEquation::totals(const StepPoint& from, const Vector& a_0, StepPoint& t
   add_law_forces(system_, to, -1.0, to.kz);
 }
 
-double StepEquation::correct(const Problem& problem, StepPoint& to) const {
+double StepEquation::correct(const Problem& problem, EvaluatedState& to) const {
   const int n = system_.size();
   if (to.state.z.size() != n) to.state.z.setZero(n);  // its change is taken
   to.state.v.resize(n);
@@ -178,7 +178,7 @@ double StepEquation::correct(const Problem& problem, StepPoint& to) const {
                         to.state.v.data());
 }
 
-NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
+NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
   Factor& f = factor(problem.h);
   const double phi = 1.0 - scheme_.alpha_f;
   const int n = system_.size();
@@ -197,7 +197,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     to.state.a = *problem.a_start;
     correct(problem, to);
   }
-  clock_.enter(Phase::loads);
+  clock_.enter(RunSection::loads);
   assembler_.external(to.state.z, to.state.v, to.p);
   for (std::size_t j = 0; j < m; ++j) given_[j] = assembler_.given_input(system_.scalars()[j]);
   const auto take_phase = [&] {
@@ -215,7 +215,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   double change = 0.0;  // of z since the loads were evaluated
   for (int pass = 1;; ++pass) {
     ++load_passes_;
-    clock_.enter(Phase::linear);
+    clock_.enter(RunSection::linear);
     rhs_.resize(n);
     sum_with(n, linear_.data(), phi, to.p.data(), rhs_.data());
     ++solves_;
@@ -226,7 +226,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
       dense_product(n, whole_lanes(n), f.inverse.data(), rhs_.data(), to.state.a.data());
     const double scale = force_scale_ > 0.0 ? force_scale_ : largest_size(n, to.p.data());
     if (m > 0) {
-      clock_.enter(Phase::contacts);
+      clock_.enter(RunSection::contacts);
       for (std::size_t j = 0; j < m; ++j) {
         double x = given_[j].x, x_dot = given_[j].x_dot;
         for (const Entry& e : system_.scalars()[j].z) {
@@ -256,7 +256,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
     if (!phases_left && (!system_.loads_depend_on_motion() ||
                          !(assembler_.load_steepness() * change > options_.load_tolerance * scale)))
       break;
-    clock_.enter(Phase::loads);
+    clock_.enter(RunSection::loads);
     const bool known_steepness = std::isfinite(assembler_.load_steepness());
     if (!known_steepness) p_last_ = to.p;
     assembler_.external(to.state.z, to.state.v, to.p);
@@ -284,7 +284,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, StepPoint& to) {
   return result;
 }
 
-NewtonResult StepEquation::solve_sparse(const Problem& problem, StepPoint& to) {
+NewtonResult StepEquation::solve_sparse(const Problem& problem, EvaluatedState& to) {
   const double phi = 1.0 - scheme_.alpha_f, h = problem.h;
   if (problem.known)
     scratch_ = -*problem.known;

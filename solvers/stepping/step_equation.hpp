@@ -17,14 +17,14 @@
 #include "solvers/linear/matrix_product.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
 #include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/phase_clock.hpp"
+#include "solvers/run/run_clock.hpp"
 #include "solvers/stepping/step_options.hpp"
 #include "solvers/stepping/step_scheme.hpp"
 
 namespace drev {
 
 /// Largest load, force K z or law's force at a point [N m or N].
-double largest_force(const StepPoint& point);
+double largest_force(const EvaluatedState& point);
 
 class StepEquation {
  public:
@@ -47,24 +47,24 @@ class StepEquation {
   Assembler& assembler() { return assembler_; }
 
   /// Solves at the assembler's time. Fills to's z, v, a, p, inputs, responses, history.
-  NewtonResult solve(Problem& problem, StepPoint& to) {
+  NewtonResult solve(Problem& problem, EvaluatedState& to) {
     return dense_ ? solve_dense(problem, to) : solve_sparse(problem, to);
   }
   /// kz, cv and total after solve(); the step's own equation gives the total force, so that no product
   /// with K is needed. from: where the step began, a_0: with which acceleration.
-  void totals(const StepPoint& from, const Vector& a_0, StepPoint& to);
+  void totals(const EvaluatedState& from, const Vector& a_0, EvaluatedState& to);
 
   /// Everything at the point's state and the assembler's time. history: of the general elements before the
   /// step that led to it; what they leave goes to history_new (may be null).
-  void evaluate(const Vector& history, StepPoint& point, Vector* history_new = nullptr);
+  void evaluate(const Vector& history, EvaluatedState& point, Vector* history_new = nullptr);
   /// a = -M^-1 total. Throws SolverError if M cannot be factored.
   void acceleration(const Vector& total, Vector& a);
   /// Takes the errors' share in modes too fast for the step away: (e_z, e_v) become
   /// (I - gamma h J)^-1 (e_z, e_v), J the motion's Jacobian without the laws. Only with few laws.
   void filter(double h, Vector& e_z, Vector& e_v);
   /// Newton starts from the forces at this point.
-  void start_from(const StepPoint& point);
-  void update_scale(const StepPoint& point) { expect_force(largest_force(point)); }
+  void start_from(const EvaluatedState& point);
+  void update_scale(const EvaluatedState& point) { expect_force(largest_force(point)); }
   /// The largest force so far is at least this: of a run that was stepped elsewhere [N or N m].
   void expect_force(double force) { force_scale_ = std::max(force_scale_, force); }
 
@@ -72,7 +72,7 @@ class StepEquation {
   long factorizations() const { return factorizations_; }
   long solves() const { return solves_; }
   bool dense_contacts() const { return dense_; }
-  PhaseClock& clock() { return clock_; }
+  RunClock& clock() { return clock_; }
 
  private:
   struct Factor {
@@ -91,11 +91,11 @@ class StepEquation {
     return !factors_.empty() && factors_.back()->h == h ? *factors_.back() : find_factor(h);
   }
   Factor& find_factor(double h);
-  void evaluate_totals(const Vector& history, StepPoint& point, Vector* history_new);
-  NewtonResult solve_dense(Problem& problem, StepPoint& to);
-  NewtonResult solve_sparse(const Problem& problem, StepPoint& to);
+  void evaluate_totals(const Vector& history, EvaluatedState& point, Vector* history_new);
+  NewtonResult solve_dense(Problem& problem, EvaluatedState& to);
+  NewtonResult solve_sparse(const Problem& problem, EvaluatedState& to);
   /// Returns the largest change of z.
-  double correct(const Problem& problem, StepPoint& to) const;
+  double correct(const Problem& problem, EvaluatedState& to) const;
 
   const System& system_;
   Assembler assembler_;
@@ -111,7 +111,7 @@ class StepEquation {
   Vector linear_, rhs_, scratch_, history_, p_last_, lambda_, lambda_start_, values_;
   std::vector<ScalarInput> given_, free_;  // what laws see: known; without their forces
   double force_scale_ = 0.0;
-  PhaseClock clock_;
+  RunClock clock_;
   long load_passes_ = 0, factorizations_ = 0, solves_ = 0;
 };
 

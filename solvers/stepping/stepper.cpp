@@ -9,7 +9,7 @@
 
 namespace drev {
 
-void Stepper::start(StepPoint& point) {
+void Stepper::start(EvaluatedState& point) {
   equation_.assembler().set_time(point.state.t);
   equation_.evaluate(point.state.history, point);
   equation_.acceleration(point.total, point.state.a);
@@ -18,8 +18,8 @@ void Stepper::start(StepPoint& point) {
   equation_.update_scale(point);
 }
 
-void Stepper::estimate_by_quadrature(const StepPoint& from, const StepPoint& to, double h, Vector& e_z,
-                                     Vector& e_v) {
+void Stepper::estimate_by_quadrature(const EvaluatedState& from, const EvaluatedState& to, double h,
+                                     Vector& e_z, Vector& e_v) {
   struct Node {
     double s, weight;
   };
@@ -31,7 +31,7 @@ void Stepper::estimate_by_quadrature(const StepPoint& from, const StepPoint& to,
   // Accelerations that satisfy the equation of motion; those of generalized-alpha are of another time.
   const StepScheme& scheme = equation_.scheme();
   const bool own = scheme.alpha_m == 0.0 && scheme.alpha_f == 0.0;
-  const auto acceleration = [&](const StepPoint& point) -> const Vector& {
+  const auto acceleration = [&](const EvaluatedState& point) -> const Vector& {
     if (own) return point.state.a;
     equation_.acceleration(point.total, a_);
     return a_;
@@ -58,7 +58,7 @@ void Stepper::estimate_by_quadrature(const StepPoint& from, const StepPoint& to,
 std::unique_ptr<Stepper> make_stepper(const System& system, const StepScheme& scheme,
                                       const StepOptions& options) {
   if (scheme.tableau) return std::make_unique<RungeKutta>(system, scheme, options);
-  return std::make_unique<StepSolver>(system, scheme, options);
+  return std::make_unique<GeneralizedAlpha>(system, scheme, options);
 }
 
 }  // namespace drev

@@ -40,7 +40,7 @@ class Run {
         located_(system, *stepper_) {
     now_->state = std::move(state);
     now_->state.t = options.t_start;
-    for (StepPoint& point : points_) make_room(point, system.size());
+    for (EvaluatedState& point : points_) make_room(point, system.size());
     summary_.scheme = options.scheme.name;
     summary_.step = options.step;
     summary_.tolerance = options.tolerance;
@@ -64,13 +64,13 @@ class Run {
     summary_.solves = coarse_solves_ + equation_.solves();
     summary_.energy = energy.balance();
     if (equation_.clock().on()) {
-      equation_.clock().enter(Phase::observers);
-      const PhaseClock& clock = equation_.clock();
-      summary_.phases = {{"loads", clock.seconds(Phase::loads)},
-                         {"linear", clock.seconds(Phase::linear)},
-                         {"contacts", clock.seconds(Phase::contacts)},
-                         {"balance", clock.seconds(Phase::balance)},
-                         {"observers", clock.seconds(Phase::observers)}};
+      equation_.clock().enter(RunSection::observers);
+      const RunClock& clock = equation_.clock();
+      summary_.phases = {{"loads", clock.seconds(RunSection::loads)},
+                         {"linear", clock.seconds(RunSection::linear)},
+                         {"contacts", clock.seconds(RunSection::contacts)},
+                         {"balance", clock.seconds(RunSection::balance)},
+                         {"observers", clock.seconds(RunSection::observers)}};
     }
     judge_energy(summary_, options_.energy_tolerance);
     return summary_;
@@ -109,8 +109,8 @@ class Run {
     class Coarse final : public Observer {
      public:
       explicit Coarse(StepControl& control) : control_(control) {}
-      void start(const Assembler&, const StepPoint& point) override { control_.expect(point.state); }
-      void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
+      void start(const Assembler&, const EvaluatedState& point) override { control_.expect(point.state); }
+      void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override {
         control_.expect(to.state);
       }
 
@@ -287,7 +287,7 @@ class Run {
 
   /// Enters the step into the energy balance.
   void account(double h) {
-    equation_.clock().enter(Phase::balance);
+    equation_.clock().enter(RunSection::balance);
     if (options_.scheme.tableau) {
       const auto [input, dissipated] = step_energy_.over(equation_, *now_, *next_, h);
       energy_->step(*next_, input, dissipated);
@@ -298,16 +298,16 @@ class Run {
 
   /// Shows the step to the observers, controlled ones with the times wanted inside it.
   void observe(double h, double t_evaluate) {
-    equation_.clock().enter(Phase::observers);
+    equation_.clock().enter(RunSection::observers);
     if (observers_.empty()) return;
     Assembler& assembler = equation_.assembler();
-    const StepPoint* last = now_;
+    const EvaluatedState* last = now_;
     while (control_) {
       double wanted = std::numeric_limits<double>::infinity();
       for (const Observer* o : observers_)
         if (const double t = o->next_stop(last->state.t); t > last->state.t) wanted = std::min(wanted, t);
       if (!(wanted < next_->state.t)) break;
-      StepPoint& point = last == &inside_[0] ? inside_[1] : inside_[0];
+      EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
       StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
           .at((wanted - now_->state.t) / h, point.state);
       point.state.t = wanted;
@@ -352,8 +352,8 @@ class Run {
   LocatedStep located_;
   std::optional<StepControl> control_;
   StepEnergy step_energy_;
-  StepPoint points_[2], inside_[2];
-  StepPoint *now_ = &points_[0], *next_ = &points_[1];
+  EvaluatedState points_[2], inside_[2];
+  EvaluatedState *now_ = &points_[0], *next_ = &points_[1];
   Vector e_z_, e_v_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;

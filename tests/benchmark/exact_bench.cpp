@@ -36,15 +36,15 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
       "| drive, loads | exact [s] | steps | us a step | average acceleration [s] | ratio | "
       "error of exact | of average acceleration |\n");
   for (const auto& [drive, loads] : {std::pair{"held", "source"}, {"held", "actual"}, {"gears", "actual"}}) {
-    Settings s("camshaft", camshaft_entry().settings);
+    Parameters s("camshaft", camshaft_entry().parameters);
     s.set("drive", drive);
     s.set("loads", loads);
-    const Scene scene = camshaft_entry().build(s);
-    const System system = scene.model.build();
+    const ModelCase model_case = camshaft_entry().build(s);
+    const System system = model_case.model.build();
     RunSummary exact;
     const auto observed = [&](const auto& run) {
-      Peaks torque(find_channels(system, scene.torques));
-      Peaks deflection(find_channels(system, {scene.deflection}));
+      Peaks torque(find_channels(system, model_case.torques));
+      Peaks deflection(find_channels(system, {model_case.deflection}));
       ContactStatistics contacts(system);
       return run(std::vector<Observer*>{&torque, &deflection, &contacts});
     };

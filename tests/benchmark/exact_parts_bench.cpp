@@ -15,14 +15,14 @@ namespace {
 
 /// The camshaft without loads, its end struck.
 Model unloaded(const char* drive, const char* damping, const char* backlash_mm) {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("drive", drive);
   s.set("damping", damping);
   s.set("backlash_mm", backlash_mm);
   const Model from = camshaft_entry().build(s).model;
   Model m("camshaft without loads");
   for (const std::string& node : from.node_names()) m.add_node(node);
-  for (const Placement& p : from.placements())
+  for (const ElementInstance& p : from.element_instances())
     if (!p.name.starts_with("cam_")) m.add(p.name, p.nodes, p.element);
   for (const Model::Prescription& p : from.prescriptions()) m.constant_speed(p.node, *p.omega);
   m.set_initial("end", 0.0, 20.0);

@@ -50,8 +50,8 @@ double seconds(F&& call) {
 /// Processor time of the steps alone: from the end of the first one (which factors) to the last.
 class StepClock final : public Observer {
  public:
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler&, const StepPoint&, const StepPoint&) override {
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {
     ++steps_;
     if (steps_ == 1) first_ = now();
     last_ = now();
@@ -171,7 +171,7 @@ TEST_CASE("Large models: the ten lowest modes", "[modes]") {
         const ModeSet modes = solve_modes(system, {.count = 10});
         rounds.push_back(now() - start);
         for (int j = 0; shape == "chain" && j < 10; ++j)
-          worst = std::max(worst, std::abs(modes.frequency_Hz[at(j)] / chain_frequency(n, j + 1) - 1.0));
+          worst = std::max(worst, std::abs(modes.frequency_Hz[idx(j)] / chain_frequency(n, j + 1) - 1.0));
       }
       print("modes", shape, n, median(rounds), "s");
       if (n >= 20000) {

@@ -15,13 +15,13 @@
 using namespace drev;
 
 TEST_CASE("Main job: time per step and share by phase") {
-  const Scene scene = camshaft_entry().build(Settings("camshaft", camshaft_entry().settings));
-  const System system = scene.model.build();
+  const ModelCase model_case = camshaft_entry().build(Parameters("camshaft", camshaft_entry().parameters));
+  const System system = model_case.model.build();
   const auto run = [&](bool phases) {
-    Peaks torque(find_channels(system, scene.torques));
-    Peaks deflection(find_channels(system, {scene.deflection}));
+    Peaks torque(find_channels(system, model_case.torques));
+    Peaks deflection(find_channels(system, {model_case.deflection}));
     ContactStatistics contacts(system);
-    TransientOptions options{.step = scene.default_step, .t_end = scene.duration};
+    TransientOptions options{.step = model_case.default_step, .t_end = model_case.duration};
     options.newton.time_phases = phases;
     return simulate(system, options, {&torque, &deflection, &contacts});
   };

@@ -21,7 +21,7 @@ constexpr std::size_t kSingle = 2;
 
 /// part: 0 to 1 over the variants.
 System variant(double part) {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("engine_rpm", to_text(600.0 + 100.0 * part));
   s.set("backlash_mm", to_text(0.1 + 0.03 * part));
   return build_camshaft(s).model.build();

@@ -41,8 +41,8 @@ System gear_pair(MeshDamping law, double xi) {
 /// Largest force that pulls, largest force in the gap, largest jump of the force from one step to the next.
 class Faults final : public Observer {
  public:
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler&, const StepPoint& from, const StepPoint& to) override {
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState& from, const EvaluatedState& to) override {
     const double x = to.inputs[0].x, y = to.responses[0].y, half = 0.5 * kGap;
     if (std::abs(x) > half) pull = std::max(pull, -y * (x > 0 ? 1 : -1));
     if (std::abs(x) < half) in_gap = std::max(in_gap, std::abs(y));

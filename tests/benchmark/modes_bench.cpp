@@ -43,9 +43,9 @@ double off(const ModeSet& modes, const std::vector<double>& omegas) {
 }  // namespace
 
 TEST_CASE("Modes of the camshaft") {
-  Settings settings("camshaft", camshaft_entry().settings);
-  settings.set("drive", "free");
-  const System system = camshaft_entry().build(settings).model.build();
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", "free");
+  const System system = camshaft_entry().build(parameters).model.build();
   const int n = system.size(), one = 1, work_size = 10 * n * n, iwork_size = 10 * n;
   const Eigen::MatrixXd k = dense(system, system.stiffness_values());
   const Eigen::MatrixXd m = dense(system, system.mass_values());

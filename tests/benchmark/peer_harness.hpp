@@ -79,11 +79,11 @@ inline double firing_phase(int cylinder) {
   return -kTwoPi * static_cast<double>(place) / 9.0;
 }
 
-/// The scene's model with pulses in place of its cams.
+/// The model case's model with pulses in place of its cams.
 inline Model with_pulses(const Model& from) {
   Model m("camshaft with smooth pulses");
   for (const std::string& node : from.node_names()) m.add_node(node);
-  for (const Placement& p : from.placements())
+  for (const ElementInstance& p : from.element_instances())
     if (!p.name.starts_with("cam_")) m.add(p.name, p.nodes, p.element);
   for (int k = 1; k <= 9; ++k)
     for (const Cam& cam : kCams) {
@@ -191,10 +191,10 @@ inline double difference(const System& s, const Chain& c) {
 }
 
 inline Problem make_problem(const std::string& drive, bool smooth) {
-  Settings settings("camshaft", camshaft_entry().settings);
-  settings.set("drive", drive);
-  const Scene scene = camshaft_entry().build(settings);
-  System system = (smooth ? with_pulses(scene.model) : scene.model).build();
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", drive);
+  const ModelCase model_case = camshaft_entry().build(parameters);
+  System system = (smooth ? with_pulses(model_case.model) : model_case.model).build();
   Chain chain = make_chain(system, smooth);
   const double off = difference(system, chain);
   REQUIRE(off < 1e-12);
@@ -211,8 +211,8 @@ class EndAngle final : public Observer {
       : end_(p.chain.end), sampler_(p.horizon(), 1), times_(std::move(times)) {}
   EndAngle(const Problem& p, int count) : end_(p.chain.end), sampler_(p.horizon(), count) {}
 
-  void start(const Assembler&, const StepPoint&) override {}
-  void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override {
     const double t = to.state.t, angle = to.state.z[end_];
     if (times_.empty()) return sampler_.see(t, angle, samples);
     while (next_ < times_.size() && t >= times_[next_] - 1e-13) samples.push_back({times_[next_++], angle});

@@ -19,7 +19,7 @@ namespace {
 using Numbers = std::vector<double>;
 
 ModeSet camshaft_modes(int cylinders, const char* drive, int count) {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("cylinders", std::to_string(cylinders));
   s.set("drive", drive);
   return solve_modes(camshaft_entry().build(s).model.build(), {.count = count});

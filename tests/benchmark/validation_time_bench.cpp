@@ -168,18 +168,18 @@ TEST_CASE("Held camshaft: 36 targets") {
       "static [N m] | target | amplification | target |\n");
   double worst[4] = {};
   for (const auto& row : read_csv("camshaft_transient_targets.csv")) {
-    Settings s("camshaft", camshaft_entry().settings);
+    Parameters s("camshaft", camshaft_entry().parameters);
     s.set("cylinders", row[0]);
     s.set("damping", row[1]);
     s.set("drive", "held");
     s.set("loads", "source");
-    const Scene scene = camshaft_entry().build(s);
-    const System system = scene.model.build();
-    Peaks deflection(find_channels(system, {scene.deflection}));
-    Peaks torque(find_channels(system, scene.torques));
-    simulate(system, {.step = std::stod(row[2]), .t_end = scene.duration}, {&deflection, &torque});
+    const ModelCase model_case = camshaft_entry().build(s);
+    const System system = model_case.model.build();
+    Peaks deflection(find_channels(system, {model_case.deflection}));
+    Peaks torque(find_channels(system, model_case.torques));
+    simulate(system, {.step = std::stod(row[2]), .t_end = model_case.duration}, {&deflection, &torque});
     double static_torque = 0.0;
-    for (const Peak& p : static_sweep(system, find_channels(system, scene.torques), 0.0, kTwoPi, 1440))
+    for (const Peak& p : static_sweep(system, find_channels(system, model_case.torques), 0.0, kTwoPi, 1440))
       static_torque = std::max(static_torque, p.amplitude());
     const double largest = torque.peaks()[torque.largest()].amplitude();
     const double found[4] = {to_deg(deflection.peaks()[0].amplitude()), largest, static_torque,

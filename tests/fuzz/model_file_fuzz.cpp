@@ -221,20 +221,20 @@ bool placed(const std::string& place) {
          column + 1 < place.size() && std::isdigit(static_cast<unsigned char>(place[column + 1]));
 }
 
-/// A scene that was accepted can be written, and what is read back is written the same.
-std::string write_again(const drev::app::ModelFile& file, const drev::Settings& settings,
-                        const drev::Scene& scene) {
+/// A model case that was accepted can be written, and what is read back is written the same.
+std::string write_again(const drev::app::ModelFile& file, const drev::Parameters& parameters,
+                        const drev::ModelCase& model_case) {
   using namespace drev;
   std::string first;
   try {
-    first = app::export_scene(file.entry(), settings, scene);
+    first = app::export_scene(file.entry(), parameters, model_case);
   } catch (const ModelError&) {
     return "";  // a motion that a file gives, but an export cannot name
   }
   try {
     const app::ModelFile back(first, "again.toml", "");
-    const Scene same = back.entry().build(Settings(back.entry().name, {}));
-    const std::string second = app::export_scene(file.entry(), settings, same);
+    const ModelCase same = back.entry().build(Parameters(back.entry().name, {}));
+    const std::string second = app::export_scene(file.entry(), parameters, same);
     return first == second ? "" : "written twice, it differs:\n" + first + "\n----\n" + second;
   } catch (const ModelError& error) {
     return "written, it is refused: " + std::string(error.what()) + "\n" + first;
@@ -246,10 +246,10 @@ std::string take(const std::string& text, const std::string& path, long& accepte
   using namespace drev;
   try {
     const app::ModelFile file(text, path, "");
-    const Settings settings(file.entry().name, file.entry().settings);
-    const Scene scene = file.entry().build(settings);
-    file.run_options(settings);
-    if (++accepted % 4 == 0) return write_again(file, settings, scene);
+    const Parameters parameters(file.entry().name, file.entry().parameters);
+    const ModelCase model_case = file.entry().build(parameters);
+    file.run_options(parameters);
+    if (++accepted % 4 == 0) return write_again(file, parameters, model_case);
   } catch (const ModelError& error) {
     for (const Finding& finding : error.findings())
       if (!placed(finding.place) || finding.range.empty())

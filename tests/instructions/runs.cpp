@@ -20,9 +20,9 @@ namespace {
 constexpr double kDuration = 0.02;  // s
 
 System camshaft(const char* drive) {
-  Settings settings("camshaft", camshaft_entry().settings);
-  settings.set("drive", drive);
-  return camshaft_entry().build(settings).model.build();
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", drive);
+  return camshaft_entry().build(parameters).model.build();
 }
 
 System chain(int n) {

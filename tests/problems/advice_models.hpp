@@ -13,7 +13,7 @@
 #include "core/system.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/modes/modes.hpp"
 #include "solvers/statics.hpp"
 #include "tests/stability/random_model.hpp"
@@ -27,7 +27,7 @@ class AdviceModelMaker {
   explicit AdviceModelMaker(int which)
       : kind_(which / 5), seed_(which % 5), random_(static_cast<unsigned>(1000 + which)) {}
 
-  Scene make() {
+  ModelCase make() {
     static constexpr const char* kKinds[] = {"distributed shaft",
                                              "distributed shaft behind gears",
                                              "chain behind gears, loaded one way",
@@ -84,12 +84,12 @@ class AdviceModelMaker {
     const double first = std::sqrt(stiffness_ / (3.0 * inertia_));  // rad/s, rough
     m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 2.0 * keep(0.01, 0.04) * first});
     load(m, loaded, first / turn, keep);
-    scene_ = Scene{.model = std::move(m),
-                   .duration = keep(8.0, 14.0) * kTwoPi / first,
-                   .default_step = 1e-5,
-                   .deflection = "end-gear.twist_rad",
-                   .torques = torques,
-                   .static_turn = kTwoPi / ratio};
+    scene_ = ModelCase{.model = std::move(m),
+                       .duration = keep(8.0, 14.0) * kTwoPi / first,
+                       .default_step = 1e-5,
+                       .deflection = "end-gear.twist_rad",
+                       .torques = torques,
+                       .static_turn = kTwoPi / ratio};
   }
 
   void mesh(Model& m, const std::string& name, const std::string& a, const std::string& b, double ratio,
@@ -179,16 +179,16 @@ class AdviceModelMaker {
     for (int i = 0; i < system.node_count(); ++i) {
       const NodeMap& map = system.node_map(i);
       if (map.unknown >= 0)
-        scene_.model.set_initial(system.node_names()[at(i)], map.coeff * rest.state.z[map.unknown], 0.0);
+        scene_.model.set_initial(system.node_names()[idx(i)], map.coeff * rest.state.z[map.unknown], 0.0);
     }
   }
 
   int kind_, seed_;
   Random random_;
   double speed_ = 0.0, ratio_ = 1.0, tooth_k_ = 1e8, inertia_ = 1.0, stiffness_ = 1e5;
-  Scene scene_{.model = Model("")};
+  ModelCase scene_{.model = Model("")};
 };
 
-inline Scene advice_model(int which) { return AdviceModelMaker(which).make(); }
+inline ModelCase advice_model(int which) { return AdviceModelMaker(which).make(); }
 
 }  // namespace drev::test

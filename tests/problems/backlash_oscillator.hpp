@@ -34,8 +34,9 @@ inline constexpr double kCase7[4][3] = {{0.1, 0.2498358550, 52.8937186},
 /// Times at which the speed of the first unknown changes sign, placed linearly in the step.
 class Reversals final : public drev::Observer {
  public:
-  void start(const drev::Assembler&, const drev::StepPoint&) override {}
-  void step(const drev::Assembler&, const drev::StepPoint& from, const drev::StepPoint& to) override {
+  void start(const drev::Assembler&, const drev::EvaluatedState&) override {}
+  void step(const drev::Assembler&, const drev::EvaluatedState& from,
+            const drev::EvaluatedState& to) override {
     const double v0 = from.state.v[0], v1 = to.state.v[0];
     if (v0 * v1 < 0.0) times.push_back(from.state.t + (to.state.t - from.state.t) * v0 / (v0 - v1));
   }

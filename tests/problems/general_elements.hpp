@@ -14,7 +14,7 @@ class HistoryElement : public Element, public GeneralForce {
   int max_nodes() const override { return 2; }
   void describe(int nodes, Terms& terms) const override {
     terms.generals.push_back(this);
-    terms.closures.push_back({.b = relative_motion(nodes)});
+    terms.speed_ratio_constraints.push_back({.b = relative_motion(nodes)});
   }
   void evaluate(const LocalState& s, LocalResponse& r) const override {
     const double x = s.q.size() == 1 ? s.q[0] : s.q[1] - s.q[0];

@@ -16,24 +16,24 @@ TEST_CASE("Held camshaft, transient: all 36 targets of a separate program to 0.2
   const auto rows = read_csv("camshaft_transient_targets.csv");
   REQUIRE(rows.size() == 36);
   for (const auto& row : rows) {
-    Settings settings("camshaft", camshaft_entry().settings);
-    settings.set("cylinders", row[0]);
-    settings.set("damping", row[1]);
-    settings.set("drive", "held");
-    settings.set("loads", "source");
-    const Scene scene = camshaft_entry().build(settings);
-    const System system = scene.model.build();
-    Peaks deflection(find_channels(system, {scene.deflection}));
-    Peaks torque(find_channels(system, scene.torques));
+    Parameters parameters("camshaft", camshaft_entry().parameters);
+    parameters.set("cylinders", row[0]);
+    parameters.set("damping", row[1]);
+    parameters.set("drive", "held");
+    parameters.set("loads", "source");
+    const ModelCase model_case = camshaft_entry().build(parameters);
+    const System system = model_case.model.build();
+    Peaks deflection(find_channels(system, {model_case.deflection}));
+    Peaks torque(find_channels(system, model_case.torques));
     const RunSummary run =
-        simulate(system, {.step = std::stod(row[2]), .t_end = scene.duration}, {&deflection, &torque});
+        simulate(system, {.step = std::stod(row[2]), .t_end = model_case.duration}, {&deflection, &torque});
     INFO(row[0] << " cylinders, " << row[1] << ", h = " << row[2]);
     CHECK(run.status != RunStatus::unstable);
     CHECK(to_deg(deflection.peaks()[0].amplitude()) == Approx(std::stod(row[3])).epsilon(2e-3));
     const double largest = torque.peaks()[torque.largest()].amplitude();
     CHECK(largest == Approx(std::stod(row[4])).epsilon(2e-3));
     double static_torque = 0.0;
-    for (const Peak& p : static_sweep(system, find_channels(system, scene.torques), 0.0, kTwoPi, 1440))
+    for (const Peak& p : static_sweep(system, find_channels(system, model_case.torques), 0.0, kTwoPi, 1440))
       static_torque = std::max(static_torque, p.amplitude());
     CHECK(static_torque == Approx(std::stod(row[6])).epsilon(2e-3));
     CHECK(largest / static_torque == Approx(std::stod(row[5])).epsilon(4e-3));

@@ -17,7 +17,7 @@ namespace {
 
 System build_exact_case(const std::string& name) {
   const bool b = name == "case_B";
-  Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
+  Parameters s("two_mass_backlash", two_mass_backlash_entry().parameters);
   s.set("k_2_N_per_m", b ? "1000" : "2000");
   s.set("half_gap_1_m", name == "case_A" ? "0" : "0.05");
   s.set("half_gap_2_m", name == "case_A" ? "0" : b ? "0.03" : "0.05");

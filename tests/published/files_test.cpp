@@ -16,11 +16,12 @@ using namespace drev;
 
 namespace {
 
-Scene scene_of(const std::string& name, const std::vector<std::pair<std::string, std::string>>& set = {}) {
+ModelCase scene_of(const std::string& name,
+                   const std::vector<std::pair<std::string, std::string>>& set = {}) {
   const app::ModelFile file(std::string(DREV_SOURCE_DIR "/tests/published/cases/") + name + ".toml", "");
-  Settings settings(file.entry().name, file.entry().settings);
-  for (const auto& [key, value] : set) settings.set(key, value);
-  return file.entry().build(settings);
+  Parameters parameters(file.entry().name, file.entry().parameters);
+  for (const auto& [key, value] : set) parameters.set(key, value);
+  return file.entry().build(parameters);
 }
 
 void check_modes(const std::string& name, const std::vector<double>& hertz, double tolerance,
@@ -33,8 +34,8 @@ void check_modes(const std::string& name, const std::vector<double>& hertz, doub
     CHECK(std::abs(modes.frequency_Hz[i] - hertz[i]) <= tolerance);
 }
 
-double contact_ratio(const Scene& scene, const std::string& mesh) {
-  for (const Placement& placement : scene.model.placements())
+double contact_ratio(const ModelCase& model_case, const std::string& mesh) {
+  for (const ElementInstance& placement : model_case.model.element_instances())
     if (placement.name == mesh)
       return std::get<MeshStiffness::Step>(
                  dynamic_cast<const GearMesh&>(*placement.element).params().stiffness.law())
@@ -43,12 +44,12 @@ double contact_ratio(const Scene& scene, const std::string& mesh) {
 }
 
 /// What the file records, at multiples of `every`.
-std::vector<std::vector<double>> recorded(const Scene& scene, double every, double t_end) {
-  const System system = scene.model.build();
-  Recorder recorder(system, scene.channels, every);
+std::vector<std::vector<double>> recorded(const ModelCase& model_case, double every, double t_end) {
+  const System system = model_case.model.build();
+  Recorder recorder(system, model_case.channels, every);
   CHECK(propagate(system, {.tolerance = 1e-13, .t_end = t_end}, {&recorder}).ok());
   std::vector<std::vector<double>> all;
-  for (std::size_t c = 0; c < scene.channels.size(); ++c) all.push_back(recorder.samples(c));
+  for (std::size_t c = 0; c < model_case.channels.size(); ++c) all.push_back(recorder.samples(c));
   return all;
 }
 
@@ -70,8 +71,8 @@ TEST_CASE("Files of cases 1 to 6 and 12: modes") {
 }
 
 TEST_CASE("File of case 7: backlash with a damper that never pulls") {
-  const Scene scene = scene_of("07_backlash_limited_damper");
-  const auto samples = recorded(scene, 0.05, scene.duration);
+  const ModelCase model_case = scene_of("07_backlash_limited_damper");
+  const auto samples = recorded(model_case, 0.05, model_case.duration);
   for (const auto& e : kCase7) {
     const auto i = static_cast<std::size_t>(std::lround(e[0] / 0.05));
     CHECK(samples[0][i] == Approx(e[1]).margin(2e-10));
@@ -83,16 +84,16 @@ TEST_CASE("File of case 7: backlash with a damper that never pulls") {
 }
 
 TEST_CASE("File of case 8: after a whole number of periods, in closed form, the disc is where it was") {
-  const Scene scene = scene_of("08_symmetric_gap");
+  const ModelCase model_case = scene_of("08_symmetric_gap");
   const double period = 0.1204277338;
-  const auto samples = recorded(scene, period, 4 * period);
+  const auto samples = recorded(model_case, period, 4 * period);
   // At a turning point an error of the time, 4 x 5e-11 s, enters squared.
   for (std::size_t i = 0; i <= 4; ++i) CHECK(samples[0][i] == Approx(std::acos(-1.0) / 2).margin(1e-12));
 }
 
 TEST_CASE("File of case 9: ideal gear, forced") {
-  const Scene scene = scene_of("09_ideal_gear");
-  const auto samples = recorded(scene, 0.5, scene.duration);
+  const ModelCase model_case = scene_of("09_ideal_gear");
+  const auto samples = recorded(model_case, 0.5, model_case.duration);
   CHECK(samples[0][1] == Approx(0.0681818).margin(0.5e-7));
   CHECK(samples[1][1] == Approx(0.2727273).margin(0.5e-7));
   // The gear turns 100 kg m^2 at -0.0545454545 rad/s^2.
@@ -106,7 +107,7 @@ TEST_CASE("File of case 10: damped modes") {
 }
 
 TEST_CASE("File of case 11: involute contact ratios") {
-  const Scene scene = scene_of("11_contact_ratio");
-  CHECK(contact_ratio(scene, "first") == Approx(1.6377334309511222).epsilon(1e-12));
-  CHECK(contact_ratio(scene, "second") == Approx(1.7897798668).epsilon(1e-10));
+  const ModelCase model_case = scene_of("11_contact_ratio");
+  CHECK(contact_ratio(model_case, "first") == Approx(1.6377334309511222).epsilon(1e-12));
+  CHECK(contact_ratio(model_case, "second") == Approx(1.7897798668).epsilon(1e-10));
 }

@@ -17,7 +17,7 @@ namespace {
 
 System build_case(const std::string& name, const std::string& k_1 = "2000", const std::string& k_2 = "") {
   const bool b = name == "case_B";
-  Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
+  Parameters s("two_mass_backlash", two_mass_backlash_entry().parameters);
   s.set("k_1_N_per_m", k_1);
   s.set("k_2_N_per_m", !k_2.empty() ? k_2 : b ? "1000" : "2000");
   s.set("half_gap_1_m", name == "case_A" ? "0" : "0.05");

@@ -22,13 +22,13 @@ Method another(const Method& method) {
   return {.name = "bathe", .step = 0.25 * method.step};
 }
 
-void check_promise(const Scene& scene, const Advice& a) {
-  INFO(scene.model.name() << ": " << a.sentence);
+void check_promise(const ModelCase& model_case, const Advice& a) {
+  INFO(model_case.model.name() << ": " << a.sentence);
   for (const Rung& rung : a.rungs)
     UNSCOPED_INFO(rung.name << ": " << rung.value << " +- " << rung.error << (rung.holds ? " holds" : "")
                             << "; " << rung.unsuitable << rung.evidence);
   const Rung& full = a.full();
-  const System system = scene.model.build();
+  const System system = model_case.model.build();
   const double truth = figure_of_run(system, another(full.recipe.method), full.recipe.figure);
   if (a.chosen + 1 == a.rungs.size() && a.statistic) {  // runs of the full model itself differ by more
     CHECK(std::abs(full.value - truth) <= 2.0 * full.error);
@@ -40,8 +40,8 @@ void check_promise(const Scene& scene, const Advice& a) {
     if (rung.holds && !a.statistic) CHECK(std::abs(rung.value - truth) <= kWithin * std::abs(truth));
 }
 
-Settings camshaft(int cylinders, double engine_rpm, const char* drive) {
-  Settings s("camshaft", camshaft_entry().settings);
+Parameters camshaft(int cylinders, double engine_rpm, const char* drive) {
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("cylinders", std::to_string(cylinders));
   s.set("engine_rpm", to_text(engine_rpm));
   s.set("drive", drive);
@@ -57,9 +57,9 @@ double worst_speed(int cylinders) {
   double worst = 0.0, largest = 0.0;
   for (int order = 8; order <= 20; ++order) {
     const double speed = 2.0 * 60.0 * f / order;
-    const Scene scene = build_camshaft(camshaft(cylinders, speed, "held"));
+    const ModelCase model_case = build_camshaft(camshaft(cylinders, speed, "held"));
     const PeriodicResponse r =
-        solve_periodic(scene.model.build(), {.tolerance = 0.02, .channels = {scene.deflection}});
+        solve_periodic(model_case.model.build(), {.tolerance = 0.02, .channels = {model_case.deflection}});
     if (r.found && r.peaks[0].amplitude() > largest) largest = r.peaks[0].amplitude(), worst = speed;
   }
   return worst;
@@ -68,11 +68,11 @@ double worst_speed(int cylinders) {
 void check_models(int begin, int end) {
   int simpler = 0;
   for (int i = begin; i < end; ++i) {
-    const Scene scene = test::advice_model(i);
+    const ModelCase model_case = test::advice_model(i);
     // One in four for the torques.
     const Advice a =
-        advise(scene, {.figure = i % 4 == 3 ? "peak torque" : "peak deflection", .within = kWithin});
-    check_promise(scene, a);
+        advise(model_case, {.figure = i % 4 == 3 ? "peak torque" : "peak deflection", .within = kWithin});
+    check_promise(model_case, a);
     simpler += a.chosen + 1 < a.rungs.size();
   }
   CHECK(simpler >= (end - begin) / 2);  // the full model each time would be right too
@@ -93,13 +93,13 @@ TEST_CASE("Advice keeps its promise on the camshaft with 6 to 10 cylinders") {
     for (const double speed : {750.0, worst_speed(cylinders)}) {
       REQUIRE(speed > 0.0);
       INFO(cylinders << " cylinders at " << speed << " rpm");
-      const Scene scene = build_camshaft(camshaft(cylinders, speed, "gears"));
-      check_promise(scene, advise(scene, {.within = kWithin}));
+      const ModelCase model_case = build_camshaft(camshaft(cylinders, speed, "gears"));
+      check_promise(model_case, advise(model_case, {.within = kWithin}));
     }
 }
 
 TEST_CASE("Advice on a steady figure: the periodic response in place of a run") {
-  const Scene scene = build_camshaft(camshaft(6, 750, "held"));
-  const Advice a = advise(scene, {.figure = "steady peak deflection", .within = kWithin});
-  check_promise(scene, a);
+  const ModelCase model_case = build_camshaft(camshaft(6, 750, "held"));
+  const Advice a = advise(model_case, {.figure = "steady peak deflection", .within = kWithin});
+  check_promise(model_case, a);
 }

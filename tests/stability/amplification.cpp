@@ -23,12 +23,12 @@ std::vector<Eigen::Vector3d> run_steps(const System& system, const std::string& 
                                        double v, int count) {
   class Keep final : public Observer {
    public:
-    void start(const Assembler&, const StepPoint& p) override { keep(p); }
-    void step(const Assembler&, const StepPoint&, const StepPoint& to) override { keep(to); }
+    void start(const Assembler&, const EvaluatedState& p) override { keep(p); }
+    void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override { keep(to); }
     std::vector<Eigen::Vector3d> states;
 
    private:
-    void keep(const StepPoint& p) { states.emplace_back(p.state.z[0], p.state.v[0], p.state.a[0]); }
+    void keep(const EvaluatedState& p) { states.emplace_back(p.state.z[0], p.state.v[0], p.state.a[0]); }
   } keep;
   State state = State::initial(system);
   state.z[0] = z;

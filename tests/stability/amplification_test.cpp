@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/error.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

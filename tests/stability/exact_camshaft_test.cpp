@@ -16,7 +16,7 @@ using namespace drev;
 namespace {
 
 System camshaft(const std::string& drive, const std::string& loads, const std::string& damping) {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("drive", drive);
   s.set("loads", loads);
   s.set("damping", damping);

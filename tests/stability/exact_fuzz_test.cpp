@@ -35,17 +35,17 @@ class PieceCheck final : public Observer {
   explicit PieceCheck(const System& system) : system_(system) {}
   void note(const ContactChange& change) { pending_.push_back(change); }
 
-  void start(const Assembler&, const StepPoint& point) override {
+  void start(const Assembler&, const EvaluatedState& point) override {
     for (std::size_t j = 0; j < system_.scalars().size(); ++j) pieces_.push_back(-1);
     first_ = point.inputs;
   }
 
-  void step(const Assembler& assembler, const StepPoint& from, const StepPoint& to) override {
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
     std::size_t done = 0;
     for (; done < pending_.size() && pending_[done].t <= from.state.t; ++done)
-      pieces_[at(pending_[done].law)] = pending_[done].to;
+      pieces_[idx(pending_[done].law)] = pending_[done].to;
     check(assembler, from, to);
-    for (; done < pending_.size(); ++done) pieces_[at(pending_[done].law)] = pending_[done].to;
+    for (; done < pending_.size(); ++done) pieces_[idx(pending_[done].law)] = pending_[done].to;
     pending_.clear();
   }
 
@@ -65,7 +65,7 @@ class PieceCheck final : public Observer {
     }
   }
 
-  void check(const Assembler& assembler, const StepPoint& from, const StepPoint& to) {
+  void check(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
     find_first_pieces();
     const int n = system_.size();
     const double h = to.state.t - from.state.t;
@@ -79,7 +79,7 @@ class PieceCheck final : public Observer {
     }
     Vector p = from.p;
     for (std::size_t j = 0; j < pieces_.size(); ++j) {
-      const LawPiece& piece = system_.scalars()[j].force->pieces()[at(pieces_[j])];
+      const LawPiece& piece = system_.scalars()[j].force->pieces()[idx(pieces_[j])];
       Vector b = Vector::Zero(n);
       for (const Entry& e : system_.scalars()[j].z) b[e.index] += e.coeff;
       k += piece.k * b * b.transpose();
@@ -110,7 +110,7 @@ class PieceCheck final : public Observer {
           x += e.coeff * y[e.index];
           x_dot += e.coeff * y[n + e.index] / h;
         }
-        for (const LawBound& b : system_.scalars()[j].force->pieces()[at(pieces_[j])].bounds) {
+        for (const LawBound& b : system_.scalars()[j].force->pieces()[idx(pieces_[j])].bounds) {
           const double scale = std::abs(b.a) + std::abs(b.b_x) * z_scale_ + std::abs(b.b_v) * v_scale_;
           worst_bound = std::max(worst_bound, -(b.a + b.b_x * x + b.b_v * x_dot) / scale);
         }
@@ -133,7 +133,7 @@ class PointCheck final : public Observer {
  public:
   explicit PointCheck(const System& system) : system_(system) {}
   void note(const ContactChange& change) { pending_.push_back(change); }
-  void start(const Assembler&, const StepPoint& point) override {
+  void start(const Assembler&, const EvaluatedState& point) override {
     pieces_.assign(system_.scalars().size(), -1);
     for (std::size_t j = 0; j < pieces_.size(); ++j) {
       const auto pieces = system_.scalars()[j].force->pieces();
@@ -141,17 +141,17 @@ class PointCheck final : public Observer {
         if (least_bound(pieces[i], point.inputs[j]) >= 0.0) pieces_[j] = static_cast<int>(i);
     }
   }
-  void step(const Assembler&, const StepPoint& from, const StepPoint& to) override {
+  void step(const Assembler&, const EvaluatedState& from, const EvaluatedState& to) override {
     std::size_t done = 0;
     for (; done < pending_.size() && pending_[done].t <= from.state.t; ++done)
-      pieces_[at(pending_[done].law)] = pending_[done].to;
+      pieces_[idx(pending_[done].law)] = pending_[done].to;
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
     z_scale_ = std::max(z_scale_, to.state.z.lpNorm<Eigen::Infinity>());
     v_scale_ = std::max(v_scale_, to.state.v.lpNorm<Eigen::Infinity>());
     for (std::size_t j = 0; j < pieces_.size(); ++j) {
       if (pieces_[j] < 0) continue;  // not a law of pieces
       worst_bound = std::max(
-          worst_bound, -least_bound(system_.scalars()[j].force->pieces()[at(pieces_[j])], to.inputs[j]));
+          worst_bound, -least_bound(system_.scalars()[j].force->pieces()[idx(pieces_[j])], to.inputs[j]));
     }
   }
   double worst_bound = 0.0;

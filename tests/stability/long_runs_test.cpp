@@ -17,8 +17,8 @@ TEST_CASE("Two million steps: the clock reads n h, the phase is the method's own
   class Clock final : public Observer {
    public:
     explicit Clock(double h) : h_(h) {}
-    void start(const Assembler&, const StepPoint&) override {}
-    void step(const Assembler&, const StepPoint&, const StepPoint& to) override {
+    void start(const Assembler&, const EvaluatedState&) override {}
+    void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override {
       summed += h_;
       ++n;
       worst = std::max(worst, std::abs(to.state.t - static_cast<double>(n) * h_));

@@ -128,7 +128,7 @@ class RandomModelMaker {
     model_.add<drev::ShaftSpring>("shaft" + node(i), {other, node(i)}, {.stiffness = k});
     if (damped_ && random_.below(2))
       model_.add<drev::Dashpot>("dashpot" + node(i), {other, node(i)},
-                                {.damping = random_(0.0, 0.1) * std::sqrt(k * inertia_[drev::at(i)])});
+                                {.damping = random_(0.0, 0.1) * std::sqrt(k * inertia_[drev::idx(i)])});
   }
 
   std::vector<drev::NodeRef> ends() {

@@ -59,7 +59,7 @@ TEST_CASE("Estimate of a reduced run's error: above the true one, and of its siz
       const std::vector<std::string> channels{"n0.angle_rad", "k3.torque_Nm", "k12.torque_Nm",
                                               "n20.speed_rad_per_s"};
       const Reduction r = reduce(d.system, {.modes = 8});
-      LeftOutModes watch(d.system, r, channels);
+      TruncationError watch(d.system, r, channels);
       Recorder full(d.system, channels, d.t_end / 4000), reduced(r.system, channels, d.t_end / 4000);
       const ExactOptions options{.tolerance = 1e-10, .t_end = d.t_end};
       const RunSummary run_full = propagate(d.system, options, {&full});
@@ -115,7 +115,7 @@ TEST_CASE("A reduction is chosen where it pays, with the accuracy asked for") {
     }
   }
   // 39 unknowns, loads on 27 of them, and stiff meshes: nothing to gain.
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("drive", "gears");
   const ReductionChoice none =
       choose_reduction(camshaft_entry().build(s).model.build(), 0.01, {"mesh_1.force_N"}, 1.0);

@@ -35,8 +35,8 @@ const Kind kKinds[] = {
 /// Largest deviation and rate of a run.
 class Scales final : public Observer {
  public:
-  void start(const Assembler&, const StepPoint& point) override { look_at(point.state); }
-  void step(const Assembler&, const StepPoint&, const StepPoint& to) override { look_at(to.state); }
+  void start(const Assembler&, const EvaluatedState& point) override { look_at(point.state); }
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override { look_at(to.state); }
   double difference(const State& a, const State& b) const {
     return std::max((a.z - b.z).lpNorm<Eigen::Infinity>() / z, (a.v - b.v).lpNorm<Eigen::Infinity>() / v);
   }

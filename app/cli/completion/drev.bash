@@ -1,4 +1,4 @@
-# Completion of drev's commands, options, models, settings and channels in bash; files where none fits.
+# Completion of drev's commands, options, models, parameters and channels in bash; files where none fits.
 _drev() {
   local line=${COMP_LINE:0:COMP_POINT} words
   read -ra words <<<"$line"

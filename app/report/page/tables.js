@@ -327,6 +327,6 @@ function showInputs() {
   for (const input of (runs[1]?.inputs ?? []).filter((i) => !runs[0].inputs.some((j) => j.name === i.name)))
     rows.push([input.name, "–", input.value, input.unit, input.default, input.range, input.meaning]);
   section.append(
-    table(["setting", ...(compared ? ["A", "B"] : ["value"]), "unit", "default", "range", "meaning"], rows),
+    table(["parameter", ...(compared ? ["A", "B"] : ["value"]), "unit", "default", "range", "meaning"], rows),
   );
 }

@@ -37,10 +37,10 @@ std::vector<double> scaled(const std::vector<double>& x, double factor) {
   return y;
 }
 
-void main_job(const Scene& scene, const System& system) {
-  Recorder r(system, {"mesh_1.force_N", "mesh_2.force_N", scene.deflection}, 2e-5);
+void main_job(const ModelCase& model_case, const System& system) {
+  Recorder r(system, {"mesh_1.force_N", "mesh_2.force_N", model_case.deflection}, 2e-5);
   const double cycle = 60.0 / 375;  // one turn of the camshaft at 750 rpm
-  simulate(system, {.step = scene.default_step, .t_end = 2 * cycle}, {&r});
+  simulate(system, {.step = model_case.default_step, .t_end = 2 * cycle}, {&r});
   // The second of two.
   const auto n = r.times().size() / 2;
   const auto last = [n](const std::vector<double>& all) {
@@ -91,8 +91,8 @@ void camshaft_modes(const System& system) {
 }
 
 void work_precision() {
-  Settings settings("two_mass_backlash", two_mass_backlash_entry().settings);
-  const System system = two_mass_backlash_entry().build(settings).model.build();
+  Parameters parameters("two_mass_backlash", two_mass_backlash_entry().parameters);
+  const System system = two_mass_backlash_entry().build(parameters).model.build();
   std::vector<ChartSeries> series;
   // Case B at 2 s; reference: average acceleration with a step 125 times smaller than the smallest.
   const auto position = [&](const StepScheme& scheme, double h) {
@@ -159,9 +159,9 @@ void mesh_damping() {
 int main(int argc, char** argv) {
   folder = argc > 1 ? argv[1] : ".";
   try {
-    const Scene scene = camshaft_entry().build(Settings("camshaft", camshaft_entry().settings));
-    const System system = scene.model.build();
-    main_job(scene, system);
+    const ModelCase model_case = camshaft_entry().build(Parameters("camshaft", camshaft_entry().parameters));
+    const System system = model_case.model.build();
+    main_job(model_case, system);
     camshaft_modes(system);
     work_precision();
     mesh_damping();

@@ -15,7 +15,7 @@ using namespace drev;
 namespace {
 
 Model camshaft(const char* drive) {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("cylinders", "6");
   s.set("drive", drive);
   return build_camshaft(s).model;
@@ -51,7 +51,8 @@ TEST_CASE("The drive held is the camshaft with its gear held") {
   const std::string twist = "inlet_6-fuel_1.twist_rad";
   const auto held = with_drive_held(gears, nodes_of(gears, {twist}));
   REQUIRE(held);
-  CHECK(held->placements().size() + 4 == gears.placements().size());  // two inertias, two meshes
+  CHECK(held->element_instances().size() + 4 ==
+        gears.element_instances().size());  // two inertias, two meshes
   CHECK(peak(*held, twist, 0.05) == Approx(peak(camshaft("held"), twist, 0.05)).epsilon(1e-9));
   // Rigid meshes leave the crank gear's constant speed nothing else to do.
   CHECK(peak(*with_rigid_meshes(gears), twist, 0.05) == Approx(peak(*held, twist, 0.05)).epsilon(1e-9));

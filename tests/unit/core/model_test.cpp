@@ -37,7 +37,7 @@ TEST_CASE("A sound model builds, again and again, and outlives its description")
   CHECK(system->name() == "pump_set");
   CHECK(system->node("pump") == 1);
   CHECK(system->unknown_name(0) == "motor");
-  CHECK(system->placements().size() == 3);
+  CHECK(system->element_instances().size() == 3);
   REQUIRE_THROWS_AS(system->node("pmup"), ModelError);
 }
 

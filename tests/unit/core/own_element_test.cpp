@@ -103,7 +103,7 @@ TEST_CASE("Descriptions of the wrong size or content are findings") {
   CHECK(bad(9, [](int, Terms& t) { t.generals.push_back(&nothing); }, {"9 nodes", "at most 8"}));
   CHECK(bad(3,
             [](int, Terms& t) {
-              t.closures.push_back({.b = row({1, 1, 1})});
+              t.speed_ratio_constraints.push_back({.b = row({1, 1, 1})});
             },
             {"closure", "at most two"}));
   CHECK(bad(3,

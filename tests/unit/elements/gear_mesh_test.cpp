@@ -82,16 +82,16 @@ TEST_CASE("gear mesh signs by hand") {
   const Eigen::VectorXd f = s.b * s.force->evaluate({.x = x}).y;
   CHECK(f[0] == Approx(120.0));  // on the left side: brakes gear 1
   CHECK(f[1] == Approx(300.0));  // and turns gear 2 backwards: an external pair
-  REQUIRE(t.closures.size() == 1);
-  CHECK(t.closures[0].only_in_contact);
-  CHECK(t.closures[0].b.dot(Eigen::Vector2d(1.0, -0.4)) == Approx(0.0).margin(1e-15));
+  REQUIRE(t.speed_ratio_constraints.size() == 1);
+  CHECK(t.speed_ratio_constraints[0].only_in_contact);
+  CHECK(t.speed_ratio_constraints[0].b.dot(Eigen::Vector2d(1.0, -0.4)) == Approx(0.0).margin(1e-15));
 
   auto ring = plain();
   ring.internal = true;
   ring.normal_backlash = 0.0;
   const Terms r = described(GearMesh(ring), 2);
   CHECK(r.scalars[0].b[1] == -0.075);
-  CHECK_FALSE(r.closures[0].only_in_contact);
+  CHECK_FALSE(r.speed_ratio_constraints[0].only_in_contact);
   CHECK_FALSE(GearMesh(ring).gap());
 }
 

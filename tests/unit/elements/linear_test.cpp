@@ -52,15 +52,15 @@ TEST_CASE("shaft: a forward end b pulls a forward") {
 TEST_CASE("dashpot and ground spring act against the node's own motion") {
   const Terms d = described(Dashpot({.damping = 3}), 1);
   CHECK(d.damping(0, 0) == 3.0);
-  CHECK(d.closures.empty());
+  CHECK(d.speed_ratio_constraints.empty());
   const Terms pair = described(Dashpot({.damping = 3}), 2);
   CHECK(pair.damping(0, 1) == -3.0);
   CHECK(pair.outputs[0].damping[1] == 3.0);
   const Terms g = described(GroundSpring({.stiffness = 7, .damping = 2}), 1);
   CHECK(g.stiffness(0, 0) == 7.0);
   CHECK(g.damping(0, 0) == 2.0);
-  REQUIRE(g.closures.size() == 1);
-  CHECK(g.closures[0].b.size() == 1);
+  REQUIRE(g.speed_ratio_constraints.size() == 1);
+  CHECK(g.speed_ratio_constraints[0].b.size() == 1);
 }
 
 TEST_CASE("ideal gear: an external pair 20/50 turns back at 0.4") {

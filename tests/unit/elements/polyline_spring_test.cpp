@@ -41,7 +41,7 @@ TEST_CASE("dead band by hand") {
   CHECK(s.gap()->high == 0.5);
   CHECK(s.closed_stiffness() == Approx(100.0));
   CHECK(s.kinks().size() == 2);
-  CHECK(described(s, 2).closures[0].only_in_contact);
+  CHECK(described(s, 2).speed_ratio_constraints[0].only_in_contact);
   CHECK(described(s, 2).scalars[0].b[0] == -1.0);
   CHECK(described(s, 1).scalars[0].b[0] == 1.0);
 }

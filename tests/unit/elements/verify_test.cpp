@@ -141,7 +141,7 @@ TEST_CASE("general forces") {
   CHECK(contains(report(Coupling(1.0, 0.0, -5.0)), "negative dissipated power"));
 }
 
-TEST_CASE("wrong matrices, closures and sizes are caught") {
+TEST_CASE("wrong matrices, speed_ratio_constraints and sizes are caught") {
   const auto report_terms = [](std::function<void(Terms&)> fill) {
     return check_element(Anything(std::move(fill)), 2).text();
   };
@@ -149,19 +149,20 @@ TEST_CASE("wrong matrices, closures and sizes are caught") {
   CHECK(contains(report_terms([](Terms& t) { t.damping(0, 0) = -1.0; }),
                  "matrix not positive semi-definite: damping"));
   // A spring that ties speeds without saying so.
-  CHECK(contains(report_terms([](Terms& t) { t.stiffness << 1, -1, -1, 1; }), "closures"));
+  CHECK(contains(report_terms([](Terms& t) { t.stiffness << 1, -1, -1, 1; }), "speed_ratio_constraints"));
   // Closure of the wrong sign.
   CHECK(contains(report_terms([](Terms& t) {
                    t.stiffness << 1, -1, -1, 1;
-                   t.closures.push_back({.b = Eigen::Vector2d(1, 1)});
+                   t.speed_ratio_constraints.push_back({.b = Eigen::Vector2d(1, 1)});
                  }),
-                 "closures"));
+                 "speed_ratio_constraints"));
   CHECK(report_terms([](Terms& t) {
           t.stiffness << 1, -1, -1, 1;
-          t.closures.push_back({.b = Eigen::Vector2d(1, -1)});
+          t.speed_ratio_constraints.push_back({.b = Eigen::Vector2d(1, -1)});
         }) == "");
   CHECK(
       contains(report_terms([](Terms& t) { t.scalars.push_back({.b = LocalRow::Ones(3)}); }), "scalar row"));
-  CHECK(contains(report_terms([](Terms& t) { t.closures.push_back({.b = LocalRow::Zero(2)}); }),
-                 "ties 0 nodes"));
+  CHECK(
+      contains(report_terms([](Terms& t) { t.speed_ratio_constraints.push_back({.b = LocalRow::Zero(2)}); }),
+               "ties 0 nodes"));
 }

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/units.hpp"
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/modes/modes.hpp"
 #include "solvers/run/contact_statistics.hpp"
 #include "solvers/run/peaks.hpp"
@@ -31,28 +31,28 @@ TEST_CASE("Help and version") {
   CHECK(version.out.starts_with("drev "));
 }
 
-TEST_CASE("The models are listed, each with its settings") {
+TEST_CASE("The models are listed, each with its parameters") {
   const Json models = Json::parse(drev_command({"list", "--json"}).out).at("models");
   const auto text = drev_command({"list"});
-  REQUIRE(models.size() == drev::scenes().size());
-  for (const drev::SceneEntry& entry : drev::scenes()) {
+  REQUIRE(models.size() == drev::ready_made_models().size());
+  for (const drev::ModelEntry& entry : drev::ready_made_models()) {
     CHECK(contains(text.out, entry.name));
     const auto one = drev_command({"list", entry.name});
     CHECK(one.exit_code == 0);
     const Json json = Json::parse(drev_command({"list", entry.name, "--json"}).out);
-    REQUIRE(json.at("settings").size() == entry.settings.size());
-    for (std::size_t i = 0; i < entry.settings.size(); ++i) {
-      CHECK(contains(one.out, entry.settings[i].name));
-      CHECK(json["settings"][i].at("name") == entry.settings[i].name);
+    REQUIRE(json.at("parameters").size() == entry.parameters.size());
+    for (std::size_t i = 0; i < entry.parameters.size(); ++i) {
+      CHECK(contains(one.out, entry.parameters[i].name));
+      CHECK(json["parameters"][i].at("name") == entry.parameters[i].name);
       for (const char* key : {"unit", "default", "range", "low", "high", "choices", "meaning"})
-        CHECK(json["settings"][i].contains(key));
+        CHECK(json["parameters"][i].contains(key));
     }
     CHECK(json.at("channels").size() > 3);
     CHECK(json.at("default_channels").size() > 0);
   }
 }
 
-TEST_CASE("The channels listed are those of the settings given") {
+TEST_CASE("The channels listed are those of the parameters given") {
   const Json json = Json::parse(drev_command({"list", "camshaft", "--set", "cylinders=6", "--json"}).out);
   const std::string all = json.at("channels").dump();
   CHECK(contains(all, "\"inlet_6.angle_rad\""));
@@ -61,14 +61,14 @@ TEST_CASE("The channels listed are those of the settings given") {
 
 TEST_CASE("Modes agree with the library") {
   const Json json = Json::parse(drev_command({"modes", "camshaft", "--json"}).out);
-  const drev::SceneEntry& entry = drev::find_scene("camshaft");
-  const drev::Scene scene = entry.build(drev::Settings("camshaft", entry.settings));
-  const drev::ModeSet modes = drev::solve_modes(scene.model.build());
+  const drev::ModelEntry& entry = drev::find_model("camshaft");
+  const drev::ModelCase model_case = entry.build(drev::Parameters("camshaft", entry.parameters));
+  const drev::ModeSet modes = drev::solve_modes(model_case.model.build());
   CHECK(json.at("model") == "camshaft");
   CHECK(json.at("contact") == "closed");
   CHECK(json.at("rigid_modes") == modes.rigid_modes);
-  CHECK(json.at("settings").at("cylinders") == 9);
-  CHECK(json.at("settings").at("drive") == "gears");
+  CHECK(json.at("parameters").at("cylinders") == 9);
+  CHECK(json.at("parameters").at("drive") == "gears");
   const auto frequencies = json.at("frequencies_Hz").get<std::vector<double>>();
   REQUIRE(frequencies.size() == 10);
   for (std::size_t i = 0; i < frequencies.size(); ++i)
@@ -129,7 +129,7 @@ TEST_CASE("A run as JSON is one object with everything in it") {
   CHECK(run.err.empty());
   const Json json = Json::parse(run.out);  // throws if there is anything else
   for (const char* key :
-       {"model", "settings", "method", "step_s", "status", "reason", "results", "energy_error", "energy",
+       {"model", "parameters", "method", "step_s", "status", "reason", "results", "energy_error", "energy",
         "steps", "halved_steps", "iterations", "run_time_s", "note"})
     CHECK(json.contains(key));
   const Json& results = json.at("results");
@@ -139,7 +139,7 @@ TEST_CASE("A run as JSON is one object with everything in it") {
     CHECK(results.contains(key));
   CHECK(json.at("status") == "success");
   CHECK(json.at("method") == "exact");
-  CHECK(json.at("settings").at("duration_s") == 0.05);
+  CHECK(json.at("parameters").at("duration_s") == 0.05);
   CHECK(contains(json.at("note").get<std::string>(), "reconstruction"));
   CHECK(results.at("max_mesh_force_N").is_null());  // held: no mesh
   CHECK(results.at("contacts").empty());
@@ -151,13 +151,13 @@ TEST_CASE("The figures of a run are the library's") {
   const auto run = drev_command(
       {"run", "camshaft", "--set", "duration_s=0.05", "cylinders=6", "--step", "1e-5", "--json"});
   const Json results = Json::parse(run.out).at("results");
-  const drev::SceneEntry& entry = drev::find_scene("camshaft");
-  drev::Settings settings("camshaft", entry.settings);
-  settings.set("duration_s", "0.05");
-  settings.set("cylinders", "6");
-  const drev::Scene scene = entry.build(settings);
-  const drev::System system = scene.model.build();
-  drev::Peaks torques(drev::find_channels(system, scene.torques));
+  const drev::ModelEntry& entry = drev::find_model("camshaft");
+  drev::Parameters parameters("camshaft", entry.parameters);
+  parameters.set("duration_s", "0.05");
+  parameters.set("cylinders", "6");
+  const drev::ModelCase model_case = entry.build(parameters);
+  const drev::System system = model_case.model.build();
+  drev::Peaks torques(drev::find_channels(system, model_case.torques));
   drev::Peaks twist(drev::find_channels(system, {"inlet_6-fuel_1.twist_rad"}));
   drev::ContactStatistics contacts(system);
   drev::simulate(system, {.step = 1e-5, .t_end = 0.05}, {&torques, &twist, &contacts});
@@ -186,8 +186,8 @@ TEST_CASE("The figures of a run are the library's") {
   CHECK(mesh.at("rattle_index_W").get<double>() == Approx(record.impact_energy / 0.05).epsilon(1e-12));
   CHECK(results.at("max_mesh_force_N").get<double>() == Approx(force).epsilon(1e-12));
   double largest_static = 0.0;  // at other angles than drev's
-  for (const drev::Peak& p :
-       drev::static_sweep(system, drev::find_channels(system, scene.torques), 0.0, 2 * drev::kTwoPi, 1000))
+  for (const drev::Peak& p : drev::static_sweep(system, drev::find_channels(system, model_case.torques), 0.0,
+                                                2 * drev::kTwoPi, 1000))
     largest_static = std::max(largest_static, p.amplitude());
   CHECK(results.at("static_torque_Nm").get<double>() == Approx(largest_static).epsilon(2e-3));
 }
@@ -265,7 +265,7 @@ TEST_CASE("A run that failed looks like one") {
   }
 }
 
-TEST_CASE("Methods and settings reach the computation") {
+TEST_CASE("Methods and parameters reach the computation") {
   const auto run = drev_command({"run", "--set", "duration_s=0.5", "two_mass_backlash", "--method", "hht:0.1",
                                  "--step", "0.001", "--json"});
   CHECK(run.exit_code == 0);

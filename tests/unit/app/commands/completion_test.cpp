@@ -27,7 +27,7 @@ using Words = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("Completion offers commands, models, options, settings, choices and channels") {
+TEST_CASE("Completion offers commands, models, options, parameters, choices and channels") {
   CHECK(offered({"mo"}) == Words{"modes"});
   CHECK(offered({"run", "cam"}) == Words{"camshaft"});
   CHECK(offered({"run", "camshaft", "--acc"}) == Words{"--accuracy"});
@@ -46,7 +46,7 @@ TEST_CASE("bash completes words that it has split at =") {
   const drev::test::TemporaryFolder folder;
   const std::string script =
       std::string("PATH=$(dirname ") + DREV_EXECUTABLE + "):$PATH; source " + DREV_SOURCE_DIR +
-      "/app/completion/drev.bash; COMP_LINE='drev run camshaft --set drive=h'; COMP_POINT=${#COMP_LINE}; "
+      "/app/cli/completion/drev.bash; COMP_LINE='drev run camshaft --set drive=h'; COMP_POINT=${#COMP_LINE}; "
       "COMP_WORDS=(drev run camshaft --set drive = h); COMP_CWORD=6; _drev; echo \"${COMPREPLY[*]}\"; "
       "COMP_LINE='drev run camshaft --set drive='; COMP_POINT=${#COMP_LINE}; "
       "COMP_WORDS=(drev run camshaft --set drive =); COMP_CWORD=5; _drev; echo \"${COMPREPLY[*]}\"";

@@ -73,7 +73,7 @@ const std::vector<OptionFault>& faults() {
       {{"advise", "camshaft", "--for", "mesh_3.force_N"}, {"--for", "mesh_3.force_N", "did you mean"}},
       {{"chart", "camshaft", "--limit", "0"}, {"--limit = 0 s", "0.001 s"}},
       {{"chart", "camshaft", "--limit", "soon"}, {"--limit = soon", "seconds"}},
-      // settings
+      // parameters
       {{"run", "camshaft", "--set", "cylindres=6"}, {"cylindres", "did you mean 'cylinders'?"}},
       {{"run", "camshaft", "--set", "cylinders=11"}, {"cylinders = 11", "6 to 10"}},
       {{"run", "camshaft", "--set", "cylinders=6.5"}, {"cylinders = 6.5", "whole number"}},

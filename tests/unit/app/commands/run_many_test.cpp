@@ -69,7 +69,7 @@ TEST_CASE("Several models: the good ones run, the others are named, results are 
   CHECK(contains(run.out, "not run: " + (folder / "trains").string() + "/other.toml"));
   CHECK(contains(run.err, "torn: bad_input: "));
   CHECK(contains(run.err, "/trains/whole.toml:13:"));
-  CHECK(contains(run.err, "two_inertia: bad_input: "));  // it has no such setting
+  CHECK(contains(run.err, "two_inertia: bad_input: "));  // it has no such parameter
 
   const Json all = json_file(folder / "results/runs.json");
   CHECK(all.at("status") == "failed");
@@ -189,7 +189,7 @@ TEST_CASE(
   CHECK(contains(run.out, "0 of 3 succeeded"));
 }
 
-TEST_CASE("Settings varied: every combination, with one table of figures") {
+TEST_CASE("Parameters varied: every combination, with one table of figures") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const auto run =
@@ -211,10 +211,10 @@ TEST_CASE("Settings varied: every combination, with one table of figures") {
     const std::string stiffness = i % 2 == 0 ? "8000" : "9000.5";
     const std::string name = "inertia_1_kg_m2=" + inertia + ",stiffness_Nm_per_rad=" + stiffness;
     CHECK(one.at("name") == name);
-    const Json& settings = one.at("summary").at("settings");
-    CHECK(settings.at("inertia_1_kg_m2") == std::stod(inertia));
-    CHECK(settings.at("stiffness_Nm_per_rad") == std::stod(stiffness));
-    CHECK(settings.at("duration_s") == 0.05);
+    const Json& parameters = one.at("summary").at("parameters");
+    CHECK(parameters.at("inertia_1_kg_m2") == std::stod(inertia));
+    CHECK(parameters.at("stiffness_Nm_per_rad") == std::stod(stiffness));
+    CHECK(parameters.at("duration_s") == 0.05);
     CHECK(one.at("varied").at("inertia_1_kg_m2") == std::stod(inertia));
     CHECK(rows[i + 1].starts_with('"' + name + "\",success," + inertia + "," + stiffness + ","));
     const Json alone = Json::parse(

@@ -51,8 +51,8 @@ TEST_CASE("Every example of the page on model files is sound") {
     runs.push_back("");
     for (const std::string& run : runs) {
       const app::ModelFile file(whole(example), path, run);
-      const Scene scene = file.entry().build(Settings(file.entry().name, file.entry().settings));
-      CHECK(scene.model.build().size() > 0);
+      const ModelCase model_case = file.entry().build(Parameters(file.entry().name, file.entry().parameters));
+      CHECK(model_case.model.build().size() > 0);
     }
   }
 }

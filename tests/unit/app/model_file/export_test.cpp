@@ -17,9 +17,9 @@ using namespace drev;
 
 namespace {
 
-Scene read_back(const std::string& text) {
+ModelCase read_back(const std::string& text) {
   const app::ModelFile file(text, "exported.toml", "");
-  return file.entry().build(Settings(file.entry().name, file.entry().settings));
+  return file.entry().build(Parameters(file.entry().name, file.entry().parameters));
 }
 
 std::vector<std::string> every_channel(const System& system) {
@@ -30,11 +30,11 @@ std::vector<std::string> every_channel(const System& system) {
 }
 
 /// Every channel over a while, by the method that the model itself chooses.
-std::vector<std::vector<double>> histories(const Scene& scene, double t_end) {
-  const System system = scene.model.build();
+std::vector<std::vector<double>> histories(const ModelCase& model_case, double t_end) {
+  const System system = model_case.model.build();
   const std::vector<std::string> channels = every_channel(system);
   Recorder recorder(system, channels, t_end / 50);
-  const Method method = choose_method(system, scene.duration, scene.default_step).method;
+  const Method method = choose_method(system, model_case.duration, model_case.default_step).method;
   CHECK(run_method(system, method, {.t_end = t_end}, {&recorder}).ok());
   std::vector<std::vector<double>> all;
   for (std::size_t c = 0; c < channels.size(); ++c) all.push_back(recorder.samples(c));
@@ -45,7 +45,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-void check_same(const Scene& a, const Scene& b, double t_end) {
+void check_same(const ModelCase& a, const ModelCase& b, double t_end) {
   CHECK(same_bits({a.duration, a.default_step, a.static_turn}, {b.duration, b.default_step, b.static_turn}));
   CHECK(a.note == b.note);
   CHECK(a.deflection == b.deflection);
@@ -84,15 +84,15 @@ TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
        {{"cylinders", "10"}, {"drive", "free"}, {"loads", "source"}, {"damping", "undamped"}},
        0.1}};
   for (const Case& c : cases) {
-    const SceneEntry& entry = find_scene(c.model);
-    Settings settings(entry.name, entry.settings);
-    for (const auto& [name, value] : c.set) settings.set(name, value);
-    const Scene scene = entry.build(settings);
-    const std::string text = app::export_scene(entry, settings, scene);
+    const ModelEntry& entry = find_model(c.model);
+    Parameters parameters(entry.name, entry.parameters);
+    for (const auto& [name, value] : c.set) parameters.set(name, value);
+    const ModelCase model_case = entry.build(parameters);
+    const std::string text = app::export_scene(entry, parameters, model_case);
     INFO(c.model << (c.set.empty() ? "" : c.set.front().second) << "\n" << text.substr(0, 400));
-    check_same(scene, read_back(text), c.t_end);
+    check_same(model_case, read_back(text), c.t_end);
   }
-  for (const SceneEntry& entry : scenes())
+  for (const ModelEntry& entry : ready_made_models())
     CHECK(std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.model == entry.name; }));
 }
 
@@ -100,11 +100,11 @@ TEST_CASE("The camshaft's file is the built-in camshaft to the last bit") {
   const app::ModelFile file(DREV_SOURCE_DIR "/models/camshaft_with_gear_drive/camshaft_with_gear_drive.toml",
                             "");
   for (int cylinders = 6; cylinders <= 10; ++cylinders) {
-    Settings of_file("camshaft", file.entry().settings),
-        built_in("camshaft", find_scene("camshaft").settings);
+    Parameters of_file("camshaft", file.entry().parameters),
+        built_in("camshaft", find_model("camshaft").parameters);
     of_file.set("cylinders", std::to_string(cylinders));
     built_in.set("cylinders", std::to_string(cylinders));
-    Scene a = file.entry().build(of_file), b = find_scene("camshaft").build(built_in);
+    ModelCase a = file.entry().build(of_file), b = find_model("camshaft").build(built_in);
     // The sections of the shaft stand in another order.
     std::sort(a.torques.begin(), a.torques.end());
     std::sort(b.torques.begin(), b.torques.end());
@@ -164,16 +164,16 @@ TEST_CASE("Every element, exported and read back, gives the same bits") {
       {.angle_table = PeriodicTable({0.0, 2.0, 4.0, 9.0}, {0, 3, -1, 2}, 2 * kTwoPi), .phase = -0.4});
   m.hold("wall");
   m.set_initial("car", 1e-4, 0.01);
-  Scene scene{
+  ModelCase model_case{
       .model = std::move(m), .duration = 0.05, .default_step = 1e-5, .torques = {"support.torque_Nm"}};
-  const SceneEntry entry{"all", "every element", {}, {}};
-  const std::string text = app::export_scene(entry, Settings("all", {}), scene);
+  const ModelEntry entry{"all", "every element", {}, {}};
+  const std::string text = app::export_scene(entry, Parameters("all", {}), model_case);
   INFO(text);
   // The second export is the fixed point: nothing was lost on the way.
-  const Scene back = read_back(text);
-  CHECK(app::export_scene(entry, Settings("all", {}), back) == text);
-  scene.model.hold("pinion");
-  check_same(read_back(app::export_scene(entry, Settings("all", {}), scene)), scene, 0.02);
+  const ModelCase back = read_back(text);
+  CHECK(app::export_scene(entry, Parameters("all", {}), back) == text);
+  model_case.model.hold("pinion");
+  check_same(read_back(app::export_scene(entry, Parameters("all", {}), model_case)), model_case, 0.02);
 }
 
 TEST_CASE("The reference shaft's motion is written where it is one of the catalogue's") {
@@ -184,12 +184,12 @@ TEST_CASE("The reference shaft's motion is written where it is one of the catalo
     for (const char* node : {"a", "b"}) m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 1.0});
     m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 1e3});
     m.set_reference("a", std::move(motion));
-    return Scene{
+    return ModelCase{
         .model = std::move(m), .duration = 0.1, .default_step = 1e-4, .torques = {"shaft.torque_Nm"}};
   };
-  const SceneEntry entry{"driven", "", {}, {}};
-  const auto write = [&](const Scene& scene) {
-    return app::export_scene(entry, Settings("driven", {}), scene);
+  const ModelEntry entry{"driven", "", {}, {}};
+  const auto write = [&](const ModelCase& model_case) {
+    return app::export_scene(entry, Parameters("driven", {}), model_case);
   };
   const std::string constant = write(driven(constant_speed(rpm(100), 0.3)));
   CHECK(constant.find("nominal_angle_rad = 0.3") != std::string::npos);
@@ -199,7 +199,7 @@ TEST_CASE("The reference shaft's motion is written where it is one of the catalo
   CHECK(write(read_back(rising)) == rising);
   Motion own{[](double t) { return MotionPoint{std::sin(t), std::cos(t), -std::sin(t)}; }};
   CHECK_THROWS_WITH(write(driven(own)), Catch::Contains("driven/a") && Catch::Contains("function of C++"));
-  Scene function = driven(constant_speed(1.0));
+  ModelCase function = driven(constant_speed(1.0));
   function.model.add<AppliedTorque>("own", {"a"}, {.torque = [](double) { return 1.0; }});
   CHECK_THROWS_WITH(write(function), Catch::Contains("driven/own") && Catch::Contains("function of C++"));
 }

@@ -178,7 +178,7 @@ std::string spoilt(const Fault& fault, Place& place) {
 std::string refusal(const std::string& text) {
   try {
     const app::ModelFile file(text, "drive.toml", "");
-    file.entry().build(Settings(file.entry().name, file.entry().settings));
+    file.entry().build(Parameters(file.entry().name, file.entry().parameters));
   } catch (const ModelError& error) {
     return error.what();
   }

@@ -14,17 +14,17 @@ using drev::test::contains;
 
 namespace {
 
-Scene read(const std::string& text, const std::vector<std::pair<std::string, std::string>>& set = {},
-           const std::string& run = "") {
+ModelCase read(const std::string& text, const std::vector<std::pair<std::string, std::string>>& set = {},
+               const std::string& run = "") {
   const app::ModelFile file("format = 1\n" + text, "test.toml", run);
-  Settings settings(file.entry().name, file.entry().settings);
-  for (const auto& [name, value] : set) settings.set(name, value);
-  return file.entry().build(settings);
+  Parameters parameters(file.entry().name, file.entry().parameters);
+  for (const auto& [name, value] : set) parameters.set(name, value);
+  return file.entry().build(parameters);
 }
 
 template <class E>
-const typename E::Params& params(const Scene& scene, const std::string& name) {
-  for (const Placement& placement : scene.model.placements())
+const typename E::Params& params(const ModelCase& model_case, const std::string& name) {
+  for (const ElementInstance& placement : model_case.model.element_instances())
     if (placement.name == name) return dynamic_cast<const E&>(*placement.element).params();
   throw std::runtime_error("no element " + name);
 }
@@ -48,9 +48,10 @@ TEST_CASE("Every unit has its factor") {
   // A torque of 3 N m turns it by one degree.
   CHECK(stiffness("Nm_per_deg") * deg(1) == Approx(3.0).epsilon(1e-15));
   const auto speed = [](const char* key) {
-    const Scene s = read(std::string("[nodes]\nb = { constant_speed_") + key + " = 6 }\na = {}\n" +
-                         "[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_mm2 = 5e5 }\n" +
-                         "k = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 1 }");
+    const ModelCase s =
+        read(std::string("[nodes]\nb = { constant_speed_") + key + " = 6 }\na = {}\n" +
+             "[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_mm2 = 5e5 }\n" +
+             "k = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 1 }");
     CHECK(params<Inertia>(s, "J").inertia == 0.5);
     return s.model.prescriptions().at(0).omega.value();
   };
@@ -59,7 +60,7 @@ TEST_CASE("Every unit has its factor") {
   CHECK(speed("deg_per_s") == deg(6.0));
 }
 
-TEST_CASE("Parameters are settings that --set changes, with their range") {
+TEST_CASE("Parameters are parameters that --set changes, with their range") {
   const std::string text =
       "[parameters]\nJ_kg_m2 = { default = 3, min = 1, max = 5, meaning = \"of the disc\" }\nn = 2\n"
       "[nodes]\na = {}\n[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_m2 = \"n*J_kg_m2\" "
@@ -68,15 +69,15 @@ TEST_CASE("Parameters are settings that --set changes, with their range") {
   CHECK(params<Inertia>(read(text, {{"J_kg_m2", "4"}, {"n", "1"}}), "J").inertia == 4.0);
   CHECK_THROWS_WITH(read(text, {{"J_kg_m2", "6"}}), Catch::Contains("must be 1 to 5"));
   const app::ModelFile file("format = 1\n" + text, "test.toml", "");
-  const Setting& s = file.entry().settings.at(0);
+  const Parameter& s = file.entry().parameters.at(0);
   CHECK(s.name == "J_kg_m2");
   CHECK(s.unit == "kg_m2");
   CHECK(s.meaning == "of the disc");
-  CHECK(file.entry().settings.at(1).range() == "any number");
+  CHECK(file.entry().parameters.at(1).range() == "any number");
 }
 
 TEST_CASE("A repeat makes numbered nodes and elements") {
-  const Scene scene = read(R"([parameters]
+  const ModelCase model_case = read(R"([parameters]
 cylinders = { default = 4, min = 1, max = 9, whole = true }
 [lists]
 order = [1, 3, 4, 2]
@@ -100,14 +101,14 @@ counter = "k"
 [repeat.elements]
 "shaft_{k}" = { type = "shaft_spring", nodes = ["cam_{k-1}", "cam_{k}"], stiffness_Nm_per_rad = 1e6 }
 )");
-  const Model& m = scene.model;
+  const Model& m = model_case.model;
   REQUIRE(m.node_names() == std::vector<std::string>{"gear", "cam_1", "cam_2", "cam_3", "cam_4"});
-  REQUIRE(m.placements().size() == 1 + 2 * 4 + 3);
-  CHECK(m.placements()[9].name == "shaft_2");
-  CHECK(m.placements()[11].nodes[0].name == "cam_3");
+  REQUIRE(m.element_instances().size() == 1 + 2 * 4 + 3);
+  CHECK(m.element_instances()[9].name == "shaft_2");
+  CHECK(m.element_instances()[11].nodes[0].name == "cam_3");
   const double places[] = {0, 3, 1, 2};
   for (int i = 1; i <= 4; ++i) {
-    const auto& cam = params<CamTorque>(scene, "torque_" + std::to_string(i));
+    const auto& cam = params<CamTorque>(model_case, "torque_" + std::to_string(i));
     CHECK(cam.phase == -kTwoPi * places[i - 1] / 4);
     // The closing point is left out.
     CHECK(cam.angle_table.arguments() == std::vector<double>{0.0, deg(90), deg(180)});
@@ -133,16 +134,16 @@ TEST_CASE("Includes and tables are relative to the file that names them") {
       "cam = { type = \"cam_torque\", node = \"end\", table = \"lift\", twist_feedback = false }\n");
   const app::ModelFile file((folder / "main.toml").string(), "");
   CHECK(file.entry().name == "main");
-  const Scene scene = file.entry().build(Settings("main", file.entry().settings));
-  CHECK(scene.model.node_names() == std::vector<std::string>{"gear", "end"});
-  CHECK(params<Inertia>(scene, "J_gear").inertia == 7.0);  // the file that includes has the last word
-  const auto& table = params<CamTorque>(scene, "cam").angle_table;
+  const ModelCase model_case = file.entry().build(Parameters("main", file.entry().parameters));
+  CHECK(model_case.model.node_names() == std::vector<std::string>{"gear", "end"});
+  CHECK(params<Inertia>(model_case, "J_gear").inertia == 7.0);  // the file that includes has the last word
+  const auto& table = params<CamTorque>(model_case, "cam").angle_table;
   CHECK(table.arguments() == std::vector<double>{0.0, deg(90)});
   CHECK(table.values() == std::vector<double>{2000.0, 4500.0});
 }
 
 TEST_CASE("Nodes are held, driven, given a motion and a start") {
-  const Scene scene = read(R"([nodes]
+  const ModelCase model_case = read(R"([nodes]
 shaft = { nominal_speed_rpm = 60, nominal_angle_deg = 90 }
 disc = { initial_angle_deg = 180, initial_speed_rpm = 30 }
 wall = { hold = true }
@@ -155,7 +156,7 @@ k = { type = "shaft_spring", nodes = ["disc", "wall"], stiffness_Nm_per_rad = 5,
 m = { type = "inertia", node = "mass", mass_kg = 3 }
 c = { type = "dashpot", nodes = ["shaker", "mass"], damping_Ns_per_m = 4 }
 )");
-  const Model& m = scene.model;
+  const Model& m = model_case.model;
   REQUIRE(m.references().size() == 1);
   CHECK(m.references()[0].second.at(0.0).value == deg(90));
   CHECK(m.references()[0].second.at(0.0).rate == rpm(60));
@@ -178,7 +179,7 @@ TEST_CASE("Runs: a named one is laid over [run]") {
       "t = { type = \"applied_torque\", node = \"a\", torque_Nm = \"n\" }\n"
       "[run]\nduration_ms = 500\nstep_s = 1e-3\nrecord = \"*.angle_rad\"\n"
       "[run.long]\nduration_s = 3\nparameters = { n = 5 }\nmethod = \"sdirk4\"\ntolerance = \"n*1e-6\"\n";
-  const Scene plain = read(text), long_one = read(text, {}, "long");
+  const ModelCase plain = read(text), long_one = read(text, {}, "long");
   CHECK(plain.duration == 0.5);
   CHECK(plain.default_step == 1e-3);
   CHECK(plain.channels == std::vector<std::string>{"a.angle_rad"});
@@ -188,19 +189,20 @@ TEST_CASE("Runs: a named one is laid over [run]") {
   CHECK(params<AppliedTorque>(long_one, "t").table->values() == std::vector<double>{5.0});
   const app::ModelFile file("format = 1\n" + text, "test.toml", "long");
   CHECK(file.run_names() == std::vector<std::string>{"long"});
-  const auto options = file.run_options(Settings("test", file.entry().settings)).values;
+  const auto options = file.run_options(Parameters("test", file.entry().parameters)).values;
   CHECK(options.at("--method") == "sdirk4");
   CHECK(options.at("--tolerance") == to_text(5 * 1e-6));
 }
 
 TEST_CASE("A named run is no key of [run], whatever its name") {
-  const Scene scene = read(std::string(kDisc) + "[run]\nduration_s = 1\n[run.record_all]\nstep_s = 1e-5\n" +
-                           "[run.torques_of_shafts]\nstep_s = 1e-5\n[run.step_s_short]\nstep_s = 1e-5\n");
-  CHECK(scene.channels == std::vector<std::string>{"a.angle_rad"});
+  const ModelCase model_case =
+      read(std::string(kDisc) + "[run]\nduration_s = 1\n[run.record_all]\nstep_s = 1e-5\n" +
+           "[run.torques_of_shafts]\nstep_s = 1e-5\n[run.step_s_short]\nstep_s = 1e-5\n");
+  CHECK(model_case.channels == std::vector<std::string>{"a.angle_rad"});
 }
 
 TEST_CASE("Rayleigh damping, stops, stiffness and error by their other names") {
-  const Scene scene = read(std::string(kDisc) + R"(
+  const ModelCase model_case = read(std::string(kDisc) + R"(
 b = { type = "rayleigh_damping", stiffness_proportional = { frequency_Hz = 50, damping_ratio = 0.02 } }
 stop = { type = "polyline_spring", node = "a", with_stops = { stiffness_Nm_per_rad = 10, travel_rad = 0.1, stop_stiffness_Nm_per_rad = 1000 } }
 [elements.mesh]
@@ -215,11 +217,11 @@ transmission_error = { order = [1], amplitude_um = [3], phase_deg = [90] }
 hold = true
 )");
   const auto rayleigh = RayleighDamping::stiffness_proportional(hz(50), 0.02);
-  CHECK(params<RayleighDamping>(scene, "b").beta_stiffness == rayleigh.beta_stiffness);
+  CHECK(params<RayleighDamping>(model_case, "b").beta_stiffness == rayleigh.beta_stiffness);
   const auto stop = PolylineSpring::with_stops(10, 0.1, 1000);
-  CHECK(params<PolylineSpring>(scene, "stop").x == stop.x);
-  CHECK(params<PolylineSpring>(scene, "stop").y == stop.y);
-  const auto& mesh = params<GearMesh>(scene, "mesh");
+  CHECK(params<PolylineSpring>(model_case, "stop").x == stop.x);
+  CHECK(params<PolylineSpring>(model_case, "stop").y == stop.y);
+  const auto& mesh = params<GearMesh>(model_case, "mesh");
   const MeshStiffness same = MeshStiffness::fourier_of_step(1e8, 1.5e8, 1.4, 3);
   for (const double phase : {0.0, 0.1, 0.45, 0.9})
     CHECK(mesh.stiffness.at(phase).value == same.at(phase).value);

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <thread>
 
-#include "models/scene.hpp"
+#include "models/model_case.hpp"
 #include "solvers/run/recorder.hpp"
 #include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
@@ -69,11 +69,11 @@ TEST_CASE("history.csv has the times asked for and the library's values") {
         "mass_2-mass_1.distance_m");
   CHECK(table.longest == 17);
 
-  const drev::SceneEntry& entry = drev::find_scene("two_mass_backlash");
-  drev::Settings settings(entry.name, entry.settings);
-  settings.set("duration_s", "2.5");
-  const drev::Scene scene = entry.build(settings);
-  const drev::System system = scene.model.build();
+  const drev::ModelEntry& entry = drev::find_model("two_mass_backlash");
+  drev::Parameters parameters(entry.name, entry.parameters);
+  parameters.set("duration_s", "2.5");
+  const drev::ModelCase model_case = entry.build(parameters);
+  const drev::System system = model_case.model.build();
   drev::Recorder recorder(system, channels, 0.017);
   drev::simulate(system, {.step = 0.001, .t_end = 2.5}, {&recorder});
   REQUIRE(table.rows.size() == 148);  // 0 to 147 * 0.017 = 2.499
@@ -97,8 +97,8 @@ TEST_CASE("The default interval is a round number, and the last row is the end o
   const Table table = read_table(folder / "r/history.csv");
   REQUIRE(table.rows.size() == 1501);
   CHECK(table.rows.back()[0] == 1500 * 0.0002);
-  const drev::SceneEntry& entry = drev::find_scene("two_inertia");
-  for (const std::string& channel : entry.build(drev::Settings(entry.name, entry.settings)).channels)
+  const drev::ModelEntry& entry = drev::find_model("two_inertia");
+  for (const std::string& channel : entry.build(drev::Parameters(entry.name, entry.parameters)).channels)
     CHECK(contains(table.header, "," + channel));
 }
 
@@ -204,7 +204,7 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
   CHECK(partial().at("status") == "running");
   CHECK(contains(partial().at("reason"), "killed"));
   CHECK(partial().at("model") == "camshaft");
-  CHECK(partial().at("settings").at("duration_s") == 10000);
+  CHECK(partial().at("parameters").at("duration_s") == 10000);
   CHECK(partial().at("record") == Json::array({"end.angle_rad"}));
   CHECK_FALSE(std::filesystem::exists(folder / "r/summary.json"));
   CHECK(read_table(folder / "r/history.partial.csv").rows.size() >= 5);

@@ -114,17 +114,18 @@ TEST_CASE("Study: a group that is none lists those that are") {
 
 TEST_CASE("Study: superposed cylinders are the steady state of a run in time") {
   const int cylinders = 6;
-  const SettingList settings{{"cylinders", "6"},  {"drive", "held"},     {"damping", "case_1"},
-                             {"loads", "source"}, {"duration_s", "3.2"}, {"firing_order", "1-4-3-6-2-5"}};
-  const Scene scene = build_scene("camshaft", settings);
-  const System system = scene.model.build();
+  const ParameterValues parameters{{"cylinders", "6"},    {"drive", "held"},
+                                   {"damping", "case_1"}, {"loads", "source"},
+                                   {"duration_s", "3.2"}, {"firing_order", "1-4-3-6-2-5"}};
+  const ModelCase model_case = build_case("camshaft", parameters);
+  const System system = model_case.model.build();
   // 20 revolutions at 750 rpm: the start has died out to exp(-10.6 * 3) = 2e-14.
   const double revolution = 0.16;
   const int points = 60;
-  std::vector<std::string> names{scene.deflection};
-  names.insert(names.end(), scene.torques.begin(), scene.torques.end());
+  std::vector<std::string> names{model_case.deflection};
+  names.insert(names.end(), model_case.torques.begin(), model_case.torques.end());
   Recorder recorder(system, names, revolution / points);
-  run_watched(system, exact_method(1e-12), scene.duration, {&recorder});
+  run_watched(system, exact_method(1e-12), model_case.duration, {&recorder});
 
   const SteadyShaft shaft(cylinders);
   const auto waves = in_order(shaft.cylinder_waves(rpm(375.0), rayleigh_case("case_1", cylinders)),
@@ -140,25 +141,25 @@ TEST_CASE("Study: superposed cylinders are the steady state of a run in time") {
     // Harmonics above 1440 (9 kHz; the fastest mode is at 5 kHz) are left out: kinks of the tables.
     CHECK(worst <= (c == 0 ? 1e-5 * waves.col(0).cwiseAbs().maxCoeff() : 1e-4 * largest));
   }
-  const PeriodicResponse balance = solve_periodic(system, {.channels = {scene.deflection}});
+  const PeriodicResponse balance = solve_periodic(system, {.channels = {model_case.deflection}});
   REQUIRE(balance.found);
   CHECK(peak_of(waves.col(0)) == Approx(balance.peaks[0].amplitude()).epsilon(1e-5));
 }
 
 TEST_CASE("Study: growth under stepped mesh stiffness is that of a run, and -a/2 without steps") {
   const auto train = [](const char* stiffness, const char* damping) {
-    return build_scene("camshaft", {{"backlash_mm", "0"},
-                                    {"loads", "source"},
-                                    {"damping", damping},
-                                    {"mesh_stiffness", stiffness},
-                                    {"duration_s", "0.5"}})
+    return build_case("camshaft", {{"backlash_mm", "0"},
+                                   {"loads", "source"},
+                                   {"damping", damping},
+                                   {"mesh_stiffness", stiffness},
+                                   {"duration_s", "0.5"}})
         .model.build();
   };
   const double period = 60.0 / 750.0 * 68.0 / 59.0 / 34.0;  // of mesh 2
   // Every mode of C = a M decays with a/2.
   CHECK(largest_floquet_exponent(train("mean", "case_1"), period, 8) == Approx(-0.5 * 15.38).epsilon(1e-6));
   const System unstable = train("step", "case_1");
-  const Growth growth = measure_growth(
+  const ErrorGrowth growth = measure_error_growth(
       unstable, {.method = {.name = "average_acceleration", .step = 1e-5}, .t_end = 0.5, .pieces = 50});
   const double rate = largest_floquet_exponent(unstable, period, 8);
   CHECK(rate > 10.0);

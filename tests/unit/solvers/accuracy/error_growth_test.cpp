@@ -18,7 +18,8 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
   m.add<Dashpot>("c", {"m"}, {.damping = 0.2});
   m.set_initial("m", 1.0, 0.0);
   const System system = m.build();
-  const Growth g = measure_growth(system, {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 200.0});
+  const ErrorGrowth g =
+      measure_error_growth(system, {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 200.0});
   CHECK(g.status == RunStatus::success);
   CHECK(g.t.size() == 400);
   CHECK(std::abs(g.rate + 0.1) < 0.01);
@@ -28,7 +29,7 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
 
 TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
   // Published: 0.10947 a unit of time.
-  const Growth g = measure_growth(
+  const ErrorGrowth g = measure_error_growth(
       chaotic_oscillator(),
       {.method = {.name = "exact", .tolerance = 1e-13}, .t_end = 2000 * kTwoPi, .pieces = 4000});
   CHECK(g.status == RunStatus::success);
@@ -41,7 +42,7 @@ TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
 }
 
 TEST_CASE("Growth: controlled steps, which differ for states that hardly do, give the exponent too") {
-  const Growth g = measure_growth(
+  const ErrorGrowth g = measure_error_growth(
       chaotic_oscillator(),
       {.method = {.name = "dormand_prince", .tolerance = 1e-4}, .t_end = 500 * kTwoPi, .pieces = 1000});
   CHECK(g.status == RunStatus::success);

@@ -10,9 +10,9 @@ using namespace drev;
 TEST_CASE("Parameter study: the page's example") {
   // [study]
   const auto build = [](std::size_t i) {
-    Settings settings("camshaft", camshaft_entry().settings);
-    settings.set("engine_rpm", to_text(600.0 + 10.0 * static_cast<double>(i)));
-    return build_camshaft(settings).model.build();
+    Parameters parameters("camshaft", camshaft_entry().parameters);
+    parameters.set("engine_rpm", to_text(600.0 + 10.0 * static_cast<double>(i)));
+    return build_camshaft(parameters).model.build();
   };
   const ManyResult study =
       simulate_many(16, build, {.step = 1e-5, .t_end = 0.02}, {.channels = {"inlet_9-fuel_1.twist_rad"}});

@@ -86,7 +86,7 @@ ManyResult check_same(const VariantBuilder& build, TransientOptions options, dou
 VariantBuilder camshafts(const std::string& drive, const std::string& loads = "actual",
                          const std::string& mesh_damping = "0", const std::string& mesh = "mean") {
   return [=](std::size_t i) {
-    Settings s("camshaft", camshaft_entry().settings);
+    Parameters s("camshaft", camshaft_entry().parameters);
     s.set("drive", drive);
     s.set("loads", loads);
     s.set("cylinders", "6");
@@ -323,7 +323,7 @@ TEST_CASE("Many: what lockstep does not cover runs one by one, the same way") {
 TEST_CASE("Many: another topology, a variant that cannot be built, bad options, the caller's stop") {
   const TransientOptions options{.step = 1e-4, .t_end = 0.01};
   const auto longer = [](std::size_t i) {
-    Settings s("camshaft", camshaft_entry().settings);
+    Parameters s("camshaft", camshaft_entry().parameters);
     s.set("cylinders", i == 2 ? "7" : "6");
     return build_camshaft(s).model.build();
   };

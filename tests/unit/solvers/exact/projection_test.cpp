@@ -1,9 +1,8 @@
-// Projection of forces on polynomials: moments of kinks and conversion to powers, by quadrature in long
+// LegendreProjection of forces on polynomials: moments of kinks and conversion to powers, by quadrature in long
 // double.
-#include "solvers/exact/projection.hpp"
-
 #include <cmath>
 
+#include "solvers/exact/legendre_projection.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -44,7 +43,7 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
     std::vector<double> theta{8.0, 0.01 * sign};
     for (int k = 2; k < 20; ++k) theta.push_back(1e-3 * sign * std::pow(1.5, k) / std::tgamma(k + 1));
     KinkMoments kinks;
-    Projection projection(whole_lanes(20));
+    LegendreProjection projection(whole_lanes(20));
     std::vector<double> places;
     for (int i = 0; i < 20; ++i) {
       places.push_back(i == 0 ? 0.0 : i == 19 ? 1.0 : 0.03 + 0.05 * i);
@@ -70,7 +69,7 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
 
 TEST_CASE("Projection: a polynomial of its degree is itself, by powers too") {
   const std::vector<double> c{1.0, -2.0, 0.5, 3.0, -1.0, 0.25, 0.75};
-  Projection projection(kLanes);
+  LegendreProjection projection(kLanes);
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q)
     for (int j = 0; j < kProjectionTerms; ++j)
       projection.coefficient(j, 3) += (2 * j + 1) * gauss_rule().weight[q] *

@@ -49,7 +49,7 @@ TEST_CASE("Sturm count of uniform chains, free and held", "[InertiaCounter]") {
       for (int j = 0; j < 9; ++j) {
         // two places between lambda_j and lambda_j+1: one of them may meet a tiny pivot
         for (const double fraction : {0.5, 0.382}) {
-          const InertiaCount count = counter.count_below(lambda(j) + fraction * (lambda(j + 1) - lambda(j)));
+          const SturmCount count = counter.count_below(lambda(j) + fraction * (lambda(j + 1) - lambda(j)));
           if (count.trusted) {
             ++trusted;
             CHECK(count.below == j + 1);
@@ -66,7 +66,7 @@ TEST_CASE("A zero pivot is not trusted", "[InertiaCounter]") {
   InertiaCounter counter(chain.pattern, chain.stiffness, chain.mass);
   CHECK_FALSE(counter.count_below(1.0).trusted);
   CHECK_FALSE(counter.count_below(1.0 + 1e-9).trusted);
-  const InertiaCount next = counter.count_below(1.01);
+  const SturmCount next = counter.count_below(1.01);
   CHECK(next.trusted);
   CHECK(next.below == 1);
   CHECK_THROWS_AS(counter.count_below(NAN), SolverError);

@@ -237,7 +237,7 @@ class AnySpring final : public Element {
   void check(ParameterCheck&) const override {}
   void describe(int, Terms& terms) const override {
     terms.stiffness(0, 0) = params_.stiffness;
-    if (params_.says_so) terms.closures.push_back({.b = relative_motion(1)});
+    if (params_.says_so) terms.speed_ratio_constraints.push_back({.b = relative_motion(1)});
   }
 
  private:

@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "core/law_element.hpp"
-#include "core/projected_system.hpp"
+#include "core/ritz_projection.hpp"
 #include "core/units.hpp"
 #include "elements/catalogue.hpp"
 #include "models/camshaft/build_camshaft.hpp"
@@ -193,14 +193,14 @@ TEST_CASE("A gap that opens, a stiffness by phase: exact propagation comes back 
 TEST_CASE("Camshaft held: the last turn of a long exact run") {
   for (const char* loads : {"source", "actual"}) {
     INFO(loads);
-    Settings s("camshaft", camshaft_entry().settings);
+    Parameters s("camshaft", camshaft_entry().parameters);
     s.set("drive", "held");
     s.set("loads", loads);
     s.set("damping", "case_1");
-    const Scene scene = camshaft_entry().build(s);
-    const System system = scene.model.build();
-    std::vector<std::string> names = scene.torques;
-    names.push_back(scene.deflection);
+    const ModelCase model_case = camshaft_entry().build(s);
+    const System system = model_case.model.build();
+    std::vector<std::string> names = model_case.torques;
+    names.push_back(model_case.deflection);
     const PeriodicResponse r = solve_periodic(system, {.channels = names});
     INFO(r.reason);
     REQUIRE(r.found);
@@ -236,7 +236,7 @@ TEST_CASE("A load that follows the motion of a node over several coordinates") {
   const Eigen::MatrixXd basis{{1.0, 0.5}, {1.0, -0.5}};
   const std::vector<std::string> channels{"a.angle_rad", "b.angle_rad"};
   const PeriodicResponse full = solve_periodic(system, {.channels = channels});
-  const PeriodicResponse other = solve_periodic(project(system, basis), {.channels = channels});
+  const PeriodicResponse other = solve_periodic(ritz_projection(system, basis), {.channels = channels});
   INFO(full.reason << other.reason);
   REQUIRE(full.found);
   REQUIRE(other.found);

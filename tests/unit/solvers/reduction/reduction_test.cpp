@@ -38,7 +38,7 @@ Model chain(bool held) {
 }
 
 System camshaft(const std::string& drive, const std::string& loads = "actual") {
-  Settings s("camshaft", camshaft_entry().settings);
+  Parameters s("camshaft", camshaft_entry().parameters);
   s.set("drive", drive);
   s.set("loads", loads);
   return camshaft_entry().build(s).model.build();

@@ -30,7 +30,7 @@ TEST_CASE("The estimate is the true local error on smooth steps") {
                             Expected{"sdirk4", 0.02, false}, Expected{"dormand_prince", 0.03, false}}) {
     INFO(e.method);
     const auto stepper = make_stepper(system, step_scheme(e.method), {});
-    StepPoint from, to;
+    EvaluatedState from, to;
     from.state = State::initial(system, 0.1);
     from.state.z[0] = std::cos(kTwoPi * 0.1);
     from.state.v[0] = -kTwoPi * std::sin(kTwoPi * 0.1);
@@ -53,7 +53,7 @@ TEST_CASE("The estimate is the true local error on smooth steps") {
 
 TEST_CASE("Controlled steps: the error of case B at 2 s stays below the tolerance and falls with it") {
   // Exact curve in extended precision (published/data); two contact changes up to 2 s.
-  Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
+  Parameters s("two_mass_backlash", two_mass_backlash_entry().parameters);
   s.set("k_1_N_per_m", "2000");
   s.set("k_2_N_per_m", "1000");
   s.set("half_gap_1_m", "0.05");

@@ -61,7 +61,7 @@ TEST_CASE("Sturm counts of a chain of 1e5 inertias", "[InertiaCounter][large]") 
   InertiaCounter counter(system.pattern(), stiffness, mass);
   for (const int below : {1, 500, 50000, 99999}) {
     const double s = 0.5 * (std::pow(omega_of(n, below), 2) + std::pow(omega_of(n, below + 1), 2));
-    const InertiaCount count = counter.count_below(s);
+    const SturmCount count = counter.count_below(s);
     if (count.trusted) CHECK(count.below == below);
     CHECK((count.trusted || below > 1));
   }

@@ -18,7 +18,7 @@ using namespace drev;
 namespace {
 
 System case_b() {
-  Settings s("two_mass_backlash", two_mass_backlash_entry().settings);
+  Parameters s("two_mass_backlash", two_mass_backlash_entry().parameters);
   s.set("k_1_N_per_m", "2000");
   s.set("k_2_N_per_m", "1000");
   s.set("half_gap_1_m", "0.05");

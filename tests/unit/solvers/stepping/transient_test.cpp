@@ -238,7 +238,7 @@ TEST_CASE("Peaks at the ends of steps, or inside them to fourth order") {
   const System system = [] { return unit_oscillator().build(); }();
   const Assembler assembler(system);
   const auto point = [](double t) {
-    StepPoint p;
+    EvaluatedState p;
     p.state.t = t;
     p.state.z = Vector::Constant(1, std::sin(kTwoPi * t));
     p.state.v = Vector::Constant(1, kTwoPi * std::cos(kTwoPi * t));
@@ -248,11 +248,11 @@ TEST_CASE("Peaks at the ends of steps, or inside them to fourth order") {
   double last = 0.0;
   for (const double h : {0.06, 0.03}) {
     Peaks ends({find_channel(system, "m.position_m")}), inside(ends.channels(), true);
-    StepPoint from = point(0.25 - 3.4 * h);
+    EvaluatedState from = point(0.25 - 3.4 * h);
     ends.start(assembler, from);
     inside.start(assembler, from);
     for (int i = 1; i <= 6; ++i) {
-      const StepPoint to = point(0.25 - 3.4 * h + i * h);
+      const EvaluatedState to = point(0.25 - 3.4 * h + i * h);
       ends.step(assembler, from, to);
       inside.step(assembler, from, to);
       from = to;

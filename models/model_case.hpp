@@ -1,5 +1,5 @@
 #pragma once
-/// A scene: an assembled model together with what is worth knowing to run it and to read its results.
+/// ModelCase: an assembled model together with what is worth knowing to run it and to read its results.
 #include <functional>
 #include <optional>
 #include <string>
@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/model.hpp"
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 namespace drev {
 
-struct Scene {
+struct ModelCase {
   Model model;
   double duration = 1.0;       ///< s
   double default_step = 1e-4;  ///< s; the model's header says why
@@ -25,23 +25,23 @@ struct Scene {
   std::vector<std::string> channels = {};
 };
 
-struct SceneEntry {
+struct ModelEntry {
   std::string name;
   std::string summary;
-  std::vector<Setting> settings;
-  /// Throws ModelError for settings that cannot be.
-  std::function<Scene(Settings)> build;
+  std::vector<Parameter> parameters;
+  /// Throws ModelError for parameters that cannot be.
+  std::function<ModelCase(Parameters)> build;
 };
 
 /// Every ready-made model, in the order in which a newcomer should read them.
-const std::vector<SceneEntry>& scenes();
+const std::vector<ModelEntry>& ready_made_models();
 /// By name; throws ModelError with the nearest name.
-const SceneEntry& find_scene(const std::string& name);
+const ModelEntry& find_model(const std::string& name);
 
-using SettingList = std::vector<std::pair<std::string, std::string>>;
-/// The defaults of a model with these settings in their place.
-Settings values_of(const SceneEntry& entry, const SettingList& settings);
-/// A ready-made model with settings; throws ModelError for a name or settings that cannot be.
-Scene build_scene(const std::string& model, const SettingList& settings);
+using ParameterValues = std::vector<std::pair<std::string, std::string>>;
+/// The defaults of a model with these parameters in their place.
+Parameters values_of(const ModelEntry& entry, const ParameterValues& parameters);
+/// A ready-made model with parameters; throws ModelError for a name or parameters that cannot be.
+ModelCase build_case(const std::string& model, const ParameterValues& parameters);
 
 }  // namespace drev

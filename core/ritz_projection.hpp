@@ -16,6 +16,6 @@ namespace drev {
 /// basis: one row for each unknown of the system, columns linearly independent. Throws ModelError where it is
 /// not so, and where a node of a general element does not keep a coordinate of its own (a row of the basis
 /// with one entry).
-System project(const System& system, const Eigen::MatrixXd& basis);
+System ritz_projection(const System& system, const Eigen::MatrixXd& basis);
 
 }  // namespace drev

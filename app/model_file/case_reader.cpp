@@ -1,4 +1,4 @@
-#include "app/model_file/scene_reader.hpp"
+#include "app/model_file/case_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +21,13 @@ constexpr std::size_t kMostParts = 300000;  // nodes and elements
 // Names are compared with so many at most: suggestions take time.
 constexpr std::size_t kMostCompared = 2000;
 
-class SceneReader {
+class CaseReader {
  public:
-  SceneReader(const Document& document, ReadContext& context)
+  CaseReader(const Document& document, ReadContext& context)
       : doc_(document), context_(context), model_(document.name) {}
 
   /// Nothing, and findings, if something is wrong.
-  std::optional<Scene> read(const RunSection& run) {
+  std::optional<ModelCase> read(const RunSection& run) {
     for (const Block& block : doc_.blocks)
       if (block.nodes != nullptr)
         for_each(block, *block.nodes,
@@ -37,14 +37,14 @@ class SceneReader {
         for_each(block, *block.elements,
                  [this](const Entry& entry, const std::string& name) { add_element(entry, name); });
     if (!context_.findings.empty()) {
-      for (const Placement& placement : model_.placements()) check_alone(placement);
+      for (const ElementInstance& placement : model_.element_instances()) check_alone(placement);
       return {};
     }
     try {
       const System system = model_.build();
-      Scene scene{.model = std::move(model_), .note = doc_.note};
-      run.complete(scene, system, context_);
-      return scene;
+      ModelCase model_case{.model = std::move(model_), .note = doc_.note};
+      run.complete(model_case, system, context_);
+      return model_case;
     } catch (const ModelError& error) {
       for (Finding& finding : placed(error, doc_.name, doc_.at, nodes_, elements_))
         context_.findings.push_back(std::move(finding));
@@ -230,7 +230,7 @@ class SceneReader {
   }
 
   /// Parameters out of range, where the model as a whole cannot be built yet.
-  void check_alone(const Placement& placement) {
+  void check_alone(const ElementInstance& placement) {
     std::vector<Finding> findings;
     ParameterCheck check(doc_.name + "/" + placement.name, findings);
     placement.element->check(check);
@@ -248,49 +248,49 @@ class SceneReader {
 
 }  // namespace
 
-FileScene read_scene(const Document& document, const Settings& settings, const std::string& run,
+FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
                      bool options_only) {
   ReadContext context;
-  for (const Setting& setting : settings.known())
-    context.scope.numbers[setting.name] = settings.number(setting.name);
+  for (const Parameter& parameter : parameters.known())
+    context.scope.numbers[parameter.name] = parameters.number(parameter.name);
   context.scope.lists = document.lists;
   context.tables = document.tables;
-  FileScene result;
+  FileCase result;
   const RunSection section(document, run, context);
   result.options = section.options();
-  if (!options_only) result.scene = SceneReader(document, context).read(section);
+  if (!options_only) result.model_case = CaseReader(document, context).read(section);
   limit_findings(context.findings, document.at);
-  if (!context.findings.empty()) result.scene.reset();
+  if (!context.findings.empty()) result.model_case.reset();
   result.findings = std::move(context.findings);
   return result;
 }
 
-void set_run_parameters(const Document& document, const std::string& run, std::vector<Setting>& settings,
+void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
                         std::vector<Finding>& findings) {
   const Entry* named = document.run != nullptr ? document.run->find(run) : nullptr;
   if (run.empty() || named == nullptr) return;
-  const Entry* parameters = named->value.find("parameters");
-  if (parameters == nullptr) return;
+  const Entry* given = named->value.find("parameters");
+  if (given == nullptr) return;
   const std::string where = "run." + run + ".parameters";
-  if (!parameters->value.is(Value::Kind::table)) {
-    findings.push_back(fault_at(parameters->value.at, where, "must be a table, { name = value }"));
+  if (!given->value.is(Value::Kind::table)) {
+    findings.push_back(fault_at(given->value.at, where, "must be a table, { name = value }"));
     return;
   }
-  for (const Entry& entry : parameters->value.entries) {
+  for (const Entry& entry : given->value.entries) {
     std::vector<std::string> names;
-    for (const Setting& s : settings) names.push_back(s.name);
+    for (const Parameter& s : parameters) names.push_back(s.name);
     const auto found = std::find(names.begin(), names.end(), entry.key);
     if (found == names.end()) {
       findings.push_back(fault_at(entry.at, where + "." + entry.key,
                                   "is none of [parameters]" + did_you_mean(entry.key, names)));
       continue;
     }
-    Setting& setting = settings[static_cast<std::size_t>(found - names.begin())];
-    Settings probe(document.name, {setting});
+    Parameter& parameter = parameters[static_cast<std::size_t>(found - names.begin())];
+    Parameters probe(document.name, {parameter});
     probe.set(entry.key, entry.value.numeric() ? to_text(entry.value.number) : kind_name(entry.value));
     try {
       probe.check();
-      setting.default_text = to_text(entry.value.number);
+      parameter.default_text = to_text(entry.value.number);
     } catch (const ModelError& error) {
       for (Finding finding : error.findings()) {
         finding.place = entry.value.at.text() + ": " + where;

@@ -1,4 +1,4 @@
-#include "models/settings.hpp"
+#include "models/parameters.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -14,7 +14,7 @@ bool read_number(const std::string& text, double& value) {
   return result.ec == std::errc{} && result.ptr == end && begin != end;
 }
 
-std::string Setting::range() const {
+std::string Parameter::range() const {
   std::string text;
   switch (kind) {
     case Kind::number:
@@ -32,30 +32,30 @@ std::string Setting::range() const {
   return text;
 }
 
-Settings::Settings(std::string model, std::vector<Setting> known)
+Parameters::Parameters(std::string model, std::vector<Parameter> known)
     : model_(std::move(model)), known_(std::move(known)) {
-  for (const Setting& s : known_) values_.push_back(s.default_text);
+  for (const Parameter& s : known_) values_.push_back(s.default_text);
 }
 
-void Settings::set(const std::string& name, const std::string& value) {
+void Parameters::set(const std::string& name, const std::string& value) {
   std::vector<std::string> names;
-  for (const Setting& s : known_) names.push_back(s.name);
+  for (const Parameter& s : known_) names.push_back(s.name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     findings_.push_back(
-        {model_, "setting", name, "", "is no setting of this model" + did_you_mean(name, names)});
+        {model_, "parameter", name, "", "is no parameter of this model" + did_you_mean(name, names)});
     return;
   }
   const auto i = static_cast<std::size_t>(found - names.begin());
-  const Setting& s = known_[i];
+  const Parameter& s = known_[i];
   const std::string place = model_ + "/settings";
-  if (s.kind == Setting::Kind::choice) {
+  if (s.kind == Parameter::Kind::choice) {
     if (std::find(s.choices.begin(), s.choices.end(), value) == s.choices.end()) {
       findings_.push_back(
           {place, name, value, "", "must be one of " + s.range() + did_you_mean(value, s.choices)});
       return;
     }
-  } else if (s.kind == Setting::Kind::order) {
+  } else if (s.kind == Parameter::Kind::order) {
     values_[i] = value;
     const std::vector<int> order = this->order(name);
     for (std::size_t k = 1; k <= order.size(); ++k)
@@ -77,42 +77,42 @@ void Settings::set(const std::string& name, const std::string& value) {
       return;
     }
     if (!(number >= s.low && number <= s.high) ||
-        (s.kind == Setting::Kind::integer && number != std::floor(number))) {
+        (s.kind == Parameter::Kind::integer && number != std::floor(number))) {
       findings_.push_back(
           {place, name, value, s.unit,
-           (s.kind == Setting::Kind::integer ? "must be a whole number, " : "must be ") + s.range()});
+           (s.kind == Parameter::Kind::integer ? "must be a whole number, " : "must be ") + s.range()});
       return;
     }
   }
   values_[i] = value;
 }
 
-void Settings::check() const {
+void Parameters::check() const {
   if (!findings_.empty()) throw ModelError(findings_);
 }
 
-void Settings::refuse(const std::string& name, const std::string& why) {
-  const Setting& s = known_[find(name)];
+void Parameters::refuse(const std::string& name, const std::string& why) {
+  const Parameter& s = known_[find(name)];
   findings_.push_back({model_ + "/settings", name, text(name), s.unit, why});
 }
 
-std::size_t Settings::find(const std::string& name) const {
+std::size_t Parameters::find(const std::string& name) const {
   for (std::size_t i = 0; i < known_.size(); ++i)
     if (known_[i].name == name) return i;
-  throw ModelError({{model_, "setting", name, "", "is no setting of this model"}});
+  throw ModelError({{model_, "parameter", name, "", "is no parameter of this model"}});
 }
 
-double Settings::number(const std::string& name) const {
+double Parameters::number(const std::string& name) const {
   double value = 0.0;
   read_number(values_[find(name)], value);
   return value;
 }
 
-int Settings::integer(const std::string& name) const { return static_cast<int>(number(name)); }
+int Parameters::integer(const std::string& name) const { return static_cast<int>(number(name)); }
 
-const std::string& Settings::text(const std::string& name) const { return values_[find(name)]; }
+const std::string& Parameters::text(const std::string& name) const { return values_[find(name)]; }
 
-std::vector<int> Settings::order(const std::string& name) const {
+std::vector<int> Parameters::order(const std::string& name) const {
   std::vector<int> order;
   const std::string& all = values_[find(name)];
   for (std::size_t begin = 0; begin <= all.size();) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Named settings of a ready-made model, with unit, default and range: what `drev list` shows and `--set
+/// Named parameters of a ready-made model, with unit, default and range: what `drev list` shows and `--set
 /// name=value` changes.
 #include <limits>
 #include <string>
@@ -11,8 +11,8 @@ namespace drev {
 
 inline constexpr double kNoLimit = std::numeric_limits<double>::max();
 
-/// Description of one setting.
-struct Setting {
+/// Description of one parameter.
+struct Parameter {
   enum class Kind { number, integer, choice, order };
   std::string name;
   Kind kind = Kind::number;
@@ -25,10 +25,10 @@ struct Setting {
   std::string range() const;
 };
 
-/// Values for the settings of one model: the defaults, then what was set.
-class Settings {
+/// Values for the parameters of one model: the defaults, then what was set.
+class Parameters {
  public:
-  Settings(std::string model, std::vector<Setting> known);
+  Parameters(std::string model, std::vector<Parameter> known);
 
   /// Reads "name" = "value". What is wrong (no such name, no number, out of range) is kept for check().
   void set(const std::string& name, const std::string& value);
@@ -43,14 +43,14 @@ class Settings {
   /// An order such as 1-5-3-6-2-4.
   std::vector<int> order(const std::string& name) const;
 
-  const std::vector<Setting>& known() const { return known_; }
+  const std::vector<Parameter>& known() const { return known_; }
   const std::vector<std::string>& values() const { return values_; }
 
  private:
   std::size_t find(const std::string& name) const;
 
   std::string model_;
-  std::vector<Setting> known_;
+  std::vector<Parameter> known_;
   std::vector<std::string> values_;
   std::vector<Finding> findings_;
 };

@@ -6,7 +6,7 @@
 
 namespace drev {
 
-enum class Phase {
+enum class RunSection {
   loads,      ///< loads, known motions, the laws' inputs
   linear,     ///< products with K and C, solves on the factor
   contacts,   ///< Newton on the contact forces
@@ -15,11 +15,11 @@ enum class Phase {
   count
 };
 
-class PhaseClock {
+class RunClock {
  public:
-  explicit PhaseClock(bool on = false) : on_(on) {}
+  explicit RunClock(bool on = false) : on_(on) {}
   /// Starts a phase; the one before it ends.
-  void enter(Phase phase) {
+  void enter(RunSection phase) {
     if (!on_) return;
     const auto now = std::chrono::steady_clock::now();
     if (running_) seconds_[index_] += std::chrono::duration<double>(now - since_).count();
@@ -27,14 +27,14 @@ class PhaseClock {
     index_ = static_cast<std::size_t>(phase);
     running_ = true;
   }
-  double seconds(Phase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
+  double seconds(RunSection phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
   bool on() const { return on_; }
 
  private:
   bool on_ = false, running_ = false;
   std::size_t index_ = 0;
   std::chrono::steady_clock::time_point since_{};
-  std::array<double, static_cast<std::size_t>(Phase::count)> seconds_{};
+  std::array<double, static_cast<std::size_t>(RunSection::count)> seconds_{};
 };
 
 }  // namespace drev

@@ -1,4 +1,4 @@
-#include "core/projected_system.hpp"
+#include "core/ritz_projection.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -41,9 +41,9 @@ SparseMatrix couplings(const SparseMatrix& a, const Eigen::MatrixXd& basis) {
 
 }  // namespace
 
-class SystemProjector {
+class RitzProjector {
  public:
-  SystemProjector(const System& full, const Eigen::MatrixXd& basis)
+  RitzProjector(const System& full, const Eigen::MatrixXd& basis)
       : full_(full), basis_(basis), system_(full) {}
 
   System project() {
@@ -75,18 +75,18 @@ class SystemProjector {
 
   /// A row with one entry is a coordinate; the others are rows, those with loads first.
   void map_nodes() {
-    std::vector<int> row_of(at(full_.size()), -1), rows;
+    std::vector<int> row_of(idx(full_.size()), -1), rows;
     const auto give_row = [&](int unknown) {
-      int& row = row_of[at(unknown)];
+      int& row = row_of[idx(unknown)];
       if (row >= 0) return;
       row = static_cast<int>(rows.size());
       rows.push_back(unknown);
     };
-    std::vector<int> single(at(full_.size()));
-    for (int i = 0; i < full_.size(); ++i) single[at(i)] = only_entry(basis_, i);
+    std::vector<int> single(idx(full_.size()));
+    for (int i = 0; i < full_.size(); ++i) single[idx(i)] = only_entry(basis_, i);
     const auto unknown_of = [&](int node) {
       const int i = full_.node_map(node).unknown;
-      return i >= 0 && single[at(i)] < 0 ? i : -1;
+      return i >= 0 && single[idx(i)] < 0 ? i : -1;
     };
     for (const LoadTerm& l : full_.loads())
       if (const int i = unknown_of(l.node); i >= 0) give_row(i);
@@ -99,19 +99,19 @@ class SystemProjector {
     for (NodeMap& map : system_.node_map_) {
       const int i = map.unknown;
       if (i < 0) continue;
-      const int k = single[at(i)];
+      const int k = single[idx(i)];
       if (k < 0)
-        map = {.coeff = map.coeff, .row = row_of[at(i)]};
+        map = {.coeff = map.coeff, .row = row_of[idx(i)]};
       else
         map = {.unknown = k, .coeff = map.coeff * basis_(i, k)};
     }
-    system_.unknown_node_.resize(at(count()));
+    system_.unknown_node_.resize(idx(count()));
     for (int k = 0; k < count(); ++k) {
       Eigen::Index largest = 0;
       basis_.col(k).cwiseAbs().maxCoeff(&largest);
       const auto own = std::find(single.begin(), single.end(), k);
       if (own != single.end()) largest = own - single.begin();
-      system_.unknown_node_[at(k)] = full_.unknown_node_[static_cast<std::size_t>(largest)];
+      system_.unknown_node_[idx(k)] = full_.unknown_node_[static_cast<std::size_t>(largest)];
     }
   }
 
@@ -120,9 +120,9 @@ class SystemProjector {
     for (const GeneralTerm& g : full_.generals())
       for (const int node : g.nodes)
         if (system_.node_map(node).row >= 0)
-          findings.push_back({full_.name(), "general element", full_.placements()[at(index(g.element))].name,
-                              "",
-                              "needs node " + full_.node_names()[at(node)] + " as a coordinate: keep it"});
+          findings.push_back({full_.name(), "general element",
+                              full_.element_instances()[idx(index(g.element))].name, "",
+                              "needs node " + full_.node_names()[idx(node)] + " as a coordinate: keep it"});
     if (!findings.empty()) throw ModelError(findings);
   }
 
@@ -204,8 +204,8 @@ class SystemProjector {
   Eigen::MatrixXd mass_;
 };
 
-System project(const System& system, const Eigen::MatrixXd& basis) {
-  return SystemProjector(system, basis).project();
+System ritz_projection(const System& system, const Eigen::MatrixXd& basis) {
+  return RitzProjector(system, basis).project();
 }
 
 }  // namespace drev

@@ -1,5 +1,5 @@
 #pragma once
-/// Projection: forces that are no polynomials of time, as polynomials over a step.
+/// LegendreProjection: forces that are no polynomials of time, as polynomials over a step.
 ///
 /// A force f(s), s in [0, 1], is replaced by sum a_j L_j(s), a_j = (2j+1) int f L_j ds, with the shifted
 /// Legendre polynomials L_j. The rest is orthogonal to every polynomial of degree kProjectionDegree, and the
@@ -26,10 +26,10 @@ struct GaussRule {
 const GaussRule& gauss_rule();
 
 /// Coefficients a_j of one force a row, and their conversion to powers of s.
-class Projection {
+class LegendreProjection {
  public:
   /// stride: rows, in whole lanes.
-  explicit Projection(int stride) : stride_(stride), a_(kProjectionTerms * size()) {}
+  explicit LegendreProjection(int stride) : stride_(stride), a_(kProjectionTerms * size()) {}
 
   void clear() { a_.assign(a_.size(), 0.0); }
   double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
@@ -55,7 +55,7 @@ class KinkMoments {
   /// theta: `terms` coefficients; theta passes `knot` once in [0, 1], and monotonously.
   void add(int row, double knot, double jump, const std::vector<double>& theta);
   /// Adds the moments of all kinks. tolerance: relative, of each.
-  void add_to(Projection& projection, double tolerance);
+  void add_to(LegendreProjection& projection, double tolerance);
 
  private:
   int count_ = 0;

@@ -1,4 +1,4 @@
-#include "solvers/exact/projection.hpp"
+#include "solvers/exact/legendre_projection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -145,14 +145,14 @@ const GaussRule& gauss_rule() {
   return rule;
 }
 
-void Projection::add_node(std::size_t q, int row, double value) {
+void LegendreProjection::add_node(std::size_t q, int row, double value) {
   const GaussRule& rule = gauss_rule();
   for (int j = 0; j < kProjectionTerms; ++j)
     coefficient(j, row) +=
         (2 * j + 1) * rule.weight[q] * rule.legendre[static_cast<std::size_t>(j)][q] * value;
 }
 
-void Projection::add_powers(int kept, double* out) const {
+void LegendreProjection::add_powers(int kept, double* out) const {
   static const Powers powers = legendre_powers();
   to_powers(stride_, powers, a_.data(), kept, out);
 }
@@ -180,7 +180,7 @@ void KinkMoments::add(int row, double knot, double jump, const std::vector<doubl
   end_[i] = sum;
 }
 
-void KinkMoments::add_to(Projection& projection, double tolerance) {
+void KinkMoments::add_to(LegendreProjection& projection, double tolerance) {
   if (count_ == 0) return;
   moments_.resize(kProjectionTerms * kLanes);
   columns_.clear();
