@@ -1,4 +1,5 @@
-#include "advice/advise.hpp"
+#include <drev/advice/advise.hpp>
+#include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,6 @@
 
 #include "advice/evidence.hpp"
 #include "advice/simplify.hpp"
-#include "core/units.hpp"
 
 namespace drev {
 

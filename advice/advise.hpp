@@ -12,11 +12,11 @@
 /// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
 /// does so for this model case and this figure (docs/fidelity.md).
+#include <drev/advice/recipe.hpp>
+#include <drev/models/model_case.hpp>
+
 #include <string>
 #include <vector>
-
-#include "advice/recipe.hpp"
-#include "models/model_case.hpp"
 
 namespace drev {
 

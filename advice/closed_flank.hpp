@@ -5,10 +5,10 @@
 ///
 /// y_closed: the mesh without backlash. The same force as the mesh with its gap for as long as that flank
 /// carries and no damper is limited.
+#include <drev/elements/gear_mesh.hpp>
+
 #include <memory>
 #include <vector>
-
-#include "elements/gear_mesh.hpp"
 
 namespace drev {
 

@@ -1,13 +1,13 @@
 #include "advice/evidence.hpp"
 
+#include <drev/advice/advise.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include "advice/advise.hpp"
-#include "core/units.hpp"
-#include "elements/gear_mesh.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev {
 

@@ -1,12 +1,13 @@
 #pragma once
 /// Why a simpler model does or does not do, in sentences: what the forces of the meshes did in the full run,
 /// and how far its mesh frequencies are from the parametric resonances 2 w/n of its modes.
+#include <drev/core/system.hpp>
+#include <drev/solvers/run/peaks.hpp>
+
 #include <string>
 #include <vector>
 
 #include "advice/simplify.hpp"
-#include "core/system.hpp"
-#include "solvers/run/peaks.hpp"
 
 namespace drev {
 

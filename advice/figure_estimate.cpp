@@ -1,12 +1,12 @@
-#include "advice/figure_estimate.hpp"
+#include <drev/advice/figure_estimate.hpp>
+#include <drev/core/channel.hpp>
+#include <drev/core/error.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <limits>
 
-#include "core/channel.hpp"
-#include "core/error.hpp"
 #include "solvers/accuracy/accuracy_observers.hpp"
 
 namespace drev {

@@ -8,12 +8,12 @@
 ///
 /// The method is the cheapest that keeps the accuracy: exact propagation, or constant steps of sdirk4, halved
 /// until two differences in a row are small, where those take less time.
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/run/peaks.hpp>
+
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "solvers/method_choice.hpp"
-#include "solvers/run/peaks.hpp"
 
 namespace drev {
 

@@ -1,9 +1,8 @@
-#include "advice/recipe.hpp"
+#include <drev/advice/recipe.hpp>
+#include <drev/core/error.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
 
 #include <algorithm>
-
-#include "core/error.hpp"
-#include "solvers/periodic/periodic_response.hpp"
 
 namespace drev {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// A model as it is to be run for one figure: what is simplified, and by which method.
-#include <optional>
+#include <drev/advice/figure_estimate.hpp>
+#include <drev/solvers/reduction/reduction.hpp>
 
-#include "advice/figure_estimate.hpp"
-#include "solvers/reduction/reduction.hpp"
+#include <optional>
 
 namespace drev {
 

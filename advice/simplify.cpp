@@ -1,15 +1,16 @@
 #include "advice/simplify.hpp"
 
+#include <drev/core/assembler.hpp>
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
 
 #include "advice/closed_flank.hpp"
-#include "core/assembler.hpp"
 #include "core/kinematics.hpp"
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev {
 

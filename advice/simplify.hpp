@@ -3,12 +3,12 @@
 /// where the model has nothing of the kind. Initial conditions go along: parts that a simplification ties
 /// anew start turned as rigid bodies, so that every shaft starts with its twist. What cannot be built then (a
 /// load on a node that is gone) says so in Model::build().
+#include <drev/core/system.hpp>
+
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/system.hpp"
 
 namespace drev {
 

@@ -1,5 +1,5 @@
-# Installs the rooms' libraries and headers, and what find_package(drev) and pkg-config read. Headers keep
-# their room: #include "core/model.hpp" inside and outside. (app/CMakeLists.txt installs the command.)
+# Installs the libraries of the rooms, the public headers, and what find_package(drev) and pkg-config read.
+# (app/CMakeLists.txt installs the command.)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(drev_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/drev)
@@ -8,13 +8,9 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 install(TARGETS drev_core drev_elements drev_solvers drev_models drev_advice EXPORT drevTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT drevTargets NAMESPACE drev:: DESTINATION ${drev_cmake_dir})
-foreach(room core elements solvers models advice)
-  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-       ${PROJECT_SOURCE_DIR}/${room}/*.hpp ${PROJECT_SOURCE_DIR}/${room}/*/*.hpp)
-  foreach(header IN LISTS headers)
-    get_filename_component(folder ${header} DIRECTORY)
-    install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/drev/${folder})
-  endforeach()
+foreach(header IN LISTS DREV_PUBLIC_HEADERS)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/drev/${folder})
 endforeach()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/drevConfig.cmake.in

@@ -1,3 +1,14 @@
+# Public headers are included as <drev/core/model.hpp>, inside as outside: the build tree's include/drev holds a
+# link to each of those in public_headers.txt, in the folders that they are installed in.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/public_headers.txt)
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/public_headers.txt DREV_PUBLIC_HEADERS REGEX "^[^#]")
+file(REMOVE_RECURSE ${PROJECT_BINARY_DIR}/include/drev)
+foreach(header IN LISTS DREV_PUBLIC_HEADERS)
+  get_filename_component(folder ${header} DIRECTORY)
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/drev/${folder})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${PROJECT_BINARY_DIR}/include/drev/${header} SYMBOLIC)
+endforeach()
+
 # drev_room(<room> <linked targets>): the library drev::<room> of the folder <room>/. Programs are not
 # part of it: a model's main.cpp is its example. A room of headers alone is a library, too.
 function(drev_room room)
@@ -12,7 +23,8 @@ function(drev_room room)
   add_library(drev::${room} ALIAS drev_${room})
   set_target_properties(drev_${room} PROPERTIES EXPORT_NAME ${room} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(drev_${room} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                 $<INSTALL_INTERFACE:include/drev>)
+                                                 $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                                                 $<INSTALL_INTERFACE:include>)
   target_link_libraries(drev_${room} PUBLIC ${ARGN})
   # Vectors begin where a cache line does, and memory passes between drev and its user whatever
   # instructions each is compiled for.

@@ -1,4 +1,4 @@
-#include "core/assembler.hpp"
+#include <drev/core/assembler.hpp>
 
 namespace drev {
 

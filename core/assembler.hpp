@@ -1,19 +1,14 @@
 #pragma once
 /// Assembler: evaluates the terms of a System that are not constant, at one time. Holds what is known
 /// about that time (nominal motion, prescribed motions) and nothing else; one per thread.
+#include <drev/core/general_force.hpp>
+#include <drev/core/scalar_force.hpp>
+#include <drev/core/state.hpp>
+#include <drev/core/weights.hpp>
+
 #include <limits>
 
-#include "core/general_force.hpp"
-#include "core/scalar_force.hpp"
-#include "core/state.hpp"
-
 namespace drev {
-
-/// S = m M + c C + k K + the laws' slopes with the same weights. Static, implicit steps and modal shifts
-/// are this one call. With the acceleration as unknown: m = 1 - alpha_m, c = (1 - alpha_f) gamma h, ...
-struct Weights {
-  double m = 0.0, c = 0.0, k = 0.0;
-};
 
 class Assembler {
  public:

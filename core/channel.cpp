@@ -1,10 +1,9 @@
-#include "core/channel.hpp"
+#include <drev/core/channel.hpp>
+#include <drev/core/error.hpp>
 
 #include <algorithm>
 #include <set>
 #include <unordered_map>
-
-#include "core/error.hpp"
 
 namespace drev {
 

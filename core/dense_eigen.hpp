@@ -1,8 +1,8 @@
 #pragma once
 /// Eigenvalues of small dense matrices by Eigen's solvers, compiled once: their templates are large.
-#include <Eigen/Core>
+#include <drev/core/system.hpp>
 
-#include "core/system.hpp"
+#include <Eigen/Core>
 
 namespace drev {
 

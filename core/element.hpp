@@ -1,15 +1,15 @@
 #pragma once
 /// One entry of the catalogue. An element is immutable, does not know its place in the model, and sees
 /// no global matrix: describe() states its terms in its own node order, once.
+#include <drev/core/error.hpp>
+#include <drev/core/general_force.hpp>
+#include <drev/core/load.hpp>
+#include <drev/core/scalar_force.hpp>
+
 #include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "core/error.hpp"
-#include "core/general_force.hpp"
-#include "core/load.hpp"
-#include "core/scalar_force.hpp"
 
 namespace drev {
 

@@ -1,4 +1,4 @@
-#include "core/error.hpp"
+#include <drev/core/error.hpp>
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,11 @@
 #include "core/kinematics.hpp"
 
+#include <drev/core/ids.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <queue>
-
-#include "core/ids.hpp"
 
 namespace drev {
 

@@ -68,8 +68,8 @@ constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 }
 [[gnu::always_inline]] inline bool any(const LaneMask& mask) {
   static_assert(kLanes == 8);
-  LaneMask m = mask | __builtin_shuffle(mask, LaneMask{4, 5, 6, 7, 0, 1, 2, 3});
-  m |= __builtin_shuffle(m, LaneMask{2, 3, 0, 1, 2, 3, 0, 1});
+  LaneMask m = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3);
+  m |= __builtin_shufflevector(m, m, 2, 3, 0, 1, 2, 3, 0, 1);
   return (m[0] | m[1]) != 0;
 }
 

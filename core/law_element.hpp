@@ -9,7 +9,7 @@
 ///
 /// Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If the law has a member
 /// `void check(ParameterCheck&) const`, it is called when the model is built.
-#include "core/element.hpp"
+#include <drev/core/element.hpp>
 
 namespace drev {
 

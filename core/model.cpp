@@ -1,4 +1,4 @@
-#include "core/model.hpp"
+#include <drev/core/model.hpp>
 
 #include <algorithm>
 

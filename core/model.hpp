@@ -1,5 +1,8 @@
 #pragma once
 /// Model: the description of a drivetrain, in names. build() validates it and returns a System.
+#include <drev/core/ids.hpp>
+#include <drev/core/motion.hpp>
+
 #include <array>
 #include <initializer_list>
 #include <memory>
@@ -8,9 +11,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "core/ids.hpp"
-#include "core/motion.hpp"
 
 namespace drev {
 
@@ -55,7 +55,7 @@ class NodeList {
   NodeRef front() const { return (*this)[0]; }
   ByPosition<NodeList> begin() const { return {this, 0}; }
   ByPosition<NodeList> end() const { return {this, size()}; }
-  operator std::vector<NodeRef>() const;
+  operator std::vector<NodeRef>() const;  // NOLINT: implicit by intent
 
  private:
   std::array<int, 2> ids_{-1, -1};  // -1: none; not used where given_ is there

@@ -1,8 +1,7 @@
-#include "core/motion.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/motion.hpp>
 
 #include <cmath>
-
-#include "core/error.hpp"
 
 namespace drev {
 

@@ -1,13 +1,13 @@
 #pragma once
 /// Positions of names in a list, by name: an open hash table of 16 to 32 bytes a name, which keeps no copy of
 /// the names. Internal to core.
+#include <drev/core/ids.hpp>
+
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "core/ids.hpp"
 
 namespace drev {
 

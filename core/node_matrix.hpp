@@ -1,9 +1,9 @@
 #pragma once
 /// A symmetric matrix over nodes, as the elements add to it. Internal to SystemBuilder.
+#include <drev/core/ids.hpp>
+
 #include <deque>
 #include <vector>
-
-#include "core/ids.hpp"
 
 namespace drev {
 

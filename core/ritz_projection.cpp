@@ -1,10 +1,9 @@
-#include "core/ritz_projection.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/ritz_projection.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
-
-#include "core/error.hpp"
 
 namespace drev {
 

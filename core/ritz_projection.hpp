@@ -9,7 +9,7 @@
 /// approximate.
 /// Entries of the projected matrices below the rounding of their own sum are zero. Initial conditions are
 /// those nearest in kinetic energy.
-#include "core/system.hpp"
+#include <drev/core/system.hpp>
 
 namespace drev {
 

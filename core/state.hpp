@@ -1,6 +1,6 @@
 #pragma once
 /// State: everything that changes. A value: a copy is a checkpoint, one assignment a roll-back.
-#include "core/system.hpp"
+#include <drev/core/system.hpp>
 
 namespace drev {
 

@@ -1,12 +1,11 @@
-#include "core/system.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/general_force.hpp>
+#include <drev/core/scalar_force.hpp>
+#include <drev/core/state.hpp>
+#include <drev/core/system.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/error.hpp"
-#include "core/general_force.hpp"
-#include "core/scalar_force.hpp"
-#include "core/state.hpp"
 
 namespace drev {
 

@@ -8,14 +8,14 @@
 /// ratios are eliminated. m = T^T M n, and d = T^T C n is the mean drag of dashpots whose ends differ in
 /// nominal speed (zero for shafts and meshes). Of a projected system (projected_system.hpp) also q_i =
 /// coeff r z with a row r over all unknowns.
+#include <drev/core/model.hpp>
+#include <drev/core/table_loads.hpp>
+
 #include <Eigen/SparseCore>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/model.hpp"
-#include "core/table_loads.hpp"
 
 namespace drev {
 

@@ -1,11 +1,12 @@
 #pragma once
 /// Turns a Model into a System, step by step; collects findings and throws them together.
 /// Internal to core: users call Model::build().
-#include "core/element.hpp"
+#include <drev/core/element.hpp>
+#include <drev/core/system.hpp>
+
 #include "core/kinematics.hpp"
 #include "core/name_index.hpp"
 #include "core/node_matrix.hpp"
-#include "core/system.hpp"
 
 namespace drev {
 

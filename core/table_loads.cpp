@@ -1,4 +1,4 @@
-#include "core/table_loads.hpp"
+#include <drev/core/table_loads.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,11 +6,11 @@
 ///
 /// u is the argument modulo the period. A knot may lie off its even place by a quarter of the spacing
 /// (angles written down with a few digits): the nearest place still belongs to it, and to it alone.
+#include <drev/core/load.hpp>
+
 #include <map>
 #include <span>
 #include <vector>
-
-#include "core/load.hpp"
 
 namespace drev {
 

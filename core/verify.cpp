@@ -1,4 +1,4 @@
-#include "core/verify.hpp"
+#include <drev/core/verify.hpp>
 
 #include <Eigen/LU>
 #include <algorithm>

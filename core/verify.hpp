@@ -20,10 +20,10 @@
 ///                 speed_ratio_constraints: K n = 0, b^T n = 0
 ///   descriptions  sizes, node numbers, ascending kinks, closed slopes finite and >= 0
 /// Random numbers come from a fixed seed: the same element gives the same report anywhere.
+#include <drev/core/element.hpp>
+
 #include <string>
 #include <vector>
-
-#include "core/element.hpp"
 
 namespace drev {
 

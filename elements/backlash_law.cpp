@@ -1,4 +1,4 @@
-#include "elements/backlash_law.hpp"
+#include <drev/elements/backlash_law.hpp>
 
 #include <cmath>
 

@@ -37,14 +37,14 @@
 ///
 /// Without backlash (0) both flanks touch: y = k x + c x_dot for every damping law, linear,
 /// bilateral, no gap and no clip.
+#include <drev/core/error.hpp>
+#include <drev/core/scalar_force.hpp>
+#include <drev/elements/curve.hpp>
+#include <drev/elements/not_given.hpp>
+
 #include <optional>
 #include <span>
 #include <vector>
-
-#include "core/error.hpp"
-#include "core/scalar_force.hpp"
-#include "elements/curve.hpp"
-#include "elements/not_given.hpp"
 
 namespace drev {
 

@@ -8,8 +8,8 @@
 /// form, in which the twist hardly mattered (S. L. Sunde, NTNU, 2015, program TimeStepping.m), and
 /// a load of time alone. The phase places a cylinder in the firing order: the table is entered
 /// `phase` ahead.
-#include "core/element.hpp"
-#include "elements/periodic_table.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/periodic_table.hpp>
 
 namespace drev {
 

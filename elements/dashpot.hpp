@@ -6,8 +6,8 @@
 /// Ties no nominal speeds to each other: a dashpot whose ends differ in nominal speed (a bearing's
 /// drag) loads them with its mean torque too. The output is the part that follows from the
 /// deviations, c (q_b' - q_a'). Between translational nodes: N s/m.
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
 
 namespace drev {
 

@@ -1,8 +1,7 @@
-#include "elements/distributed_shaft.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/distributed_shaft.hpp>
 
 #include <cmath>
-
-#include "core/units.hpp"
 
 namespace drev {
 

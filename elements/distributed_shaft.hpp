@@ -14,9 +14,9 @@
 ///
 /// Source: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees, Dynamics of Rotating Machines,
 /// Cambridge University Press, 2010, chapter 9.
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
-#include "elements/segment_count.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
+#include <drev/elements/segment_count.hpp>
 
 namespace drev {
 

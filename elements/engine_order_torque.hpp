@@ -6,8 +6,8 @@
 /// on the RIGHT side: positive drives the node forward. theta is the node's actual angle (nominal
 /// + deviation); twist_feedback = false takes the nominal one. Orders are per revolution of the
 /// node; a four-stroke engine has half orders.
-#include "core/element.hpp"
-#include "elements/harmonic.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/harmonic.hpp>
 
 namespace drev {
 

@@ -1,9 +1,8 @@
-#include "elements/gear_mesh.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/elements/involute.hpp>
 
 #include <cmath>
-
-#include "core/units.hpp"
-#include "elements/involute.hpp"
 
 namespace drev {
 

@@ -22,10 +22,10 @@
 ///
 /// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
 /// equations 4.2 to 4.5, with the signs of one common axis sense.
-#include "core/element.hpp"
-#include "elements/backlash_law.hpp"
-#include "elements/mesh_stiffness.hpp"
-#include "elements/transmission_error.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/backlash_law.hpp>
+#include <drev/elements/mesh_stiffness.hpp>
+#include <drev/elements/transmission_error.hpp>
 
 namespace drev {
 

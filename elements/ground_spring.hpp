@@ -6,8 +6,8 @@
 /// The node and whatever is tied to it cannot turn nominally; build() refuses a reference motion
 /// there. Takes no part in Rayleigh damping, which is over inertias and shafts: a support has its
 /// own damping. On a translational node: N/m, N s/m.
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
 
 namespace drev {
 

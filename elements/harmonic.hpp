@@ -6,11 +6,11 @@
 /// A cosine with a phase, so that a sine is phase = -pi/2. Orders are counted per revolution
 /// (engine torque: half orders exist) or per mesh period (mesh: whole numbers). A negative
 /// amplitude is allowed.
+#include <drev/core/error.hpp>
+#include <drev/elements/curve.hpp>
+
 #include <cmath>
 #include <vector>
-
-#include "core/error.hpp"
-#include "elements/curve.hpp"
 
 namespace drev {
 

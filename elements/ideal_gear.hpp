@@ -6,8 +6,8 @@
 /// The ratio is signed: an external pair of z_1 and z_2 teeth has -z_1/z_2. Powers are equal:
 /// tau_1 + ratio tau_2 = 0 for the torques on the two shafts. The constraint is eliminated, not
 /// penalised.
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
 
 namespace drev {
 

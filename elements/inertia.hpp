@@ -5,8 +5,8 @@
 ///
 /// On a translational node the same element is a mass m [kg].
 /// Takes part in Rayleigh damping (C = a M + b K).
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
 
 namespace drev {
 

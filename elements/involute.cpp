@@ -1,9 +1,8 @@
-#include "elements/involute.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/involute.hpp>
 
 #include <cmath>
-
-#include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace drev {
 

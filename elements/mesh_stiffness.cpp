@@ -1,9 +1,8 @@
-#include "elements/mesh_stiffness.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/mesh_stiffness.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/units.hpp"
 
 namespace drev {
 

@@ -14,12 +14,12 @@
 /// phase_n = -pi n (eps - 1): built from the contact ratio. (The source's series, S. L. Sunde,
 /// NTNU, 2015, equation 4.15, gives no square wave of a stated contact ratio.) Truncated, it
 /// overshoots the step by 9 %.
+#include <drev/elements/harmonic.hpp>
+#include <drev/elements/periodic_table.hpp>
+
 #include <optional>
 #include <variant>
 #include <vector>
-
-#include "elements/harmonic.hpp"
-#include "elements/periodic_table.hpp"
 
 namespace drev {
 

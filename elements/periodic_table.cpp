@@ -1,4 +1,4 @@
-#include "elements/periodic_table.hpp"
+#include <drev/elements/periodic_table.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,13 +6,13 @@
 /// The slope is that of the segment to the right of u. Points need not be evenly spaced and need
 /// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
 /// in constant time, others by bisection.
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/curve.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
-#include "core/units.hpp"
-#include "elements/curve.hpp"
 
 namespace drev {
 

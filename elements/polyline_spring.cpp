@@ -1,4 +1,4 @@
-#include "elements/polyline_spring.hpp"
+#include <drev/elements/polyline_spring.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -10,9 +10,9 @@
 /// segment is zero (a one-sided stop). closed_stiffness(): mean of the outer slopes that are not
 /// zero where there is a gap, else the slope at x = 0 (right of it at a point). Units: rad and N m
 /// between rotational nodes, m and N between translational ones.
-#include <vector>
+#include <drev/core/element.hpp>
 
-#include "core/element.hpp"
+#include <vector>
 
 namespace drev {
 

@@ -1,4 +1,4 @@
-#include "elements/rayleigh_damping.hpp"
+#include <drev/elements/rayleigh_damping.hpp>
 
 namespace drev {
 

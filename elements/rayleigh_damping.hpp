@@ -9,7 +9,7 @@
 ///
 /// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
 /// equations 3.7 to 3.9.
-#include "core/element.hpp"
+#include <drev/core/element.hpp>
 
 namespace drev {
 

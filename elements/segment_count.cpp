@@ -1,11 +1,10 @@
-#include "elements/segment_count.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/distributed_shaft.hpp>
+#include <drev/elements/segment_count.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/error.hpp"
-#include "core/units.hpp"
-#include "elements/distributed_shaft.hpp"
 
 namespace drev {
 

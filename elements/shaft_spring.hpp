@@ -7,8 +7,8 @@
 /// the sign of the twist. Both ends have the same nominal speed. The stiffness takes part in
 /// Rayleigh damping; the shaft's own damping c adds to that. Between translational nodes: N/m and
 /// N s/m.
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
 
 namespace drev {
 

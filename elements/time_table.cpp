@@ -1,4 +1,4 @@
-#include "elements/time_table.hpp"
+#include <drev/elements/time_table.hpp>
 
 #include <algorithm>
 

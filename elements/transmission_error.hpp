@@ -6,11 +6,11 @@
 /// e > 0 is missing material: the flanks in front meet later, by e. Its rate acts as well:
 /// x_dot = b^T v - de/dt. Harmonics of the mesh phase, e = sum A_n cos(2 pi n s + phase_n), or a
 /// table over one mesh period, linear between its points (its rate jumps at them).
+#include <drev/elements/harmonic.hpp>
+#include <drev/elements/periodic_table.hpp>
+
 #include <variant>
 #include <vector>
-
-#include "elements/harmonic.hpp"
-#include "elements/periodic_table.hpp"
 
 namespace drev {
 

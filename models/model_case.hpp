@@ -1,13 +1,13 @@
 #pragma once
 /// ModelCase: an assembled model together with what is worth knowing to run it and to read its results.
+#include <drev/core/model.hpp>
+#include <drev/models/parameters.hpp>
+
 #include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "core/model.hpp"
-#include "models/parameters.hpp"
 
 namespace drev {
 

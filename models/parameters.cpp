@@ -1,4 +1,4 @@
-#include "models/parameters.hpp"
+#include <drev/models/parameters.hpp>
 
 #include <algorithm>
 #include <charconv>

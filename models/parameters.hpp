@@ -1,11 +1,11 @@
 #pragma once
 /// Named parameters of a ready-made model, with unit, default and range: what `drev list` shows and `--set
 /// name=value` changes.
+#include <drev/core/error.hpp>
+
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
 
 namespace drev {
 

@@ -42,6 +42,7 @@ run_tests() {
 }
 
 packages+=(valgrind python3-h5py python3-jsonschema)  # count instructions; read and check results
+packages+=(clang-format-14 clang-tidy-14)             # this release alone formats as the tree is formatted
 # Opens reports. Ubuntu's is a snap, which could not: that test is skipped there.
 if grep -qx ID=debian /etc/os-release 2>/dev/null; then packages+=(chromium fonts-dejavu-core); fi
 install_packages

@@ -1,10 +1,9 @@
-#include "solvers/method.hpp"
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
+#include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <sstream>
-
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/observer.hpp"
-#include "solvers/stepping/transient.hpp"
 
 namespace drev {
 

@@ -1,11 +1,11 @@
 #pragma once
 /// A method in time by its name and its tolerance or step, and running it.
+#include <drev/core/state.hpp>
+#include <drev/solvers/run/run_summary.hpp>
+
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "core/state.hpp"
-#include "solvers/run/run_summary.hpp"
 
 namespace drev {
 

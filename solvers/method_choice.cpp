@@ -1,14 +1,13 @@
-#include "solvers/method_choice.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/method_choice.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-
-#include "core/assembler.hpp"
-#include "core/error.hpp"
-#include "core/units.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

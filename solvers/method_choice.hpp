@@ -12,9 +12,9 @@
 ///
 /// Affordable: p (20 + unknowns + 10 contacts) <= 1.5e10 products, about half a minute; p: 25 for exact
 /// propagation, 70 for dormand_prince, in each step of 3/omega of the fastest mode.
-#include <string>
+#include <drev/solvers/method.hpp>
 
-#include "solvers/method.hpp"
+#include <string>
 
 namespace drev {
 

@@ -1,8 +1,7 @@
-#include "solvers/statics.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/statics.hpp>
 
 #include <cmath>
-
-#include "core/error.hpp"
 
 namespace drev {
 

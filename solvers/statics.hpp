@@ -1,10 +1,10 @@
 #pragma once
 /// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle.
-#include <optional>
+#include <drev/core/channel.hpp>
+#include <drev/solvers/contact/sparse_newton.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
-#include "core/channel.hpp"
-#include "solvers/contact/sparse_newton.hpp"
-#include "solvers/run/peaks.hpp"
+#include <optional>
 
 namespace drev {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// Values as JSON. A number that is not finite is null: JSON has no NaN.
+#include <drev/models/parameters.hpp>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-
-#include "models/parameters.hpp"
 
 namespace drev::app {
 

@@ -1,12 +1,12 @@
 #include "app/base/text_layout.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

@@ -1,13 +1,14 @@
 #include "app/chart/chart_computation.hpp"
 
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
-#include "solvers/accuracy/error_growth.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

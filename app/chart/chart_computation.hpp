@@ -4,10 +4,11 @@
 /// The runs last the model's duration, but without gaps not more than 20 periods of its lowest elastic mode,
 /// and not past the time at which a small difference of the state has grown by a factor of 1000:
 /// beyond, every error is mostly growth, and the methods cannot be told apart.
+#include <drev/solvers/accuracy/work_precision.hpp>
+
 #include <string>
 
 #include "app/commands/requests.hpp"
-#include "solvers/accuracy/work_precision.hpp"
 
 namespace drev::app {
 

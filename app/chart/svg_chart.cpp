@@ -1,12 +1,12 @@
 #include "app/chart/svg_chart.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

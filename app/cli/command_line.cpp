@@ -1,5 +1,7 @@
 #include "app/cli/command_line.hpp"
 
+#include <drev/models/model_case.hpp>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -11,7 +13,6 @@
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/help_texts.hpp"
 #include "app/cli/model_list.hpp"
-#include "models/model_case.hpp"
 
 namespace drev::app {
 

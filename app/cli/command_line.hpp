@@ -1,6 +1,8 @@
 #pragma once
 /// The command line as text, split into its parts; what the parts are worth is checked in requests.hpp, so
 /// that everything wrong with one command line can be listed at once.
+#include <drev/core/error.hpp>
+
 #include <map>
 #include <optional>
 #include <string>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "app/commands/commands.hpp"
-#include "core/error.hpp"
 
 namespace drev::app {
 

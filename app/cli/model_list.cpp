@@ -1,5 +1,7 @@
 #include "app/cli/model_list.hpp"
 
+#include <drev/models/model_case.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -7,7 +9,6 @@
 
 #include "app/cli/command_line.hpp"
 #include "app/model_file/tree.hpp"
-#include "models/model_case.hpp"
 
 namespace drev::app {
 

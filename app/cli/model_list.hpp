@@ -2,10 +2,10 @@
 /// Which models the words of `drev run` mean. A directory stands for the model files directly in it: *.toml,
 /// by name, without those that have no `format` at their top and those that another of them includes. What
 /// is no TOML is among them: its faults are to be said.
+#include <drev/core/error.hpp>
+
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

@@ -1,13 +1,14 @@
 #include "app/commands/completion.hpp"
 
+#include <drev/core/channel.hpp>
+#include <drev/core/system.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <algorithm>
 
 #include "app/commands/commands.hpp"
 #include "app/model_file/model_file.hpp"
-#include "core/channel.hpp"
-#include "core/system.hpp"
-#include "models/model_case.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev::app {
 

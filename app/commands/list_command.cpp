@@ -1,3 +1,5 @@
+#include <drev/core/channel.hpp>
+
 #include <algorithm>
 
 #include "app/base/json_values.hpp"
@@ -5,7 +7,6 @@
 #include "app/cli/exit_codes.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/requests.hpp"
-#include "core/channel.hpp"
 
 namespace drev::app {
 

@@ -1,3 +1,5 @@
+#include <drev/solvers/modes/modes.hpp>
+
 #include "app/base/json_values.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
@@ -5,7 +7,6 @@
 #include "app/commands/requests.hpp"
 #include "app/results/run_json.hpp"
 #include "app/results/run_text.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

@@ -1,14 +1,15 @@
 #include "app/commands/requests.hpp"
 
+#include <drev/core/channel.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "app/base/text_layout.hpp"
 #include "app/report/report_file.hpp"
-#include "core/channel.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev::app {
 

@@ -1,18 +1,19 @@
 #pragma once
 /// From a command line to something that can be done: the model built with its parameters, numbers checked.
 /// Everything wrong with a command line is thrown as one ModelError.
+#include <drev/advice/advise.hpp>
+#include <drev/core/system.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "advice/advise.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/model_file/model_file.hpp"
-#include "core/system.hpp"
-#include "models/model_case.hpp"
-#include "solvers/method_choice.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

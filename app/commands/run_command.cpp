@@ -1,3 +1,5 @@
+#include <drev/core/channel.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +17,6 @@
 #include "app/results/run_json.hpp"
 #include "app/results/run_text.hpp"
 #include "app/run/run_computation.hpp"
-#include "core/channel.hpp"
 
 namespace drev::app {
 

@@ -1,10 +1,11 @@
 #include "app/commands/variants.hpp"
 
+#include <drev/models/parameters.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
-#include "models/parameters.hpp"
 
 namespace drev::app {
 

@@ -1,11 +1,11 @@
 #pragma once
 /// Values that --vary gives to parameters: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where the
 /// steps lead to it.
+#include <drev/core/error.hpp>
+
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

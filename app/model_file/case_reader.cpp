@@ -1,5 +1,8 @@
 #include "app/model_file/case_reader.hpp"
 
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +12,6 @@
 #include "app/model_file/node_fields.hpp"
 #include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
 
 namespace drev::app {
 
@@ -249,7 +250,7 @@ class CaseReader {
 }  // namespace
 
 FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
-                     bool options_only) {
+                   bool options_only) {
   ReadContext context;
   for (const Parameter& parameter : parameters.known())
     context.scope.numbers[parameter.name] = parameters.number(parameter.name);

@@ -13,7 +13,7 @@ struct FileCase {
 
 /// `run` as in ModelFile. With options_only, nodes and elements are passed over and there is no model case.
 FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
-                     bool options_only = false);
+                   bool options_only = false);
 
 /// Values for parameters that a named run sets: laid over the defaults.
 void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,

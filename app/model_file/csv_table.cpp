@@ -1,9 +1,9 @@
 #include "app/model_file/csv_table.hpp"
 
+#include <drev/models/parameters.hpp>
+
 #include <algorithm>
 #include <cmath>
-
-#include "models/parameters.hpp"
 
 namespace drev::app {
 

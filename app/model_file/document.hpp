@@ -1,11 +1,12 @@
 #pragma once
 /// A model file with the files that it includes, taken apart into its sections. Nothing is evaluated yet but
 /// the defaults of parameters and the lists.
+#include <drev/models/parameters.hpp>
+
 #include <deque>
 #include <map>
 
 #include "app/model_file/tree.hpp"
-#include "models/parameters.hpp"
 
 namespace drev::app {
 

@@ -1,10 +1,11 @@
 #include "app/model_file/element_table.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include <cmath>
 
 #include "app/model_file/shared_fields.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev::app {
 

@@ -1,11 +1,12 @@
 #pragma once
 /// The elements that a model file knows, one row each; every row reads, writes and documents an element
 /// through the one list of its fields.
+#include <drev/core/element.hpp>
+
 #include <memory>
 #include <span>
 
 #include "app/model_file/fields.hpp"
-#include "core/element.hpp"
 
 namespace drev::app {
 

@@ -1,5 +1,7 @@
 #include "app/model_file/export.hpp"
 
+#include <drev/elements/applied_torque.hpp>
+
 #include <cmath>
 #include <map>
 
@@ -7,7 +9,6 @@
 #include "app/model_file/element_table.hpp"
 #include "app/model_file/field_writer.hpp"
 #include "app/model_file/node_fields.hpp"
-#include "elements/applied_torque.hpp"
 
 namespace drev::app {
 

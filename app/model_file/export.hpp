@@ -1,8 +1,8 @@
 #pragma once
 /// A model case as a model file: every number in SI with the digits that read back to the same double.
-#include <string>
+#include <drev/models/model_case.hpp>
 
-#include "models/model_case.hpp"
+#include <string>
 
 namespace drev::app {
 

@@ -1,12 +1,13 @@
 #include "app/model_file/expression.hpp"
 
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "app/model_file/units.hpp"
-#include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace drev::app {
 

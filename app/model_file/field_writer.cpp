@@ -1,10 +1,10 @@
 #include "app/model_file/field_writer.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

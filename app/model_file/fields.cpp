@@ -1,6 +1,6 @@
 #include "app/model_file/fields.hpp"
 
-#include "core/error.hpp"
+#include <drev/core/error.hpp>
 
 namespace drev::app {
 

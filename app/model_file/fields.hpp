@@ -1,12 +1,13 @@
 #pragma once
 /// The keys of an element, node or run, listed once in a function list(Fields&, Params&). The same list reads
 /// a table of a file into the parameters (FieldReader), writes them (FieldWriter) and names them (FieldKeys).
+#include <drev/core/model.hpp>
+
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "app/model_file/units.hpp"
-#include "core/model.hpp"
 
 namespace drev::app {
 

@@ -1,8 +1,9 @@
+#include <drev/elements/involute.hpp>
+#include <drev/elements/not_given.hpp>
+
 #include <cmath>
 
 #include "app/model_file/shared_fields.hpp"
-#include "elements/involute.hpp"
-#include "elements/not_given.hpp"
 
 namespace drev::app {
 

@@ -1,6 +1,8 @@
 #pragma once
 /// A model file as a model case: the model with its parameters, and its runs. docs/model_file.md
 /// describes the format.
+#include <drev/models/model_case.hpp>
+
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "app/model_file/tree.hpp"
-#include "models/model_case.hpp"
 
 namespace drev::app {
 

@@ -1,6 +1,6 @@
 #include "app/model_file/node_fields.hpp"
 
-#include "elements/not_given.hpp"
+#include <drev/elements/not_given.hpp>
 
 namespace drev::app {
 

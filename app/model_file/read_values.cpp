@@ -1,8 +1,8 @@
 #include "app/model_file/read_values.hpp"
 
-#include <cmath>
+#include <drev/models/parameters.hpp>
 
-#include "models/parameters.hpp"
+#include <cmath>
 
 namespace drev::app {
 

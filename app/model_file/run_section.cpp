@@ -1,12 +1,12 @@
 #include "app/model_file/run_section.hpp"
 
+#include <drev/core/channel.hpp>
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
-
-#include "core/channel.hpp"
-#include "core/element.hpp"
-#include "elements/not_given.hpp"
 
 namespace drev::app {
 

@@ -1,8 +1,9 @@
 #pragma once
 /// [run] of a model file and the named runs inside it.
+#include <drev/core/system.hpp>
+
 #include "app/model_file/case_reader.hpp"
 #include "app/model_file/field_reader.hpp"
-#include "core/system.hpp"
 
 namespace drev::app {
 

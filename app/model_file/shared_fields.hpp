@@ -1,7 +1,8 @@
 #pragma once
 /// Fields that several elements have, and those of the gear mesh.
+#include <drev/elements/gear_mesh.hpp>
+
 #include "app/model_file/fields.hpp"
-#include "elements/gear_mesh.hpp"
 
 namespace drev::app {
 

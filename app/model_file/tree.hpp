@@ -1,11 +1,11 @@
 #pragma once
 /// A model file as a tree of values, each with the place where it stands. Tables keep the order of the file.
+#include <drev/core/error.hpp>
+
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
 
 namespace drev::app {
 

@@ -1,8 +1,8 @@
 #include "app/model_file/units.hpp"
 
-#include <array>
+#include <drev/core/units.hpp>
 
-#include "core/units.hpp"
+#include <array>
 
 namespace drev::app {
 

@@ -1,14 +1,14 @@
 #include "app/report/report_campbell.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/solvers/periodic/spectrum.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <set>
-
-#include "core/units.hpp"
-#include "elements/gear_mesh.hpp"
-#include "solvers/periodic/spectrum.hpp"
 
 namespace drev::app {
 

@@ -8,9 +8,10 @@
 ///   q_om = |sum_l x_l A_lo exp(i phase_lo)| / omega_m^2,   x_m' M x_m = 1,
 ///
 /// times the shape's largest entry [rad or m]. At resonance it is 1 / (2 zeta_m) times as large.
+#include <drev/core/system.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include "app/base/json_values.hpp"
-#include "core/system.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

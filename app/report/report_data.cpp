@@ -1,5 +1,7 @@
 #include "app/report/report_data.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,7 +13,6 @@
 #include "app/results/run_json.hpp"
 #include "app/results/run_text.hpp"
 #include "app/run/run_computation.hpp"
-#include "core/units.hpp"
 
 namespace drev::app {
 

@@ -10,13 +10,13 @@
 ///
 /// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
 /// and stored energy [J].
+#include <drev/core/channel.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "core/channel.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev::app {
 

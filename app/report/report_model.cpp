@@ -1,9 +1,9 @@
 #include "app/report/report_model.hpp"
 
+#include <drev/core/element.hpp>
+
 #include <algorithm>
 #include <cmath>
-
-#include "core/element.hpp"
 
 namespace drev::app {
 

@@ -4,9 +4,10 @@
 /// All of it is read from what the elements say of themselves (Element::describe), so that one's own elements
 /// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
 /// a constraint is an ideal gear.
+#include <drev/core/system.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include "app/base/json_values.hpp"
-#include "core/system.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

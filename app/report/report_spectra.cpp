@@ -1,9 +1,9 @@
 #include "app/report/report_spectra.hpp"
 
+#include <drev/solvers/periodic/spectrum.hpp>
+
 #include <algorithm>
 #include <cmath>
-
-#include "solvers/periodic/spectrum.hpp"
 
 namespace drev::app {
 

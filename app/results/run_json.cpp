@@ -1,9 +1,10 @@
 #include "app/results/run_json.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <unistd.h>
 
 #include "app/base/json_values.hpp"
-#include "core/units.hpp"
 
 namespace drev::app {
 

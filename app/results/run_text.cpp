@@ -1,10 +1,11 @@
 #include "app/results/run_text.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
-#include "core/units.hpp"
 
 namespace drev::app {
 

@@ -1,16 +1,17 @@
 #include "app/run/run_computation.hpp"
 
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/statics.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/reduction/reduction_trial.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/statics.hpp"
 
 namespace drev::app {
 

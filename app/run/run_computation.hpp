@@ -4,10 +4,11 @@
 /// Static torque: largest |torque| over all sections in static equilibrium while the shaft turns once, at
 /// kStaticAngles angles (every 0.25 degrees of the shaft); dynamic amplification: largest torque / static
 /// torque.
+#include <drev/solvers/reduction/reduction.hpp>
+
 #include "app/report/report_history.hpp"
 #include "app/results/history_file.hpp"
 #include "app/run/run_result.hpp"
-#include "solvers/reduction/reduction.hpp"
 
 namespace drev::app {
 

@@ -1,14 +1,15 @@
 #pragma once
 /// Everything that `drev run` reports, as data. What has no meaning for a model, or could not be found, is
 /// absent, with the reason.
+#include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/commands/requests.hpp"
-#include "solvers/accuracy/accuracy.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/stepping/transient.hpp"
 
 namespace drev::app {
 

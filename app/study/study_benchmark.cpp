@@ -1,4 +1,7 @@
 // Tables 4.3 to 4.5, figures 4.8 and 4.9: two masses with backlash.
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,8 +9,6 @@
 #include "app/chart/svg_chart.hpp"
 #include "app/study/study_runs.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/recorder.hpp"
 
 namespace drev::app {
 

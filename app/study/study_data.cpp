@@ -1,14 +1,15 @@
 // Tables 3.1 to 3.3, 4.1 and 4.2: data, and what follows from them.
+#include <drev/core/units.hpp>
+#include <drev/elements/rayleigh_damping.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
-#include "elements/rayleigh_damping.hpp"
 #include "models/camshaft/camshaft_data.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

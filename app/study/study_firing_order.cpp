@@ -1,4 +1,6 @@
 // Tables 5.9 and 5.10: firing orders of 6 and 8 cylinders; the whole set searched.
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -6,7 +8,6 @@
 #include "app/base/text_layout.hpp"
 #include "app/chart/svg_chart.hpp"
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/published.hpp"
 #include "models/camshaft/steady_shaft.hpp"
 

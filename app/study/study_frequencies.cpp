@@ -1,4 +1,6 @@
 // Tables 5.1 to 5.4, figures 5.5 to 5.8 and A.1 to A.8: modes of the free camshaft.
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +8,6 @@
 #include "app/chart/svg_chart.hpp"
 #include "app/study/study_runs.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

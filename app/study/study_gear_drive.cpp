@@ -1,14 +1,15 @@
 // Tables 5.11 to 5.14: the 9-cylinder camshaft with its gear drive, backlash, and mesh stiffness that varies.
 #include "app/study/study_gear_drive.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
 #include "app/chart/svg_chart.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/modes/modes.hpp"
 #include "solvers/periodic/floquet.hpp"
 
 namespace drev::app {

@@ -1,13 +1,14 @@
 // Tables 5.5 to 5.8: the camshaft at 750 rpm with its gear held, undamped and damped.
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/published.hpp"
 #include "models/camshaft/steady_shaft.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev::app {
 

@@ -1,15 +1,16 @@
 // Figures 5.9 to 5.11, A.9 and A.10: frequencies of the camshaft with its gear held, from modes and from the
 // spectrum of a decay as the source has them.
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/periodic/spectrum.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/periodic/spectrum.hpp"
-#include "solvers/run/recorder.hpp"
 
 namespace drev::app {
 

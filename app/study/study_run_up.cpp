@@ -1,12 +1,13 @@
 // Figures 5.16 to 5.18 and A.11 to A.13: run-up from 20 to 800 rpm.
+#include <drev/core/units.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
 #include "app/chart/svg_chart.hpp"
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/published.hpp"
 #include "models/camshaft/steady_shaft.hpp"
 

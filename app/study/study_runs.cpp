@@ -1,5 +1,10 @@
 #include "app/study/study_runs.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/statics.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -12,11 +17,7 @@
 #include "app/base/interrupt.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/run/run_computation.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/published.hpp"
-#include "solvers/accuracy/error_growth.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/statics.hpp"
 
 namespace drev::app {
 

@@ -1,5 +1,11 @@
 #pragma once
 /// Runs of the camshaft for the studies, side by side on all processors.
+#include <drev/core/channel.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/peaks.hpp>
+
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -7,11 +13,6 @@
 #include <vector>
 
 #include "app/study/study.hpp"
-#include "core/channel.hpp"
-#include "models/model_case.hpp"
-#include "solvers/method_choice.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/peaks.hpp"
 
 namespace drev::app {
 

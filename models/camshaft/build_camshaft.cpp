@@ -1,12 +1,12 @@
-#include "models/camshaft/build_camshaft.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/gear_drive/build_gear_drive.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "models/gear_drive/build_gear_drive.hpp"
 
 namespace drev {
 

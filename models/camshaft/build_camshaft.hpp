@@ -7,7 +7,7 @@
 /// Cylinder k's cams run at -360 j/N degrees, j its place in the firing order counted from 0. Drive: gears
 /// (the two-stage gear drive, crank gear at constant speed), held (the camshaft's gear at constant speed), or
 /// free (nothing held: for free-free modes).
-#include "models/model_case.hpp"
+#include <drev/models/model_case.hpp>
 
 namespace drev {
 

@@ -1,14 +1,14 @@
 #include "models/camshaft/camshaft_data.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/elements/rayleigh_damping.hpp>
+#include <drev/models/parameters.hpp>
+
 #include <algorithm>
 #include <array>
 #include <map>
 #include <sstream>
 #include <string_view>
-
-#include "core/units.hpp"
-#include "elements/rayleigh_damping.hpp"
-#include "models/parameters.hpp"
 
 namespace drev::data {
 extern const std::string_view camshaft_cam_torque;  // models/camshaft/data/cam_torque.csv

@@ -5,10 +5,10 @@
 ///     (mode 5 of 9 cylinders with its misprint corrected): rms error 0.42 %, largest 0.95 %;
 ///   - cam torques (data/cam_torque.csv) to the 24 transient results of Tables 5.5 to 5.8, integrated at
 ///     the source's step of 1 ms: rms error about 20 %.
+#include <drev/elements/periodic_table.hpp>
+
 #include <string>
 #include <vector>
-
-#include "elements/periodic_table.hpp"
 
 namespace drev {
 

@@ -2,15 +2,16 @@
 // Shows: a model built in a loop, static_sweep, Peaks over many channels.
 // Run:   build/release/bin/example_camshaft
 // Read first: two_inertia.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cstdio>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

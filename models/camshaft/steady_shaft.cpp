@@ -1,14 +1,14 @@
 #include "models/camshaft/steady_shaft.hpp"
 
+#include <drev/core/channel.hpp>
+#include <drev/core/units.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <unsupported/Eigen/FFT>
-
-#include "core/channel.hpp"
-#include "core/units.hpp"
-#include "models/model_case.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev {
 

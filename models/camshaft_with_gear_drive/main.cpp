@@ -2,16 +2,17 @@
 // Shows: a model put together from two parts that know nothing of each other.
 // Run:   build/release/bin/example_camshaft_with_gear_drive   (the same by command: drev run camshaft)
 // Read first: gear_drive and camshaft.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cstdio>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "models/gear_drive/build_gear_drive.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

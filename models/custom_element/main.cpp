@@ -2,14 +2,14 @@
 // Shows: a law, LawElement, check_element. The text is docs/adding_an_element.md.
 // Run:   build/release/bin/example_custom_element
 // Read first: two_inertia.
-#include <cstdio>
+#include <drev/core/channel.hpp>
+#include <drev/core/law_element.hpp>
+#include <drev/core/verify.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
-#include "core/channel.hpp"
-#include "core/law_element.hpp"
-#include "core/verify.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
+#include <cstdio>
 
 // [law]
 /// y = k x + k3 x^3 [N m], x = twist of end b against end a [rad].

@@ -1,10 +1,9 @@
-#include "models/gear_drive/build_gear_drive.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/gear_drive/build_gear_drive.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev {
 

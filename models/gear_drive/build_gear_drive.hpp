@@ -7,7 +7,7 @@
 /// the same sense. Stiffnesses are those of the source's finite-element study, taken along the line of
 /// action; the idler's 68 teeth correct a misprint (64). Inertias of crank gear and idler are typical
 /// values, not the builder's.
-#include "models/model_case.hpp"
+#include <drev/models/model_case.hpp>
 
 namespace drev {
 

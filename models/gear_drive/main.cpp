@@ -2,13 +2,13 @@
 // Shows: gear meshes with backlash, constant speed at the crank, modes in two contact states.
 // Run:   build/release/bin/example_gear_drive
 // Read first: two_mass_backlash.
-#include <cstdio>
+#include <drev/core/system.hpp>
+#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
-#include "core/system.hpp"
-#include "models/gear_drive/build_gear_drive.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/stepping/transient.hpp"
+#include <cstdio>
 
 int main() {
   using namespace drev;

@@ -2,15 +2,15 @@
 // Shows: closed form, rigid and elastic meshes, modes in two contact states, figures with their errors.
 // Run:   build/release/bin/example_tutorial
 // Read first: nothing, start with docs/tutorial.md.
+#include <drev/core/channel.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-
-#include "core/channel.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/accuracy/accuracy.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/contact_statistics.hpp"
 
 using namespace drev;
 

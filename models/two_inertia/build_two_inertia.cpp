@@ -1,10 +1,9 @@
-#include "models/two_inertia/build_two_inertia.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/two_inertia/build_two_inertia.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev {
 

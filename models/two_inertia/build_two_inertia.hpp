@@ -3,7 +3,7 @@
 ///
 ///   motor J_1 --- shaft k, c --- load J_2        free-free: one rigid mode and
 ///   f = sqrt(k (J_1 + J_2) / (J_1 J_2)) / (2 pi)
-#include "models/model_case.hpp"
+#include <drev/models/model_case.hpp>
 
 namespace drev {
 

@@ -2,14 +2,14 @@
 // Shows: Model, add, build, solve_modes, simulate with a recorder and peaks.
 // Run:   build/release/bin/example_two_inertia
 // Read first: nothing, start here. Then two_mass_backlash, gear_drive, camshaft.
+#include <drev/core/channel.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <cstdio>
-
-#include "core/channel.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
 
 int main() {
   using namespace drev;

@@ -1,9 +1,8 @@
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
 
 #include <algorithm>
 #include <cmath>
-
-#include "elements/catalogue.hpp"
 
 namespace drev {
 

@@ -7,7 +7,7 @@
 /// released at once. The size of F is not printed in the source; 100 N is drev's choice.
 /// The published cases: zero backlash k 2000, 2000; A2 with half gaps 0.05, 0.05; B (the default) with k
 /// 2000, 1000 and half gaps 0.05, 0.03.
-#include "models/model_case.hpp"
+#include <drev/models/model_case.hpp>
 
 namespace drev {
 

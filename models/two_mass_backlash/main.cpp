@@ -2,13 +2,13 @@
 // Shows: translational nodes, PolylineSpring with a dead band, a table with a jump, contact statistics.
 // Run:   build/release/bin/example_two_mass_backlash
 // Read first: two_inertia.
-#include <cstdio>
+#include <drev/core/system.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
-#include "core/system.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
+#include <cstdio>
 
 int main() {
   using namespace drev;

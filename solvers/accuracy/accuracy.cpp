@@ -1,4 +1,9 @@
-#include "solvers/accuracy/accuracy.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/periodic/spectrum.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +13,7 @@
 #include <optional>
 #include <sstream>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "solvers/accuracy/accuracy_observers.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/periodic/spectrum.hpp"
-#include "solvers/run/recorder.hpp"
 
 namespace drev {
 

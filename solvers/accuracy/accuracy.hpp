@@ -15,11 +15,11 @@
 /// The estimate is one: it is honest where tightening reduces the error by a factor of 3 or more (second
 /// order: 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a
 /// method with constant steps.
+#include <drev/solvers/accuracy/error_growth.hpp>
+
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "solvers/accuracy/error_growth.hpp"
 
 namespace drev {
 

@@ -1,12 +1,12 @@
 #pragma once
 /// What accuracy.cpp watches in each of its runs: peaks with the state ahead of them, changes of contact with
 /// their times, time averages in batches. Internal to accuracy.cpp, but for the peaks.
-#include <vector>
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
-#include "solvers/accuracy/error_growth.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/peaks.hpp"
+#include <vector>
 
 namespace drev {
 

@@ -1,13 +1,12 @@
-#include "solvers/accuracy/error_growth.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "core/assembler.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev {
 

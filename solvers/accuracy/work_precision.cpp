@@ -1,13 +1,12 @@
-#include "solvers/accuracy/work_precision.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/accuracy/work_precision.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-
-#include "core/error.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev {
 

@@ -5,10 +5,11 @@
 /// watched in lanes, and a lane that left its piece looks for its new one by itself, which is rare. Other
 /// laws are evaluated lane by lane. Newton takes whole steps: it needs the line search only where it would
 /// cycle, and lanes that have not converged in a few iterations are left to the caller.
+#include <drev/core/assembler.hpp>
+
 #include <array>
 #include <vector>
 
-#include "core/assembler.hpp"
 #include "solvers/batch/lane_motion.hpp"
 
 namespace drev {

@@ -5,11 +5,12 @@
 /// It serves as far as the next knot: a lane that has come nearer to another one takes that for the next
 /// evaluation, and only where a step leaps over it is the sum made anew. Other loads are evaluated lane by
 /// lane, in each pass or, where they do not depend on motion, once a step.
+#include <drev/core/assembler.hpp>
+#include <drev/core/table_loads.hpp>
+
 #include <array>
 #include <vector>
 
-#include "core/assembler.hpp"
-#include "core/table_loads.hpp"
 #include "solvers/batch/lane_motion.hpp"
 
 namespace drev {

@@ -1,11 +1,12 @@
 #pragma once
 /// The arithmetic of a step of the generalized-alpha family (step_scheme.hpp) and of its energy balance
 /// (energy_monitor.hpp) for kLanes variants at once: step_solver.hpp and step_equation.hpp in lanes.
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <array>
 
 #include "solvers/batch/lane_laws.hpp"
 #include "solvers/run/energy_monitor.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev {
 

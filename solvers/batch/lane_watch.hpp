@@ -1,12 +1,13 @@
 #pragma once
 /// What watches kLanes variants at once: Peaks and ContactStatistics (of whole steps) in lanes.
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+
 #include <array>
 #include <string>
 #include <vector>
 
 #include "solvers/batch/lane_step.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
 
 namespace drev {
 

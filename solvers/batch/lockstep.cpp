@@ -1,10 +1,11 @@
 #include "solvers/batch/lockstep.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/error.hpp"
 #include "solvers/run/run_verdict.hpp"
 
 namespace drev {

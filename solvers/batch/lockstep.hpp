@@ -1,5 +1,7 @@
 #pragma once
 /// A block of up to kLanes variants run in lockstep: simulate() in lanes.
+#include <drev/solvers/batch/simulate_many.hpp>
+
 #include <array>
 #include <functional>
 #include <memory>
@@ -8,7 +10,6 @@
 #include "solvers/batch/lane_factor.hpp"
 #include "solvers/batch/lane_loads.hpp"
 #include "solvers/batch/lane_watch.hpp"
-#include "solvers/batch/simulate_many.hpp"
 #include "solvers/stepping/generalized_alpha.hpp"
 
 namespace drev {

@@ -1,4 +1,6 @@
-#include "solvers/batch/simulate_many.hpp"
+#include <drev/core/element.hpp>
+#include <drev/core/error.hpp>
+#include <drev/solvers/batch/simulate_many.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -8,8 +10,6 @@
 #include <optional>
 #include <thread>
 
-#include "core/element.hpp"
-#include "core/error.hpp"
 #include "solvers/batch/lockstep.hpp"
 
 namespace drev {

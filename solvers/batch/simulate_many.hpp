@@ -9,15 +9,15 @@
 ///
 /// A step that a variant cannot make with the others (Newton needs its line search, or the step must be
 /// halved) it makes by itself, as a single run would.
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
 
 namespace drev {
 

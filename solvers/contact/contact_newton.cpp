@@ -1,4 +1,4 @@
-#include "solvers/contact/contact_newton.hpp"
+#include <drev/solvers/contact/contact_newton.hpp>
 
 #include <algorithm>
 #include <cmath>

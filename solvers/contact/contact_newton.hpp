@@ -6,11 +6,11 @@
 ///
 /// (Woodbury). Its potential is strictly convex for non-decreasing laws, so Newton with the exact line
 /// search converges from any start; without it, three meshes in a chain can cycle for ever.
-#include <Eigen/Dense>
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/contact/contact_newton_options.hpp>
+#include <drev/solvers/contact/newton_result.hpp>
 
-#include "core/assembler.hpp"
-#include "solvers/contact/contact_newton_options.hpp"
-#include "solvers/contact/newton_result.hpp"
+#include <Eigen/Dense>
 
 namespace drev {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// The pieces of a law, and which of them holds.
+#include <drev/core/scalar_force.hpp>
+#include <drev/core/system.hpp>
+
 #include <span>
 #include <vector>
-
-#include "core/scalar_force.hpp"
-#include "core/system.hpp"
 
 namespace drev {
 

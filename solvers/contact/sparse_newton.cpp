@@ -1,4 +1,4 @@
-#include "solvers/contact/sparse_newton.hpp"
+#include <drev/solvers/contact/sparse_newton.hpp>
 
 #include <cmath>
 #include <limits>

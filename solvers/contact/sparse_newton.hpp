@@ -9,12 +9,12 @@
 /// linear in pieces keep it until a contact changes. A rank-one update for a single change (CHOLMOD's takes
 /// 3.5 ns an unknown of the model) would save half a factorisation (8 ns), and from two on nothing. The same
 /// exact line search as on the contact forces.
-#include <memory>
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/contact/contact_newton.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/linear/sparse_lu.hpp>
 
-#include "core/assembler.hpp"
-#include "solvers/contact/contact_newton.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
-#include "solvers/linear/sparse_lu.hpp"
+#include <memory>
 
 namespace drev {
 

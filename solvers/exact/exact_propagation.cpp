@@ -1,4 +1,5 @@
-#include "solvers/exact/exact_propagation.hpp"
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/observer.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,6 @@
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/run/energy_monitor.hpp"
-#include "solvers/run/observer.hpp"
 #include "solvers/run/run_checks.hpp"
 
 namespace drev {

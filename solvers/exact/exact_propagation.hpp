@@ -17,12 +17,12 @@
 /// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
 /// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
 /// system only statistics are comparable, with any method.
+#include <drev/core/state.hpp>
+#include <drev/solvers/run/run_summary.hpp>
+
 #include <functional>
 #include <optional>
 #include <string>
-
-#include "core/state.hpp"
-#include "solvers/run/run_summary.hpp"
 
 namespace drev {
 

@@ -6,12 +6,13 @@
 /// y(x, x', t, angle) differs from it along the series' path is projected (projection.hpp), pass by pass
 /// until the path settles. Steps end where x passes a kink (law_pieces.hpp) or the angle passes a knot of
 /// the law (a stiffness that steps).
+#include <drev/solvers/run/evaluated_state.hpp>
+
 #include <optional>
 #include <vector>
 
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/taylor_series.hpp"
-#include "solvers/run/evaluated_state.hpp"
 
 namespace drev {
 

@@ -1,10 +1,11 @@
 #include "solvers/exact/taylor_series.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "core/error.hpp"
 #include "core/lanes.hpp"
 #include "solvers/exact/series_kernels.hpp"
 

@@ -1,5 +1,5 @@
 // What of a system forbids exact propagation: one sentence each, with what to use instead.
-#include "solvers/exact/exact_propagation.hpp"
+#include <drev/solvers/exact/exact_propagation.hpp>
 
 namespace drev {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Huge pages for large arrays that loops stream through: half the time to read them and a hundredth of the
 /// page faults (8 MB arrays, measured). Linux gives them where it is asked; elsewhere nothing happens.
-#include <cstddef>
+#include <drev/core/system.hpp>
 
-#include "core/system.hpp"
+#include <cstddef>
 
 namespace drev {
 

@@ -1,7 +1,8 @@
 #pragma once
 /// MatrixProduct: products with one constant matrix of a System, by its diagonals where a few of them hold
 /// all that is not zero (chains, lumped inertias), else row by row.
-#include "core/system.hpp"
+#include <drev/core/system.hpp>
+
 #include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {

@@ -1,4 +1,5 @@
-#include "solvers/linear/sparse_cholesky.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "core/error.hpp"
 #include "solvers/linear/cholmod_factor.hpp"
 #include "solvers/linear/low_fill_factor.hpp"
 

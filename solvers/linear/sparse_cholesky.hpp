@@ -14,9 +14,9 @@
 ///
 /// Source: Y. Chen, T. A. Davis, W. W. Hager, S. Rajamanickam, Algorithm 887: CHOLMOD, ACM TOMS
 /// 35(3), 2008, doi:10.1145/1391989.1391995.
-#include <memory>
+#include <drev/core/system.hpp>
 
-#include "core/system.hpp"
+#include <memory>
 
 namespace drev {
 

@@ -1,12 +1,11 @@
-#include "solvers/linear/sparse_lu.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <algorithm>
 #include <klu.h>
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
 
 namespace drev {
 

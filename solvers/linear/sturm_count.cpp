@@ -1,10 +1,11 @@
 #include "solvers/linear/sturm_count.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <cmath>
 #include <optional>
 #include <string>
 
-#include "core/error.hpp"
 #include "solvers/linear/cholmod_factor.hpp"
 #include "solvers/linear/low_fill_factor.hpp"
 

@@ -10,9 +10,9 @@
 ///
 /// Source: B. N. Parlett, The Symmetric Eigenvalue Problem, SIAM 1998, section 3.3,
 /// doi:10.1137/1.9781611971163.
-#include <memory>
+#include <drev/core/system.hpp>
 
-#include "core/system.hpp"
+#include <memory>
 
 namespace drev {
 

@@ -12,10 +12,10 @@
 ///
 /// Source: R. B. Lehoucq, D. C. Sorensen, C. Yang, ARPACK Users' Guide, SIAM 1998,
 /// doi:10.1137/1.9780898719628, sections 3.2 and 4.4.
+#include <drev/core/system.hpp>
+
 #include <functional>
 #include <string>
-
-#include "core/system.hpp"
 
 namespace drev {
 

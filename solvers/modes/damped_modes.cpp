@@ -1,4 +1,7 @@
-#include "solvers/modes/damped_modes.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -7,10 +10,7 @@
 #include <numeric>
 #include <string>
 
-#include "core/assembler.hpp"
 #include "core/dense_eigen.hpp"
-#include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace drev {
 

@@ -17,10 +17,10 @@
 ///
 /// Source: F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Review 43(2), 2001,
 /// doi:10.1137/S0036144500381988.
+#include <drev/core/system.hpp>
+
 #include <complex>
 #include <vector>
-
-#include "core/system.hpp"
 
 namespace drev {
 

@@ -1,12 +1,13 @@
 #include "solvers/modes/modal_problem.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/dense_eigen.hpp"
-#include "core/error.hpp"
 #include "core/lanes.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/low_fill_factor.hpp"

@@ -6,11 +6,12 @@
 /// lowest modes accurate: the error of lambda from mu is about eps (lambda - sigma)^2 / |sigma|,
 /// that of the Rayleigh quotient x' K x / x' M x about eps lambda_max; the smaller of the two is
 /// taken.
-#include "core/assembler.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include "solvers/linear/sturm_count.hpp"
 #include "solvers/modes/lanczos.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev {
 

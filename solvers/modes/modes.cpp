@@ -1,11 +1,11 @@
-#include "solvers/modes/modes.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/modes/modal_problem.hpp"
 

@@ -16,11 +16,11 @@
 /// knows omega better than eps lambda_max / (2 lambda), relative: 3e-5 at 1 N m/rad beside 1e12 N
 /// m/rad. Apart from that the error is about eps sqrt(lambda_max / lambda_1), of which the worst
 /// measured is 5e-12 (10 modes of a free chain of 2000 inertias).
+#include <drev/core/system.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/system.hpp"
 
 namespace drev {
 

@@ -1,12 +1,13 @@
 #include "solvers/periodic/floquet.hpp"
 
+#include <drev/core/assembler.hpp>
+
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <map>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
-#include "core/assembler.hpp"
 #include "core/dense_eigen.hpp"
 
 namespace drev {

@@ -7,7 +7,7 @@
 ///
 /// Positive: parametric instability; without gaps nothing bounds it.
 /// Source: Floquet's theorem; J. A. Richards, Analysis of Periodically Time-Varying Systems, Springer, 1983.
-#include "core/system.hpp"
+#include <drev/core/system.hpp>
 
 namespace drev {
 

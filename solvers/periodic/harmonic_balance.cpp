@@ -1,12 +1,12 @@
 #include "solvers/periodic/harmonic_balance.hpp"
 
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+
 #include <Eigen/QR>
 #include <cmath>
 #include <set>
 #include <unsupported/Eigen/FFT>
-
-#include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace drev {
 

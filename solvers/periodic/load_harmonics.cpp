@@ -1,10 +1,10 @@
 #include "solvers/periodic/load_harmonics.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <array>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
-
-#include "core/units.hpp"
 
 namespace drev {
 

@@ -1,10 +1,10 @@
-#include "solvers/periodic/periodic_response.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "solvers/periodic/harmonic_balance.hpp"
 #include "solvers/run/cubic_peak.hpp"
 

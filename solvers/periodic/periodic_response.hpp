@@ -7,11 +7,11 @@
 /// A periodic motion that satisfies the equations, and nothing more: whether it is stable, or the one that a
 /// run from rest settles on where there are several (a gap that opens), harmonic balance does not tell; a
 /// transient from near it does.
+#include <drev/solvers/run/peaks.hpp>
+
 #include <complex>
 #include <string>
 #include <vector>
-
-#include "solvers/run/peaks.hpp"
 
 namespace drev {
 

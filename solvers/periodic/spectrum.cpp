@@ -1,12 +1,11 @@
-#include "solvers/periodic/spectrum.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/spectrum.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <unsupported/Eigen/FFT>
-
-#include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace drev {
 

@@ -1,10 +1,9 @@
-#include "solvers/periodic/speed_sweep.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/periodic/speed_sweep.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "core/error.hpp"
 
 namespace drev {
 

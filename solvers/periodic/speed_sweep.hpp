@@ -1,8 +1,8 @@
 #pragma once
 /// Periodic response over speeds: amplitude curves of channels, and where each is largest.
-#include <functional>
+#include <drev/solvers/periodic/periodic_response.hpp>
 
-#include "solvers/periodic/periodic_response.hpp"
+#include <functional>
 
 namespace drev {
 

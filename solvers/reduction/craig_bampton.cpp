@@ -1,13 +1,14 @@
 #include "solvers/reduction/craig_bampton.hpp"
 
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "core/dense_eigen.hpp"
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "solvers/linear/sturm_count.hpp"
 #include "solvers/modes/lanczos.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 /// The Craig-Bampton basis of a system: static shapes of its kept unknowns and modes with them held.
 /// Internal to reduction.cpp.
-#include "core/system.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
+#include <drev/core/system.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
 
 namespace drev {
 

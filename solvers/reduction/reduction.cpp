@@ -1,9 +1,9 @@
-#include "solvers/reduction/reduction.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/reduction/reduction.hpp>
 
 #include <algorithm>
 #include <sstream>
 
-#include "core/error.hpp"
 #include "solvers/reduction/craig_bampton.hpp"
 #include "solvers/reduction/residual_vectors.hpp"
 

@@ -22,10 +22,10 @@
 /// 1968, doi:10.2514/3.4741.
 ///
 /// Both are Ritz bases: no frequency, contacts closed, is below the full system's.
+#include <drev/core/ritz_projection.hpp>
+
 #include <string>
 #include <vector>
-
-#include "core/ritz_projection.hpp"
 
 namespace drev {
 

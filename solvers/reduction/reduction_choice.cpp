@@ -1,4 +1,9 @@
-#include "solvers/reduction/reduction_choice.hpp"
+#include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +11,8 @@
 #include <sstream>
 #include <unsupported/Eigen/FFT>
 
-#include "core/units.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/method_choice.hpp"
-#include "solvers/modes/modes.hpp"
 #include "solvers/reduction/residual_vectors.hpp"
 #include "solvers/reduction/truncation_error.hpp"
-#include "solvers/run/contact_statistics.hpp"
 
 namespace drev {
 

@@ -13,11 +13,11 @@
 ///
 /// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
 /// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
+#include <drev/solvers/reduction/reduction.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "solvers/reduction/reduction.hpp"
 
 namespace drev {
 

@@ -1,9 +1,9 @@
-#include "solvers/reduction/reduction_trial.hpp"
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/reduction/reduction_trial.hpp>
 
 #include <algorithm>
 #include <sstream>
 
-#include "solvers/accuracy/error_growth.hpp"
 #include "solvers/reduction/truncation_error.hpp"
 
 namespace drev {

@@ -1,15 +1,16 @@
 #include "solvers/reduction/residual_vectors.hpp"
 
+#include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/assembler.hpp"
 #include "core/dense_eigen.hpp"
-#include "core/error.hpp"
-#include "core/units.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
-#include "solvers/modes/modes.hpp"
 
 namespace drev {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// What the modes that a modal reduction leaves out give under constant forces. Internal to reduction.cpp
 /// and reduction_choice.cpp.
-#include "core/system.hpp"
+#include <drev/core/system.hpp>
 
 namespace drev {
 

@@ -1,10 +1,10 @@
 #include "solvers/reduction/truncation_error.hpp"
 
+#include <drev/solvers/modes/modes.hpp>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-
-#include "solvers/modes/modes.hpp"
 
 namespace drev {
 

@@ -10,15 +10,15 @@
 /// their changes and so change everything, it is twice the sum, and no less, relative to the peak, than the
 /// worst error of such laws' forces relative to the largest of them (by F^2/k). It is no bound, and knows
 /// nothing of the growth of differences in motions that are sensitive to their start (growth.hpp).
+#include <drev/core/channel.hpp>
+#include <drev/core/error.hpp>
+#include <drev/solvers/reduction/reduction.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/channel.hpp"
-#include "core/error.hpp"
-#include "solvers/reduction/reduction.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev {
 

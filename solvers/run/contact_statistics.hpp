@@ -1,12 +1,12 @@
 #pragma once
 /// What happens in each contact: impacts on both flanks with their speeds and forces, time apart, rattle.
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/run/distribution.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <string>
 #include <vector>
-
-#include "core/assembler.hpp"
-#include "solvers/run/distribution.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev {
 

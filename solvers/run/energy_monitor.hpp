@@ -9,10 +9,11 @@
 /// error is what the method itself gained (positive) or lost: impacts, numerical damping, too large a step.
 /// Newton's convergence says nothing about it. See Krenk 2006, doi:10.1016/j.cma.2005.12.001, for energy
 /// balances of Newmark methods.
-#include "core/assembler.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/run/energy_balance.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+
 #include "solvers/linear/matrix_product.hpp"
-#include "solvers/run/energy_balance.hpp"
-#include "solvers/run/evaluated_state.hpp"
 
 namespace drev {
 

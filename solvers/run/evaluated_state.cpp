@@ -1,6 +1,6 @@
-#include "solvers/run/evaluated_state.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 
-#include "core/assembler.hpp"
 #include "solvers/linear/huge_pages.hpp"
 
 namespace drev {

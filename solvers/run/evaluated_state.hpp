@@ -1,9 +1,9 @@
 #pragma once
 /// A point of a run: a state with everything that was evaluated at it.
-#include <vector>
+#include <drev/core/scalar_force.hpp>
+#include <drev/core/state.hpp>
 
-#include "core/scalar_force.hpp"
-#include "core/state.hpp"
+#include <vector>
 
 namespace drev {
 

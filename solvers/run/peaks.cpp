@@ -1,4 +1,4 @@
-#include "solvers/run/peaks.hpp"
+#include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>
 

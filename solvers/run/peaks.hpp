@@ -1,10 +1,10 @@
 #pragma once
 /// Largest and smallest value of channels over a run, with their times.
-#include <vector>
+#include <drev/core/channel.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
 
-#include "core/channel.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
+#include <vector>
 
 namespace drev {
 

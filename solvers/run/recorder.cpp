@@ -1,8 +1,7 @@
-#include "solvers/run/recorder.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
-
-#include "core/error.hpp"
 
 namespace drev {
 

@@ -1,13 +1,13 @@
 #pragma once
 /// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Constant steps are
 /// cut so that they end there; controlled steps and exact propagation show their polynomial there.
+#include <drev/core/channel.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "core/channel.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Checks of what every run is given: the state it starts from and its span of time.
-#include "core/error.hpp"
-#include "core/state.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/state.hpp>
 
 namespace drev {
 

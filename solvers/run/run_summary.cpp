@@ -1,4 +1,4 @@
-#include "solvers/run/run_summary.hpp"
+#include <drev/solvers/run/run_summary.hpp>
 
 #include <sstream>
 

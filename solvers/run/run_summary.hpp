@@ -1,10 +1,10 @@
 #pragma once
 /// RunSummary: how a run ended and what it did.
+#include <drev/solvers/run/energy_balance.hpp>
+
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "solvers/run/energy_balance.hpp"
 
 namespace drev {
 

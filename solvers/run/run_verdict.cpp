@@ -1,9 +1,9 @@
 #include "solvers/run/run_verdict.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <cmath>
 #include <sstream>
-
-#include "core/error.hpp"
 
 namespace drev {
 

@@ -1,8 +1,8 @@
 #pragma once
 /// How runs end: what goes into RunSummary's status and reason. Shared by single runs and runs of many.
-#include <cmath>
+#include <drev/solvers/run/run_summary.hpp>
 
-#include "solvers/run/run_summary.hpp"
+#include <cmath>
 
 namespace drev {
 

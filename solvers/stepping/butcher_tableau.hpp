@@ -6,9 +6,10 @@
 /// a is lower triangular. A stage with a_ii = 0 is an evaluation, a stage with a_ii = g > 0 (one g a method)
 /// an equation with M + g h C + g^2 h^2 K. Implicit methods are stiffly accurate: their last stage is the
 /// step's end. Explicit ones add the evaluation at the end, with which the next step begins.
-#include <string>
+#include <drev/core/system.hpp>
 
-#include "core/system.hpp"
+#include <Eigen/Core>
+#include <string>
 
 namespace drev {
 

@@ -4,10 +4,11 @@
 /// with a certificate (polynomial.hpp): of two crossings in one step the first is found.
 /// What is known of a deflection or angle (prescribed ends, transmission error, nominal angle) enters as the
 /// polynomial of degree 5 through its values and rates at both ends and in the middle.
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+
 #include <optional>
 
-#include "core/assembler.hpp"
-#include "solvers/run/evaluated_state.hpp"
 #include "solvers/stepping/step_polynomial.hpp"
 
 namespace drev {

@@ -1,13 +1,15 @@
 #include "solvers/stepping/stability_limit.hpp"
 
+#include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/stepping/butcher_tableau.hpp>
+
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "core/assembler.hpp"
 #include "core/dense_eigen.hpp"
-#include "core/error.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

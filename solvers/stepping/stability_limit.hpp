@@ -8,11 +8,11 @@
 /// The eigenvalues are those of Arnoldi's method, exact for up to 120 of them and within the residual of the
 /// fastest beyond. Every law counts with its largest slope over a revolution of its phase; the tangents of
 /// general elements do not count.
+#include <drev/core/system.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <complex>
 #include <vector>
-
-#include "core/system.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev {
 

@@ -8,7 +8,7 @@
 /// (turning, moving along); of a system that floats, without the motion as a rigid body. Implicit methods
 /// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
-#include "core/state.hpp"
+#include <drev/core/state.hpp>
 
 namespace drev {
 

@@ -1,9 +1,10 @@
 #include "solvers/stepping/step_equation.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/vector_kernels.hpp"
 

@@ -5,9 +5,9 @@
 ///   quintic  z, v, a    error of z h^6/46080, for methods up to order 5
 ///
 /// v is its derivative, so that the integral of v is the displacement exactly.
-#include <array>
+#include <drev/core/state.hpp>
 
-#include "core/state.hpp"
+#include <array>
 
 namespace drev {
 

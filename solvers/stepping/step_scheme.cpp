@@ -1,9 +1,9 @@
-#include "solvers/stepping/step_scheme.hpp"
+#include <drev/core/error.hpp>
+#include <drev/solvers/stepping/butcher_tableau.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <charconv>
 #include <cmath>
-
-#include "core/error.hpp"
 
 namespace drev {
 
@@ -70,6 +70,8 @@ StepScheme bathe(double rho_inf) {
   throw_if_any(findings);
   return runge_kutta(bathe_tableau("bathe:" + to_text(rho_inf), rho_inf));
 }
+
+bool StepScheme::is_explicit() const { return tableau && tableau->diagonal() == 0.0; }
 
 int StepScheme::order() const {
   if (tableau) return tableau->order;

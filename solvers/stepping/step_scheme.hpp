@@ -11,13 +11,14 @@
 /// stage is a Newmark-like step of coefficients beta = g^2, gamma = g.
 /// Sources: Newmark 1959; Hilber, Hughes, Taylor 1977, doi:10.1002/eqe.4290050306;
 /// Chung, Hulbert 1993, doi:10.1115/1.2900803.
+#include <drev/core/weights.hpp>
+
 #include <memory>
 #include <string>
 
-#include "core/assembler.hpp"
-#include "solvers/stepping/butcher_tableau.hpp"
-
 namespace drev {
+
+struct ButcherTableau;
 
 struct StepScheme {
   std::string name;
@@ -26,7 +27,7 @@ struct StepScheme {
   std::shared_ptr<const ButcherTableau> tableau = {};  ///< of a Runge-Kutta method, else null
 
   int order() const;
-  bool is_explicit() const { return tableau && tableau->diagonal() == 0.0; }
+  bool is_explicit() const;
   /// Weights of S with the acceleration as unknown: S a1 = rhs. Works for beta = 0 too.
   Weights weights(double h) const {
     return {1.0 - alpha_m, (1.0 - alpha_f) * gamma * h, (1.0 - alpha_f) * beta * h * h};

@@ -1,11 +1,11 @@
-#include "solvers/stepping/transient.hpp"
+#include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "solvers/run/energy_monitor.hpp"
-#include "solvers/run/observer.hpp"
 #include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/stepping/located_step.hpp"

@@ -1,15 +1,15 @@
 #pragma once
 /// Integrates a System in time, with constant steps or with steps controlled by their estimated error, and
 /// keeps the energy balance. Breakpoints of loads and known motions are hit exactly.
+#include <drev/core/state.hpp>
+#include <drev/solvers/run/run_summary.hpp>
+#include <drev/solvers/stepping/step_options.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "core/state.hpp"
-#include "solvers/run/run_summary.hpp"
-#include "solvers/stepping/step_options.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 
 namespace drev {
 

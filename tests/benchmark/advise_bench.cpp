@@ -3,11 +3,12 @@
 // from the description on.
 //   build/release/bin/bench_advise
 //   build/release/bin/bench_advise "[rungs]"    with every model tried
+#include <drev/advice/advise.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+
 #include <algorithm>
 #include <cstdio>
 
-#include "advice/advise.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/advice_models.hpp"
 

@@ -1,14 +1,15 @@
 // Newton on the contact forces against Newton with the sparse tangent, over the number of meshes: where
 // StepOptions::max_dense_contacts should be. Processor time, best of 3.
 //   build/release/bin/bench_contacts
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

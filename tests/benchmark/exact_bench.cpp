@@ -2,16 +2,17 @@
 // time, and the error of each at 0.05 s (of exact propagation at tolerance 1e-14). Fastest of 3
 // runs.
 //   build/release/bin/bench_exact
+#include <drev/core/system.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 
-#include "core/system.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

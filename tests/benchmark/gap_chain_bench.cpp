@@ -2,15 +2,16 @@
 // FEDEM R8.1.6 took for such chains. FEDEM's figures are from another machine of this kind (61 us a step
 // for 2 masses, 1.1 ms for 100, 11.3 ms for 1,000, least output): the ratios are no measurement side by side.
 //   build/release/bin/bench_gap_chain
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <string>
 #include <vector>
 
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -2,18 +2,19 @@
 // solve, make a step of average acceleration, and find the ten lowest modes; memory of the whole process
 // an unknown; exponents in n, fitted over all sizes (modes: from 2e4). Other programs' modes: bench_modes.
 //   build/release/bin/bench_large            "[peaks]" for memory alone, "[modes]" for modes alone
+#include <drev/core/assembler.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <ctime>
 #include <memory>
 #include <vector>
 
-#include "core/assembler.hpp"
-#include "core/units.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/benchmark/large_models.hpp"
 #include "tests/catch.hpp"
 

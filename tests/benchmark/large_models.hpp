@@ -7,15 +7,15 @@
 ///   branched  the same with a branch of 4 inertias at every sixth of its trunk
 ///   looped    two such chains side by side, geared together at every tenth inertia by meshes without
 ///             backlash
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <malloc.h>
 #include <string>
-
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev::benchmark {
 

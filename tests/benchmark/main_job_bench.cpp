@@ -1,15 +1,16 @@
 // Time per step of the main job (`drev run camshaft` without what it prints), median of 5 runs, and its
 // share by phase. Processor time: what else the machine does is not in it.
 //   build/release/bin/bench_main_job
+#include <drev/core/system.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 
-#include "core/system.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -2,15 +2,16 @@
 // core, by turns: throughput in steps and variants a second. Processor time of all threads, and the wall's.
 //   build/release/bin/bench_many
 //   build/release/bin/bench_many "[thousand]"    a thousand variants of 5 s: some minutes of processor time
+#include <drev/core/system.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/batch/simulate_many.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <thread>
 
-#include "core/system.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/batch/simulate_many.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

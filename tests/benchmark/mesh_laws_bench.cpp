@@ -1,15 +1,16 @@
 // The four damping laws of a gear mesh compared (docs/catalogue.md): one gear pair, hammered by a cyclic
 // torque.
 //   build/release/bin/bench_mesh_laws
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <cstdio>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

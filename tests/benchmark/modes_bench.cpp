@@ -2,7 +2,8 @@
 // SciPy's eigsh in shift-invert at the same shift (peers/modes.py). Processor time, medians of repetitions
 // by turns; what has built the matrices is left out on both sides.
 //   build/release/bin/bench_modes
-#include "solvers/modes/modes.hpp"
+#include <drev/solvers/modes/modes.hpp>
+
 #include "tests/benchmark/peer_files.hpp"
 
 using namespace drev;

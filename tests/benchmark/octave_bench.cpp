@@ -3,7 +3,8 @@
 // with all cams of a kind in one call. Processor time a step, start of the interpreter and reading left out;
 // medians of 3 runs by turns (drev's over 5 s).
 //   build/release/bin/bench_octave
-#include "solvers/stepping/transient.hpp"
+#include <drev/solvers/stepping/transient.hpp>
+
 #include "tests/benchmark/peer_files.hpp"
 
 using namespace drev;

@@ -6,19 +6,20 @@
 /// the program's own steps (no interpolation), of a run of drev at tolerance 1e-14 that stops at
 /// just these times. check_reference() holds that run against RK5 in extended precision.
 /// Time: processor time over 5 s simulated, set-up included, nothing observed.
+#include <drev/core/assembler.hpp>
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <map>
 
-#include "core/assembler.hpp"
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "models/camshaft/camshaft_data.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 #include "tests/benchmark/peers/lean_rk5.hpp"
 #include "tests/catch.hpp"
 

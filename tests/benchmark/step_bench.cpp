@@ -5,10 +5,11 @@
 //   build/release/bin/bench_step
 //   build/release/bin/bench_step "Step held*"      one drive
 //   build/release/bin/bench_step "Whole process*"  the command `drev run` beside the same loop
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cstdlib>
 #include <sys/resource.h>
 
-#include "solvers/stepping/transient.hpp"
 #include "tests/benchmark/peer_harness.hpp"
 #include "tests/benchmark/peers/step_floor.hpp"
 

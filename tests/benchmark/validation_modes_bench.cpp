@@ -1,15 +1,16 @@
 // The tables of docs/validation.md on modes, and the cases without integration in time.
 //   build/release/bin/bench_validation_modes
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <map>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/modes/damped_modes.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

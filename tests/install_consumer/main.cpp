@@ -1,13 +1,13 @@
 // Two inertias on a shaft, by the installed library alone: the elastic mode against its closed form,
 // omega^2 = k (1 / J1 + 1 / J2), here 1200 (1/2 + 1/3) = 1000 (rad/s)^2. Exit status 0: they agree.
+#include <drev/core/model.hpp>
+#include <drev/core/system.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 #include <cstdio>
-
-#include "core/model.hpp"
-#include "core/system.hpp"
-#include "elements/inertia.hpp"
-#include "elements/shaft_spring.hpp"
-#include "solvers/modes/modes.hpp"
 
 int main() {
   drev::Model model("two inertias");

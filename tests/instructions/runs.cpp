@@ -1,15 +1,15 @@
 // Three small runs whose instructions are counted (count.sh): what is inside measured() is.
 //   instructions_runs held|gears|modes
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <functional>
-
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/stepping/transient.hpp"
 
 using namespace drev;
 

@@ -5,17 +5,18 @@
 ///
 /// Shafts are distributed (20 to 160 segments) or chains of stations. Loads on the end have a mean and orders
 /// of the shaft's speed; cams are tables on all stations.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/statics.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/model_case.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/statics.hpp"
 #include "tests/stability/random_model.hpp"
 
 namespace drev::test {

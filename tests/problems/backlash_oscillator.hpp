@@ -1,13 +1,14 @@
 #pragma once
 /// Published cases 7 and 8: a disc of 5 kg m^2 on a stop of 2e4 N m/rad with a gap, let go at pi/2.
+#include <drev/core/assembler.hpp>
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <vector>
 
-#include "core/assembler.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 #include "tests/problems/twist_backlash.hpp"
 
 /// damping [N m s/rad], limited to the spring's force; gap: total [rad].

@@ -3,8 +3,8 @@
 /// Lyapunov exponent 0.10947 a unit of time; long-run statistics, by a separate program over 5000 periods:
 /// mean 0.3926 +- 0.0039, standard deviation 0.9676 +- 0.0028, share of the time in the gap
 /// 0.5816 +- 0.0036, 1 % quantile -1.849 +- 0.009, 99 % quantile 1.996 +- 0.005.
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
 
 inline drev::System chaotic_oscillator() {
   drev::Model m("chaotic oscillator");

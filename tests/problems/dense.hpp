@@ -1,8 +1,8 @@
 #pragma once
 /// A system's values on its pattern as a dense matrix, read entry by entry.
-#include <Eigen/Dense>
+#include <drev/core/assembler.hpp>
 
-#include "core/assembler.hpp"
+#include <Eigen/Dense>
 
 namespace drev::problems {
 

@@ -4,8 +4,8 @@
 ///   x'' + c x' + k(t) dz(x) = mean + sum A_i cos(order_i w t),   dz: dead zone of the backlash
 ///
 /// x is the wheel's deviation. The mesh has one tooth a revolution: its period is 2 pi/w.
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
 
 namespace drev::problems {
 

@@ -1,12 +1,12 @@
 #pragma once
 /// What build() finds wrong with a model, for tests of messages.
+#include <drev/core/error.hpp>
+#include <drev/core/model.hpp>
+#include <drev/core/system.hpp>
+
 #include <algorithm>
 #include <string>
 #include <vector>
-
-#include "core/error.hpp"
-#include "core/model.hpp"
-#include "core/system.hpp"
 
 namespace drev::problems {
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Elements with a general force, for tests: of one's own making, with history or without symmetry.
+#include <drev/core/element.hpp>
+
 #include <algorithm>
 #include <cmath>
-
-#include "core/element.hpp"
 
 namespace drev::problems {
 

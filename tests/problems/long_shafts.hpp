@@ -1,9 +1,9 @@
 #pragma once
 /// Two long shafts between heavy flywheels, driven far below most of their modes.
-#include <cmath>
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
 
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
+#include <cmath>
 
 namespace drev::problems {
 

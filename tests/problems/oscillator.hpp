@@ -3,10 +3,10 @@
 ///
 ///   J q'' + c q' + k q = tau,   q(0) = q_0, q'(0) = 0,   c < 2 sqrt(k J)
 ///   q = q_s + (q_0 - q_s) e^(-d t) (cos w t + d/w sin w t),   q_s = tau/k, d = c/(2 J), w^2 = k/J - d^2
-#include <cmath>
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
 
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
+#include <cmath>
 
 namespace drev::problems {
 

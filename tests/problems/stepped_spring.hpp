@@ -2,13 +2,13 @@
 /// A mass 1 kg on a spring with a dead zone. Its stiffness jumps at times that the steps are told of:
 ///
 ///   x'' + c x' + k(t) dz(x) = load,   k = k_double for `duty` of each period, then k_single
+#include <drev/core/law_element.hpp>
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "core/law_element.hpp"
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
 
 namespace drev::problems {
 

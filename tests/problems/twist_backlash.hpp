@@ -1,7 +1,7 @@
 #pragma once
 /// BacklashLaw between two nodes or to ground: k [N m/rad], c [N m s/rad], gap [rad] (or N/m ...).
-#include "core/law_element.hpp"
-#include "elements/backlash_law.hpp"
+#include <drev/core/law_element.hpp>
+#include <drev/elements/backlash_law.hpp>
 
 struct TwistBacklash {
   drev::BacklashLaw law;

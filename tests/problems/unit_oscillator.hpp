@@ -1,9 +1,9 @@
 #pragma once
 /// m = 1 kg, k = (2 pi)^2 N/m to ground: period 1 s.
-#include "core/model.hpp"
-#include "core/units.hpp"
-#include "elements/ground_spring.hpp"
-#include "elements/inertia.hpp"
+#include <drev/core/model.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/inertia.hpp>
 
 inline drev::Model unit_oscillator() {
   drev::Model m("oscillator");

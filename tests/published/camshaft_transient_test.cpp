@@ -1,12 +1,13 @@
 // The held camshaft's transient against a separate program: average acceleration at three steps, the
 // source's loads (no feedback of the twist), from rest with consistent acceleration, 0 to 5 s at 375 rpm.
 // Tolerance 0.2 %: the targets are printed to 5 to 6 digits; undamped runs amplify rounding.
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include "tests/catch.hpp"
 #include "tests/published/read_csv.hpp"
 

@@ -1,12 +1,13 @@
 // Published cases 7 to 9: other projects' numbers, recomputed independently.
+#include <drev/core/channel.hpp>
+#include <drev/core/law_element.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/channel.hpp"
-#include "core/law_element.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

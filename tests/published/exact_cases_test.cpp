@@ -1,10 +1,11 @@
 // Exact propagation of the published cases 7 and 8 (cases_in_time_test.cpp), to the digits printed.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

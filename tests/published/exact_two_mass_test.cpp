@@ -1,13 +1,14 @@
 // Exact propagation against the exact curves of the source's benchmark and their contact changes
 // (piecewise matrix exponentials with located changes in extended precision; data/case_*.csv).
+#include <drev/core/system.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/system.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/published/read_csv.hpp"
 

@@ -1,14 +1,15 @@
 // The twelve published cases, written as model files (cases/*.toml), give the published numbers. Tolerances
 // are half a unit of the last digit printed, or say why not.
+#include <drev/core/channel.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <cmath>
 
 #include "app/model_file/model_file.hpp"
-#include "core/channel.hpp"
-#include "elements/gear_mesh.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/modes/damped_modes.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

@@ -4,20 +4,21 @@
 /// Lees, Dynamics of Rotating Machines, Cambridge University Press, 2010; Exudyn (tests); ROSS
 /// (validation page); S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU,
 /// 2015.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/distributed_shaft.hpp>
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/ideal_gear.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/distributed_shaft.hpp"
-#include "elements/ground_spring.hpp"
-#include "elements/ideal_gear.hpp"
-#include "elements/inertia.hpp"
-#include "elements/shaft_spring.hpp"
-#include "solvers/modes/damped_modes.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

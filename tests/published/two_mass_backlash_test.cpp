@@ -1,13 +1,14 @@
 // The source's benchmark against the exact curves (piecewise matrix exponentials with located contact
 // changes in extended precision; tests/published/data/case_*.csv).
+#include <drev/core/system.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <map>
 
-#include "core/system.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/published/read_csv.hpp"
 

@@ -1,10 +1,11 @@
 // Does the stated error cover the true one? Random linear and contact models, each to several accuracies;
 // truth by a much tighter exact run, whose own statement is far below.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
+
 #include <cmath>
 #include <random>
 
-#include "elements/catalogue.hpp"
-#include "solvers/accuracy/accuracy.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/chaotic_oscillator.hpp"
 

@@ -1,13 +1,14 @@
 #include "tests/stability/amplification.hpp"
 
+#include <drev/core/assembler.hpp>
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-
-#include "elements/ground_spring.hpp"
-#include "elements/inertia.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 
 namespace drev::problems {
 

@@ -2,9 +2,10 @@
 // overshoot. Expected: the methods' published formulas, worked out by a separate program.
 #include "tests/stability/amplification.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 
-#include "core/error.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,12 +1,13 @@
 // Chaotic rattle, x'' + 0.1 x' + dz(x; 1) = 0.1 + 0.5 cos t: a deviation grows by 0.688 a period (Lyapunov
 // exponent 0.10947), so that trajectories part after 40 periods at best. Statistics are comparable.
+#include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 

@@ -1,9 +1,10 @@
 // Modes that lie close together or whose units differ widely, against what theory says of them.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

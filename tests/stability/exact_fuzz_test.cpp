@@ -3,13 +3,14 @@
 // change), the step's end must be that of the exponential, and the energy must balance. More models are
 // looked at by points that the run itself shows, and models that are not linear in pieces by runs with
 // other steps.
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "core/assembler.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/random_model.hpp"
 

@@ -1,13 +1,14 @@
 // A gear pair with backlash under a harmonic load, x'' + 0.1 x' + dz(x) = 0.1 + 0.05 w^2 cos w t, half gap 1:
 // two stable motions side by side between its jump frequencies 0.7080316187 and 0.8284639844. Expected:
 // periodic solutions from closed-form pieces, confirmed by a Runge-Kutta method of 8th order to 6e-11.
+#include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/units.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/stepped_spring.hpp"

@@ -1,12 +1,13 @@
 // Order of accuracy where forces jump: a load let go of, a stepped mesh stiffness. Jumps that the
 // model states as breakpoints keep second order; those that steps pass over unseen make it first.
+#include <drev/core/law_element.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/law_element.hpp"
-#include "core/units.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/stepped_spring.hpp"

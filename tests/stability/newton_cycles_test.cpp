@@ -1,12 +1,13 @@
 // Newton on dead zones from any start. The potential is convex and piecewise quadratic: one root.
 // Plain Newton may still cycle for ever, from three gaps in a chain or four in a loop on; with one or
 // two gaps and on a star of gaps about a hub it cannot. With the exact line search it never does.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/contact/contact_newton.hpp>
+#include <drev/solvers/contact/sparse_newton.hpp>
+
 #include <cmath>
 #include <random>
 
-#include "elements/catalogue.hpp"
-#include "solvers/contact/contact_newton.hpp"
-#include "solvers/contact/sparse_newton.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

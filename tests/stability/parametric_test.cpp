@@ -2,13 +2,14 @@
 // from unit starts, against closed-form boundaries.
 //
 // The stiffness jumps half way between two steps, where average acceleration keeps its second order.
+#include <drev/core/units.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "core/dense_eigen.hpp"
-#include "core/units.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 

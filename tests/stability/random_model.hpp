@@ -1,6 +1,9 @@
 #pragma once
 /// Random drivetrains for the stability tests: a tree of shafts with gaps anywhere, loads that step and
 /// ramp; `varying` adds what is not linear in pieces.
+#include <drev/core/system.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -8,8 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/system.hpp"
-#include "elements/catalogue.hpp"
 #include "tests/problems/twist_backlash.hpp"
 
 struct Random {

@@ -1,12 +1,13 @@
 // The estimate of a reduced run's error against the full system, by exact propagation of both.
+#include <drev/core/channel.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <cmath>
 
-#include "core/channel.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/reduction/reduction_choice.hpp"
 #include "solvers/reduction/truncation_error.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/long_shafts.hpp"
 #include "tests/stability/random_model.hpp"

@@ -1,14 +1,15 @@
 // Passage through resonance: x'' + 2 zeta x' + x = sin(alpha t^2/2) from rest. Expected: Duhamel's
 // integral in 12 digits; in the limit of slow passage F. M. Lewis' formula, Vibration during
 // acceleration through a critical speed, Trans. ASME 54, 1932.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,7 +1,7 @@
 #pragma once
 /// Classical Runge-Kutta of fourth order over a System's own terms: an independent integration to
 /// compare with. Knows nothing of pieces or knots; small steps resolve them.
-#include "core/assembler.hpp"
+#include <drev/core/assembler.hpp>
 
 /// Advances the state to t_end in steps of at most h. M must be diagonal.
 inline void runge_kutta(const drev::System& system, double t_end, double h, drev::State& s) {

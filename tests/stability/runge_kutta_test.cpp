@@ -1,7 +1,8 @@
 // Runge-Kutta methods: stability functions on one undamped mode, order past contact changes.
+#include <drev/elements/catalogue.hpp>
+
 #include <complex>
 
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/amplification.hpp"
 

@@ -1,11 +1,12 @@
 // Limits of the conditionally stable methods, with and without damping. A step above the limit is
 // refused with the limit named, or grows without bound.
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <Eigen/Dense>
 
-#include "elements/ground_spring.hpp"
-#include "elements/inertia.hpp"
-#include "elements/shaft_spring.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/amplification.hpp"
 

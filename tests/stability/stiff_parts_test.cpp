@@ -1,11 +1,12 @@
 // A stiff part that matters only as a constraint, and motions that are given: what becomes of the
 // rates and accelerations there.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "elements/catalogue.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -3,13 +3,14 @@
 // The tolerance bounds what a method adds; the motion itself may amplify it. How much is measured: the
 // largest growth of deviations from the start and from half the time on. The error judged is that at the
 // end over max(growth, 1), relative to the largest deviation and rate of the run.
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <sstream>
 
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/evaluated_state.hpp"
-#include "solvers/run/observer.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/stability/random_model.hpp"
 #include "tests/stability/runge_kutta.hpp"

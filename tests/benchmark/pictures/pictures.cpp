@@ -3,19 +3,20 @@
 //   camshaft_modes.svg   the first three modes of the camshaft with its gear drive
 //   work_precision.svg   error over steps, two masses with backlash, every implicit method
 //   mesh_damping.svg     force of one impact under the four damping laws of a mesh
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 
 #include "app/chart/svg_chart.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 
 using namespace drev;
 using app::ChartSeries;

@@ -1,13 +1,14 @@
 // Simpler models made from a model are those that one would write by hand.
 #include "advice/simplify.hpp"
 
+#include <drev/advice/figure_estimate.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 
-#include "advice/figure_estimate.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

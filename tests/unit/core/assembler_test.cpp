@@ -1,9 +1,9 @@
 // Assembler: loads, nominal motion, given motions, tangents, contact states, products.
-#include "core/assembler.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/elements/catalogue.hpp>
 
 #include <cmath>
 
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/dense.hpp"
 #include "tests/problems/general_elements.hpp"

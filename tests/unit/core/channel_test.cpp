@@ -1,10 +1,10 @@
 // Every kind of channel: value, sign and unit, against hand computation.
-#include "core/channel.hpp"
+#include <drev/core/channel.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/statics.hpp>
 
 #include <cmath>
 
-#include "elements/catalogue.hpp"
-#include "solvers/statics.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
 #include "tests/problems/general_elements.hpp"

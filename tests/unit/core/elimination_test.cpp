@@ -1,5 +1,6 @@
 // Ideal gears and prescribed nodes eliminated: q = T z + g(t). Reduced matrices against T' M T by hand.
-#include "elements/catalogue.hpp"
+#include <drev/elements/catalogue.hpp>
+
 #include "tests/catch.hpp"
 #include "tests/problems/dense.hpp"
 #include "tests/problems/findings.hpp"

@@ -1,5 +1,5 @@
 // Texts of findings, parameter checks, and the nearest name.
-#include "core/error.hpp"
+#include <drev/core/error.hpp>
 
 #include <cmath>
 #include <cstdlib>

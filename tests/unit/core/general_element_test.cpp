@@ -1,12 +1,13 @@
 // General elements with history and with unsymmetric tangents, simulated against closed forms.
+#include <drev/core/verify.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <complex>
 
-#include "core/verify.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/general_elements.hpp"
 

@@ -1,7 +1,8 @@
 // Nominal ratios through everything that turns together; loops; ground; floating parts.
 #include "core/kinematics.hpp"
 
-#include "elements/catalogue.hpp"
+#include <drev/elements/catalogue.hpp>
+
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
 

@@ -1,12 +1,13 @@
 // What a tired user gets wrong: everything ends in a clear error, never in a crash, a hang or nonsense.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "elements/catalogue.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/oscillator.hpp"
 #include "tests/unit/not_finite.hpp"

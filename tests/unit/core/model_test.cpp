@@ -1,7 +1,7 @@
 // Validation: what is wrong with a model is found, all at once, and said in words that name it.
-#include "core/model.hpp"
+#include <drev/core/model.hpp>
+#include <drev/elements/catalogue.hpp>
 
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
 #include "tests/unit/not_finite.hpp"

@@ -1,11 +1,11 @@
 // Known motions: continuity, derivatives, breakpoints, refused parameters.
-#include "core/motion.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/motion.hpp>
+#include <drev/core/units.hpp>
 
 #include <cmath>
 #include <limits>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,8 +1,9 @@
 // Elements of one's own that describe themselves wrongly are findings, never a crash.
+#include <drev/elements/catalogue.hpp>
+
 #include <functional>
 #include <limits>
 
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
 

@@ -1,11 +1,11 @@
 // Tables looked up together give what each gives alone.
-#include "core/table_loads.hpp"
+#include <drev/core/table_loads.hpp>
+#include <drev/elements/cam_torque.hpp>
 
 #include <cmath>
 #include <deque>
 #include <limits>
 
-#include "elements/cam_torque.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

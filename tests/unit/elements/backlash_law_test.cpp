@@ -1,9 +1,9 @@
 // The dead zone with its damping laws.
-#include "elements/backlash_law.hpp"
+#include <drev/core/law_element.hpp>
+#include <drev/elements/backlash_law.hpp>
 
 #include <cmath>
 
-#include "core/law_element.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

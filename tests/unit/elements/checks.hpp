@@ -1,8 +1,8 @@
 #pragma once
 /// Shared by the tests of the catalogue.
-#include <string>
+#include <drev/core/verify.hpp>
 
-#include "core/verify.hpp"
+#include <string>
 
 namespace drev::test {
 

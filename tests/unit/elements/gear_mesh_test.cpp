@@ -1,11 +1,12 @@
 // Gear mesh, its varying stiffness, its transmission error, involute geometry.
+#include <drev/core/channel.hpp>
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 
-#include "core/channel.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

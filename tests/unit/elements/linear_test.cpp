@@ -1,6 +1,7 @@
 // Inertias, shafts, dashpots, ground springs, ideal gears, Rayleigh damping.
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

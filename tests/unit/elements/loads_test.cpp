@@ -1,10 +1,11 @@
 // Cam, applied and engine order torques.
+#include <drev/core/units.hpp>
+#include <drev/elements/applied_torque.hpp>
+#include <drev/elements/cam_torque.hpp>
+#include <drev/elements/engine_order_torque.hpp>
+
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/applied_torque.hpp"
-#include "elements/cam_torque.hpp"
-#include "elements/engine_order_torque.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

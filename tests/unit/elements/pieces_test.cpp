@@ -1,9 +1,10 @@
 // What exact propagation asks of laws and loads: pieces, stretches and series are the law and load.
+#include <drev/elements/catalogue.hpp>
+#include <drev/elements/mesh_stiffness.hpp>
+
 #include <cmath>
 #include <random>
 
-#include "elements/catalogue.hpp"
-#include "elements/mesh_stiffness.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,5 +1,5 @@
 // Springs given by points: dead bands, stops, one-sided contacts.
-#include "elements/polyline_spring.hpp"
+#include <drev/elements/polyline_spring.hpp>
 
 #include <cmath>
 #include <limits>

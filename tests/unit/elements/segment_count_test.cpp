@@ -1,10 +1,11 @@
 // Segments of a distributed shaft: the continuum of published case 5 and of a shaft without ends' inertias.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <cmath>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/findings.hpp"
 

@@ -1,8 +1,9 @@
 // PeriodicTable and TimeTable.
+#include <drev/elements/periodic_table.hpp>
+#include <drev/elements/time_table.hpp>
+
 #include <cmath>
 
-#include "elements/periodic_table.hpp"
-#include "elements/time_table.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

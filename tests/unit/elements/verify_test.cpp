@@ -1,11 +1,11 @@
 // check_element() must catch what is wrong: deliberately broken elements.
-#include "core/verify.hpp"
+#include <drev/core/law_element.hpp>
+#include <drev/core/verify.hpp>
+#include <drev/elements/shaft_spring.hpp>
 
 #include <cmath>
 #include <functional>
 
-#include "core/law_element.hpp"
-#include "elements/shaft_spring.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
 

@@ -1,11 +1,12 @@
 // Which method a system is given, and the rate that decides.
-#include "solvers/method_choice.hpp"
+// Covers solvers/method.hpp.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 #include "tests/problems/general_elements.hpp"

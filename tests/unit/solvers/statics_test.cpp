@@ -1,10 +1,10 @@
 // Static equilibrium with contact.
-#include "solvers/statics.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/statics.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

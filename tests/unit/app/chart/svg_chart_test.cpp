@@ -1,12 +1,13 @@
 // The chart writer: well-formed XML, what is drawn, peaks kept, ticks, bad input.
 #include "app/chart/svg_chart.hpp"
 
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "core/error.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

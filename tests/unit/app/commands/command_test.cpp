@@ -1,13 +1,14 @@
 // What the commands print, as text and as JSON, and how they exit.
+#include <drev/core/units.hpp>
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <nlohmann/json.hpp>
 
-#include "core/units.hpp"
-#include "models/model_case.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 

@@ -1,16 +1,17 @@
 // Faults of a model written in C++: each is refused with a message that names place, parameter, value, unit
 // (where it has one) and what would be right; a model with five faults lists five.
+#include <drev/core/channel.hpp>
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 #include <functional>
 
-#include "core/channel.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/not_finite.hpp"
 

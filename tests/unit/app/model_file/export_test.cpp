@@ -1,16 +1,17 @@
 // A built-in model, written as a file and read back, is the same model to the last bit.
 #include "app/model_file/export.hpp"
 
+#include <drev/core/channel.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <algorithm>
 #include <cstring>
 
 #include "app/model_file/model_file.hpp"
-#include "core/channel.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/method_choice.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,11 +1,12 @@
 // What a model file means: the same model as the one written in C++.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
 #include <fstream>
 
 #include "app/model_file/model_file.hpp"
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 

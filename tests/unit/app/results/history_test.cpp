@@ -1,14 +1,15 @@
 // history.csv: exactly the times asked for, the library's own values, 17 digits; and what is left when
 // something goes wrong.
+#include <drev/models/model_case.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
-#include "models/model_case.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 

@@ -1,15 +1,16 @@
 // `drev study`: the report, its figures that are cheap, and the superposition behind its firing orders.
+#include <drev/core/units.hpp>
+#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "app/study/study_runs.hpp"
-#include "core/units.hpp"
 #include "models/camshaft/steady_shaft.hpp"
-#include "solvers/accuracy/error_growth.hpp"
 #include "solvers/periodic/floquet.hpp"
-#include "solvers/periodic/periodic_response.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 

@@ -1,10 +1,11 @@
 // Figures with their errors against closed forms.
-#include "solvers/accuracy/accuracy.hpp"
+// Covers solvers/accuracy/accuracy_observers.hpp through run_to_accuracy().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 

@@ -1,10 +1,10 @@
 // Growth of small differences against closed forms and a published chaotic oscillator.
-#include "solvers/accuracy/error_growth.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/accuracy/error_growth.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/chaotic_oscillator.hpp"
 

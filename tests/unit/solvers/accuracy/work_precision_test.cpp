@@ -1,9 +1,9 @@
 // Work and precision of methods on an oscillator whose error is known in closed form.
-#include "solvers/accuracy/work_precision.hpp"
+#include <drev/core/units.hpp>
+#include <drev/solvers/accuracy/work_precision.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 

@@ -1,8 +1,9 @@
 // The example of docs/parameter_study.md.
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/batch/simulate_many.hpp>
+
 #include <cstdio>
 
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/batch/simulate_many.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,12 +1,14 @@
 // Many variants in lockstep are single runs: same motion, peaks, contacts and energy, whatever the model.
-#include "solvers/batch/simulate_many.hpp"
+// Covers solvers/batch/lockstep.hpp, lane_factor.hpp, lane_laws.hpp, lane_loads.hpp, lane_motion.hpp,
+// lane_step.hpp and lane_watch.hpp through simulate_many().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/batch/simulate_many.hpp>
 
 #include <atomic>
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/general_elements.hpp"
 

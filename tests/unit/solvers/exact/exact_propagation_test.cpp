@@ -1,13 +1,15 @@
 // Exact propagation: closed forms, breakpoints, known motions, dampers, refusals, laws without a
 // solution.
-#include "solvers/exact/exact_propagation.hpp"
+// Covers solvers/exact/taylor_series.hpp, series_kernels.hpp, load_series.hpp and law_series.hpp through
+// propagate().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/twist_backlash.hpp"
 #include "tests/problems/unit_oscillator.hpp"

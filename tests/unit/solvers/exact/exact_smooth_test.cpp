@@ -1,12 +1,14 @@
 // Exact propagation of what is not linear in pieces: torques that are functions, of time and of speed, mesh
 // stiffness by phase, transmission error, damping that grows with penetration. Against closed forms and
 // against Runge-Kutta, which knows nothing of pieces, knots or projections.
+// Covers solvers/exact/projected_laws.hpp through propagate().
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
+
 #include <cmath>
 
-#include "elements/catalogue.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/recorder.hpp"
-#include "solvers/stepping/step_scheme.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 #include "tests/stability/runge_kutta.hpp"

@@ -1,8 +1,9 @@
 // A stepped mesh stiffness whose phase follows a node with a given motion of its own.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+
 #include <cmath>
 
-#include "elements/catalogue.hpp"
-#include "solvers/exact/exact_propagation.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

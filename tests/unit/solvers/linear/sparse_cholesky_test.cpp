@@ -1,5 +1,8 @@
 /// Factorisations: what they must refuse, and solutions against a dense solver.
-#include "solvers/linear/sparse_cholesky.hpp"
+// Covers solvers/linear/cholmod_factor.hpp and low_fill_factor.hpp, between which SparseCholesky chooses.
+#include <drev/core/error.hpp>
+#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,8 +11,6 @@
 #include <limits>
 #include <unistd.h>
 
-#include "core/error.hpp"
-#include "solvers/linear/sparse_lu.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,10 +1,11 @@
 /// Sturm counts against the closed form of the uniform chain.
 #include "solvers/linear/sturm_count.hpp"
 
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+
 #include <cmath>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

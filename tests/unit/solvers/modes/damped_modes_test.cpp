@@ -1,17 +1,17 @@
 /// Damped modes against closed forms.
-#include "solvers/modes/damped_modes.hpp"
+#include <drev/core/units.hpp>
+#include <drev/elements/dashpot.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/rayleigh_damping.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <cmath>
 #include <string>
 
-#include "core/units.hpp"
-#include "elements/dashpot.hpp"
-#include "elements/gear_mesh.hpp"
-#include "elements/ground_spring.hpp"
-#include "elements/inertia.hpp"
-#include "elements/rayleigh_damping.hpp"
-#include "elements/shaft_spring.hpp"
-#include "solvers/modes/modes.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,18 +1,18 @@
 /// Modes against closed forms: free and held chains, repeated frequencies, bad scaling, contact
 /// states.
-#include "solvers/modes/modes.hpp"
+#include <drev/core/assembler.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/gear_mesh.hpp>
+#include <drev/elements/ground_spring.hpp>
+#include <drev/elements/ideal_gear.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <Eigen/LU>
 #include <cmath>
 #include <string>
 
-#include "core/assembler.hpp"
-#include "core/units.hpp"
-#include "elements/gear_mesh.hpp"
-#include "elements/ground_spring.hpp"
-#include "elements/ideal_gear.hpp"
-#include "elements/inertia.hpp"
-#include "elements/shaft_spring.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

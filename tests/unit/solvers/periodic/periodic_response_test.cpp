@@ -1,17 +1,18 @@
 // Periodic steady state against closed forms and against the last turn of long runs.
-#include "solvers/periodic/periodic_response.hpp"
+// Covers solvers/periodic/harmonic_balance.hpp and load_harmonics.hpp through solve_periodic().
+#include <drev/core/law_element.hpp>
+#include <drev/core/ritz_projection.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
+#include <drev/solvers/periodic/speed_sweep.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
-#include "core/law_element.hpp"
-#include "core/ritz_projection.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/periodic/speed_sweep.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/general_elements.hpp"

@@ -1,12 +1,12 @@
 /// Amplitudes of sampled tones with known answer.
-#include "solvers/periodic/spectrum.hpp"
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/spectrum.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/error.hpp"
-#include "core/units.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

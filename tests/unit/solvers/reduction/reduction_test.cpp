@@ -1,18 +1,19 @@
 // Reduced systems: closed forms of uniform chains, and the full system.
-#include "solvers/reduction/reduction.hpp"
+// Covers solvers/reduction/residual_vectors.hpp and craig_bampton.hpp through reduce().
+#include <drev/core/channel.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
+#include <drev/solvers/reduction/reduction.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
-#include "core/channel.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/camshaft/build_camshaft.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/periodic/periodic_response.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/statics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,11 +1,11 @@
 // A reduction that is tried before it is used: its channels beside the full model's by another method, and
 // what is refused.
-#include "solvers/reduction/reduction_trial.hpp"
+#include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/long_shafts.hpp"
 

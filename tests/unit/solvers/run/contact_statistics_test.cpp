@@ -1,13 +1,14 @@
 // Impact speeds, forces and rattle against motions between stops that have a closed form.
-#include "solvers/run/contact_statistics.hpp"
+// Covers solvers/run/distribution.hpp.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

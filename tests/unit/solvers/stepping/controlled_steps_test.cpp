@@ -1,15 +1,17 @@
 // Steps controlled by their estimated error: the estimate against the true local error, the tolerance
 // against the true error, outputs between steps, stops, energy.
+// Covers solvers/stepping/step_control.hpp through simulate().
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/run/recorder.hpp"
 #include "solvers/stepping/stability_limit.hpp"
 #include "solvers/stepping/stepper.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 #include "tests/published/read_csv.hpp"

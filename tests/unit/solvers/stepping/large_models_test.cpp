@@ -1,12 +1,14 @@
 /// Large models against closed forms: modes and motion of a chain of 1e5 inertias, counts, gears in a loop.
+// Covers solvers/linear/huge_pages.hpp with arrays that are large enough for them.
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "solvers/linear/sturm_count.hpp"
-#include "solvers/modes/modes.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,13 +1,15 @@
 // Contact changes located by stepping methods: order, forces that jump, several changes in a step, grazing.
+// Covers solvers/stepping/contact_locator.hpp and located_step.hpp through simulate().
+#include <drev/core/system.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <cmath>
 
-#include "core/system.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "models/two_mass_backlash/build_two_mass_backlash.hpp"
-#include "solvers/exact/exact_propagation.hpp"
-#include "solvers/run/contact_statistics.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 #include "tests/problems/twist_backlash.hpp"

@@ -1,12 +1,15 @@
 // Methods in time against their closed forms: linear limits, order, stability limits.
+// Covers solvers/stepping/butcher_tableau.hpp, generalized_alpha.hpp, step_equation.hpp and
+// step_energy.hpp through every method.
+#include <drev/core/law_element.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "core/law_element.hpp"
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
 #include "solvers/stepping/stability_limit.hpp"
-#include "solvers/stepping/transient.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 

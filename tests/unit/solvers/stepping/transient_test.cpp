@@ -1,12 +1,14 @@
 // Integration in time: exact stops, restarts, energy, paths that must agree, refusals.
-#include "solvers/stepping/transient.hpp"
+// Covers solvers/run/energy_monitor.hpp, energy_balance.hpp, run_summary.hpp, run_verdict.hpp and
+// run_checks.hpp, and solvers/stepping/step_options.hpp, through simulate().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
-#include "core/units.hpp"
-#include "elements/catalogue.hpp"
-#include "solvers/run/peaks.hpp"
-#include "solvers/run/recorder.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 

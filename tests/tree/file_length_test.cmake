@@ -1,27 +1,16 @@
 # cmake -DROOT=<source tree> -P file_length_test.cmake: no file of source, documentation or script has more
-# than 500 lines. Data and drawings are none of these. Asks git which files belong to the project, or
-# takes all but build/ where the tree is no repository.
+# than 500 lines. Data and drawings are none of these.
 cmake_minimum_required(VERSION 3.22)
 set(limit 500)
 set(not_text "\\.(csv|svg|png|jpg|gif|pdf|ico|zip|gz)$")
 
-execute_process(COMMAND git -C ${ROOT} rev-parse --show-toplevel OUTPUT_VARIABLE top RESULT_VARIABLE no_git
-                OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-file(REAL_PATH ${ROOT} root)
-if(no_git EQUAL 0 AND top STREQUAL root)
-  execute_process(COMMAND git -C ${ROOT} -c core.quotePath=off ls-files OUTPUT_VARIABLE files
-                  COMMAND_ERROR_IS_FATAL ANY)
-  string(STRIP "${files}" files)
-  string(REPLACE "\n" ";" files "${files}")
-else()
-  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/* ${ROOT}/.ci/*)
-  list(FILTER files EXCLUDE REGEX "^(build|results|\\.git|\\.cache)/")
-endif()
+include(${CMAKE_CURRENT_LIST_DIR}/project_files.cmake)
+project_files(${ROOT} files)
 
 set(findings "")
 set(count 0)
 foreach(name IN LISTS files)
-  if(name MATCHES "${not_text}" OR NOT EXISTS ${ROOT}/${name})
+  if(name MATCHES "${not_text}")
     continue()
   endif()
   file(READ ${ROOT}/${name} text)
