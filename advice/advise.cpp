@@ -287,7 +287,7 @@ FigureOptions figure_options(const ModelCase& model_case, const System& system,
                              const AdviseOptions& options) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/advise", findings);
-  check.within("within", options.within, 1e-4, 0.5, "");
+  check.within("within", options.within, options.kWithin.low, options.kWithin.high, "");
   FigureOptions figure{.t_end = model_case.duration,
                        .step = std::min(model_case.default_step, model_case.duration),
                        .accuracy = kAccuracy * options.within};

@@ -13,6 +13,7 @@
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
 /// does so for this model case and this figure (docs/fidelity.md).
 #include <drev/advice/recipe.hpp>
+#include <drev/core/range.hpp>
 #include <drev/models/model_case.hpp>
 
 #include <string>
@@ -24,7 +25,8 @@ struct AdviseOptions {
   /// "peak deflection", "peak torque" (the model case's), "peak CHANNEL"; "steady peak ..." counts the last turns
   /// only: two of the model case's static_turn, or the last fifth of the run.
   std::string figure = "peak deflection";
-  double within = 0.02;  ///< relative, 1e-4 to 0.5
+  double within = 0.02;  ///< relative
+  static constexpr Range kWithin{1e-4, 0.5};
 };
 
 struct Rung {

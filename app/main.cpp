@@ -6,6 +6,8 @@
 #include "app/base/output_file.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/commands.hpp"
 #include "app/commands/completion.hpp"
 
 namespace drev::app {
@@ -30,7 +32,7 @@ int guarded_main(int argc, char** argv) {
       print(text);
       return kSuccess;
     }
-    const ParsedCommandLine parsed = parse_command_line(argc, argv);
+    const ParsedCommandLine parsed = parse_command_line(argc, argv, commands());
     if (!parsed.command) return parsed.exit_code;
     set_quiet(parsed.command->quiet);
     return parsed.command->command->execute(*parsed.command);

@@ -7,6 +7,19 @@
 
 namespace drev {
 
+const std::vector<MethodRow>& methods() {
+  static const std::vector<MethodRow> rows = [] {
+    std::vector<MethodRow> all{
+        {.name = kExact,
+         .help =
+             "Taylor series between located contact changes, to a tolerance; says what of a model keeps it "
+             "from that"}};
+    all.insert(all.end(), step_schemes().begin(), step_schemes().end());
+    return all;
+  }();
+  return rows;
+}
+
 std::string to_text(const Method& method) {
   std::ostringstream text;
   text << method.name;

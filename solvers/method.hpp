@@ -2,6 +2,7 @@
 /// A method in time by its name and its tolerance or step, and running it.
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <functional>
 #include <string>
@@ -11,11 +12,17 @@ namespace drev {
 
 class Observer;
 
+/// The name of exact propagation among the methods.
+inline constexpr const char* kExact = "exact";
+
+/// Every method in time: exact propagation, and the step schemes.
+const std::vector<MethodRow>& methods();
+
 struct Method {
-  std::string name = "average_acceleration";  ///< "exact", or what step_scheme() knows
+  std::string name = "average_acceleration";  ///< kExact, or what step_scheme() knows
   double step = 0.0;       ///< s; 0 for exact; with a tolerance the largest step, 0: no limit
   double tolerance = 0.0;  ///< relative; 0: constant steps
-  bool exact() const { return name == "exact"; }
+  bool exact() const { return name == kExact; }
   bool controlled() const { return !exact() && tolerance > 0.0; }
 };
 

@@ -113,7 +113,7 @@ MethodChoice choose_method(const System& system, double duration, double step) {
                             counted(system.size(), "unknown") + " and " + counted(contacts, "contact");
   const double exact_work = work(kProductsInStep);
   if (exact_work <= kMostWork)
-    return {{.name = "exact", .tolerance = ExactOptions{}.tolerance},
+    return {{.name = kExact, .tolerance = ExactOptions{}.tolerance},
             model + ": exact between located changes",
             exact_work};
   text << "would cost exact propagation " << kProductsInStep * steps << " products: controlled steps";

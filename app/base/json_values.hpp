@@ -17,7 +17,7 @@ inline Json number(const std::optional<double>& value) { return value ? number(*
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// Numbers as numbers, everything else as text.
-inline Json setting_value(const Parameter& parameter, const std::string& text) {
+inline Json parameter_value(const Parameter& parameter, const std::string& text) {
   double value = 0.0;
   if (parameter.kind == Parameter::Kind::number && read_number(text, value)) return number(value);
   if (parameter.kind == Parameter::Kind::integer && read_number(text, value)) return static_cast<long>(value);
@@ -25,10 +25,10 @@ inline Json setting_value(const Parameter& parameter, const std::string& text) {
 }
 
 /// {name: value, ...}
-inline Json settings_object(const Parameters& parameters) {
+inline Json parameters_object(const Parameters& parameters) {
   Json object = Json::object();
   for (std::size_t i = 0; i < parameters.known().size(); ++i)
-    object[parameters.known()[i].name] = setting_value(parameters.known()[i], parameters.values()[i]);
+    object[parameters.known()[i].name] = parameter_value(parameters.known()[i], parameters.values()[i]);
   return object;
 }
 

@@ -6,11 +6,20 @@
 /// beyond, every error is mostly growth, and the methods cannot be told apart.
 #include <drev/solvers/accuracy/work_precision.hpp>
 
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "app/commands/requests.hpp"
+#include "app/run/model_request.hpp"
 
 namespace drev::app {
+
+struct ChartRequest {
+  ModelRequest model;
+  std::vector<std::string> methods;
+  double limit = 1.0;              ///< s of processor time, of the longest run drawn
+  std::optional<std::string> out;  ///< directory
+};
 
 struct ChartResult {
   std::string quantity;        ///< what the error is of

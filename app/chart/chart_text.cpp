@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "app/base/json_values.hpp"
+#include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/chart/chart_computation.hpp"
 #include "app/chart/svg_chart.hpp"
-#include "app/results/run_text.hpp"
 
 namespace drev::app {
 
@@ -65,7 +65,7 @@ std::string changed_settings(const Parameters& parameters) {
 std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
   const WorkPrecision& data = r.data;
   const std::string name = request.model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(request.model.parameters), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2) + "\n";
   text += labelled("Error", "of " + r.quantity + ", the largest over the samples from 0 to " +
                                 short_digits(data.t_end, 4) + " s, over its peak, " + digits(data.peak, 4) +
                                 " " + data.unit);
@@ -96,7 +96,7 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
   const WorkPrecision& data = r.data;
   Json object;
   object["model"] = request.model.entry->name;
-  object["parameters"] = settings_object(request.model.parameters);
+  object["parameters"] = parameters_object(request.model.parameters);
   object["quantity"] = r.quantity;
   object["t_end_s"] = number(data.t_end);
   object["horizon"] = text_or_null(r.horizon_reason);

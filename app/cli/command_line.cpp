@@ -1,7 +1,5 @@
 #include "app/cli/command_line.hpp"
 
-#include <drev/models/model_case.hpp>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -12,7 +10,8 @@
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/help_texts.hpp"
-#include "app/cli/model_list.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/print.hpp"
 
 namespace drev::app {
 
@@ -128,6 +127,14 @@ void take_sets(const Raw& raw, CommandLine& line) {
   }
 }
 
+/// A finding if an option has choices and the value is none of them.
+void check_choice(const OptionEntry& option, const std::string& value, std::vector<Finding>& findings) {
+  const std::vector<std::string>& choices = option.choices;
+  if (choices.empty() || std::count(choices.begin(), choices.end(), value) > 0) return;
+  findings.push_back({kCommandLine, option.name, value, "",
+                      "must be " + join(choices, " or ") + did_you_mean(value, choices)});
+}
+
 void take_option(const OptionEntry& option, const std::vector<std::string>& given, CommandLine& line) {
   const auto report = [&](const std::string& value, const std::string& why) {
     line.findings.push_back({kCommandLine, option.name, value, "", why});
@@ -141,7 +148,10 @@ void take_option(const OptionEntry& option, const std::vector<std::string>& give
       report(given[0], "needs a value");
     else
       taken = given;
-    if (taken.empty()) line.options.erase(option.name);
+    if (taken.empty())
+      line.options.erase(option.name);
+    else
+      check_choice(option, taken.front(), line.findings);
     return;
   }
   const bool commas = option.values == OptionEntry::Values::commas;
@@ -152,35 +162,33 @@ void take_option(const OptionEntry& option, const std::vector<std::string>& give
       else if (std::count(taken.begin(), taken.end(), name) > 0)
         report(name, "is named twice");
       else
-        taken.push_back(name);
+        check_choice(option, taken.emplace_back(name), line.findings);
     }
 }
 
-std::vector<std::string> command_names() {
+std::vector<std::string> names_of(const std::vector<CommandEntry>& commands) {
   std::vector<std::string> names;
-  for (const CommandEntry& command : commands()) names.push_back(command.name);
+  for (const CommandEntry& command : commands) names.push_back(command.name);
   return names;
 }
 
-int no_command(const CLI::App& app) {
+int no_command(const CLI::App& app, const std::vector<CommandEntry>& commands) {
   const std::vector<std::string> words = app.remaining();
   if (words.empty()) {
-    std::cerr << "drev: no command given; it is one of " << join(command_names())
+    std::cerr << "drev: no command given; it is one of " << join(names_of(commands))
               << ". drev --help says more.\n";
     return kBadInput;
   }
   const std::string& word = words.front();
   std::cerr << "drev: '" << word << "' is no "
             << (looks_like_option(word) ? "option of drev itself" : "command");
-  std::vector<std::string> models;
-  for (const ModelEntry& entry : ready_made_models()) models.push_back(entry.name);
-  if (std::find(models.begin(), models.end(), word) != models.end())
+  if (is_built_in(word))
     std::cerr << "; did you mean 'drev run " << word << "'?\n";
   else if (looks_like_option(word))
     std::cerr << did_you_mean(word, {"--help", "--version"}) << "\n";
   else
-    std::cerr << (word == "help" ? "; did you mean --help?" : did_you_mean(word, command_names()))
-              << "\nThe commands are " << join(command_names()) << ".\n";
+    std::cerr << (word == "help" ? "; did you mean --help?" : did_you_mean(word, names_of(commands)))
+              << "\nThe commands are " << join(names_of(commands)) << ".\n";
   return kBadInput;
 }
 
@@ -198,13 +206,13 @@ std::optional<std::vector<std::string>> CommandLine::list(const std::string& nam
   return found->second;
 }
 
-ParsedCommandLine parse_command_line(int argc, char** argv) {
+ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<CommandEntry>& commands) {
   CLI::App app("drev: torsional dynamics of drivetrains", "drev");
   app.set_version_flag("--version", "drev " DREV_VERSION);
   app.allow_extras();
   app.footer(std::string(kMainExamples) + "\n" + kExitCodesHelp);
   Raw raw;
-  for (const CommandEntry& command : commands())
+  for (const CommandEntry& command : commands)
     add_options(*app.add_subcommand(command.name, command.summary), command, raw);
   try {
     app.parse(argc, argv);
@@ -219,12 +227,12 @@ ParsedCommandLine parse_command_line(int argc, char** argv) {
     return {.exit_code = kBadInput};
   }
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  if (chosen.empty()) return {.exit_code = no_command(app)};
+  if (chosen.empty()) return {.exit_code = no_command(app, commands)};
 
   const CLI::App& sub = *chosen.front();
-  const std::vector<CommandEntry>& table = commands();
-  const CommandEntry& command = *std::find_if(
-      table.begin(), table.end(), [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
+  const CommandEntry& command =
+      *std::find_if(commands.begin(), commands.end(),
+                    [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
   CommandLine line{.command = &command, .json = raw.json, .quiet = raw.quiet};
   if (!raw.model.empty()) raw.models = {raw.model};
   find_models_among_sets(raw, command.takes_models);

@@ -1,5 +1,5 @@
 #pragma once
-/// The command line as text, split into its parts; what the parts are worth is checked in requests.hpp, so
+/// The command line as text, split into its parts; what the parts are worth is checked by each command, so
 /// that everything wrong with one command line can be listed at once.
 #include <drev/core/error.hpp>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands/commands.hpp"
+#include "app/cli/command_entry.hpp"
 
 namespace drev::app {
 
@@ -38,6 +38,7 @@ struct ParsedCommandLine {
   int exit_code = 0;
 };
 
-ParsedCommandLine parse_command_line(int argc, char** argv);
+/// commands: those that there are. The command line found refers to one of them.
+ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<CommandEntry>& commands);
 
 }  // namespace drev::app

@@ -1,23 +1,6 @@
 #pragma once
-/// Texts of --help: methods and examples.
+/// Texts of --help: examples. That on methods is made in method_option.hpp.
 namespace drev::app {
-
-inline constexpr const char* kMethodsHelp =
-    "Methods (default: exact, where nothing in the model forbids it and it is affordable, else\n"
-    "dormand_prince, or sdirk4 where the model is too stiff for that, to 1e-4; the run says why):\n"
-    "  exact                         Taylor series between located contact changes, to --tolerance;\n"
-    "                                says what of a model keeps it from that\n"
-    "with constant steps, --step, or with steps controlled by --tolerance that end at contact changes\n"
-    "(--step is then the largest); implicit, of second order but for newmark with GAMMA > 1/2:\n"
-    "  average_acceleration          keeps energy; the default where a step is asked for\n"
-    "  hht[:ALPHA]                   0 to 1/3, default 0.05; damps the fastest modes\n"
-    "  generalized_alpha[:RHO_INF]   1 (none) to 0, default 0.8; damps the fastest modes\n"
-    "  newmark:BETA,GAMMA            BETA >= 0, GAMMA >= 1/2\n"
-    "  bathe[:RHO_INF]               two stages; 1 (no damping) to 0, default 0; tr_bdf2 is bathe:0\n"
-    "  sdirk4                        five stages, fourth order; damps the fastest modes\n"
-    "stable for small steps only; a larger constant step is refused:\n"
-    "  linear_acceleration, central_difference   of second order\n"
-    "  rk4, dormand_prince           explicit, of fourth and fifth order\n";
 
 inline constexpr const char* kMainExamples =
     "Examples:\n"

@@ -1,9 +1,10 @@
+#include "app/cli/print.hpp"
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
 #include "app/base/output_file.hpp"
-#include "app/commands/commands.hpp"
 
 namespace drev::app {
 

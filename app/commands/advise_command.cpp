@@ -1,13 +1,42 @@
+#include <drev/advice/advise.hpp>
+
 #include "app/base/json_values.hpp"
+#include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/requests.hpp"
-#include "app/results/run_text.hpp"
 
 namespace drev::app {
 
 namespace {
+
+struct AdviseRequest {
+  ModelRequest model;
+  AdviseOptions options;
+};
+
+AdviseRequest request_advise(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  AdviseOptions options;
+  options.figure = line.option("--for").value_or(options.figure);
+  if (const std::optional<std::string> text = line.option("--within"))
+    options.within = read_part("--within", *text, AdviseOptions::kWithin, "", findings);
+  if (model) try {
+      figure_options(model->model_case, model->system, options);
+    } catch (const ModelError& error) {
+      for (Finding finding : error.findings()) {
+        finding.place = kCommandLine;
+        finding.parameter = "--for";
+        findings.push_back(std::move(finding));
+      }
+    }
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return {std::move(*model), options};
+}
 
 std::string parts(double part, int significant) { return short_digits(100.0 * part, significant); }
 
@@ -23,7 +52,7 @@ std::string rung_row(const Rung& rung, std::size_t width, bool chosen) {
 
 std::string as_text(const AdviseRequest& request, const Advice& advice) {
   const std::string& name = request.model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(request.model.parameters), name.size() + 2) + "\n";
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2) + "\n";
   std::size_t width = 5;
   for (const Rung& rung : advice.rungs) width = std::max(width, rung.name.size());
   text += "  " + pad_right("model", width) + pad_left("[" + advice.unit + "]", 13) +
@@ -39,7 +68,7 @@ std::string as_text(const AdviseRequest& request, const Advice& advice) {
 Json as_json(const AdviseRequest& request, const Advice& advice) {
   Json object;
   object["model"] = request.model.entry->name;
-  object["parameters"] = settings_object(request.model.parameters);
+  object["parameters"] = parameters_object(request.model.parameters);
   object["figure"] = advice.figure;
   object["unit"] = advice.unit;
   object["within"] = number(advice.within);

@@ -3,8 +3,10 @@
 #include "app/base/json_values.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/requests.hpp"
+#include "app/commands/run_request.hpp"
+#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 

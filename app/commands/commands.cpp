@@ -2,6 +2,7 @@
 
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/help_texts.hpp"
+#include "app/cli/method_option.hpp"
 
 namespace drev::app {
 
@@ -27,18 +28,21 @@ const std::vector<CommandEntry>& commands() {
                     "Columns of history.csv, curves of the report; default: the model's", commas},
                    {"--every", "SECONDS",
                     "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
-                   {"--format", "FORMAT,...", "Of the history: csv (always written), hdf5 (history.h5 too)",
-                    commas},
+                   {"--format",
+                    "FORMAT,...",
+                    "Of the history: csv (always written), hdf5 (history.h5 too)",
+                    commas,
+                    {"csv", "hdf5"}},
                    {"--vary", "NAME=VALUES",
                     "A run for each value A,B,C or FIRST:STEP:LAST of a parameter, in DIR/NAME=VALUE", again},
                    {"--jobs", "N", "Of several runs: so many at once; default: one a processor"},
                    run},
-       .footer = std::string(kMethodsHelp) + "\n" + kRunExamples + "\n" + kExitCodesHelp,
+       .footer = methods_help() + "\n" + kRunExamples + "\n" + kExitCodesHelp,
        .execute = run_command},
       {.name = "modes",
        .summary = "Natural frequencies of a model",
        .options = {{"--count", "N", "Elastic modes; default: 10, or all if fewer"},
-                   {"--contact", "STATE", "Contacts: closed (default) or open"},
+                   {"--contact", "STATE", "Contacts: closed (default) or open", one, {"closed", "open"}},
                    run},
        .footer = kModesExamples,
        .execute = modes_command},
@@ -54,7 +58,7 @@ const std::vector<CommandEntry>& commands() {
                    {"--out", "DIR",
                     "Creates DIR with chart.csv, error_over_time.svg and error_over_work.svg"},
                    run},
-       .footer = std::string(kMethodsHelp) + "\n" + kChartExamples,
+       .footer = methods_help() + "\n" + kChartExamples,
        .execute = chart_command},
       {.name = "study",
        .summary = "Repeats the source's studies of the camshaft and judges its conclusions",

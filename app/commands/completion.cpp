@@ -3,7 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>
 #include <drev/models/model_case.hpp>
-#include <drev/solvers/stepping/step_scheme.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <algorithm>
 
@@ -58,11 +58,8 @@ std::vector<std::string> channels_of(const ModelEntry& entry, const std::string&
 std::vector<std::string> values_of(const OptionEntry& option, const TypedModel& model,
                                    const std::string& word) {
   const std::string name = option.name;
-  std::vector<std::string> methods = step_scheme_names();
-  methods.insert(methods.begin(), "exact");
-  if (name == "--method" || name == "--methods") return methods;
-  if (name == "--contact") return {"closed", "open"};
-  if (name == "--format") return {"csv", "hdf5"};
+  if (name == "--method" || name == "--methods") return names_of(methods());
+  if (!option.choices.empty()) return option.choices;
   if (name == "--record" && model.entry) return channels_of(*model.entry, word);
   if (name == "--run" && model.file) return model.file->run_names();
   return {};

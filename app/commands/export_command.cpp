@@ -3,8 +3,9 @@
 #include "app/base/json_values.hpp"
 #include "app/base/output_file.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/requests.hpp"
 #include "app/model_file/export.hpp"
 
 namespace drev::app {
@@ -20,7 +21,7 @@ int export_command(const CommandLine& line) {
   const std::filesystem::path path(*out);
   const std::string folder = folder_of(*out);
   if (!path.has_filename() || path.extension() != ".toml")
-    throw ModelError({{"command line", "--out", *out, "", "must be the name of a file that ends in .toml"}});
+    throw ModelError({{kCommandLine, "--out", *out, "", "must be the name of a file that ends in .toml"}});
   create_directory(folder);
   write_file(folder, path.stem().string(), "toml", text);
   return kSuccess;

@@ -5,8 +5,9 @@
 #include "app/base/json_values.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/requests.hpp"
 
 namespace drev::app {
 
@@ -116,7 +117,7 @@ Json setting_as_json(const Parameter& s) {
   return {{"name", s.name},
           {"kind", kind_text(s.kind)},
           {"unit", text_or_null(s.unit)},
-          {"default", setting_value(s, s.default_text)},
+          {"default", parameter_value(s, s.default_text)},
           {"range", s.range()},
           {"low", numeric ? number(s.low) : Json()},
           {"high", numeric ? number(s.high) : Json()},

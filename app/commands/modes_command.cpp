@@ -1,20 +1,40 @@
 #include <drev/solvers/modes/modes.hpp>
 
 #include "app/base/json_values.hpp"
+#include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/commands/requests.hpp"
 #include "app/results/run_json.hpp"
-#include "app/results/run_text.hpp"
 
 namespace drev::app {
 
 namespace {
 
+struct ModesRequest {
+  ModelRequest model;
+  ModesOptions options;
+};
+
+ModesRequest request_modes(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  ModesOptions options;
+  if (line.option("--contact") == "open") options.contact = Contact::open;
+  std::optional<int> elastic;
+  if (model) elastic = model->system.size() - model->system.rigid_mode_count(options.contact);
+  if (const auto count = line.option("--count"))
+    options.count = read_count("--count", *count, elastic, ", the model's elastic modes", findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return {std::move(*model), options};
+}
+
 std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::string& contact) {
   const std::string& name = model.entry->name;
-  std::string text = name + ": " + wrap(settings_text(model.parameters), name.size() + 2);
+  std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
   text += "contacts " + contact + ", " + std::to_string(modes.rigid_modes) +
           (modes.rigid_modes == 1 ? " rigid mode (0 Hz)\n\n" : " rigid modes (0 Hz)\n\n");
   if (modes.frequency_Hz.empty()) return text + "no elastic mode\n";
@@ -34,7 +54,7 @@ int modes_command(const CommandLine& line) {
   if (line.json) {
     Json object = result_object("modes");
     object["model"] = request.model.entry->name;
-    object["parameters"] = settings_object(request.model.parameters);
+    object["parameters"] = parameters_object(request.model.parameters);
     object["frequencies_Hz"] = modes.frequency_Hz;
     object["rigid_modes"] = modes.rigid_modes;
     object["contact"] = contact;

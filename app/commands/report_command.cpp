@@ -6,6 +6,7 @@
 #include "app/base/json_values.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"

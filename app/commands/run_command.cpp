@@ -1,4 +1,5 @@
 #include <drev/core/channel.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -8,11 +9,15 @@
 #include "app/base/interrupt.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/run_many.hpp"
+#include "app/commands/run_request.hpp"
 #include "app/report/report_data.hpp"
 #include "app/report/report_file.hpp"
+#include "app/report/report_history.hpp"
 #include "app/report/report_page.hpp"
+#include "app/results/history_file.hpp"
 #include "app/results/history_hdf5.hpp"
 #include "app/results/run_json.hpp"
 #include "app/results/run_text.hpp"
@@ -55,15 +60,23 @@ class RunFiles {
     if (request.report) report_.emplace(*request.report);
   }
 
-  /// Prepares what the report keeps of the run.
-  void watch(const RunPlan& plan) {
-    if (request_.out || request_.report)
-      shown_.emplace(system_of(request_, plan), report_channels(request_),
-                     report_interval(request_, plan.method));
+  /// What writes the history of the run, and keeps of it what the report shows.
+  std::vector<Observer*> observers(const RunPlan& plan) {
+    const System& system = system_of(request_, plan);
+    std::vector<Observer*> all;
+    if (history_) {
+      recorder_.emplace(system, request_.record, request_.every);
+      recorder_->set_sink([this](double /*t*/, const std::vector<double>& row) { history_->add(row); });
+      all.push_back(&*recorder_);
+    }
+    if (history_ || report_) {
+      shown_.emplace(system, report_channels(request_), report_interval(request_, plan.method));
+      all.push_back(&*shown_);
+    }
+    return all;
   }
-
-  HistoryFile* history() { return history_ ? &*history_ : nullptr; }
-  ReportHistory* shown() { return shown_ ? &*shown_ : nullptr; }
+  /// What keeps the history from being written; empty: nothing.
+  std::string fault() const { return history_ ? history_->error() : ""; }
 
   /// Returns false, and says why, if something could not be written.
   bool close(const RunResult& result) {
@@ -132,6 +145,7 @@ class RunFiles {
   std::optional<HistoryFile> history_;
   std::optional<ReplacedFile> summary_;
   std::optional<ReportFile> report_;
+  std::optional<Recorder> recorder_;
   std::optional<ReportHistory> shown_;
   std::vector<std::string> report_paths_;
 };
@@ -144,8 +158,7 @@ int run_command(const CommandLine& line) {
   watch_signals();
   RunFiles files(request);
   const RunPlan plan = plan_run(request);
-  files.watch(plan);
-  const RunResult result = compute_run(request, plan, files.history(), files.shown());
+  const RunResult result = compute_run(request, plan, files.observers(plan), [&] { return files.fault(); });
   if (!result.ok()) say(warning_of(result));
   const bool written = files.close(result);
   if (line.json) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -15,8 +14,11 @@
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
 #include "app/commands/child_process.hpp"
-#include "app/commands/requests.hpp"
+#include "app/commands/model_list.hpp"
+#include "app/commands/run_request.hpp"
 #include "app/commands/variants.hpp"
 #include "app/results/many_runs.hpp"
 
@@ -26,7 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMostJobs = 400;  // two descriptors each
+constexpr int kMostJobs = 400;  // two descriptors each
 
 std::string without_prefix(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
@@ -230,11 +232,8 @@ int run_many(const CommandLine& line) {
   if (const auto report = line.option("--report"))
     findings.push_back(
         {kCommandLine, "--report", *report, "", "is for one run; of several, each folder has a report"});
-  double at_once = std::max(1U, std::thread::hardware_concurrency());
-  if (const auto jobs = line.option("--jobs"))
-    if (!read_number(*jobs, at_once) || at_once != std::floor(at_once) ||
-        !(at_once >= 1 && at_once <= kMostJobs))
-      findings.push_back({kCommandLine, "--jobs", *jobs, "", "must be a whole number from 1 to 400"});
+  int at_once = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (const auto jobs = line.option("--jobs")) at_once = read_count("--jobs", *jobs, kMostJobs, "", findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   if (line.list("--vary") && list.models.size() <= 1) {
     // What is wrong with all variants is said once.

@@ -8,6 +8,8 @@
 #include "app/base/text_layout.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/commands.hpp"
 #include "app/study/study_runs.hpp"
 
 namespace drev::app {
@@ -45,10 +47,10 @@ std::vector<StudyEntry> chosen(const CommandLine& line) {
   const std::vector<std::string> only = line.list("--only").value_or(names);
   for (const std::string& name : only)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      findings.push_back({"command line", "--only", name, "",
+      findings.push_back({kCommandLine, "--only", name, "",
                           "is no study; they are " + join(names) + did_you_mean(name, names)});
   if (line.json)
-    findings.push_back({"command line", "--json", "", "", "is not for drev study; --out writes study.md"});
+    findings.push_back({kCommandLine, "--json", "", "", "is not for drev study; --out writes study.md"});
   if (!findings.empty()) throw ModelError(findings);
   std::vector<StudyEntry> entries;
   for (const StudyEntry& entry : studies())

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/base/text_layout.hpp"
+#include "app/cli/command_line.hpp"
 
 namespace drev::app {
 
@@ -52,7 +53,7 @@ std::vector<Variant> read_variants(const std::vector<std::string>& words, std::v
   std::vector<Variant> variants(1);
   for (const std::string& word : words) {
     const auto refuse = [&](const std::string& why) {
-      findings.push_back({"command line", "--vary", word, "", why});
+      findings.push_back({kCommandLine, "--vary", word, "", why});
     };
     const std::size_t equals = std::min(word.find('='), word.size());
     const std::string name = word.substr(0, equals);

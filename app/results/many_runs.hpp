@@ -5,9 +5,18 @@
 #include <vector>
 
 #include "app/base/json_values.hpp"
-#include "app/cli/model_list.hpp"
 
 namespace drev::app {
+
+struct NamedModel {
+  std::string name;   ///< of its results: the built-in model's, or the file's without .toml
+  std::string model;  ///< as drev run takes it
+};
+
+/// A file of a directory that is no model.
+struct SkippedFile {
+  std::string file, reason;
+};
 
 struct OneOfMany {
   NamedModel model;

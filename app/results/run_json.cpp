@@ -151,7 +151,7 @@ Json head_object(const RunRequest& request, const std::string& scheme, const Met
                  const std::string& status, const std::string& reason) {
   Json object = result_object("run");
   object["model"] = request.model.entry->name;
-  object["parameters"] = settings_object(request.model.parameters);
+  object["parameters"] = parameters_object(request.model.parameters);
   object["method"] = scheme;
   object["method_reason"] = request.method_reason;
   object["step_s"] = method.step > 0.0 ? number(method.step) : Json();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 
 namespace drev::app {
@@ -195,13 +196,6 @@ std::string accuracy_rows(double asked, const AccuracyResult& a) {
 
 }  // namespace
 
-std::string settings_text(const Parameters& parameters) {
-  std::vector<std::string> items;
-  for (std::size_t i = 0; i < parameters.known().size(); ++i)
-    items.push_back(parameters.known()[i].name + " " + parameters.values()[i]);
-  return join(items);
-}
-
 std::string warning_of(const RunResult& r) {
   if (r.ok()) return {};
   std::string head = "RUN FAILED (" + r.status + ")";
@@ -217,7 +211,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   text += request.model.entry->name + ": " +
-          wrap(settings_text(request.model.parameters), request.model.entry->name.size() + 2);
+          wrap(parameters_text(request.model.parameters), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);
   if (r.deflection)
     text += labelled("Largest deflection", value_text(*r.deflection) + " " +

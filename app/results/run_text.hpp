@@ -9,7 +9,5 @@ namespace drev::app {
 std::string run_as_text(const RunRequest& request, const RunResult& result);
 /// What is said loudly, on stderr and before the table, when a run did not succeed; empty if it did.
 std::string warning_of(const RunResult& result);
-/// "drive gears, backlash_mm 0.15, ...".
-std::string settings_text(const Parameters& parameters);
 
 }  // namespace drev::app

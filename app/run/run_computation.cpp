@@ -3,7 +3,6 @@
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/reduction/reduction_trial.hpp>
 #include <drev/solvers/run/peaks.hpp>
-#include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/statics.hpp>
 
 #include <algorithm>
@@ -176,8 +175,8 @@ double cycle_of(const ModelRequest& model) {
   return model.model_case.static_turn / std::abs(speed);
 }
 
-RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFile* history,
-                      ReportHistory* report) {
+RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vector<Observer*> observers,
+                      const std::function<std::string()>& output_fault) {
   const System &full = request.model.system, &system = system_of(request, plan);
   const ModelCase& model_case = request.model.model_case;
   RunResult result;
@@ -197,21 +196,14 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFil
   Peaks torque_peaks(torques, inside), deflection_peaks(deflections, inside);
   Peaks mesh_peaks(mesh_channels(system), inside);
   ContactStatistics contacts(system, inside);
-  std::vector<Observer*> observers{&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts};
-  std::optional<Recorder> recorder;
-  if (history != nullptr) {
-    recorder.emplace(system, request.record, request.every);
-    recorder->set_sink([&](double /*t*/, const std::vector<double>& row) { history->add(row); });
-    observers.push_back(&*recorder);
-  }
-  if (report != nullptr) observers.push_back(report);
+  observers.insert(observers.begin(), {&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts});
   if (request.accuracy && !find_accuracy(request, result)) return result;
   const Timer timer;
   try {
     Progress shown;
     const auto progress = [&](double part) {
       shown.update(part);
-      return !interrupted() && (history == nullptr || history->error().empty());
+      return !interrupted() && output_fault().empty();
     };
     result.summary =
         run_method(system, result.method, {.t_end = model_case.duration, .progress = progress}, observers);
@@ -224,10 +216,9 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFil
     result.summary.step = result.method.step;
   }
   result.run_time = timer.seconds();
-  if (history != nullptr && !history->error().empty()) {
+  if (const std::string fault = output_fault(); !fault.empty()) {
     result.status = "output_error";
-    result.reason =
-        history->error() + "; the run was given up at t = " + to_text(result.summary.t_end) + " s";
+    result.reason = fault + "; the run was given up at t = " + to_text(result.summary.t_end) + " s";
   }
   // What failed numerically has no figures.
   if (result.ok() || result.status == "energy_error" || result.status == "interrupted" ||

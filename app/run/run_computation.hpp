@@ -4,10 +4,14 @@
 /// Static torque: largest |torque| over all sections in static equilibrium while the shaft turns once, at
 /// kStaticAngles angles (every 0.25 degrees of the shaft); dynamic amplification: largest torque / static
 /// torque.
+#include <drev/core/channel.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
+#include <drev/solvers/run/observer.hpp>
 
-#include "app/report/report_history.hpp"
-#include "app/results/history_file.hpp"
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "app/run/run_result.hpp"
 
 namespace drev::app {
@@ -27,10 +31,10 @@ inline const System& system_of(const RunRequest& request, const RunPlan& plan) {
   return plan.reduction ? plan.reduction->system : request.model.system;
 }
 
-/// history: where the recorded channels go; report: what the report keeps of them, a watch of
-/// system_of(request, plan). Both may be null.
-RunResult compute_run(const RunRequest& request, const RunPlan& plan, HistoryFile* history,
-                      ReportHistory* report);
+/// observers: what else watches the run of system_of(request, plan). output_fault: asked now and then; what
+/// keeps the run's output from being written, which ends the run; empty: nothing.
+RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vector<Observer*> observers,
+                      const std::function<std::string()>& output_fault);
 
 /// Forces [N] of meshes, backlash or not, and of whatever else has a gap.
 std::vector<Channel> mesh_channels(const System& system);

@@ -2,14 +2,15 @@
 /// Everything that `drev run` reports, as data. What has no meaning for a model, or could not be found, is
 /// absent, with the reason.
 #include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
-#include <drev/solvers/stepping/transient.hpp>
+#include <drev/solvers/run/run_summary.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/commands/requests.hpp"
+#include "app/run/run_request.hpp"
 
 namespace drev::app {
 

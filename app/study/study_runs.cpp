@@ -55,7 +55,7 @@ void for_all(std::size_t count, const std::function<void(std::size_t)>& task) {
 
 Method source_method() { return {.name = "average_acceleration", .step = published::kStep}; }
 
-Method exact_method(double tolerance) { return {.name = "exact", .tolerance = tolerance}; }
+Method exact_method(double tolerance) { return {.name = kExact, .tolerance = tolerance}; }
 
 RunSummary run_watched(const System& system, const Method& method, double t_end,
                        const std::vector<Observer*>& observers) {

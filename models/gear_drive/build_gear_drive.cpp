@@ -19,13 +19,13 @@ constexpr double kSingle1 = 6.582e8, kDouble1 = 1.1021e9, kSingle2 = 7.698e8, kD
 // The source's square wave has equal parts of one and two pairs; its series has ten harmonics; the second
 // mesh is pi/4, an eighth of a period, behind the first.
 constexpr double kContactRatio = 1.5, kSecondMeshPhase = 0.125;
-constexpr int kHarmonics = 10;
+constexpr int kMeshHarmonics = 10;
 
 MeshStiffness stiffness(double single, double both, double factor, MeshVariation variation) {
   single *= factor, both *= factor;
   if (variation == MeshVariation::step) return MeshStiffness::step(single, both, kContactRatio);
   if (variation == MeshVariation::fourier)
-    return MeshStiffness::fourier_of_step(single, both, kContactRatio, kHarmonics);
+    return MeshStiffness::fourier_of_step(single, both, kContactRatio, kMeshHarmonics);
   return 0.5 * (single + both);
 }
 

@@ -402,14 +402,14 @@ const Figure* AccuracyResult::find(const std::string& name) const {
 AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/accuracy", findings);
-  check.within("accuracy", o.accuracy, 1e-12, 0.5, "");
+  check.within("accuracy", o.accuracy, o.kAccuracy.low, o.kAccuracy.high, "");
   check.positive("t_end", o.t_end, "s");
   check.non_negative("cycle", o.cycle, "s");
   check.positive("most_seconds", o.most_seconds, "s");
   if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
   if (!o.method.exact() && !o.method.controlled()) check.positive("method.step", o.method.step, "s");
   if (o.method.exact())
-    if (const auto why = why_not_exact(system)) check.fail("method", "exact", "", *why);
+    if (const auto why = why_not_exact(system)) check.fail("method", kExact, "", *why);
   if (system.size() == 0) check.fail("unknowns", "0", "", "must be at least one");
   if (!findings.empty()) throw ModelError(findings);
   return AccurateRun(system, o).run();

@@ -15,6 +15,7 @@
 /// The estimate is one: it is honest where tightening reduces the error by a factor of 3 or more (second
 /// order: 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a
 /// method with constant steps.
+#include <drev/core/range.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 
 #include <limits>
@@ -24,7 +25,8 @@
 namespace drev {
 
 struct AccuracyOptions {
-  double accuracy = 1e-4;                 ///< relative, 1e-12 to 0.5
+  double accuracy = 1e-4;  ///< relative
+  static constexpr Range kAccuracy{1e-12, 0.5};
   double t_end = 0.0;                     ///< s
   std::string deflection = {};            ///< channel; its peak, orders and quantiles; empty: none
   std::vector<std::string> torques = {};  ///< channels; the largest peak of all

@@ -127,7 +127,7 @@ class Measurement {
   void find_reference() {
     Samples check;
     if (!why_not_exact(system_)) {
-      const Method exact{.name = "exact", .tolerance = kReferenceTolerance};
+      const Method exact{.name = kExact, .tolerance = kReferenceTolerance};
       reference_ = sample(exact);
       result_.reference = to_text(exact);
       if (!reference_.summary.ok() && !result_.interrupted)
@@ -146,7 +146,7 @@ class Measurement {
 
   std::vector<Method> parameters(const std::string& name) const {
     std::vector<Method> all;
-    if (name == "exact")
+    if (name == kExact)
       for (int digits = 3; digits <= 12; ++digits)
         all.push_back({.name = name, .tolerance = std::pow(10.0, -digits)});
     else if (const std::string scheme = controlled(name); !scheme.empty())
@@ -210,7 +210,7 @@ void check(const System& system, const WorkPrecisionOptions& o) {
   check.positive("most_seconds", o.most_seconds, "s");
   if (o.methods.empty()) check.fail("methods", "none", "", "must be at least one");
   for (const std::string& name : o.methods) {
-    if (name == "exact") {
+    if (name == kExact) {
       if (const auto why = why_not_exact(system)) check.fail("methods", name, "", *why);
       continue;
     }

@@ -358,7 +358,7 @@ class ExactRun {
 void check_options(const System& system, const ExactOptions& o, const State& state) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/exact", findings);
-  check.within("tolerance", o.tolerance, 1e-15, 1e-3, "");
+  check.within("tolerance", o.tolerance, o.kTolerance.low, o.kTolerance.high, "");
   check_span(o.t_start, o.t_end, check);
   check.positive("energy_tolerance", o.energy_tolerance, "");
   check_state(system, state, check);

@@ -17,6 +17,7 @@
 /// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
 /// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
 /// system only statistics are comparable, with any method.
+#include <drev/core/range.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
@@ -40,6 +41,7 @@ struct ExactOptions {
   /// deflection and speed so far [-], before the motion itself amplifies it. Shared out evenly over
   /// the time.
   double tolerance = 1e-10;
+  static constexpr Range kTolerance{1e-15, 1e-3};
   double t_start = 0.0;  ///< s
   double t_end = 0.0;    ///< s, > t_start
   /// Largest energy error that passes without warning, relative to the run's energy scale [-].

@@ -125,7 +125,7 @@ ReductionChoice choose_reduction(const System& system, double within,
                                  const std::vector<std::string>& channels, double duration) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/reduction", findings);
-  check.within("within", within, 1e-6, 0.5, "");
+  check.within("within", within, kReductionErrors.low, kReductionErrors.high, "");
   check.positive("duration", duration, "s");
   if (channels.empty()) check.fail("channels", "0", "", "must be at least one");
   if (!findings.empty()) throw ModelError(findings);

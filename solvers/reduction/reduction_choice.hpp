@@ -13,6 +13,7 @@
 ///
 /// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
 /// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
+#include <drev/core/range.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
 
 #include <optional>
@@ -28,7 +29,10 @@ struct ReductionChoice {
   std::string reason = {};                  ///< one sentence without full stop
 };
 
-/// within: relative, of the channels' peaks, 1e-6 to 0.5. channels: as TruncationError takes them, at least one.
+/// Errors that a reduction may be allowed to add, relative.
+inline constexpr Range kReductionErrors{1e-6, 0.5};
+
+/// within: relative, of the channels' peaks, one of kReductionErrors. channels: as TruncationError takes them, at least one.
 /// duration: of the run [s]. Throws ModelError for bad input.
 ReductionChoice choose_reduction(const System& system, double within,
                                  const std::vector<std::string>& channels, double duration);

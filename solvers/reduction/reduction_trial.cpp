@@ -11,7 +11,6 @@ namespace drev {
 namespace {
 
 constexpr int kGrowthPieces = 100;
-constexpr double kLeastTarget = 1e-6;  // of choose_reduction()
 
 std::string percent_text(double part) {
   std::ostringstream text;
@@ -89,7 +88,7 @@ ReductionTrial try_reduction(const System& system, const TrialOptions& o) {
   ReductionTrial first = try_choice(system, o, o.within);
   if (first.reduction || !first.error) return first;
   const double stricter = 0.5 * o.within * o.within / *first.error;
-  if (!(stricter >= kLeastTarget)) return first;
+  if (!(stricter >= kReductionErrors.low)) return first;
   ReductionTrial second = try_choice(system, o, stricter);
   return second.reduction ? second : first;
 }

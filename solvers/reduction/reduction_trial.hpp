@@ -16,7 +16,7 @@
 namespace drev {
 
 struct TrialOptions {
-  double within = 0.01;               ///< relative to each channel's peak, 1e-6 to 0.5
+  double within = 0.01;               ///< relative to each channel's peak, one of kReductionErrors
   std::vector<std::string> channels;  ///< at least one
   double duration = 0.0;              ///< s
   Method method;                      ///< of the reduced run; with any_method choose_method()'s of it

@@ -11,10 +11,19 @@
 /// stage is a Newmark-like step of coefficients beta = g^2, gamma = g.
 /// Sources: Newmark 1959; Hilber, Hughes, Taylor 1977, doi:10.1002/eqe.4290050306;
 /// Chung, Hulbert 1993, doi:10.1115/1.2900803.
+<<<<<<< HEAD
+#include <drev/core/range.hpp>
 #include <drev/core/weights.hpp>
+=======
+#include <drev/core/assembler.hpp>
+#include <drev/core/range.hpp>
+#include <drev/solvers/stepping/butcher_tableau.hpp>
+>>>>>>> refs/tmp/head_w1
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace drev {
 
@@ -34,31 +43,61 @@ struct StepScheme {
   }
 };
 
-/// Newmark: beta >= 0, gamma >= 1/2. (1/4, 1/2) is average acceleration: unconditionally stable for
+/// A number that a method takes after its name.
+struct MethodParameter {
+  const char* name;  ///< as findings and forms spell it: "alpha" stands as ALPHA in "hht[:ALPHA]"
+  Range range;
+  std::optional<double> standard = {};  ///< where it is not given; none: it must be given
+  std::string form() const;             ///< "ALPHA"
+};
+
+inline constexpr MethodParameter kNewmarkBeta{"beta", {0.0, 1e3}}, kNewmarkGamma{"gamma", {0.5, 1e3}};
+inline constexpr MethodParameter kHhtAlpha{"alpha", {0.0, 1.0 / 3.0}, 0.05};
+inline constexpr MethodParameter kGeneralizedAlphaRho{"rho_inf", {0.0, 1.0}, 0.8};
+inline constexpr MethodParameter kBatheRho{"rho_inf", {0.0, 1.0}, 0.0};
+
+/// Newmark, kNewmarkBeta and kNewmarkGamma. (1/4, 1/2) is average acceleration: unconditionally stable for
 /// linear systems, no numerical damping, may gain energy at impacts. (1/6, 1/2) linear acceleration and
 /// (0, 1/2) central difference are stable for omega h below 2 sqrt(3) and 2 only. gamma > 1/2 is of first
 /// order. Throws ModelError outside the range.
-StepScheme newmark(double beta = 0.25, double gamma = 0.5);
+StepScheme newmark(double beta, double gamma);
 StepScheme average_acceleration();
 
-/// HHT: 0 <= alpha <= 1/3, beta = (1 + alpha)^2 / 4, gamma = 1/2 + alpha; second order.
+/// HHT, kHhtAlpha: beta = (1 + alpha)^2 / 4, gamma = 1/2 + alpha; second order.
 /// Deviation: alpha is positive here, negative in the paper.
-StepScheme hht(double alpha = 0.05);
+StepScheme hht(double alpha = *kHhtAlpha.standard);
 
-/// Chung-Hulbert: spectral radius at infinity 0 <= rho_inf <= 1; second order, least low-frequency
+/// Chung-Hulbert, kGeneralizedAlphaRho: spectral radius at infinity rho_inf; second order, least low-frequency
 /// damping for its high-frequency damping. rho_inf = 1 keeps all, 0 annihilates in one step.
-StepScheme generalized_alpha(double rho_inf = 0.8);
+StepScheme generalized_alpha(double rho_inf = *kGeneralizedAlphaRho.standard);
 
-/// rho_inf-Bathe: 0 <= rho_inf <= 1, two stages of one matrix; second order. Without a number 0, the
+/// rho_inf-Bathe, kBatheRho: two stages of one matrix; second order. Without a number 0, the
 /// original method, which annihilates what is too fast for the step; tr_bdf2 is the same.
-StepScheme bathe(double rho_inf = 0.0);
+StepScheme bathe(double rho_inf = *kBatheRho.standard);
 StepScheme runge_kutta(ButcherTableau tableau);
 
-/// By name, as the command line gives it: average_acceleration, linear_acceleration, central_difference,
-/// newmark:BETA,GAMMA, hht:ALPHA, generalized_alpha:RHO_INF, bathe:RHO_INF, tr_bdf2, sdirk4, rk4,
-/// dormand_prince. Throws ModelError with the nearest name.
+/// A method in time by its name: all that a parser, a message, a help text or a completion needs of it.
+struct MethodRow {
+  const char* name;
+  std::vector<MethodParameter> parameters = {};
+  const char* help;  ///< one line without full stop
+  /// The scheme with its numbers, one for each parameter; null: a method that makes no steps by a scheme.
+  StepScheme (*scheme)(const std::vector<double>& numbers) = nullptr;
+  /// How it is written: "hht[:ALPHA]", "newmark:BETA,GAMMA".
+  std::string form() const;
+};
+
+/// Every step scheme. A row is all that a new one needs to be known by name.
+const std::vector<MethodRow>& step_schemes();
+/// Their names, without numbers.
+std::vector<std::string> names_of(const std::vector<MethodRow>& rows);
+/// "must be average_acceleration, hht[:ALPHA], ... or dormand_prince".
+std::string must_be_one_of(const std::vector<MethodRow>& rows);
+/// What is said of a name that none of the rows has: the nearest one, and how each is written.
+std::string is_no_method(const std::string& name, const std::vector<MethodRow>& rows);
+
+/// The scheme of a row of step_schemes(), as MethodRow::form() writes it. Throws ModelError with the nearest
+/// name, the form or the range that would be right.
 StepScheme step_scheme(const std::string& text);
-/// The names that step_scheme() knows, without numbers.
-const std::vector<std::string>& step_scheme_names();
 
 }  // namespace drev

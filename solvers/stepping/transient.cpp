@@ -371,7 +371,7 @@ void check_options(const System& system, const TransientOptions& o, const State&
   ParameterCheck check(system.name() + "/transient", findings);
   const bool controlled = o.tolerance != 0.0;
   if (!controlled || o.step != 0.0) check.positive("step", o.step, "s");
-  if (controlled) check.within("tolerance", o.tolerance, 1e-13, 0.1, "");
+  if (controlled) check.within("tolerance", o.tolerance, o.kTolerance.low, o.kTolerance.high, "");
   check_span(o.t_start, o.t_end, check);
   if (o.max_halvings < 0 || o.max_halvings > 40)
     check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");

@@ -1,6 +1,7 @@
 #pragma once
 /// Integrates a System in time, with constant steps or with steps controlled by their estimated error, and
 /// keeps the energy balance. Breakpoints of loads and known motions are hit exactly.
+#include <drev/core/range.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 #include <drev/solvers/stepping/step_options.hpp>
@@ -24,6 +25,7 @@ struct TransientOptions {
   /// the largest deviation and rate so far [-]: steps follow from it (step_control.hpp). The motion itself
   /// may amplify what was made.
   double tolerance = 0.0;
+  static constexpr Range kTolerance{1e-13, 0.1};  ///< of controlled steps
   /// End steps where a law passes a kink (located_step.hpp). Default: with a tolerance only. Without it, a
   /// method of higher order than 2 loses that order at every contact change, and a force that jumps
   /// (MeshDamping::contact_only) reduces every method to order 1.

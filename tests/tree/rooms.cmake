@@ -22,9 +22,9 @@ set(room_table
   "app/run:core solvers/* models advice app/base app/model_file"
   "app/results:core solvers/* models app/base app/run"
   "app/report:core elements solvers/* models app/base app/run app/results"
-  "app/chart:core solvers/* models app/base app/results"
+  "app/chart:core solvers/* models app/base app/run"
   "app/study:core elements solvers/* models app/base app/run app/chart"
-  "app/cli:core models app/base app/model_file"
+  "app/cli:core solvers/* models app/base app/model_file app/run"
   "app/commands:core elements solvers/* models advice app/*"
   "app:app/*")
 

@@ -1,6 +1,4 @@
-#include "app/cli/model_list.hpp"
-
-#include <drev/models/model_case.hpp>
+#include "app/commands/model_list.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <optional>
 
 #include "app/cli/command_line.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/model_file/tree.hpp"
 
 namespace drev::app {
@@ -89,11 +88,6 @@ void add_directory(const std::string& directory, ModelList& list, std::vector<Fi
 }
 
 }  // namespace
-
-bool is_built_in(const std::string& word) {
-  return std::any_of(ready_made_models().begin(), ready_made_models().end(),
-                     [&](const ModelEntry& e) { return e.name == word; });
-}
 
 bool is_model_directory(const std::string& word) {
   std::error_code error;

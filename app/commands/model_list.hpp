@@ -7,23 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "app/results/many_runs.hpp"
+
 namespace drev::app {
-
-struct NamedModel {
-  std::string name;   ///< of its results: the built-in model's, or the file's without .toml
-  std::string model;  ///< as drev run takes it
-};
-
-struct SkippedFile {
-  std::string file, reason;
-};
 
 struct ModelList {
   std::vector<NamedModel> models;
   std::vector<SkippedFile> skipped;
 };
 
-bool is_built_in(const std::string& model);
 /// Whether a word of the command line means a directory of models, and no built-in one.
 bool is_model_directory(const std::string& word);
 /// Names are unique; what is not goes to findings, as do directories without a model.

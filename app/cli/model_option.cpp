@@ -1,0 +1,99 @@
+#include "app/cli/model_option.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "app/base/text_layout.hpp"
+#include "app/model_file/model_file.hpp"
+
+namespace drev::app {
+
+namespace {
+
+void take_findings(const ModelError& error, std::vector<Finding>& findings) {
+  findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+}
+
+/// The parameters that are right; what is wrong with the others goes to findings.
+Parameters right_parameters(const ModelEntry& entry, const CommandLine& line,
+                            std::vector<Finding>& findings) {
+  Parameters right(entry.name, entry.parameters);
+  for (const auto& [name, value] : line.parameters) {
+    Parameters probe(entry.name, entry.parameters);
+    probe.set(name, value);
+    try {
+      probe.check();
+      right.set(name, value);
+    } catch (const ModelError& error) {
+      take_findings(error, findings);
+    }
+  }
+  return right;
+}
+
+/// Null, and a finding, if there is no such built-in model.
+const ModelEntry* find_built_in(const std::string& name, std::vector<Finding>& findings) {
+  const std::vector<std::string> names = built_in_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return &ready_made_models()[static_cast<std::size_t>(found - names.begin())];
+  const std::string hint = did_you_mean(name, names);
+  // What is like no model may be the value of an option that does not exist.
+  if (findings.empty() || !hint.empty())
+    findings.push_back({kCommandLine, "MODEL", name, "",
+                        "is no model" + (hint.empty() ? "; the models are " + join(names) : hint) +
+                            (name.find('/') != name.npos ? "; a model file ends in .toml" : "")});
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<std::string> built_in_names() {
+  std::vector<std::string> names;
+  for (const ModelEntry& entry : ready_made_models()) names.push_back(entry.name);
+  return names;
+}
+
+bool is_built_in(const std::string& model) {
+  const std::vector<std::string> names = built_in_names();
+  return std::find(names.begin(), names.end(), model) != names.end();
+}
+
+std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings) {
+  if (line.model.empty()) {
+    // An option that does not exist may have taken the model's name.
+    if (findings.empty())
+      findings.push_back(
+          {kCommandLine, "MODEL", "", "", "is missing; the models are " + join(built_in_names())});
+    return {};
+  }
+  try {
+    std::shared_ptr<const ModelFile> file;
+    std::shared_ptr<const ModelEntry> entry;
+    if (is_model_file(line.model)) {
+      file = std::make_shared<const ModelFile>(line.model, line.option("--run").value_or(""));
+      entry = {file, &file->entry()};
+    } else {
+      entry = {std::shared_ptr<const void>(), find_built_in(line.model, findings)};
+      if (!entry) return {};
+      if (const auto run = line.option("--run"))
+        findings.push_back(
+            {kCommandLine, "--run", *run, "", "is for model files only; " + line.model + " is built in"});
+    }
+    Parameters parameters = right_parameters(*entry, line, findings);
+    ModelCase model_case = entry->build(parameters);
+    System system = model_case.model.build();
+    return ModelRequest{entry, file, std::move(parameters), std::move(model_case), std::move(system)};
+  } catch (const ModelError& error) {
+    take_findings(error, findings);
+    return {};
+  }
+}
+
+ModelRequest request_model(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return std::move(*model);
+}
+
+}  // namespace drev::app

@@ -1,0 +1,21 @@
+#pragma once
+/// The MODEL of a command line with its --set and --run, built.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/command_line.hpp"
+#include "app/run/model_request.hpp"
+
+namespace drev::app {
+
+/// The names of the built-in models, and whether one of them is meant.
+std::vector<std::string> built_in_names();
+bool is_built_in(const std::string& model);
+
+/// The model as far as it can be built; nothing if it cannot. What is wrong goes to findings.
+std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings);
+/// The model of a command that needs nothing else. Throws ModelError with everything wrong with the line.
+ModelRequest request_model(const CommandLine& line);
+
+}  // namespace drev::app

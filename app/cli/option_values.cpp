@@ -1,0 +1,68 @@
+#include "app/cli/option_values.hpp"
+
+#include <drev/models/parameters.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include "app/base/text_layout.hpp"
+#include "app/cli/command_line.hpp"
+
+namespace drev::app {
+
+namespace {
+
+std::string low_to_high(Range range) { return to_text(range.low) + " to " + to_text(range.high); }
+
+std::string low_to_high_percent(Range range) {
+  return short_digits(100.0 * range.low, 3) + "% to " + short_digits(100.0 * range.high, 3) + "%";
+}
+
+}  // namespace
+
+double read_time(const char* option, const std::string& text, Range range, const std::string& limit,
+                 std::vector<Finding>& findings) {
+  const std::string must_be = "must be between " + to_text(range.low) + " s and " +
+                              (std::isfinite(range.high) ? to_text(range.high) + " s" : std::string("the")) +
+                              (limit.empty() ? "" : " " + limit);
+  double value = 0.0;
+  if (!read_number(text, value))
+    findings.push_back(
+        {kCommandLine, option, text, "", "is not a plain number of seconds, such as 0.001; " + must_be});
+  else if (!range.holds(value))
+    findings.push_back({kCommandLine, option, text, "s", must_be});
+  return value;
+}
+
+double read_plain(const char* option, const std::string& text, Range range, std::vector<Finding>& findings) {
+  double value = 0.0;
+  if (!read_number(text, value) || !range.holds(value))
+    findings.push_back({kCommandLine, option, text, "", "must be a number from " + low_to_high(range)});
+  return value;
+}
+
+double read_part(const char* option, const std::string& text, Range range, const std::string& also,
+                 std::vector<Finding>& findings) {
+  const bool percent = text.ends_with('%');
+  double value = 0.0;
+  const bool number = read_number(percent ? text.substr(0, text.size() - 1) : text, value);
+  if (percent) value /= 100.0;
+  if (!number || !range.holds(value))
+    findings.push_back(
+        {kCommandLine, option, text, "",
+         "must be " + also + "from " + low_to_high_percent(range) + ", or " + low_to_high(range)});
+  return value;
+}
+
+int read_count(const char* option, const std::string& text, std::optional<int> most, const std::string& what,
+               std::vector<Finding>& findings) {
+  double value = 0.0;
+  if (read_number(text, value) && value == std::floor(value) && value >= 1 &&
+      value <= most.value_or(std::numeric_limits<int>::max()))
+    return static_cast<int>(value);
+  findings.push_back({kCommandLine, option, text, "",
+                      "must be a whole number from 1" + (most ? " to " + std::to_string(*most) + what : "")});
+  return 1;
+}
+
+}  // namespace drev::app

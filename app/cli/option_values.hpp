@@ -1,0 +1,27 @@
+#pragma once
+/// Values of options as numbers. A value that cannot be read, or is out of its range, goes to findings with
+/// the range that would be right; the ranges are those that the solvers check.
+#include <drev/core/error.hpp>
+#include <drev/core/range.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace drev::app {
+
+/// A time [s]. limit: what the high end is, such as "(the run's duration)"; an infinite high end is named by
+/// it alone.
+double read_time(const char* option, const std::string& text, Range range, const std::string& limit,
+                 std::vector<Finding>& findings);
+/// A number without unit.
+double read_plain(const char* option, const std::string& text, Range range, std::vector<Finding>& findings);
+/// A part of one, as 0.01 or 1%. also: what else the option may be, such as "off, or ".
+double read_part(const char* option, const std::string& text, Range range, const std::string& also,
+                 std::vector<Finding>& findings);
+/// A whole number from 1 to `most`, which may be unknown. what: behind the range in the message, such as
+/// ", the model's elastic modes".
+int read_count(const char* option, const std::string& text, std::optional<int> most, const std::string& what,
+               std::vector<Finding>& findings);
+
+}  // namespace drev::app

@@ -1,0 +1,221 @@
+#include "app/commands/run_request.hpp"
+
+#include <drev/core/channel.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "app/cli/method_option.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/report/report_file.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
+constexpr double kPartOfTolerance = 0.1;              // that a reduction no one asked for may add
+
+/// About x, as 1, 2 or 5 times a power of ten.
+double round_number(double x) {
+  int exponent = static_cast<int>(std::floor(std::log10(x)));
+  const double mantissa = x / std::pow(10.0, exponent);
+  int digit = mantissa < 1.5 ? 1 : mantissa < 3.5 ? 2 : 5;
+  if (mantissa >= 7.5) digit = 1, ++exponent;
+  // Through text, for the double nearest to the decimal number.
+  double value = 0.0;
+  read_number(std::to_string(digit) + "e" + std::to_string(exponent), value);
+  return value;
+}
+
+void check_channels(const ModelRequest& model, const CommandLine& line, bool all_parameters_right,
+                    std::vector<Finding>& findings) {
+  if (!line.list("--record")) return;
+  try {
+    find_channels(model.system, *line.list("--record"));
+  } catch (const ModelError& error) {
+    for (Finding finding : error.findings()) {
+      if (!all_parameters_right) finding.range += " (with the parameters that are right)";
+      findings.push_back(std::move(finding));
+    }
+  }
+}
+
+/// The tolerance of exact propagation, or of controlled steps.
+double read_tolerance(const CommandLine& line, bool exact, std::vector<Finding>& findings) {
+  const auto text = line.option("--tolerance");
+  if (!text) return exact ? ExactOptions{}.tolerance : 0.0;
+  return read_plain("--tolerance", *text, exact ? ExactOptions::kTolerance : TransientOptions::kTolerance,
+                    findings);
+}
+
+std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding>& findings) {
+  const auto text = line.option("--accuracy");
+  if (!text) return {};
+  const double value = read_plain("--accuracy", *text, AccuracyOptions::kAccuracy, findings);
+  const std::string why = "cannot be given with --accuracy, which finds it";
+  if (const auto step = line.option("--step")) findings.push_back({kCommandLine, "--step", *step, "s", why});
+  if (const auto tolerance = line.option("--tolerance"))
+    findings.push_back({kCommandLine, "--tolerance", *tolerance, "", why});
+  return value;
+}
+
+/// What error a reduction may add: as asked for; else a tenth of the tolerance of controlled steps that no
+/// one asked for, which are what large models are run with.
+std::optional<double> read_reduce(const CommandLine& line, const Method& method, bool any_method,
+                                  std::vector<Finding>& findings) {
+  const auto text = line.option("--reduce");
+  if (!text) {
+    if (!any_method || !method.controlled()) return {};
+    return kPartOfTolerance * method.tolerance;
+  }
+  if (*text == "off") return {};
+  if (line.option("--accuracy"))
+    findings.push_back({kCommandLine, "--reduce", *text, "",
+                        "cannot be given with --accuracy, whose figures are the whole model's"});
+  return read_part("--reduce", *text, kReductionErrors, "off, or ", findings);
+}
+
+/// A stepping method: with a tolerance, steps controlled by it; else constant ones. With --accuracy, methods
+/// of an order above 2, which constant steps over contact changes would take from them, are controlled.
+Method stepping(const std::string& name, const CommandLine& line, double step,
+                std::vector<Finding>& findings) {
+  const std::size_t before = findings.size();
+  check_step_scheme("--method", name, findings);
+  Method method{.name = name, .tolerance = read_tolerance(line, false, findings)};
+  if (line.option("--accuracy") && findings.size() == before && step_scheme(name).order() > 2)
+    method.tolerance = kControlledTolerance;
+  if (!method.controlled()) method.step = step;
+  return method;
+}
+
+/// The method asked for, or the one that suits the model. --step alone asks for constant steps, --tolerance
+/// alone for exact propagation, or controlled steps where that cannot be.
+MethodChoice find_method(const std::optional<ModelRequest>& model, const CommandLine& line,
+                         std::vector<Finding>& findings) {
+  const double duration = model ? model->model_case.duration : 1.0;
+  const double step = model ? std::min(model->model_case.default_step, duration) : 0.0;
+  if (line.option("--method") && *line.option("--method") != kExact)
+    return {stepping(*line.option("--method"), line, step, findings), "asked for"};
+  if (line.option("--step") && line.option("--tolerance") && !line.option("--method")) {
+    findings.push_back({kCommandLine, "--step", *line.option("--step"), "s",
+                        "needs a --method with --tolerance, whose largest step it is"});
+    return {};
+  }
+  if (line.option("--step") && !line.option("--method"))
+    return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
+  if (!line.option("--method") && !line.option("--tolerance"))
+    return model ? choose_method(model->system, duration, step) : MethodChoice{};
+  const std::string reason =
+      line.option("--method") ? "asked for" : "the default where a tolerance is asked for";
+  if (!line.option("--method") && model && why_not_exact(model->system))
+    return {stepping("dormand_prince", line, step, findings), reason};
+  if (line.option("--step"))
+    findings.push_back({kCommandLine, "--step", *line.option("--step"), "s",
+                        "has no meaning for --method exact, which finds its own; see --tolerance"});
+  if (model) check_exact("--method", model->system, findings);
+  return {{.name = kExact, .tolerance = read_tolerance(line, true, findings)}, reason};
+}
+
+/// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
+void take_file_options(const ModelRequest& model, CommandLine& line) {
+  const RunOptions file = model.file->run_options(model.parameters);
+  const auto given = [&](const char* option) { return line.options.contains(option); };
+  const auto take = [&](const char* option) {
+    const auto value = file.values.find(option);
+    if (given(option) || value == file.values.end()) return;
+    line.options[option] = {value->second};
+    if (const auto at = file.places.find(option); at != file.places.end())
+      line.from_file[option] = at->second.text() + ": run";
+  };
+  if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
+    for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
+  take("--out");
+  if (given("--out") || given("--report")) take("--every");
+}
+
+/// What is wrong with such an option is wrong in the file.
+void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
+  for (Finding& finding : findings) {
+    const auto option = line.from_file.find(finding.parameter.substr(0, finding.parameter.find(' ')));
+    if (finding.place != kCommandLine || option == line.from_file.end()) continue;
+    finding.place = option->second;
+    finding.parameter.erase(0, 2);
+  }
+}
+
+/// What is wrong with where results go, and in which form.
+void check_outputs(const CommandLine& line, std::vector<Finding>& findings) {
+  for (const char* option : {"--record", "--every", "--format"})
+    if (!line.option("--out") && !line.option("--report") && line.list(option))
+      findings.push_back(
+          {kCommandLine, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
+  if (const auto jobs = line.option("--jobs"))
+    findings.push_back({kCommandLine, "--jobs", *jobs, "", "is for several runs"});
+  if (line.option("--format") && line.option("--report") && !line.option("--out"))
+    findings.push_back({kCommandLine, "--format", "", "", "needs --out DIR"});
+  if (const auto report = line.option("--report")) {
+    namespace fs = std::filesystem;
+    const auto out = line.option("--out");
+    if (const auto why = why_no_report(*report))
+      findings.push_back({kCommandLine, "--report", *report, "", *why});
+    else if (out &&
+             fs::path(*report).lexically_normal() == (fs::path(*out) / "report.html").lexically_normal())
+      findings.push_back({kCommandLine, "--report", *report, "", "is written by --out already"});
+  }
+}
+
+}  // namespace
+
+RunRequest request_run(const CommandLine& given) {
+  CommandLine line = given;
+  std::vector<Finding> findings = line.findings;
+  const std::size_t before = findings.size();
+  std::optional<ModelRequest> model = build_model(line, findings);
+  if (model && model->file) take_file_options(*model, line);
+  const bool parameters_right = findings.size() == before;
+
+  const double duration = model ? model->model_case.duration : 1.0;
+  const std::string limit = model ? "(the run's duration)" : "run's duration";
+  const double high = model ? duration : HUGE_VAL;
+  const MethodChoice method = find_method(model, line, findings);
+  Method chosen = method.method;
+  if (line.option("--step") && !chosen.exact())
+    chosen.step = read_time("--step", *line.option("--step"), {duration / kMostSteps, high}, limit, findings);
+  const std::optional<double> accuracy = read_accuracy(line, findings);
+  const bool any_method =
+      !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
+  const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
+  double every = model ? round_number(duration / 1000) : 0.0;
+  if (line.option("--every"))
+    every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);
+  check_outputs(line, findings);
+  if (model) check_channels(*model, line, parameters_right, findings);
+  blame_file(line, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  const std::vector<std::string> formats = line.list("--format").value_or(std::vector<std::string>{});
+  const bool hdf5 = std::count(formats.begin(), formats.end(), "hdf5") > 0;
+  std::vector<std::string> record = line.list("--record").value_or(model->model_case.channels);
+  return {std::move(*model),
+          chosen,
+          accuracy,
+          method.reason,
+          any_method,
+          reduce,
+          line.option("--out"),
+          std::move(record),
+          every,
+          hdf5,
+          line.option("--report"),
+          line.option("--every") ? std::optional(every) : std::nullopt,
+          line.model + (line.option("--run") ? " --run " + *line.option("--run") : "")};
+}
+
+}  // namespace drev::app

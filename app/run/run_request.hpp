@@ -1,0 +1,29 @@
+#pragma once
+/// What `drev run` is asked for, checked: the run is computed from it, and its results name it.
+#include <drev/solvers/method.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/model_request.hpp"
+
+namespace drev::app {
+
+struct RunRequest {
+  ModelRequest model;
+  Method method;
+  std::optional<double> accuracy;   ///< relative, of every figure; the method's step or tolerance follows
+  std::string method_reason;        ///< why this one; a sentence without full stop
+  bool any_method = false;          ///< none was asked for
+  std::optional<double> reduce;     ///< relative error that a reduction may add; none: no reduction
+  std::optional<std::string> out;   ///< directory
+  std::vector<std::string> record;  ///< channels of history.csv and of the report
+  double every = 0.0;               ///< s
+  bool hdf5 = false;                ///< history.h5 too
+  std::optional<std::string> report = {};   ///< file, .html or .pdf
+  std::optional<double> report_every = {};  ///< s, asked for
+  std::string words = {};                   ///< MODEL, and --run of a file
+};
+
+}  // namespace drev::app
