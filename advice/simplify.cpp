@@ -265,7 +265,7 @@ std::vector<std::string> nodes_of(const Model& model, const std::vector<std::str
       if (nodes.contains(name.substr(0, cut)) && nodes.contains(name.substr(cut + 1)))
         found.insert({name.substr(0, cut), name.substr(cut + 1)});
     for (const ElementInstance& p : model.element_instances())
-      if (name == p.name || (p.element->internal_nodes() > 0 && name.starts_with(p.name + "_")))
+      if (name == p.name || (p.internal.count > 0 && name.starts_with(p.name + "_")))
         for (const std::string& node : names_of(model, p)) found.insert(node);
   }
   return {found.begin(), found.end()};

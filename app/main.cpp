@@ -1,4 +1,6 @@
 // The command drev. See drev --help.
+#include <drev/app/model_file/load_plugin.hpp>
+
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -34,8 +36,10 @@ int guarded_main(int argc, char** argv) {
     }
     const ParsedCommandLine parsed = parse_command_line(argc, argv, commands());
     if (!parsed.command) return parsed.exit_code;
-    set_quiet(parsed.command->quiet);
-    return parsed.command->command->execute(*parsed.command);
+    const CommandLine& line = *parsed.command;
+    set_quiet(line.quiet);
+    load_plugins(line.list("--plugin").value_or(std::vector<std::string>{}));
+    return line.command->execute(line);
   } catch (const ModelError& error) {
     complain(error);
     return kBadInput;

@@ -1,15 +1,15 @@
-# Finds what drev links: Eigen, CHOLMOD and KLU (SuiteSparse) and ARPACK, as Debian packages them. Used by
-# the build and, installed, by find_package(drev). SuiteSparse 5 ships no CMake package files, so its
-# libraries are found by name.
-function(drev_find_library target header library)
+# Finds what drev links: Eigen, CHOLMOD and KLU (SuiteSparse) and ARPACK, as Debian packages them, and HDF5 for
+# drev::report. Used by the build and, installed, by find_package(drev). SuiteSparse 5 ships no CMake package
+# files, and CMake's own module for HDF5 wants a C compiler, so libraries are found by name.
+function(drev_find_library target header)  # names of the library
   if(TARGET drev_deps::${target})
     return()
   endif()
-  find_path(DREV_${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse arpack arpack-ng)
-  find_library(DREV_${target}_LIBRARY ${library})
+  find_path(DREV_${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse arpack arpack-ng hdf5/serial)
+  find_library(DREV_${target}_LIBRARY NAMES ${ARGN} PATH_SUFFIXES hdf5/serial)
   mark_as_advanced(DREV_${target}_INCLUDE DREV_${target}_LIBRARY)
   if(NOT DREV_${target}_INCLUDE OR NOT DREV_${target}_LIBRARY)
-    set(DREV_MISSING ${DREV_MISSING} "${library} (${header})" PARENT_SCOPE)
+    set(DREV_MISSING ${DREV_MISSING} "${ARGV2} (${header})" PARENT_SCOPE)
     return()
   endif()
   add_library(drev_deps::${target} INTERFACE IMPORTED GLOBAL)
@@ -35,3 +35,7 @@ apt-get install libeigen3-dev libsuitesparse-dev libarpack2-dev")
     message(FATAL_ERROR "${DREV_MISSING}")
   endif()
 endif()
+# Only drev::report needs it: who does without that may do without this.
+set(drev_missing "${DREV_MISSING}")
+drev_find_library(hdf5 hdf5.h hdf5_serial hdf5)
+set(DREV_MISSING "${drev_missing}")

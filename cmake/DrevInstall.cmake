@@ -1,5 +1,6 @@
 # Installs the libraries of the rooms, the public headers, and what find_package(drev) and pkg-config read.
-# (app/CMakeLists.txt installs the command.)
+# (app/CMakeLists.txt installs the command, and the
+# libraries of model files and reports.)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(drev_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/drev)
@@ -23,5 +24,7 @@ install(FILES ${PROJECT_BINARY_DIR}/drevConfig.cmake ${PROJECT_BINARY_DIR}/drevC
 # Relative to the file's own place, so that an installed tree can be moved.
 file(RELATIVE_PATH drev_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" drev_pc_to_prefix ${drev_pc_to_prefix})
-configure_file(${PROJECT_SOURCE_DIR}/cmake/drev.pc.in ${PROJECT_BINARY_DIR}/drev.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/drev.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+foreach(package drev drev-report)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${package}.pc.in ${PROJECT_BINARY_DIR}/${package}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${package}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()

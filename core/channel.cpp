@@ -15,7 +15,7 @@ class ChannelFinder {
     for (int i = 0; i < system.node_count(); ++i) add_node(i);
     for (const OutputTerm& o : system.outputs()) {
       const auto& row = o.stiffness.empty() ? o.damping : o.stiffness;
-      const bool turns = !o.along_line_of_action && (row.empty() || rotational(row.front().index));
+      const bool turns = !o.along_line_of_action && rotational(row);
       const std::string name = element(o.element) + (o.suffix.empty() ? "" : "_" + o.suffix);
       add(name + (o.deflection ? deflection_name(turns) : force_name(turns)),
           o.deflection ? deflection_unit(turns) : force_unit(turns), Channel::Kind::output, 0,
@@ -24,7 +24,7 @@ class ChannelFinder {
     for (std::size_t j = 0; j < system.scalars().size(); ++j) {
       const ScalarTerm& s = system.scalars()[j];
       const ElementInstance& p = system.element_instances()[idx(index(s.element))];
-      const bool turns = !s.along_line_of_action && rotational(s.nodes.front().index);
+      const bool turns = !s.along_line_of_action && rotational(s.nodes);
       add(p.name + force_name(turns), force_unit(turns), Channel::Kind::force, static_cast<int>(j),
           s.along_line_of_action);
       add(p.name + deflection_name(turns), deflection_unit(turns), Channel::Kind::deflection,
@@ -128,6 +128,10 @@ class ChannelFinder {
   static std::string deflection_name(bool turns) { return turns ? ".deflection_rad" : ".deflection_m"; }
   static std::string deflection_unit(bool turns) { return turns ? "rad" : "m"; }
   bool rotational(int node) const { return system_.node_kind(node) == NodeKind::rotational; }
+  /// Whether b^T q is an angle. Over nodes of both kinds it is a length: the rotational ones have a radius.
+  bool rotational(const std::vector<Entry>& row) const {
+    return std::all_of(row.begin(), row.end(), [this](const Entry& e) { return rotational(e.index); });
+  }
   std::string element(ElementId id) const { return system_.element_instances()[idx(index(id))].name; }
   int node(const std::string& name) const {
     const auto& names = system_.node_names();

@@ -3,6 +3,7 @@
 /// no global matrix: describe() states its terms in its own node order, once.
 #include <drev/core/error.hpp>
 #include <drev/core/general_force.hpp>
+#include <drev/core/ids.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 
@@ -73,8 +74,11 @@ class Element {
   virtual std::string_view type() const = 0;  ///< as the catalogue calls it, e.g. "shaft spring"
   virtual int min_nodes() const = 0;          ///< named nodes it needs
   virtual int max_nodes() const { return min_nodes(); }
-  virtual int internal_nodes() const { return 0; }  ///< nodes that it brings along
-  /// True for an element between rotational and translational nodes (a rack); else build() refuses it.
+  /// Kinds of the nodes that it brings along, in their order. Asked when the element enters the model, before
+  /// check().
+  virtual std::vector<NodeKind> internal_nodes() const { return {}; }
+  /// True for an element between rotational and translational nodes, named or internal (a rack); else build()
+  /// refuses it. A law over nodes of both kinds is a force [N] of a deflection [m].
   virtual bool mixes_kinds() const { return false; }
   /// Reports every parameter out of range. Called by Model::build(); describe() only if none is.
   virtual void check(ParameterCheck& check) const = 0;

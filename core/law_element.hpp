@@ -7,6 +7,7 @@
 ///   };
 ///   model.add<LawElement<CubicLaw>>("coupling", {"engine", "pump"}, {.k = 2e4, .k3 = 5e6});
 ///
+/// A law may state `static constexpr std::string_view type`, the name that findings and reports call it by.
 /// Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If the law has a member
 /// `void check(ParameterCheck&) const`, it is called when the model is built.
 #include <drev/core/element.hpp>
@@ -19,7 +20,12 @@ class LawElement final : public Element {
   using Params = L;
   explicit LawElement(Params law) : law_(law), force_(std::move(law)) {}
 
-  std::string_view type() const override { return "law element"; }
+  std::string_view type() const override {
+    if constexpr (requires { L::type; })
+      return L::type;
+    else
+      return "law element";
+  }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }
   void check(ParameterCheck& check) const override {
@@ -30,6 +36,8 @@ class LawElement final : public Element {
     terms.speed_ratio_constraints.push_back(
         {.b = relative_motion(nodes), .only_in_contact = force_.gap().has_value()});
   }
+
+  const Params& params() const { return law_; }
 
  private:
   L law_;

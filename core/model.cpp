@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/core/model.hpp>
 
 #include <algorithm>
@@ -37,9 +38,9 @@ NodeList::operator std::vector<NodeRef>() const {
 }
 
 ElementId Model::place(std::string name, NodeList nodes, std::shared_ptr<const Element> element) {
-  const NodeRange internal{static_cast<int>(node_names_->size()),
-                           element ? std::max(0, element->internal_nodes()) : 0};
-  for (int i = 1; i <= internal.count; ++i) add_node(name + "_" + std::to_string(i));
+  const std::vector<NodeKind> kinds = element ? element->internal_nodes() : std::vector<NodeKind>{};
+  const NodeRange internal{static_cast<int>(node_names_->size()), static_cast<int>(kinds.size())};
+  for (int i = 1; i <= internal.count; ++i) add_node(name + "_" + std::to_string(i), kinds[idx(i - 1)]);
   own(element_instances_).push_back({std::move(name), std::move(element), std::move(nodes), internal});
   return ElementId{static_cast<int>(element_instances_->size()) - 1};
 }

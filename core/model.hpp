@@ -17,12 +17,6 @@ namespace drev {
 class Element;
 class System;
 
-/// What a node's one degree of freedom is.
-enum class NodeKind : unsigned char {
-  rotational,    ///< angle [rad], torque [N m], inertia [kg m^2]
-  translational  ///< position [m], force [N], mass [kg]
-};
-
 /// A node by its id or by its name. Names are looked up by build(), so that all errors come at once.
 struct NodeRef {
   NodeRef(NodeId node) : id(node) {}                    // NOLINT: implicit by intent

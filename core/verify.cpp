@@ -422,7 +422,7 @@ CheckReport check_element(const Element& element, int nodes, const CheckOptions&
                   std::to_string(element.max_nodes()));
   if (!report.ok()) return report;
 
-  const int n = nodes + element.internal_nodes();
+  const int n = nodes + static_cast<int>(element.internal_nodes().size());
   Terms terms(n);
   element.describe(n, terms);
   if (!check_description(terms, n, out)) return report;

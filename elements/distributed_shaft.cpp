@@ -15,8 +15,9 @@ double polar_area_moment(const DistributedShaft::Params& p) {
 
 // Asked for when the element enters the model, before check(): an absurd count must not create
 // nodes.
-int DistributedShaft::internal_nodes() const {
-  return params_.segments >= 1 && params_.segments <= kMaxSegments ? params_.segments - 1 : 0;
+std::vector<NodeKind> DistributedShaft::internal_nodes() const {
+  const bool sound = params_.segments >= 1 && params_.segments <= kMaxSegments;
+  return std::vector(sound ? static_cast<std::size_t>(params_.segments - 1) : 0, NodeKind::rotational);
 }
 
 void DistributedShaft::check(ParameterCheck& check) const {

@@ -36,7 +36,7 @@ class DistributedShaft final : public Element {
 
   std::string_view type() const override { return "distributed shaft"; }
   int min_nodes() const override { return 2; }
-  int internal_nodes() const override;
+  std::vector<NodeKind> internal_nodes() const override;
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
 

@@ -8,13 +8,14 @@ namespace drev::app {
 
 struct CommandLine;
 
-/// An option with a value.
+/// An option, most of them with a value.
 struct OptionEntry {
   enum class Values {
     one,     ///< a single one
     commas,  ///< NAME,NAME,... and as often as needed
     words,   ///< NAME NAME ...
-    again    ///< one each time that it is given, as often as needed
+    again,   ///< one each time that it is given, as often as needed
+    none     ///< a flag
   };
   const char* name;  ///< "--step"
   const char* type;  ///< of its value, as --help shows it

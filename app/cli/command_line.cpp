@@ -1,5 +1,7 @@
 #include "app/cli/command_line.hpp"
 
+#include <drev/core/version.hpp>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -41,9 +43,13 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
   sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
   for (const OptionEntry& option : command.options)
-    sub.add_option(option.name, raw.options[option.name], option.meaning)
-        ->option_text(option.type)
-        ->allow_extra_args(option.values == OptionEntry::Values::words);
+    if (option.values == OptionEntry::Values::none)
+      sub.add_flag_callback(
+          option.name, [&given = raw.options[option.name]] { given = {"given"}; }, option.meaning);
+    else
+      sub.add_option(option.name, raw.options[option.name], option.meaning)
+          ->option_text(option.type)
+          ->allow_extra_args(option.values == OptionEntry::Values::words);
   sub.footer(command.footer);
 }
 
@@ -141,6 +147,10 @@ void take_option(const OptionEntry& option, const std::vector<std::string>& give
   };
   if (given.empty()) return;
   std::vector<std::string>& taken = line.options[option.name];
+  if (option.values == OptionEntry::Values::none) {
+    taken = given;
+    return;
+  }
   if (option.values == OptionEntry::Values::one) {
     if (given.size() > 1)
       report(given[1], "was given already, as " + given[0]);

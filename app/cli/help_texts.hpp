@@ -28,6 +28,7 @@ inline constexpr const char* kRunExamples =
     "  drev run gear_drive --method sdirk4 --tolerance 1e-4\n"
     "  drev run trains/ my.toml camshaft --out results\n"
     "  drev run camshaft --vary backlash_mm=0:0.1:0.5 --vary drive=gears,held --out results\n"
+    "  drev run my.toml --plugin build/libmine.so\n"
     "\n"
     "Several models, the model files *.toml of a directory, and all combinations of --vary run side by\n"
     "side, each in a process of its own with the same options. DIR/NAME has the results of each,\n"
@@ -81,7 +82,8 @@ inline constexpr const char* kListExamples =
     "  drev list\n"
     "  drev list camshaft\n"
     "  drev list camshaft --set cylinders=6 --json\n"
-    "  drev list my.toml\n";
+    "  drev list my.toml\n"
+    "  drev list --elements --plugin build/libmine.so\n";
 
 inline constexpr const char* kCheckExamples =
     "Examples:\n"

@@ -1,10 +1,11 @@
 #include "app/cli/model_option.hpp"
 
+#include <drev/app/model_file/model_file.hpp>
+
 #include <algorithm>
 #include <memory>
 
 #include "app/base/text_layout.hpp"
-#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 

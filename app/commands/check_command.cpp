@@ -1,3 +1,5 @@
+#include <drev/app/model_file/model_file.hpp>
+
 #include <set>
 
 #include "app/base/json_values.hpp"
@@ -6,7 +8,6 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/run_request.hpp"
-#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 

@@ -1,5 +1,7 @@
 #include "app/commands/completion.hpp"
 
+#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>
 #include <drev/models/model_case.hpp>
@@ -7,8 +9,8 @@
 
 #include <algorithm>
 
+#include "app/base/text_layout.hpp"
 #include "app/commands/commands.hpp"
-#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 
@@ -91,6 +93,7 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
     return settings_of(*model.entry, word);
   for (const OptionEntry& entry : command->options) {
     if (option == words.rend() || entry.name != *option) continue;
+    if (entry.values == OptionEntry::Values::none) break;
     if (option == words.rbegin() + 1 || entry.values == OptionEntry::Values::words)
       return values_of(entry, model, word);
   }
@@ -99,9 +102,20 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
   return offered;
 }
 
+/// Plugins named before the last word: the model file may need them. What is wrong with them the command says.
+void load_named_plugins(const std::vector<std::string>& words) {
+  const std::string option = "--plugin";
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) try {
+      if (words[i].starts_with(option + "=")) load_plugins(split(words[i].substr(option.size() + 1), ','));
+      if (words[i] == option && i + 2 < words.size()) load_plugins(split(words[i + 1], ','));
+    } catch (const ModelError&) {
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> completions(const std::vector<std::string>& words) {
+  load_named_plugins(words);
   std::vector<std::string> offered = offered_for(words);
   const std::string word = words.empty() ? "" : words.back();
   std::erase_if(offered, [&](const std::string& text) { return !text.starts_with(word); });

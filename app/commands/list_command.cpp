@@ -8,6 +8,7 @@
 #include "app/cli/model_option.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
+#include "app/commands/element_list.hpp"
 
 namespace drev::app {
 
@@ -145,6 +146,10 @@ std::string model_as_json(const ModelRequest& model) {
 }  // namespace
 
 int list_command(const CommandLine& line) {
+  if (line.option("--elements") && line.model.empty() && line.findings.empty()) {
+    print(line.json ? elements_as_json() : elements_as_text());
+    return kSuccess;
+  }
   if (line.model.empty() && line.parameters.empty() && line.findings.empty()) {
     print(line.json ? models_as_json() : models_as_text());
     return kSuccess;

@@ -1,12 +1,12 @@
 #include "app/model_file/case_reader.hpp"
 
+#include <drev/app/model_file/element_table.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/model_file/element_table.hpp"
 #include "app/model_file/field_reader.hpp"
 #include "app/model_file/key_finder.hpp"
 #include "app/model_file/node_fields.hpp"

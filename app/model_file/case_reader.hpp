@@ -1,7 +1,8 @@
 #pragma once
 /// From the sections of a model file, with values for its parameters, to a model case.
+#include <drev/app/model_file/model_file.hpp>
+
 #include "app/model_file/document.hpp"
-#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 

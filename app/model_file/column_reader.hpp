@@ -1,6 +1,7 @@
 #pragma once
 /// Columns of one length, from arrays in the file or from a CSV file that it names.
-#include "app/model_file/fields.hpp"
+#include <drev/app/model_file/fields.hpp>
+
 #include "app/model_file/read_values.hpp"
 
 namespace drev::app {

@@ -1,10 +1,10 @@
 #include "app/model_file/document.hpp"
 
+#include <drev/app/model_file/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-
-#include "app/model_file/units.hpp"
 
 namespace drev::app {
 

@@ -1,9 +1,9 @@
-#include "app/model_file/element_table.hpp"
-
+#include <drev/app/model_file/element_table.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 
 #include <cmath>
+#include <set>
 
 #include "app/model_file/shared_fields.hpp"
 
@@ -128,48 +128,76 @@ void list(Fields& f, EngineOrderTorque::Params& p) {
 }
 
 template <class E>
-constexpr ElementType row(const char* name) {
-  return {name,
-          [](const VisitFields& read) -> std::shared_ptr<const Element> {
-            typename E::Params params{};
-            read([&](Fields& f) { list(f, params); });
-            return std::make_shared<const E>(std::move(params));
-          },
-          [](const Element& element, const VisitFields& write) {
-            const auto* self = dynamic_cast<const E*>(&element);
-            if (self == nullptr) return false;
-            typename E::Params params = self->params();
-            write([&](Fields& f) { list(f, params); });
-            return true;
-          }};
+ElementType row(const char* name) {
+  return element_type<E>(name, [](Fields& f, typename E::Params& p) { list(f, p); });
 }
 
-constexpr ElementType kTypes[] = {row<Inertia>("inertia"),
-                                  row<ShaftSpring>("shaft_spring"),
-                                  row<DistributedShaft>("distributed_shaft"),
-                                  row<Dashpot>("dashpot"),
-                                  row<GroundSpring>("ground_spring"),
-                                  row<RayleighDamping>("rayleigh_damping"),
-                                  row<PolylineSpring>("polyline_spring"),
-                                  row<GearMesh>("gear_mesh"),
-                                  row<IdealGear>("ideal_gear"),
-                                  row<AppliedTorque>("applied_torque"),
-                                  row<CamTorque>("cam_torque"),
-                                  row<EngineOrderTorque>("engine_order_torque")};
+std::vector<ElementType>& table() {
+  static std::vector<ElementType> types{row<Inertia>("inertia"),
+                                        row<ShaftSpring>("shaft_spring"),
+                                        row<DistributedShaft>("distributed_shaft"),
+                                        row<Dashpot>("dashpot"),
+                                        row<GroundSpring>("ground_spring"),
+                                        row<RayleighDamping>("rayleigh_damping"),
+                                        row<PolylineSpring>("polyline_spring"),
+                                        row<GearMesh>("gear_mesh"),
+                                        row<IdealGear>("ideal_gear"),
+                                        row<AppliedTorque>("applied_torque"),
+                                        row<CamTorque>("cam_torque"),
+                                        row<EngineOrderTorque>("engine_order_torque")};
+  return types;
+}
+
+/// What is wrong with the keys of a type that is to be registered.
+void check_keys(const ElementType& type, std::vector<Finding>& findings) {
+  for (const NodeKind kind : {NodeKind::rotational, NodeKind::translational}) {
+    FieldKeys keys(kind);
+    type.make([&](const ListFields& list) { list(keys); });
+    std::set<std::string> taken{"type", "node", "nodes"};
+    for (const FieldKeys::Key& key : keys.keys())
+      if (!taken.insert(key.name).second && findings.empty())
+        findings.push_back({"element type " + type.name, "key", key.name, "",
+                            "is there twice, or is one that every element has (type, node, nodes)"});
+  }
+}
 
 }  // namespace
 
-std::span<const ElementType> element_types() { return kTypes; }
+void register_element_type(ElementType type) {
+  std::vector<Finding> findings;
+  const auto refuse = [&](std::string why) {
+    findings.push_back({"element types", "type", type.name, "", std::move(why)});
+  };
+  if (type.name.empty()) refuse("must have a name");
+  if (const ElementType* same = find_element_type(type.name))
+    refuse("is registered already, by " + (same->plugin.empty() ? "drev itself" : same->plugin));
+  check_keys(type, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  table().push_back(std::move(type));
+}
+
+void register_from(const std::string& plugin, const std::function<void()>& add) {
+  const std::size_t before = table().size();
+  try {
+    add();
+  } catch (...) {
+    table().erase(table().begin() + static_cast<std::ptrdiff_t>(before), table().end());
+    throw;
+  }
+  for (std::size_t i = before; i < table().size(); ++i) table()[i].plugin = plugin;
+}
+
+std::span<const ElementType> element_types() { return table(); }
 
 const ElementType* find_element_type(const std::string& name) {
-  for (const ElementType& type : kTypes)
+  for (const ElementType& type : table())
     if (name == type.name) return &type;
   return nullptr;
 }
 
 std::vector<std::string> element_type_names() {
   std::vector<std::string> names;
-  for (const ElementType& type : kTypes) names.push_back(type.name);
+  for (const ElementType& type : table()) names.push_back(type.name);
   return names;
 }
 

@@ -1,12 +1,12 @@
 #include "app/model_file/export.hpp"
 
+#include <drev/app/model_file/element_table.hpp>
 #include <drev/elements/applied_torque.hpp>
 
 #include <cmath>
 #include <map>
 
 #include "app/model_file/document.hpp"
-#include "app/model_file/element_table.hpp"
 #include "app/model_file/field_writer.hpp"
 #include "app/model_file/node_fields.hpp"
 
@@ -127,7 +127,7 @@ class SceneWriter {
         });
         if (written) break;
       }
-      if (!written) refuse(name, "it is an element of C++");
+      if (!written) refuse(name, "it is an element of C++ whose keys are not registered");
       if (const auto* torque = dynamic_cast<const AppliedTorque*>(placement.element.get()))
         if (torque->params().torque) refuse(name, "its torque is a function of C++");
     }

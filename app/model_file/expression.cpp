@@ -1,13 +1,12 @@
 #include "app/model_file/expression.hpp"
 
+#include <drev/app/model_file/units.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-
-#include "app/model_file/units.hpp"
 
 namespace drev::app {
 

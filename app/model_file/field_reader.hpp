@@ -1,9 +1,10 @@
 #pragma once
 /// Reads the fields of a table: finds each key with its unit, and reports what is wrong with the others.
+#include <drev/app/model_file/fields.hpp>
+
 #include <map>
 #include <set>
 
-#include "app/model_file/fields.hpp"
 #include "app/model_file/read_values.hpp"
 
 namespace drev::app {

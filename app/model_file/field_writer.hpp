@@ -1,10 +1,10 @@
 #pragma once
 /// Writes fields as TOML: keys in SI, numbers with the digits that read back to the same double. What equals
 /// its default is left out.
+#include <drev/app/model_file/fields.hpp>
+
 #include <map>
 #include <utility>
-
-#include "app/model_file/fields.hpp"
 
 namespace drev::app {
 

@@ -1,5 +1,4 @@
-#include "app/model_file/fields.hpp"
-
+#include <drev/app/model_file/fields.hpp>
 #include <drev/core/error.hpp>
 
 namespace drev::app {
@@ -14,17 +13,18 @@ void Fields::guarded(const std::function<void()>& make) {
   }
 }
 
-void FieldKeys::add(const Quantity& quantity, double default_number) {
+void FieldKeys::add(const Quantity& quantity, Need need, double default_number) {
   const NodeKind other = kind == NodeKind::rotational ? NodeKind::translational : NodeKind::rotational;
   keys_.push_back({.name = quantity.name(kind),
                    .dimension = quantity.dimension(kind),
                    .other_name = quantity.name(other),
                    .other_dimension = quantity.dimension(other),
+                   .need = need,
                    .default_number = default_number});
 }
 
-void FieldKeys::plain(const std::string& name, std::string default_text) {
-  keys_.push_back({.name = name, .other_name = name, .default_text = std::move(default_text)});
+void FieldKeys::plain(const std::string& name, Need need, std::string default_text) {
+  keys_.push_back({.name = name, .other_name = name, .need = need, .default_text = std::move(default_text)});
 }
 
 const FieldKeys::Key* FieldKeys::find(const std::string& name) const {
@@ -33,15 +33,17 @@ const FieldKeys::Key* FieldKeys::find(const std::string& name) const {
   return nullptr;
 }
 
-void FieldKeys::number(const Quantity& quantity, double& value, Need /*need*/) { add(quantity, value); }
-void FieldKeys::whole(const std::string& name, int& value, Need /*need*/) {
-  plain(name, std::to_string(value));
+void FieldKeys::number(const Quantity& quantity, double& value, Need need) { add(quantity, need, value); }
+void FieldKeys::whole(const std::string& name, int& value, Need need) {
+  plain(name, need, std::to_string(value));
 }
-void FieldKeys::flag(const std::string& name, bool& value) { plain(name, value ? "true" : "false"); }
-void FieldKeys::text(const std::string& name, std::string& value) { plain(name, value); }
+void FieldKeys::flag(const std::string& name, bool& value) {
+  plain(name, Need::optional, value ? "true" : "false");
+}
+void FieldKeys::text(const std::string& name, std::string& value) { plain(name, Need::optional, value); }
 void FieldKeys::texts(const std::string& name, std::vector<std::string>& /*values*/) { plain(name); }
 void FieldKeys::choice(const std::string& name, const std::vector<std::string>& words, int& index) {
-  plain(name, words[static_cast<std::size_t>(index)]);
+  plain(name, Need::optional, words[static_cast<std::size_t>(index)]);
 }
 bool FieldKeys::columns(const std::string& name, const std::vector<Column>& /*columns*/) {
   plain(name);

@@ -1,13 +1,12 @@
 #pragma once
 /// The keys of an element, node or run, listed once in a function list(Fields&, Params&). The same list reads
 /// a table of a file into the parameters (FieldReader), writes them (FieldWriter) and names them (FieldKeys).
-#include <drev/core/model.hpp>
+#include <drev/app/model_file/units.hpp>
+#include <drev/core/ids.hpp>
 
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "app/model_file/units.hpp"
 
 namespace drev::app {
 
@@ -73,6 +72,7 @@ class FieldKeys final : public Fields {
     Dimension dimension = Dimension::none;
     std::string other_name = {};  ///< on a node of the other kind
     Dimension other_dimension = Dimension::none;
+    Need need = Need::optional;
     double default_number = 0.0;
     std::string default_text = {};
   };
@@ -92,10 +92,10 @@ class FieldKeys final : public Fields {
 
   const std::vector<Key>& keys() const { return keys_; }
   const Key* find(const std::string& name) const;
-  void add(const Quantity& quantity, double default_number = 0.0);
+  void add(const Quantity& quantity, Need need = Need::optional, double default_number = 0.0);
 
  private:
-  void plain(const std::string& name, std::string default_text = {});
+  void plain(const std::string& name, Need need = Need::optional, std::string default_text = {});
   std::vector<Key> keys_;
 };
 

@@ -1,10 +1,11 @@
 #pragma once
 /// The keys of a table, found among those that it may have: "stiffness_MNm_per_rad" is "stiffness" with the
 /// factor 1e6. What is none of them is a finding, with what was probably meant.
+#include <drev/app/model_file/fields.hpp>
+
 #include <map>
 #include <set>
 
-#include "app/model_file/fields.hpp"
 #include "app/model_file/read_values.hpp"
 
 namespace drev::app {

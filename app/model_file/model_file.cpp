@@ -1,4 +1,4 @@
-#include "app/model_file/model_file.hpp"
+#include <drev/app/model_file/model_file.hpp>
 
 #include <algorithm>
 #include <filesystem>

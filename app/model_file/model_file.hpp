@@ -1,6 +1,7 @@
 #pragma once
 /// A model file as a model case: the model with its parameters, and its runs. docs/model_file.md
 /// describes the format.
+#include <drev/app/model_file/position.hpp>
 #include <drev/models/model_case.hpp>
 
 #include <map>
@@ -8,8 +9,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "app/model_file/tree.hpp"
 
 namespace drev::app {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// What a model file says of a node.
-#include "app/model_file/fields.hpp"
+#include <drev/app/model_file/fields.hpp>
 
 namespace drev::app {
 

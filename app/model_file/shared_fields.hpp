@@ -1,8 +1,7 @@
 #pragma once
 /// Fields that several elements have, and those of the gear mesh.
+#include <drev/app/model_file/fields.hpp>
 #include <drev/elements/gear_mesh.hpp>
-
-#include "app/model_file/fields.hpp"
 
 namespace drev::app {
 

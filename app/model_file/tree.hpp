@@ -1,20 +1,13 @@
 #pragma once
 /// A model file as a tree of values, each with the place where it stands. Tables keep the order of the file.
+#include <drev/app/model_file/position.hpp>
 #include <drev/core/error.hpp>
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace drev::app {
-
-/// file:line:column, both counted from 1.
-struct Position {
-  std::shared_ptr<const std::string> file;
-  int line = 1, column = 1;
-  std::string text() const;
-};
 
 struct Entry;
 

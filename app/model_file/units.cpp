@@ -1,5 +1,4 @@
-#include "app/model_file/units.hpp"
-
+#include <drev/app/model_file/units.hpp>
 #include <drev/core/units.hpp>
 
 #include <array>

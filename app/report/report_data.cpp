@@ -1,6 +1,8 @@
 #include "app/report/report_data.hpp"
 
+#include <drev/app/model_file/load_plugin.hpp>
 #include <drev/core/units.hpp>
+#include <drev/core/version.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -39,6 +41,7 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
   for (std::size_t i = 0; i < parameters.known().size(); ++i)
     if (parameters.values()[i] != parameters.known()[i].default_text)
       text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
+  for (const std::string& plugin : loaded_plugins()) text += " --plugin " + plugin;
   text += " --method " + method.name;
   if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
   if (method.step > 0.0) text += " --step " + to_text(method.step);

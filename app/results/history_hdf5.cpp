@@ -1,5 +1,7 @@
 #include "app/results/history_hdf5.hpp"
 
+#include <drev/core/version.hpp>
+
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>

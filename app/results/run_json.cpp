@@ -1,6 +1,7 @@
 #include "app/results/run_json.hpp"
 
 #include <drev/core/units.hpp>
+#include <drev/core/version.hpp>
 
 #include <unistd.h>
 

@@ -1,11 +1,10 @@
 #pragma once
 /// A model with its parameters, built: what every command computes from.
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/system.hpp>
 #include <drev/models/model_case.hpp>
 
 #include <memory>
-
-#include "app/model_file/model_file.hpp"
 
 namespace drev::app {
 

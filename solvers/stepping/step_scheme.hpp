@@ -11,14 +11,8 @@
 /// stage is a Newmark-like step of coefficients beta = g^2, gamma = g.
 /// Sources: Newmark 1959; Hilber, Hughes, Taylor 1977, doi:10.1002/eqe.4290050306;
 /// Chung, Hulbert 1993, doi:10.1115/1.2900803.
-<<<<<<< HEAD
 #include <drev/core/range.hpp>
 #include <drev/core/weights.hpp>
-=======
-#include <drev/core/assembler.hpp>
-#include <drev/core/range.hpp>
-#include <drev/solvers/stepping/butcher_tableau.hpp>
->>>>>>> refs/tmp/head_w1
 
 #include <memory>
 #include <optional>

@@ -5,6 +5,8 @@
 // whose every line names the file, a line and a column, or accepted (and then, every fourth one, written and
 // read back as the same); within kSlow seconds; and memory must not grow. Anything else is printed with the
 // input, and the exit code is 1.
+#include <drev/app/model_file/model_file.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -17,7 +19,6 @@
 #include <vector>
 
 #include "app/model_file/export.hpp"
-#include "app/model_file/model_file.hpp"
 
 namespace {
 

@@ -1,5 +1,6 @@
 // The twelve published cases, written as model files (cases/*.toml), give the published numbers. Tolerances
 // are half a unit of the last digit printed, or say why not.
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
@@ -9,7 +10,6 @@
 
 #include <cmath>
 
-#include "app/model_file/model_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/backlash_oscillator.hpp"
 

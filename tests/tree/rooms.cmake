@@ -21,7 +21,7 @@ set(room_table
   "app/model_file:core elements models"
   "app/run:core solvers/* models advice app/base app/model_file"
   "app/results:core solvers/* models app/base app/run"
-  "app/report:core elements solvers/* models app/base app/run app/results"
+  "app/report:core elements solvers/* models app/base app/model_file app/run app/results"
   "app/chart:core solvers/* models app/base app/run"
   "app/study:core elements solvers/* models app/base app/run app/chart"
   "app/cli:core solvers/* models app/base app/model_file app/run"

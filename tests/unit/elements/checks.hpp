@@ -21,7 +21,7 @@ inline bool contains(const std::string& text, const std::string& part) {
 }
 
 inline Terms described(const Element& element, int nodes) {
-  const int n = nodes + element.internal_nodes();
+  const int n = nodes + static_cast<int>(element.internal_nodes().size());
   Terms terms(n);
   element.describe(n, terms);
   return terms;

@@ -1,8 +1,8 @@
 // docs/model_file.md: every example is a sound file, or part of one; every element, key and unit is there.
+#include <drev/app/model_file/element_table.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/system.hpp>
 
-#include "app/model_file/element_table.hpp"
-#include "app/model_file/model_file.hpp"
 #include "app/model_file/node_fields.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"

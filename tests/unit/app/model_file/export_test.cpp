@@ -1,6 +1,7 @@
 // A built-in model, written as a file and read back, is the same model to the last bit.
 #include "app/model_file/export.hpp"
 
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "app/model_file/model_file.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,9 +1,9 @@
 // Expressions: values by hand, units that go with them, faults.
 #include "app/model_file/expression.hpp"
 
+#include <drev/app/model_file/units.hpp>
 #include <drev/core/units.hpp>
 
-#include "app/model_file/units.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev::app;

@@ -1,8 +1,9 @@
 // Faults of a model file: each is refused with file, line, column and a sentence that says what would be
 // right.
+#include <drev/app/model_file/model_file.hpp>
+
 #include <fstream>
 
-#include "app/model_file/model_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 

@@ -1,4 +1,5 @@
 // What a model file means: the same model as the one written in C++.
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
@@ -6,7 +7,6 @@
 
 #include <fstream>
 
-#include "app/model_file/model_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 
