@@ -6,13 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/run/progress.hpp"
 #include "solvers/run/run_verdict.hpp"
+#include "solvers/run/stops.hpp"
+#include "solvers/stepping/halved_step.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr long kProgressSteps = 100;
 constexpr double kSameTime = 1e-9;   // as in transient.cpp
 constexpr double kSameStep = 1e-10;  // as in step_equation.cpp
 
@@ -74,29 +76,24 @@ std::vector<VariantResult> Lockstep::run(const std::function<bool(double)>& go_o
   }
   start(t_, true);
   watch_.start(assemblers_, now_, t_);
-  const std::vector<double>& breaks = systems_[0]->breakpoints();
-  const double same = kSameTime * options_.step;
+  // All systems have the same breakpoints.
+  const Stops stops(*systems_[0], options_.t_end, kSameTime * options_.step);
+  const Progress progress(go_on, options_.t_start, options_.t_end);
   while (any(alive_) && t_ < options_.t_end) {
-    const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t_);
-    double stop = options_.t_end;
-    if (next_break != breaks.end()) stop = std::min(stop, *next_break);
-    if (options_.t_end - stop <= same) stop = options_.t_end;
-    const bool at_break = next_break != breaks.end() && *next_break - stop <= same;
-    if (at_break) stop = *next_break;
-    const double begin = t_, count = std::max(1.0, std::ceil((stop - begin) / options_.step - 1e-6));
-    const double h = (stop - begin) / count;
-    prepare(h);
-    for (double i = 1.0; i <= count && any(alive_); i += 1.0) {
-      const double t_new = i == count ? stop : begin + i * h;
-      // Just before a breakpoint the loads have their old values.
-      const bool before_break = i == count && at_break;
-      step(h, t_new, before_break ? std::nextafter(t_new, -std::numeric_limits<double>::infinity()) : t_new);
-      if (steps_ % kProgressSteps == 0 &&
-          !go_on((t_ - options_.t_start) / (options_.t_end - options_.t_start)))
-        for (int lane = 0; lane < kLanes; ++lane)
-          if (alive(lane)) fail(lane, t_, RunStatus::interrupted, "interrupted");
+    const Stop stop = stops.after(t_);
+    const EvenSteps steps(t_, stop.t, options_.step);
+    prepare(steps.h);
+    for (double i = 1.0; i <= steps.count && any(alive_); i += 1.0) {
+      const double t_new = steps.end_of(i);
+      step(steps.h, t_new, i == steps.count ? stop.evaluation_time() : t_new);
+      if (progress.goes_on(steps_, t_)) continue;
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (alive(lane)) {
+          end_interrupted(results_[idx(lane)].summary, systems_[idx(lane)]->name(), t_);
+          finish_lane(lane, t_);
+        }
     }
-    if (at_break && t_ < options_.t_end) start(t_, false);
+    if (stop.at_break && t_ < options_.t_end) start(t_, false);
   }
   for (int lane = 0; lane < kLanes; ++lane)
     if (alive(lane)) finish_lane(lane, t_);
@@ -107,15 +104,15 @@ std::vector<VariantResult> Lockstep::run(const std::function<bool(double)>& go_o
 void Lockstep::start(double t, bool first) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!first && !alive(lane)) continue;
-    EvaluatedState& point = to_alone_;
+    EvaluatedState& point = *to_alone_;
     if (first)
       point.state = State::initial(*systems_[idx(lane)], t);
     else
       now_.get(lane, point);
     point.state.t = t;
     if (!first) {
-      from_alone_ = point;
-      assemblers_[idx(lane)].multiply_stiffness(point.state.z, from_alone_.kz);
+      *from_alone_ = point;
+      assemblers_[idx(lane)].multiply_stiffness(point.state.z, from_alone_->kz);
     }
     GeneralizedAlpha& stepper = *steppers_[idx(lane)];
     stepper.start(point);
@@ -128,12 +125,14 @@ void Lockstep::start(double t, bool first) {
       energy_.start.v[lane] = b.kinetic + b.stored;
     } else {
       monitors_[idx(lane)]->restore(energy_.get(lane));
-      monitors_[idx(lane)]->restart(from_alone_, point);
+      monitors_[idx(lane)]->restart(*from_alone_, point);
     }
     energy_.set(lane, monitors_[idx(lane)]->balance());
     assemblers_[idx(lane)].set_time(t);
-    if (first && alive(lane) && !point.state.a.allFinite())
-      fail(lane, t, RunStatus::not_finite, "the initial acceleration");
+    if (!first || !alive(lane)) continue;
+    RunSummary& s = results_[idx(lane)].summary;
+    check_start(s, *systems_[idx(lane)], point.state);
+    if (!s.ok()) finish_lane(lane, t);
   }
 }
 
@@ -252,72 +251,49 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
 }
 
 void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
-  now_.get(lane, from_alone_);
-  from_alone_.state.t = t_;
-  assemblers_[idx(lane)].multiply_damping(from_alone_.state.v, from_alone_.cv);
+  now_.get(lane, *from_alone_);
+  from_alone_->state.t = t_;
+  assemblers_[idx(lane)].multiply_damping(from_alone_->state.v, from_alone_->cv);
   StepEquation& equation = steppers_[idx(lane)]->equation();
-  equation.start_from(from_alone_);
+  equation.start_from(*from_alone_);
   equation.expect_force(force_scale_.v[lane]);
   monitors_[idx(lane)]->restore(energy_.get(lane));
   ++results_[idx(lane)].steps_alone;
-  if (!advance_alone(lane, h, t_new, t_evaluate, 0)) return;
-  const EvaluatedState& end = from_alone_;  // of its last step
+  RunSummary& s = results_[idx(lane)].summary;
+  HalvedStep halved(*steppers_[idx(lane)], from_alone_, to_alone_, options_.max_halvings, s,
+                    [this, lane](double length, double) { return accept_alone(lane, length); });
+  const bool goes_on = halved.make(h, t_new, t_evaluate);
+  const EvaluatedState& end = *from_alone_;  // of its last step
+  if (!goes_on) {
+    now_.set(lane, end);
+    return finish_lane(lane, end.state.t);
+  }
+  --s.steps;  // one of them is everybody's
   next_.laws.t = t_evaluate;
   for (std::size_t j = 0; j < lambda_.size(); ++j) lambda_[j].v[lane] = end.responses[j].y;
   force_scale_.v[lane] = std::max<double>(force_scale_.v[lane], largest_force(end));
 }
 
-/// As a single run does (transient.cpp): halves steps that do not converge.
-bool Lockstep::advance_alone(int lane, double h, double t_new, double t_evaluate, int depth) {
-  GeneralizedAlpha& stepper = *steppers_[idx(lane)];
-  RunSummary& s = results_[idx(lane)].summary;
-  NewtonResult result = stepper.step(from_alone_, h, t_new, t_evaluate, to_alone_);
-  s.iterations += result.iterations;
-  if (result.status == NewtonStatus::converged) return accept_alone(lane, h);
-  if (depth < options_.max_halvings) {
-    ++s.halved;
-    ++s.steps;
-    const double middle = from_alone_.state.t + 0.5 * h;
-    return advance_alone(lane, 0.5 * h, middle, middle, depth + 1) &&
-           advance_alone(lane, 0.5 * h, t_new, t_evaluate, depth + 1);
-  }
-  if (result.status == NewtonStatus::no_root) {
-    result = stepper.step(from_alone_, h, t_new, t_evaluate, to_alone_, true);
-    s.iterations += result.iterations;
-    s.fallbacks += result.inside_jump;
-    if (result.status == NewtonStatus::converged) return accept_alone(lane, h);
-  }
-  if (result.status == NewtonStatus::not_finite)
-    fail(lane, from_alone_.state.t, RunStatus::not_finite, to_text(result.status));
-  else
-    fail(lane, from_alone_.state.t, RunStatus::no_convergence,
-         std::string(to_text(result.status)) + " even with h = " + to_text(h) + " s");
-  return false;
-}
-
+/// Enters a step that the lane made by itself, from from_alone_ to to_alone_, and swaps them; returns whether
+/// the lane's run goes on.
 bool Lockstep::accept_alone(int lane, double h) {
-  const State& state = to_alone_.state;
-  const System& system = *systems_[idx(lane)];
-  for (int k = 0; k < system.size(); ++k)
-    if (!std::isfinite(state.z[k]) || !std::isfinite(state.v[k])) {
-      fail(lane, from_alone_.state.t, RunStatus::not_finite, "the motion of " + system.unknown_name(k));
-      return false;
-    }
-  monitors_[idx(lane)]->step(from_alone_, to_alone_, h);
+  RunSummary& s = results_[idx(lane)].summary;
+  const Assembler& assembler = steppers_[idx(lane)]->assembler();
+  ++s.steps;
+  monitors_[idx(lane)]->step(*from_alone_, *to_alone_, h);
+  if (!std::isfinite(monitors_[idx(lane)]->balance().imbalance)) {
+    end_not_finite(s, assembler, *from_alone_, *to_alone_);
+    return false;
+  }
   energy_.set(lane, monitors_[idx(lane)]->balance());
-  now_.set(lane, from_alone_);
-  next_.set(lane, to_alone_);
+  now_.set(lane, *from_alone_);
+  next_.set(lane, *to_alone_);
   LaneMask this_lane{};
   this_lane[lane] = -1;
-  assemblers_[idx(lane)].set_time(steppers_[idx(lane)]->assembler().time());
-  watch_.step(assemblers_, now_, next_, h, state.t, this_lane);
+  assemblers_[idx(lane)].set_time(assembler.time());
+  watch_.step(assemblers_, now_, next_, h, to_alone_->state.t, this_lane);
   std::swap(from_alone_, to_alone_);
   return true;
-}
-
-void Lockstep::fail(int lane, double t, RunStatus status, const std::string& what) {
-  end_run(results_[idx(lane)].summary, systems_[idx(lane)]->name(), t, status, what);
-  finish_lane(lane, t);
 }
 
 /// The lane's result, from what it stands at at time t.

@@ -22,6 +22,8 @@ class Lockstep {
   /// systems: 1 to kLanes of one topology with the same breakpoints, which outlive this.
   Lockstep(const std::vector<const System*>& systems, const TransientOptions& options,
            const std::vector<std::string>& channels);
+  Lockstep(const Lockstep&) = delete;
+  Lockstep& operator=(const Lockstep&) = delete;
 
   /// go_on: called every 100 steps with the part done, 0..1; false interrupts.
   std::vector<VariantResult> run(const std::function<bool(double)>& go_on);
@@ -34,9 +36,7 @@ class Lockstep {
   /// Solves for a, p and the laws at the step's end; adds the lanes that did not converge to failed.
   void solve(double h, double t_evaluate, LaneMask& failed);
   void step_alone(int lane, double h, double t_new, double t_evaluate);
-  bool advance_alone(int lane, double h, double t_new, double t_evaluate, int depth);
   bool accept_alone(int lane, double h);
-  void fail(int lane, double t, RunStatus status, const std::string& what);
   void finish_lane(int lane, double t);
 
   std::array<const System*, kLanes> systems_;
@@ -59,7 +59,8 @@ class Lockstep {
   LaneForces by_;
   LaneRow force_scale_, iterations_, passes_;
   LaneMask alive_{};
-  EvaluatedState from_alone_, to_alone_;
+  std::array<EvaluatedState, 2> points_alone_;
+  EvaluatedState *from_alone_ = &points_alone_[0], *to_alone_ = &points_alone_[1];
   double t_ = 0.0, h_ = 0.0;
   long steps_ = 0, factorizations_ = 0;
 };

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/run/energy_monitor.hpp"
+#include "solvers/run/progress.hpp"
 #include "solvers/run/run_checks.hpp"
+#include "solvers/run/run_verdict.hpp"
+#include "solvers/run/stops.hpp"
 
 namespace drev {
 
@@ -32,7 +34,6 @@ constexpr double kRetreat = 1.0 / 16.0;                             // of the st
 constexpr double kSameTime = 1e-14;                                 // relative to the run's times
 constexpr double kNoProgress = 1e-12;                               // relative to the largest step
 constexpr double kLeastTolerance = 1e-16;                           // a step's own: below it is rounding
-constexpr long kProgressSteps = 100;
 
 class ExactRun {
  public:
@@ -45,7 +46,8 @@ class ExactRun {
         series_(system),
         known_(system),
         laws_(system),
-        smooth_(system) {
+        smooth_(system),
+        progress_(options.progress, options.t_start, options.t_end) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
     summary_.scheme = "exact";
@@ -64,12 +66,13 @@ class ExactRun {
     EnergyMonitor energy(assembler_, now_);
     energy_ = &energy;
     for (Observer* o : observers_) o->start(assembler_, now_);
-    if (!now_.state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
-    while (running() && now_.state.t < options_.t_end) run_to_next_stop();
+    check_start(summary_, system_, now_.state);
+    const Stops stops(system_, options_.t_end, 0.0);
+    while (running() && now_.state.t < options_.t_end) run_to(stops.after(now_.state.t));
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
-    judge_energy();
+    judge_energy(summary_, options_.energy_tolerance);
     return summary_;
   }
 
@@ -78,14 +81,9 @@ class ExactRun {
  private:
   bool running() const { return summary_.status == RunStatus::success; }
 
-  void run_to_next_stop() {
-    const double t = now_.state.t;
-    known_.locate(t, now_.state.z, now_.state.v);
-    const auto& breaks = system_.breakpoints();
-    const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
-    const bool at_break = next_break != breaks.end() && *next_break <= options_.t_end;
-    const double stop = at_break ? *next_break : options_.t_end;
-    while (running() && now_.state.t < stop) step(stop, at_break);
+  void run_to(const Stop& stop) {
+    known_.locate(now_.state.t, now_.state.z, now_.state.v);
+    while (running() && now_.state.t < stop.t) step(stop);
     if (running() && now_.state.t < options_.t_end) restart();
   }
 
@@ -105,25 +103,27 @@ class ExactRun {
   };
 
   /// One step towards the stop; it ends earlier at a change, or where the series ends.
-  void step(double stop, bool at_break) {
+  void step(const Stop& stop) {
     const State& from = now_.state;
-    const double remaining = stop - from.t;
+    const double remaining = stop.t - from.t;
     const End end = find_end(remaining);
+    if (!running()) return;
     const double s = end.s, got = series_.step();
     const bool reaches = s == 1.0 && got == remaining;
-    const double t_new = reaches ? stop : std::min(from.t + s * got, stop);
+    const double t_new = reaches ? stop.t : std::min(from.t + s * got, stop.t);
 
     const EvaluatedState& before = watch(t_new, s);
     State& to = next_.state;
     to.t = t_new;
     to.history = from.history;
     series_.evaluate(s, to.z, to.v);
-    if (!to.z.allFinite() || !to.v.allFinite()) return not_finite(to);
-    const bool ahead_of_break = at_break && t_new == stop;
-    evaluate(next_, ahead_of_break ? std::nextafter(stop, -std::numeric_limits<double>::infinity()) : t_new);
+    const bool ahead_of_break = stop.at_break && t_new == stop.t;
+    evaluate(next_, ahead_of_break ? stop.evaluation_time() : t_new);
     const ProjectedLaws::Work smooth = smooth_.work(series_, s);
     energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
                   series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated);
+    if (!std::isfinite(energy_->balance().imbalance))
+      return end_not_finite(summary_, assembler_, now_, next_);
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
     laws_.forget_roots();
     if (end.change) pass(*end.change, t_new);
@@ -138,9 +138,8 @@ class ExactRun {
     if (t_new > from.t)
       for (Observer* o : observers_) o->step(assembler_, before, next_);
     std::swap(now_, next_);
-    if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-        !options_.progress((now_.state.t - options_.t_start) / (options_.t_end - options_.t_start)))
-      fail(RunStatus::interrupted, "interrupted");
+    if (!progress_.goes_on(summary_.steps, now_.state.t))
+      end_interrupted(summary_, system_.name(), now_.state.t);
   }
 
   /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
@@ -151,6 +150,7 @@ class ExactRun {
     std::optional<LawSeries::Change> cut;
     for (int cuts = 0;; ++cuts) {
       h = expand(h);
+      if (!running()) return {};
       laws_.expand(series_, known_, smooth_);
       if (const auto change = laws_.change_at_once()) {
         pass(*change, now_.state.t);
@@ -210,7 +210,8 @@ class ExactRun {
     }
   }
 
-  /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter.
+  /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 where
+  /// that ends the run.
   double expand(double h) {
     for (;;) {
       const double share =
@@ -224,14 +225,22 @@ class ExactRun {
       if (got > 0.0) growing_step_ = std::min(largest_step_, kGrowth * std::max(got, growing_step_));
       if (got == h) return h;
       growing_step_ = got > 0.0 ? got : kRetreat * h;
-      if (growing_step_ <= kNoProgress * largest_step_)
-        throw SolverError(where(now_.state.t) + "the series does not converge; is a load not finite?");
+      if (growing_step_ <= kNoProgress * largest_step_) return give_up(h);
       if (got > 0.0 && !known_.projects() && smooth_.empty()) {
         known_.shorten(got / h);
         return got;
       }
       h = growing_step_;
     }
+  }
+
+  /// No step is short enough: a force that is not finite in the step of length h ends the run.
+  double give_up(double h) {
+    assembler_.set_time(now_.state.t + h);
+    if (what_is_not_finite(assembler_, now_, now_).empty())
+      throw SolverError(at_time(system_.name(), now_.state.t) + "the series does not converge");
+    end_not_finite(summary_, assembler_, now_, now_);
+    return 0.0;
   }
 
   /// The step that the series holds for, <= h; 0 if its terms overflow.
@@ -281,7 +290,7 @@ class ExactRun {
 
   void count_change(ElementId element, double t) {
     if (++changes_here_ > change_limit_)
-      throw SolverError(where(t) + system_.element_instances()[idx(index(element))].name +
+      throw SolverError(at_time(system_.name(), t) + system_.element_instances()[idx(index(element))].name +
                         " changes its piece to and fro without the motion going on");
   }
 
@@ -305,37 +314,6 @@ class ExactRun {
     series_.solve_mass(rhs_, point.state.a);
   }
 
-  void judge_energy() {
-    if (!running()) return;
-    const EnergyBalance& b = summary_.energy;
-    if (std::abs(b.relative_error()) <= options_.energy_tolerance) return;
-    std::ostringstream text;
-    text << "the energy balance is off by " << b.relative_error()
-         << " of the energy, worst at t = " << b.worst_time << " s; at most " << options_.energy_tolerance
-         << " passes: ask for a smaller tolerance";
-    summary_.status = RunStatus::energy_error;
-    summary_.reason = text.str();
-  }
-
-  void not_finite(const State& state) {
-    for (int k = 0; k < system_.size(); ++k)
-      if (!std::isfinite(state.z[k]) || !std::isfinite(state.v[k]))
-        return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
-  }
-
-  std::string where(double t) const {
-    std::ostringstream text;
-    text.precision(12);
-    text << system_.name() << ": at t = " << t << " s: ";
-    return text.str();
-  }
-
-  void fail(RunStatus status, const std::string& what) {
-    if (!running()) return;
-    summary_.status = status;
-    summary_.reason = where(now_.state.t) + what;
-  }
-
   const System& system_;
   const ExactOptions& options_;
   const std::vector<Observer*>& observers_;
@@ -346,6 +324,7 @@ class ExactRun {
   ProjectedLaws smooth_;
   EvaluatedState now_, next_, inside_[2];
   Vector rhs_;
+  Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;

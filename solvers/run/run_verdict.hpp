@@ -1,14 +1,33 @@
 #pragma once
-/// How runs end: what goes into RunSummary's status and reason. Shared by single runs and runs of many.
+/// How runs end: what goes into RunSummary's status and reason. Shared by stepping, exact propagation and
+/// lockstep: the same fault has the same message in each.
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace drev {
+
+/// "<system>: at t = <t> s: ", where every message about a run begins.
+std::string at_time(const std::string& system, double t);
 
 /// Ends a run, unless it ended before.
 void end_run(RunSummary& summary, const std::string& system, double t, RunStatus status,
              const std::string& what);
+/// Ends a run that its caller stopped.
+void end_interrupted(RunSummary& summary, const std::string& system, double t);
+
+/// What is not finite in a step from -> to: a load or a law's force at the motion before the step and the
+/// assembler's time, else the motion of an unknown at the step's end, each by its name; empty: none of these.
+std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
+                               const EvaluatedState& to);
+/// Ends a run at from's time with the first of these, or with the energy, as not finite.
+void end_not_finite(RunSummary& summary, const Assembler& assembler, const EvaluatedState& from,
+                    const EvaluatedState& to);
+/// Ends a run whose first point has an acceleration that is not finite.
+void check_start(RunSummary& summary, const System& system, const State& state);
+
 /// Ends a run whose energy is not finite as that, another as unstable.
 void end_growing_run(RunSummary& summary, const std::string& system, double t, const EnergyBalance& balance,
                      double growth_limit);
@@ -18,7 +37,7 @@ inline void check_growth(RunSummary& summary, const std::string& system, double 
   const bool grew = balance.imbalance > growth_limit * balance.given && balance.given > 0.0;
   if (grew || !std::isfinite(balance.imbalance)) end_growing_run(summary, system, t, balance, growth_limit);
 }
-/// The verdict on summary.energy of a run that came to its end.
+/// The verdict on summary.energy of a run that came to its end. tolerance: relative to the energy [-].
 void judge_energy(RunSummary& summary, double tolerance);
 
 }  // namespace drev

@@ -6,8 +6,11 @@
 #include <limits>
 
 #include "solvers/run/energy_monitor.hpp"
+#include "solvers/run/progress.hpp"
 #include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
+#include "solvers/run/stops.hpp"
+#include "solvers/stepping/halved_step.hpp"
 #include "solvers/stepping/located_step.hpp"
 #include "solvers/stepping/stability_limit.hpp"
 #include "solvers/stepping/step_control.hpp"
@@ -17,7 +20,6 @@ namespace drev {
 
 namespace {
 
-constexpr long kProgressSteps = 100;
 constexpr double kSameTime = 1e-9;     // relative to the step
 constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
 constexpr double kLargestStep = 0.05;  // of the run
@@ -37,7 +39,8 @@ class Run {
         observers_(observers),
         stepper_(make_stepper(system, options.scheme, step_options(options))),
         equation_(stepper_->equation()),
-        located_(system, *stepper_) {
+        located_(system, *stepper_),
+        progress_(options.progress, options.t_start, options.t_end) {
     now_->state = std::move(state);
     now_->state.t = options.t_start;
     for (EvaluatedState& point : points_) make_room(point, system.size());
@@ -45,7 +48,6 @@ class Run {
     summary_.step = options.step;
     summary_.tolerance = options.tolerance;
     locates_ = options.locate_contacts.value_or(options.tolerance > 0.0);
-    same_ = kSameTime * (options.step > 0.0 ? options.step : kLargestStep * duration());
     if (options.tolerance > 0.0) set_control();
   }
 
@@ -55,8 +57,12 @@ class Run {
     energy_ = &energy;
     for (Observer* o : observers_) o->start(equation_.assembler(), *now_);
     if (control_) control_->look_at(now_->state);
-    if (!now_->state.a.allFinite()) fail(RunStatus::not_finite, "the initial acceleration");
-    while (running() && now_->state.t < options_.t_end) run_to_next_stop();
+    check_start(summary_, system_, now_->state);
+    // Controlled steps pass what observers ask for, and are interpolated there.
+    const Stops stops(system_, options_.t_end,
+                      kSameTime * (options_.step > 0.0 ? options_.step : kLargestStep * duration()),
+                      control_ ? std::vector<Observer*>{} : observers_);
+    while (running() && now_->state.t < options_.t_end) run_to(stops.after(now_->state.t));
     summary_.t_end = now_->state.t;
     summary_.load_passes = equation_.load_passes();
     summary_.factorizations += equation_.factorizations();
@@ -130,83 +136,40 @@ class Run {
     summary_.factorizations = run.factorizations;
   }
 
-  void run_to_next_stop() {
-    const double t = now_->state.t;
-    const auto& breaks = system_.breakpoints();
-    const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
-    double stop = options_.t_end;
-    if (next_break != breaks.end()) stop = std::min(stop, *next_break);
-    if (!control_)
-      for (const Observer* o : observers_) {
-        const double wanted = o->next_stop(t);
-        if (wanted > t + same_) stop = std::min(stop, wanted);
-      }
-    // Stops that differ by rounding are one.
-    if (options_.t_end - stop <= same_) stop = options_.t_end;
-    const bool at_break = next_break != breaks.end() && *next_break - stop <= same_;
-    if (at_break) stop = *next_break;
+  void run_to(const Stop& stop) {
     if (control_ || locates_)
-      while (running() && now_->state.t < stop) free_step(stop, at_break);
+      while (running() && now_->state.t < stop.t) free_step(stop);
     else
-      constant_steps(stop, at_break);
-    if (at_break && running() && now_->state.t < options_.t_end) {
+      constant_steps(stop);
+    if (stop.at_break && running() && now_->state.t < options_.t_end) {
       *next_ = *now_;
       stepper_->start(*now_);
       energy_->restart(*next_, *now_);
     }
   }
 
-  /// Just before a breakpoint the loads have their old values.
-  static double evaluation_time(double t, bool at_break) {
-    return at_break ? std::nextafter(t, -std::numeric_limits<double>::infinity()) : t;
+  auto halved_step() {
+    return HalvedStep(*stepper_, now_, next_, options_.max_halvings, summary_,
+                      [this](double h, double t_evaluate) { return accept(h, t_evaluate); });
   }
 
-  void constant_steps(double stop, bool at_break) {
-    const double t = now_->state.t;
-    const double count = std::max(1.0, std::ceil((stop - t) / options_.step - 1e-6));
-    const double h = (stop - t) / count;
-    for (double i = 1.0; i <= count && running(); i += 1.0) {
-      const bool last = i == count;
-      const double t_new = last ? stop : t + i * h;
-      advance(h, t_new, evaluation_time(t_new, last && at_break), 0);
+  void constant_steps(const Stop& stop) {
+    const EvenSteps steps(now_->state.t, stop.t, options_.step);
+    auto step = halved_step();
+    for (double i = 1.0; i <= steps.count; i += 1.0) {
+      const double t_new = steps.end_of(i);
+      if (!step.make(steps.h, t_new, i == steps.count ? stop.evaluation_time() : t_new)) return;
     }
-  }
-
-  void advance(double h, double t_new, double t_evaluate, int depth) {
-    const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_);
-    summary_.iterations += result.iterations;
-    if (result.status == NewtonStatus::converged) return accept(h, t_evaluate);
-    if (depth == options_.max_halvings) return last_resort(result.status, h, t_new, t_evaluate);
-    ++summary_.halved;
-    const double middle = now_->state.t + 0.5 * h;
-    advance(0.5 * h, middle, middle, depth + 1);
-    if (running()) advance(0.5 * h, t_new, t_evaluate, depth + 1);
-  }
-
-  /// A step that no shortening makes solvable: a force that jumps is taken inside its jump; else the end.
-  void last_resort(NewtonStatus status, double h, double t_new, double t_evaluate) {
-    if (status == NewtonStatus::no_root) {
-      const NewtonResult result = stepper_->step(*now_, h, t_new, t_evaluate, *next_, true);
-      summary_.iterations += result.iterations;
-      if (result.status == NewtonStatus::converged) {
-        summary_.fallbacks += result.inside_jump;
-        return accept(h, t_evaluate);
-      }
-      status = result.status;
-    }
-    if (status == NewtonStatus::not_finite) return fail(RunStatus::not_finite, to_text(status));
-    fail(RunStatus::no_convergence, std::string(to_text(status)) + " even with h = " + to_text(h) + " s");
   }
 
   /// A controlled step, or one that ends at a contact change, or both.
-  void free_step(double stop, bool at_break) {
-    const double remaining = stop - now_->state.t;
-    double h = control_ ? control_->next(remaining)
-                        : remaining / std::max(1.0, std::ceil(remaining / options_.step - 1e-6));
+  void free_step(const Stop& stop) {
+    const double remaining = stop.t - now_->state.t;
+    double h = control_ ? control_->next(remaining) : EvenSteps(now_->state.t, stop.t, options_.step).h;
     for (int i = 0; !control_ && i < failures_; ++i) h *= 0.5;
     const bool whole = h == remaining;
-    const double t_new = whole ? stop : now_->state.t + h;
-    const double t_evaluate = evaluation_time(t_new, whole && at_break);
+    const double t_new = whole ? stop.t : now_->state.t + h;
+    const double t_evaluate = whole ? stop.evaluation_time() : t_new;
     LocatedStep::Result made;
     const bool standing = changes_here_ > 20 + 20 * static_cast<int>(system_.scalars().size());
     if (locates_ && !standing) {
@@ -220,7 +183,8 @@ class Run {
       equation_.start_from(*now_);
       if (failures_ == options_.max_halvings) {
         failures_ = 0;
-        return last_resort(made.newton.status, h, t_new, t_evaluate);
+        halved_step().last_resort(made.newton.status, h, t_new, t_evaluate);
+        return;
       }
       ++failures_;
       ++summary_.halved;
@@ -235,7 +199,7 @@ class Run {
       if (made.h > kStanding * h) changes_here_ = 0;
       accept(made.h, t_end);
     }
-    if (made.reached && running()) pass(*made.reached, made.tau, stop);
+    if (made.reached && running()) pass(*made.reached, made.tau, stop.t);
   }
 
   /// Error and energy of a controlled step; rejects it if it does not pass.
@@ -267,7 +231,8 @@ class Run {
     ++summary_.rejected;
     equation_.start_from(*now_);
     if (h <= kLeastStep * duration() && !std::isfinite(error))
-      fail(RunStatus::not_finite, "the estimated error");
+      end_run(summary_, system_.name(), now_->state.t, RunStatus::not_finite,
+              "the estimated error is not finite");
     return false;
   }
 
@@ -320,28 +285,20 @@ class Run {
     for (Observer* o : observers_) o->step(assembler, *last, *next_);
   }
 
-  void accept(double h, double t_evaluate) {
+  /// Enters the step from now_ to next_ and swaps them; returns whether the run goes on.
+  bool accept(double h, double t_evaluate) {
     ++summary_.steps;
     account(h);
-    if (!std::isfinite(energy_->balance().imbalance)) return not_finite();
+    if (!std::isfinite(energy_->balance().imbalance)) {
+      end_not_finite(summary_, equation_.assembler(), *now_, *next_);
+      return false;
+    }
     observe(h, t_evaluate);
     std::swap(now_, next_);
-    if (options_.progress && summary_.steps % kProgressSteps == 0 &&
-        !options_.progress((now_->state.t - options_.t_start) / duration()))
-      return fail(RunStatus::interrupted, "interrupted");
-    check_growth(summary_, system_.name(), now_->state.t, energy_->balance(), options_.energy_growth_limit);
-  }
-
-  /// A motion that is not finite has no energy.
-  void not_finite() {
-    for (int k = 0; k < system_.size(); ++k)
-      if (!std::isfinite(next_->state.z[k]) || !std::isfinite(next_->state.v[k]))
-        return fail(RunStatus::not_finite, "the motion of " + system_.unknown_name(k));
-    fail(RunStatus::not_finite, "the energy");
-  }
-
-  void fail(RunStatus status, const std::string& what) {
-    end_run(summary_, system_.name(), now_->state.t, status, what);
+    const double t = now_->state.t;
+    if (!progress_.goes_on(summary_.steps, t)) end_interrupted(summary_, system_.name(), t);
+    check_growth(summary_, system_.name(), t, energy_->balance(), options_.energy_growth_limit);
+    return running();
   }
 
   const System& system_;
@@ -355,10 +312,10 @@ class Run {
   EvaluatedState points_[2], inside_[2];
   EvaluatedState *now_ = &points_[0], *next_ = &points_[1];
   Vector e_z_, e_v_;
+  Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   bool locates_ = false;
-  double same_ = 0.0;
   long coarse_solves_ = 0;
   double energy_floor_ = 0.0;  // J
   int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;

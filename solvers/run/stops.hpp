@@ -1,0 +1,45 @@
+#pragma once
+/// Where the steps of a run end: breakpoints of loads and known motions, times that observers ask for, and
+/// the end of the run. Stops that differ by rounding are one.
+#include <drev/core/system.hpp>
+#include <drev/solvers/run/observer.hpp>
+
+#include <vector>
+
+namespace drev {
+
+struct Stop {
+  double t = 0.0;         ///< s
+  bool at_break = false;  ///< loads and known motions may jump here
+  /// Time at which a step that ends here evaluates its end [s]: just before a breakpoint, loads have their
+  /// old values.
+  double evaluation_time() const;
+};
+
+class Stops {
+ public:
+  /// same >= 0: stops within this time of each other are one [s]. observers: whose times are stops, too; they
+  /// outlive this.
+  Stops(const System& system, double t_end, double same, std::vector<Observer*> observers = {});
+  /// The first stop after t.
+  Stop after(double t) const;
+
+ private:
+  const System& system_;
+  double t_end_, same_;
+  std::vector<Observer*> observers_;
+};
+
+/// A span of time in steps of equal length, of the length asked for or (but for rounding) less.
+struct EvenSteps {
+  /// begin < end, longest > 0 [s].
+  EvenSteps(double begin, double end, double longest);
+  /// Where step i of 1 ... count ends [s].
+  double end_of(double i) const { return i == count ? end : begin + i * h; }
+
+  double begin, end;
+  double count;  ///< a whole number
+  double h;      ///< s
+};
+
+}  // namespace drev
