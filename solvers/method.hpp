@@ -1,8 +1,6 @@
 #pragma once
 /// A method in time by its name and its tolerance or step, and running it.
-#include <drev/core/state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
-#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <functional>
 #include <string>
@@ -11,6 +9,9 @@
 namespace drev {
 
 class Observer;
+struct MethodRow;
+class System;
+struct State;
 
 /// The name of exact propagation among the methods.
 inline constexpr const char* kExact = "exact";

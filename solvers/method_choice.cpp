@@ -2,12 +2,13 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/method_choice.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

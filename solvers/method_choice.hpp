@@ -18,6 +18,8 @@
 
 namespace drev {
 
+class System;
+
 struct MethodChoice {
   Method method;
   std::string reason;  ///< one sentence without full stop

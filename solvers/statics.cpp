@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "solvers/contact/sparse_newton.hpp"
+
 namespace drev {
 
 namespace {
@@ -13,7 +15,8 @@ constexpr double kShift = 1e-10;
 
 }  // namespace
 
-StaticSolver::StaticSolver(const System& system) : system_(system), assembler_(system), newton_(system) {
+StaticSolver::StaticSolver(const System& system)
+    : system_(system), assembler_(system), newton_(std::make_unique<SparseNewton>(system)) {
   const std::vector<std::string> floating = system.floating_parts(Contact::closed);
   if (!floating.empty()) {
     std::string names;
@@ -34,6 +37,8 @@ StaticSolver::StaticSolver(const System& system) : system_(system), assembler_(s
         shift_ = std::max(shift_, kShift * closed[s] / system.mass_values()[s]);
 }
 
+StaticSolver::~StaticSolver() = default;
+
 StaticResult StaticSolver::solve(const StaticOptions& options) {
   assembler_.set_time(options.t);
   assembler_.stand_at_angle(options.nominal_angle);
@@ -51,7 +56,7 @@ StaticResult StaticSolver::solve(const StaticOptions& options) {
                                     .history = &history,
                                     .shift = shift_};
   const NewtonResult newton =
-      newton_.solve(assembler_, problem, options.newton, start_, result.state.history);
+      newton_->solve(assembler_, problem, options.newton, start_, result.state.history);
   if (newton.status != NewtonStatus::converged) {
     start_ = zero_;
     throw SolverError(system_.name() + ": no static equilibrium found at the nominal angle " +

@@ -1,17 +1,21 @@
 #pragma once
 /// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle.
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
-#include <drev/solvers/contact/sparse_newton.hpp>
+#include <drev/solvers/contact/newton_options.hpp>
 #include <drev/solvers/run/peaks.hpp>
 
-#include <optional>
+#include <memory>
+#include <vector>
 
 namespace drev {
+
+class SparseNewton;
 
 struct StaticOptions {
   double nominal_angle = 0.0;  ///< rad, of the reference shaft
   double t = 0.0;              ///< s, for loads and known motions that depend on time
-  SparseNewton::Options newton = {};
+  SparseNewtonOptions newton = {};
 };
 
 struct StaticResult {
@@ -25,6 +29,7 @@ class StaticSolver {
   /// Throws SolverError if a part of the model floats even with every contact closed: then there is no
   /// equilibrium, or infinitely many. The message names the parts.
   explicit StaticSolver(const System& system);
+  ~StaticSolver();
 
   /// Throws SolverError, with the angle, if Newton does not converge.
   StaticResult solve(const StaticOptions& options = {});
@@ -34,7 +39,7 @@ class StaticSolver {
  private:
   const System& system_;
   Assembler assembler_;
-  SparseNewton newton_;
+  std::unique_ptr<SparseNewton> newton_;
   Vector start_, zero_;
   double shift_ = 0.0;
 };

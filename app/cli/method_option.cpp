@@ -2,6 +2,7 @@
 
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <optional>
 

@@ -6,6 +6,7 @@
 #include <drev/core/system.hpp>
 #include <drev/models/model_case.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <algorithm>
 

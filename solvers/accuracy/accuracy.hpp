@@ -16,6 +16,7 @@
 /// order: 4), and does not know what both runs miss, e.g. a flank touched and left inside one step of a
 /// method with constant steps.
 #include <drev/core/range.hpp>
+#include <drev/core/system.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 
 #include <limits>

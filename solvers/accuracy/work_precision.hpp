@@ -10,6 +10,7 @@
 /// that choose their own steps end one at each sample while the error is found, and run without samples
 /// while the time is measured. Time: processor time without observers, the least of several runs where a run
 /// is short. Work: linear solves (RunSummary.solves).
+#include <drev/core/system.hpp>
 #include <drev/solvers/method_choice.hpp>
 
 #include <optional>

@@ -1,6 +1,7 @@
 #pragma once
 /// A block of up to kLanes variants run in lockstep: simulate() in lanes.
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <array>
 #include <functional>

@@ -1,6 +1,7 @@
 #include <drev/core/element.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
 
 #include <algorithm>
 #include <atomic>

@@ -9,10 +9,10 @@
 ///
 /// A step that a variant cannot make with the others (Newton needs its line search, or the step must be
 /// halved) it makes by itself, as a single run would.
-#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/core/state.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
-#include <drev/solvers/stepping/transient.hpp>
+#include <drev/solvers/run/run_summary.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -20,6 +20,9 @@
 #include <vector>
 
 namespace drev {
+
+struct ExactOptions;
+struct TransientOptions;
 
 /// Builds variant i. Called from several threads at once, when the variant's turn comes; the System is freed
 /// after its run. What variants share (tables) is best built before and copied: PeriodicTable's copies share

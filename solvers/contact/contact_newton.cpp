@@ -1,4 +1,4 @@
-#include <drev/solvers/contact/contact_newton.hpp>
+#include "solvers/contact/contact_newton.hpp"
 
 #include <algorithm>
 #include <cmath>

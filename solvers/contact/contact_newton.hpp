@@ -7,10 +7,11 @@
 /// (Woodbury). Its potential is strictly convex for non-decreasing laws, so Newton with the exact line
 /// search converges from any start; without it, three meshes in a chain can cycle for ever.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/contact/contact_newton_options.hpp>
-#include <drev/solvers/contact/newton_result.hpp>
+#include <drev/solvers/contact/newton_options.hpp>
 
 #include <Eigen/Dense>
+
+#include "solvers/contact/newton_result.hpp"
 
 namespace drev {
 

@@ -1,4 +1,4 @@
-#include <drev/solvers/contact/sparse_newton.hpp>
+#include "solvers/contact/sparse_newton.hpp"
 
 #include <cmath>
 #include <limits>

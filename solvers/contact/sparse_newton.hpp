@@ -10,11 +10,12 @@
 /// 3.5 ns an unknown of the model) would save half a factorisation (8 ns), and from two on nothing. The same
 /// exact line search as on the contact forces.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/contact/contact_newton.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
-#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <memory>
+
+#include "solvers/contact/contact_newton.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/linear/sparse_lu.hpp"
 
 namespace drev {
 
@@ -31,11 +32,7 @@ class SparseNewton {
  public:
   explicit SparseNewton(const System& system);
 
-  struct Options {
-    int max_iterations = 60;
-    double tolerance = 1e-11;  ///< |R| relative to the largest force in it
-    bool line_search = true;
-  };
+  using Options = SparseNewtonOptions;
 
   /// w: start in, solution out. The assembler must stand at the time of evaluation. history_new: of the
   /// general elements at the solution.

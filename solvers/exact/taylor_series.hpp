@@ -16,12 +16,12 @@
 /// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential
 /// equations by the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 
 #include <array>
 
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/series_kernels.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

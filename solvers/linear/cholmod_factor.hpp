@@ -1,10 +1,10 @@
 #pragma once
 /// Shared by the factorisations of this folder only: the one place that includes cholmod.h.
 /// Holds CHOLMOD's parameters, the analysed factor and the pattern it was analysed for. Silent.
-#include <drev/solvers/linear/sparse_cholesky.hpp>
-
 #include <cholmod.h>
 #include <vector>
+
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

@@ -10,10 +10,10 @@
 ///
 /// Source: T. A. Davis, Direct Methods for Sparse Linear Systems, SIAM 2006, chapters 4 and 6,
 /// doi:10.1137/1.9780898718881.
-#include <drev/solvers/linear/sparse_cholesky.hpp>
-
 #include <memory>
 #include <vector>
+
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

@@ -1,5 +1,6 @@
+#include "solvers/linear/sparse_cholesky.hpp"
+
 #include <drev/core/error.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 
 #include <algorithm>
 #include <cmath>

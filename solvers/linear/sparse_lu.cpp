@@ -1,5 +1,6 @@
+#include "solvers/linear/sparse_lu.hpp"
+
 #include <drev/core/error.hpp>
-#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <algorithm>
 #include <klu.h>

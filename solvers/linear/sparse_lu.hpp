@@ -9,7 +9,7 @@
 ///
 /// Source: T. A. Davis, E. Palamadai Natarajan, Algorithm 907: KLU, ACM TOMS 37(3), 2010,
 /// doi:10.1145/1824801.1824814.
-#include <drev/solvers/linear/sparse_cholesky.hpp>
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

@@ -7,9 +7,9 @@
 /// that of the Rayleigh quotient x' K x / x' M x about eps lambda_max; the smaller of the two is
 /// taken.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
+#include "solvers/linear/sparse_cholesky.hpp"
 #include "solvers/linear/sturm_count.hpp"
 #include "solvers/modes/lanczos.hpp"
 

@@ -13,12 +13,12 @@
 /// by GMRES, d without a matrix. Linear systems need one solve a harmonic. How a law follows its phase node's
 /// deviation is left out of the slopes.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <Eigen/Core>
 #include <complex>
 #include <string>
 
+#include "solvers/linear/sparse_lu.hpp"
 #include "solvers/periodic/load_harmonics.hpp"
 
 namespace drev {

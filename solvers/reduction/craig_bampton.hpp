@@ -2,7 +2,8 @@
 /// The Craig-Bampton basis of a system: static shapes of its kept unknowns and modes with them held.
 /// Internal to reduction.cpp.
 #include <drev/core/system.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
+
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

@@ -3,7 +3,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <limits>
 
 #include "core/dense_eigen.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

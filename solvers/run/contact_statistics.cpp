@@ -1,8 +1,8 @@
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 
 #include <cmath>
 
+#include "solvers/linear/sparse_cholesky.hpp"
 #include "solvers/run/cubic_peak.hpp"
 
 namespace drev {

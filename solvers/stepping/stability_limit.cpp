@@ -2,7 +2,6 @@
 
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/stepping/butcher_tableau.hpp>
 
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <limits>
 
 #include "core/dense_eigen.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 

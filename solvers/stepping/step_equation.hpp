@@ -8,9 +8,6 @@
 /// small correction iterated on the same factor; with many laws, or general elements, the sparse tangent
 /// is factored in each iteration (sparse_newton.hpp). A small S that is used often is inverted: a product
 /// with S^-1 waits for nothing, where a solve with the factor waits for row after row.
-#include <drev/solvers/contact/contact_newton.hpp>
-#include <drev/solvers/contact/sparse_newton.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/stepping/step_options.hpp>
 #include <drev/solvers/stepping/step_scheme.hpp>
@@ -19,7 +16,10 @@
 #include <memory>
 #include <vector>
 
+#include "solvers/contact/contact_newton.hpp"
+#include "solvers/contact/sparse_newton.hpp"
 #include "solvers/linear/matrix_product.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
 #include "solvers/run/run_clock.hpp"
 
 namespace drev {

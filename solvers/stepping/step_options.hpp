@@ -1,6 +1,6 @@
 #pragma once
 /// StepOptions: how the equation of a step is solved (step_equation.hpp).
-#include <drev/solvers/contact/contact_newton_options.hpp>
+#include <drev/solvers/contact/newton_options.hpp>
 
 namespace drev {
 

@@ -4,7 +4,6 @@
 //   build/release/bin/bench_large            "[peaks]" for memory alone, "[modes]" for modes alone
 #include <drev/core/assembler.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
@@ -15,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "solvers/linear/sparse_cholesky.hpp"
 #include "tests/benchmark/large_models.hpp"
 #include "tests/catch.hpp"
 

@@ -5,6 +5,7 @@
 #include <drev/core/system.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -2,12 +2,12 @@
 // Plain Newton may still cycle for ever, from three gaps in a chain or four in a loop on; with one or
 // two gaps and on a star of gaps about a hub it cannot. With the exact line search it never does.
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/contact/contact_newton.hpp>
-#include <drev/solvers/contact/sparse_newton.hpp>
 
 #include <cmath>
 #include <random>
 
+#include "solvers/contact/contact_newton.hpp"
+#include "solvers/contact/sparse_newton.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

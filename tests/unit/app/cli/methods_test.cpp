@@ -2,6 +2,7 @@
 // it. Every row is tried with each of them.
 #include <drev/core/error.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <algorithm>
 #include <sstream>

@@ -5,6 +5,8 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <atomic>
 #include <cmath>

@@ -1,15 +1,16 @@
 // Newton at dead zones. The minimal example that cycles: ground - m1 - m2 - m3 in a chain of three gaps,
 // A = diag(5, 1, 200), k = (500, 200, 50), half gaps (0.1, 0.1, 0.5), P = (8, -2, -5).
-// Covers solvers/contact/contact_newton_options.hpp, newton_result.hpp and line_search.hpp with the
+// Covers solvers/contact/newton_options.hpp, newton_result.hpp and line_search.hpp with the
 // iteration that uses them.
+#include "solvers/contact/contact_newton.hpp"
+
 #include <drev/core/law_element.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/contact/contact_newton.hpp>
-#include <drev/solvers/contact/sparse_newton.hpp>
 
 #include <cmath>
 #include <random>
 
+#include "solvers/contact/sparse_newton.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -1,8 +1,8 @@
 /// Factorisations: what they must refuse, and solutions against a dense solver.
 // Covers solvers/linear/cholmod_factor.hpp and low_fill_factor.hpp, between which SparseCholesky chooses.
+#include "solvers/linear/sparse_cholesky.hpp"
+
 #include <drev/core/error.hpp>
-#include <drev/solvers/linear/sparse_cholesky.hpp>
-#include <drev/solvers/linear/sparse_lu.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <limits>
 #include <unistd.h>
 
+#include "solvers/linear/sparse_lu.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -4,6 +4,8 @@
 #include <drev/core/law_element.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <functional>
 #include <regex>
