@@ -21,7 +21,7 @@
 ///   limited       the damper's force is limited to the spring's: y = k p + c x_dot, but between 0
 ///                 and 2 k p on the front flank (mirrored behind). Continuous at the edge, without
 ///                 a parameter of its own. (Modelica Standard Library,
-///                 Mechanics.Rotational.Components.ElastoBacklash2.)
+///                 Mechanics.Rotational.Components.ElastoBacklash.)
 ///   contact_only  c_eff = c in contact: the force jumps by c x_dot where the flanks meet. Never
 ///                 pulls. A discrete step can then be left without a solution.
 ///   always        y = k p + c x_dot everywhere, in the gap too, and may pull. The law of the

@@ -14,7 +14,7 @@
 using namespace drev;
 
 TEST_CASE("Case 7: backlash with a damper that never pulls (Modelica Standard Library)") {
-  // The library's ElastoBacklash2 limits the damper to the spring's force. h = 5e-6 s is small enough.
+  // The library's ElastoBacklash limits the damper to the spring's force. h = 5e-6 s is small enough.
   const double step = 5e-6, tolerance = 1e-6;
   const System system = backlash_oscillator(50.0, kPi / 4);
   Recorder recorder(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 0.05);
