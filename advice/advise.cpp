@@ -206,7 +206,7 @@ class Ladder {
     full_rung_.cost = 1.0;
     full_rung_.difference_error = full_rung_.error / scale();
     full_rung_.evidence = evidence_.of_full(full_estimate_.watched);
-    advice_.statistic = full_estimate_.statistic;
+    advice_.statistic = full_estimate_.kind == Estimate::Kind::interval;
   }
 
   /// Fills in value, error and cost.

@@ -115,17 +115,16 @@ void as_statistic(const System& system, const FigureOptions& o, const Run& first
     if (run.failure.empty()) values.push_back(run.value);
   }
   const auto n = static_cast<int>(values.size());
-  const MeanInterval m = batch_mean(values, n);
-  e.statistic = true;
-  e.value = m.mean;
-  e.error = m.half_width * std::sqrt(n + 1.0);  // of one more run, not of the mean
+  static_cast<Estimate&>(e) = batch_mean(values, n);
+  e.error *= std::sqrt(n + 1.0);  // of one more run, not of the mean
   for (const double value : values) e.error = std::max(e.error, std::abs(value - e.value));
 }
 
 /// The estimate with one method; fails where a run takes longer than most_seconds.
 FigureEstimate estimate_with(const System& system, const Method& first, const FigureOptions& o,
                              double most_seconds) {
-  FigureEstimate e{.method = first};
+  FigureEstimate e;
+  e.method = first;
   // Contacts let small differences of the state grow without bound.
   const bool contacts = contact_count(system) > 0, constant = first.tolerance == 0.0;
   double before = 0.0;  // the last difference: one of constant steps may be small by chance
@@ -170,7 +169,8 @@ FigureEstimate estimate_figure(const System& system, const FigureOptions& o) {
   if (const double seconds = kSecondsOfWork * choice.exact_work; seconds > kWorthAsking) {
     const FigureEstimate stepped = estimate_with(system, {.name = "sdirk4", .step = o.t_end / kFirstSteps}, o,
                                                  std::min(seconds, o.most_seconds));
-    if (stepped.failure.empty() && !stepped.statistic && stepped.error <= o.accuracy * stepped.value)
+    if (stepped.failure.empty() && stepped.kind == Estimate::Kind::estimate &&
+        stepped.error <= o.accuracy * stepped.value)
       return stepped;
   }
   method.tolerance = std::clamp(kFirstOfExact * o.accuracy, kLeastTolerance, 1e-4);

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/run/estimate.hpp"
+
 namespace drev {
 
 struct FigureOptions {
@@ -27,10 +29,9 @@ struct FigureOptions {
   std::vector<std::string> watch = {};  ///< further channels, of which the range over the run is noted
 };
 
-struct FigureEstimate {
-  double value = 0.0, error = 0.0;  ///< of the channels' unit; of a run with `method`
-  bool statistic = false;           ///< mean and 95 % interval of one run
-  Method method = {};               ///< the cheapest tried that keeps the error
+/// Of the channels' unit, of a run with `method`. Of kind interval: mean and 95 % interval of one run.
+struct FigureEstimate : Estimate {
+  Method method = {};  ///< the cheapest tried that keeps the error
   std::vector<Peak> watched = {};
   std::string failure = {};  ///< why there is no value; empty: there is one
 };

@@ -8,15 +8,12 @@ namespace drev {
 
 namespace {
 
-struct SteadyPeak {
-  double value = 0.0, error = 0.0;
-};
-
-SteadyPeak steady_peak(const System& system, const FigureOptions& figure, double turns) {
+/// Largest |value| of the channels in steady motion.
+Estimate steady_peak(const System& system, const FigureOptions& figure, double turns) {
   const PeriodicResponse response =
       solve_periodic(system, {.tolerance = figure.accuracy, .channels = figure.channels, .turns = turns});
   if (!response.found) throw SolverError(response.reason);
-  SteadyPeak steady;
+  Estimate steady;
   for (const Peak& peak : response.peaks) steady.value = std::max(steady.value, peak.amplitude());
   steady.error = response.error * steady.value;
   return steady;
@@ -34,15 +31,16 @@ double Recipe::run() const {
 FigureEstimate Recipe::estimate() {
   const System system = build();
   find_channels(system, figure.channels);
+  FigureEstimate e;
   if (turns) {
     try {
-      const SteadyPeak steady = steady_peak(system, figure, *turns);
-      return {.value = steady.value, .error = steady.error};
+      static_cast<Estimate&>(e) = steady_peak(system, figure, *turns);
     } catch (const SolverError& error) {
-      return {.failure = error.what()};
+      e.failure = error.what();
     }
+    return e;
   }
-  FigureEstimate e = estimate_figure(system, figure);
+  e = estimate_figure(system, figure);
   method = e.method;
   return e;
 }

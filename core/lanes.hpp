@@ -48,6 +48,8 @@ struct LaneValues {
 /// Of either kind of LaneValues' entries, in loops written for both.
 [[gnu::always_inline]] inline const double& each(const double& x) { return x; }
 [[gnu::always_inline]] inline const Lanes& each(const LaneRow& x) { return x.v; }
+[[gnu::always_inline]] inline double& each(double& x) { return x; }
+[[gnu::always_inline]] inline Lanes& each(LaneRow& x) { return x.v; }
 
 /// Smallest multiple of kLanes that is not less than n.
 constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
@@ -60,6 +62,7 @@ constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 [[gnu::always_inline]] inline void magnitude(Lanes& x) {
   x = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(x) & std::numeric_limits<std::int64_t>::max());
 }
+[[gnu::always_inline]] inline void magnitude(double& x) { x = __builtin_fabs(x); }
 /// most = max(most, |x|).
 [[gnu::always_inline]] inline void larger(Lanes& most, const Lanes& x) {
   Lanes size = x;
@@ -71,6 +74,13 @@ constexpr int whole_lanes(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
   LaneMask m = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3);
   m |= __builtin_shufflevector(m, m, 2, 3, 0, 1, 2, 3, 0, 1);
   return (m[0] | m[1]) != 0;
+}
+// For code that is compiled for one double and for lanes.
+[[gnu::always_inline]] inline bool any(bool mask) { return mask; }
+/// to = value in these lanes.
+template <class Number, class Mask>
+[[gnu::always_inline]] inline void put_where(const Mask& lanes, const Number& value, Number& to) {
+  to = lanes ? value : to;
 }
 
 }  // namespace drev

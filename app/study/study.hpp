@@ -6,24 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "solvers/run/estimate.hpp"
+
 namespace drev::app {
 
-/// A value with its error.
-struct Known {
-  double value = 0.0;
-  double error = 0.0;
-  bool interval = false;  ///< the error is the half-width of a 95 % confidence interval, else an estimate
-};
-
 /// "1.2769", with at most six digits, as many as the error leaves.
-std::string known_text(const Known& known);
+std::string estimate_text(const Estimate& known);
 
 struct StudyRow {
   std::string source;  ///< "Table 5.5"
   std::string name, unit;
   std::string published = {};       ///< as printed
   std::string at_source_step = {};  ///< drev's, average acceleration at 1 ms
-  std::optional<Known> converged = {};
+  std::optional<Estimate> converged = {};
   std::string note = {};
 };
 

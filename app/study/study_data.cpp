@@ -16,7 +16,7 @@ namespace drev::app {
 namespace {
 
 constexpr double kFrequencyRounding =
-    1e-11;  // relative, of a frequency (solvers/modes.hpp) and what follows from it
+    1e-11;  // relative, of a frequency (solvers/modes/modes.hpp) and what follows from it
 
 constexpr double kNear = 5e-4;  // of critical: what 1 % may be off
 
@@ -26,7 +26,9 @@ double first_frequency(int cylinders, const char* drive) {
   return solve_modes(model_case.model.build(), {.count = 1}).omega(0);
 }
 
-Known exact(double value) { return {value, kFrequencyRounding * std::abs(value)}; }
+Estimate exact(double value) {
+  return {value, kFrequencyRounding * std::abs(value), Estimate::Kind::measured};
+}
 
 double ratio_at(double omega, double a, double b) { return a / (2.0 * omega) + b * omega / 2.0; }
 
@@ -67,7 +69,7 @@ void gears(StudyTable& table) {
   for (const auto& gear : published::kGears) {
     const double teeth = gear.base_diameter / (gear.module * cosine);
     table.rows.push_back({"Table 4.1", std::string(gear.name) + ", teeth", "", std::to_string(gear.teeth),
-                          "-", Known{teeth, 0.0005 / (gear.module * cosine)},
+                          "-", Estimate{teeth, 0.0005 / (gear.module * cosine), Estimate::Kind::bound},
                           "from the printed base diameter, known to 0.0005 mm"});
   }
 }
@@ -79,7 +81,8 @@ void mesh_stiffness(StudyTable& table) {
     const double k = mesh.moment / base_radius / mesh.deflection;
     // Moment and deflection are printed to four digits.
     const double error = k * (0.05 / mesh.moment + 5e-10 / mesh.deflection);
-    table.rows.push_back({"Table 4.2", mesh.name, "N/m", printed(mesh.stiffness), "-", Known{k, error},
+    table.rows.push_back({"Table 4.2", mesh.name, "N/m", printed(mesh.stiffness), "-",
+                          Estimate{k, error, Estimate::Kind::bound},
                           "printed " + percent(mesh.stiffness, k) + ": force at the pitch radius"});
   }
 }

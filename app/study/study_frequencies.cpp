@@ -78,7 +78,7 @@ StudyGroup study_frequencies() {
       const double f = modes.frequency_Hz[at];
       StudyRow row{"-",          std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1),
                    "Hz",         "-",
-                   "-",          Known{f, kModeError * f},
+                   "-",          Estimate{f, kModeError * f, Estimate::Kind::measured},
                    "not printed"};
       if (printed != published::kFreeModes.end()) {
         double mbs = printed->mbs[at], fem = printed->fem[at];

@@ -42,7 +42,7 @@ std::string off_balance(const CamshaftFigures& f) {
 }
 
 std::string settled(const CamshaftCase& c) {
-  return "settled " + with_error(c.known(&CamshaftFigures::settled_deflection), "deg");
+  return "settled " + with_error(c.estimate(&CamshaftFigures::settled_deflection), "deg");
 }
 
 void add_rows(StudyTable& table, const std::string& source, const std::string& name, const CamshaftCase& c,
@@ -52,17 +52,17 @@ void add_rows(StudyTable& table, const std::string& source, const std::string& n
                         settled(c) + off_balance(c.source[0])});
   table.rows.push_back({source, name + ", torque", "N m", torque, c.step_cell(&CamshaftFigures::torque),
                         c.torque(),
-                        "settled " + with_error(c.known(&CamshaftFigures::settled_torque), "N m")});
+                        "settled " + with_error(c.estimate(&CamshaftFigures::settled_torque), "N m")});
 }
 
 void add_contacts(StudyTable& table, const published::GearDrive& p, const std::string& name,
                   const CamshaftCase& c) {
   const std::string source = std::string("Table ") + p.table;
   table.rows.push_back({source, name + ", impacts on the front flank", "", std::to_string(p.front),
-                        c.step_cell(&CamshaftFigures::front), c.known(&CamshaftFigures::front),
+                        c.step_cell(&CamshaftFigures::front), c.estimate(&CamshaftFigures::front),
                         "both meshes, 5 s"});
   table.rows.push_back({source, name + ", impacts on the back flank", "", std::to_string(p.back),
-                        c.step_cell(&CamshaftFigures::back), c.known(&CamshaftFigures::back), ""});
+                        c.step_cell(&CamshaftFigures::back), c.estimate(&CamshaftFigures::back), ""});
   table.rows.push_back({source,
                         name + ", iterations",
                         "",
@@ -142,7 +142,7 @@ StudyGroup study_gear_drive() {
       calm{.name = "converged, settled", .markers = true};
   known.x = calm.x = {0.0};
   known.y = {s.tight.deflection().value};
-  calm.y = {s.tight.known(&CamshaftFigures::settled_deflection).value};
+  calm.y = {s.tight.estimate(&CamshaftFigures::settled_deflection).value};
   for (std::size_t i = 0; i < published::kBacklash.size(); ++i) {
     const auto& p = published::kBacklash[i];
     const CamshaftCase& c = s.gaps[i];
@@ -153,7 +153,7 @@ StudyGroup study_gear_drive() {
     source.y.push_back(p.deflection);
     stepped.y.push_back(c.at_step(&CamshaftFigures::deflection));
     known.y.push_back(c.deflection().value);
-    calm.y.push_back(c.known(&CamshaftFigures::settled_deflection).value);
+    calm.y.push_back(c.estimate(&CamshaftFigures::settled_deflection).value);
   }
   backlash.rows.push_back({"Figure 5.19", "0.15 mm, 8 cylinders, deflection", "deg", "-",
                            s.eight.step_cell(&CamshaftFigures::deflection), s.eight.deflection(),

@@ -11,7 +11,7 @@ struct GearStudy {
   CamshaftCase undamped, case_2, corrected, varying, eight;
   std::vector<CamshaftCase> gaps;   ///< case 1, each of published::kBacklash
   CamshaftFigures varying_at_step;  ///< no backlash, case 1, stepped stiffness, at the source's step
-  Known growth;                     ///< of free motion in that case [1/s]
+  Estimate growth;                  ///< of free motion in that case [1/s]
   double first_8 = 0.0;             ///< Hz, first mode of 8 cylinders with the drive
   const CamshaftCase& gap() const { return gaps[1]; }  ///< 0.15 mm, case 1
 };
@@ -19,6 +19,6 @@ struct GearStudy {
 std::vector<std::string> gear_verdicts(const GearStudy& study);
 
 /// "1.2769 +- 2.3e-11 deg".
-std::string with_error(const Known& known, const std::string& unit);
+std::string with_error(const Estimate& known, const std::string& unit);
 
 }  // namespace drev::app

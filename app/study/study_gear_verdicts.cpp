@@ -9,20 +9,22 @@ namespace drev::app {
 
 namespace {
 
-std::string change(const Known& of, const Known& over) { return percent(of.value, over.value); }
+std::string change(const Estimate& of, const Estimate& over) { return percent(of.value, over.value); }
 
 /// Differs by more than a tenth.
-bool far(const Known& of, const Known& over) { return std::abs(of.value / over.value - 1.0) > 0.1; }
+bool far(const Estimate& of, const Estimate& over) { return std::abs(of.value / over.value - 1.0) > 0.1; }
 
 }  // namespace
 
-std::string with_error(const Known& k, const std::string& unit) {
-  return known_text(k) + " +- " + short_digits(k.error, 2) + " " + unit;
+std::string with_error(const Estimate& k, const std::string& unit) {
+  return estimate_text(k) + " +- " + short_digits(k.error, 2) + " " + unit;
 }
 
 std::vector<std::string> gear_verdicts(const GearStudy& s) {
   const auto &constant = published::kStiffness[0], &varying = published::kStiffness[1];
-  const auto settled_of = [](const CamshaftCase& c) { return c.known(&CamshaftFigures::settled_deflection); };
+  const auto settled_of = [](const CamshaftCase& c) {
+    return c.estimate(&CamshaftFigures::settled_deflection);
+  };
   const CamshaftCase& widest = s.gaps.back();
   const auto rise = [](double wide, double narrow) { return wide / narrow - 1.0; };
   const double printed_rise =
@@ -79,8 +81,8 @@ std::vector<std::string> gear_verdicts(const GearStudy& s) {
           with_error(settled_of(s.varying), "deg") + " against " + with_error(settled_of(s.gap()), "deg") +
           " with constant stiffness (" + change(settled_of(s.varying), settled_of(s.gap())) +
           "), the settled torque " +
-          change(s.varying.known(&CamshaftFigures::settled_torque),
-                 s.gap().known(&CamshaftFigures::settled_torque)) +
+          change(s.varying.estimate(&CamshaftFigures::settled_torque),
+                 s.gap().estimate(&CamshaftFigures::settled_torque)) +
           std::string(". ") +
           (far(settled_of(s.varying), settled_of(s.gap()))
                ? "**It is needed with gaps, too.**"
@@ -89,21 +91,22 @@ std::vector<std::string> gear_verdicts(const GearStudy& s) {
           " The inertias of crank gear and idler are typical values: the speeds of instability are "
           "those of this drive, not of the builder's.",
       "**Does damping suppress the hammering?** Impacts on the front flank in 5 s: undamped " +
-          known_text(s.undamped.known(&CamshaftFigures::front)) + ", case 1 " +
-          known_text(s.gap().known(&CamshaftFigures::front)) + ", case 2 " +
-          known_text(s.case_2.known(&CamshaftFigures::front)) + ", case 3 corrected " +
-          known_text(s.corrected.known(&CamshaftFigures::front)) + "; settled torque " +
-          cell(s.undamped.known(&CamshaftFigures::settled_torque).value) + ", " +
-          cell(s.gap().known(&CamshaftFigures::settled_torque).value) + ", " +
-          cell(s.case_2.known(&CamshaftFigures::settled_torque).value) + " and " +
-          cell(s.corrected.known(&CamshaftFigures::settled_torque).value) + std::string(" N m. ") +
-          (s.gap().known(&CamshaftFigures::front).value < s.undamped.known(&CamshaftFigures::front).value
+          estimate_text(s.undamped.estimate(&CamshaftFigures::front)) + ", case 1 " +
+          estimate_text(s.gap().estimate(&CamshaftFigures::front)) + ", case 2 " +
+          estimate_text(s.case_2.estimate(&CamshaftFigures::front)) + ", case 3 corrected " +
+          estimate_text(s.corrected.estimate(&CamshaftFigures::front)) + "; settled torque " +
+          cell(s.undamped.estimate(&CamshaftFigures::settled_torque).value) + ", " +
+          cell(s.gap().estimate(&CamshaftFigures::settled_torque).value) + ", " +
+          cell(s.case_2.estimate(&CamshaftFigures::settled_torque).value) + " and " +
+          cell(s.corrected.estimate(&CamshaftFigures::settled_torque).value) + std::string(" N m. ") +
+          (s.gap().estimate(&CamshaftFigures::front).value <
+                   s.undamped.estimate(&CamshaftFigures::front).value
                ? "**It stands.**"
                : "**It does not stand.**") +
           " The published counts are off by " +
-          percent(published::kGearDrive[0].front, s.undamped.known(&CamshaftFigures::front).value) +
+          percent(published::kGearDrive[0].front, s.undamped.estimate(&CamshaftFigures::front).value) +
           " undamped and " +
-          percent(published::kGearDrive[1].front, s.gap().known(&CamshaftFigures::front).value) +
+          percent(published::kGearDrive[1].front, s.gap().estimate(&CamshaftFigures::front).value) +
           " in case 1."};
 }
 

@@ -32,8 +32,8 @@ ParameterValues held(int cylinders, const char* damping) {
   return {{"cylinders", std::to_string(cylinders)}, {"drive", "held"}, {"damping", damping}};
 }
 
-Known over(const Known& known, double divisor) {
-  return {known.value / divisor, known.error / divisor, known.interval};
+Estimate over(const Estimate& known, double divisor) {
+  return {known.value / divisor, known.error / divisor, known.kind};
 }
 
 /// One cylinder count: all its rows, and what the verdicts need.
@@ -63,7 +63,7 @@ Shaft rows(const published::Transient& p, const CamshaftCase* cases, double at_r
     const bool in_table = d < kPrinted;
     const std::string source = in_table ? d == 0 ? table + ", Table 5.8" : "Table 5.8" : "-";
     const std::string name = kDampings[d].name;
-    const Known factor = over(c.torque(), at_rest);
+    const Estimate factor = over(c.torque(), at_rest);
     const double factor_at_step = c.at_step(&CamshaftFigures::torque) / at_rest;
     shaft.at_step.push_back(factor_at_step);
     shaft.converged.push_back(factor.value);
@@ -82,7 +82,7 @@ Shaft rows(const published::Transient& p, const CamshaftCase* cases, double at_r
   }
   shaft.table.rows.push_back(
       {table, "static torque", "N m", cell(p.torque / p.amplification[0]), cell(slow),
-       Known{at_rest, 1e-9 * at_rest},
+       Estimate{at_rest, 1e-9 * at_rest},
        "published: torque over amplification; at 1 ms: turning at 15 rpm, as the source has it"});
   shaft.table.rows.push_back({table,
                               "undamped, iterations",
@@ -104,7 +104,7 @@ int add_orders(const published::Transient& p, const std::string& source, StudyTa
     const auto [twist, n] = orders[static_cast<std::size_t>(i)];
     const double amplitude = to_deg(twist);
     table.rows.push_back({source, "case 1, steady deflection, order " + std::to_string(n), "deg",
-                          "curve only", "-", Known{amplitude, 1e-9 * amplitude},
+                          "curve only", "-", Estimate{amplitude, 1e-9 * amplitude},
                           digits(n * published::kEngineRpm / 120.0, 5) + " Hz"});
   }
   return orders[0].second;

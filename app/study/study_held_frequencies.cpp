@@ -97,7 +97,7 @@ StudyGroup study_held_frequencies() {
                                              : "Figure A.10",
                             std::to_string(cylinders) + " cylinders, mode " + std::to_string(m + 1), "Hz",
                             in_text ? printed(published::kHeldFirst8) : "-", digits(stepped[at], 5),
-                            Known{f, kModeError * f},
+                            Estimate{f, kModeError * f, Estimate::Kind::measured},
                             "by the step's formula " + digits(by_step[at], 5) + ", exact motion's spectrum " +
                                 digits(exact[at], 5) + (f > 0.5 / h ? " (folded)" : "")});
     }

@@ -6,18 +6,16 @@
 #include <drev/solvers/statics.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <future>
 #include <map>
 #include <mutex>
-#include <thread>
 
 #include "app/base/interrupt.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/run/run_computation.hpp"
 #include "models/camshaft/published.hpp"
+#include "solvers/run/for_all.hpp"
 
 namespace drev::app {
 
@@ -31,26 +29,10 @@ constexpr std::size_t kStepRuns = 8;
 }  // namespace
 
 void for_all(std::size_t count, const std::function<void(std::size_t)>& task) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < count;) try {
-        if (interrupted()) throw SolverError("interrupted");
-        task(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-      }
-  };
-  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> pool;
-    for (std::size_t i = 1; i < std::min(threads, count); ++i) pool.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  drev::for_all(count, 0, [&task](std::size_t i, std::size_t) {
+    if (interrupted()) throw SolverError("interrupted");
+    task(i);
+  });
 }
 
 Method source_method() { return {.name = "average_acceleration", .step = published::kStep}; }
@@ -145,7 +127,7 @@ CamshaftFigures run_camshaft(const ParameterValues& parameters, const Method& me
   }
 }
 
-Known CamshaftCase::known(Member member) const {
+Estimate CamshaftCase::estimate(Member member) const {
   if (!statistic) return from_two(exact[0].*member, exact[1].*member, kFine);
   std::vector<double> values;
   for (const CamshaftFigures& run : exact) values.push_back(run.*member);
@@ -201,12 +183,11 @@ double static_torque(const ModelCase& model_case) {
   return largest;
 }
 
-Known mean_of(const std::vector<double>& values) {
-  const MeanInterval mean = batch_mean(values, static_cast<int>(values.size()));
-  return {mean.mean, mean.half_width, true};
+Estimate mean_of(const std::vector<double>& values) {
+  return batch_mean(values, static_cast<int>(values.size()));
 }
 
-Known from_two(double coarse, double fine, double tolerance) {
+Estimate from_two(double coarse, double fine, double tolerance) {
   return {fine, 2.0 * std::abs(fine - coarse) + std::max(tolerance, 1e-14) * std::abs(fine)};
 }
 

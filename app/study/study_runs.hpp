@@ -69,9 +69,9 @@ struct CamshaftCase {
   std::vector<CamshaftFigures> source, exact;
   bool statistic = false;  ///< starts 1e-9 rad apart; else one run at the step, two tolerances
   using Member = double CamshaftFigures::*;
-  Known known(Member member) const;
-  Known deflection() const { return known(&CamshaftFigures::deflection); }
-  Known torque() const { return known(&CamshaftFigures::torque); }
+  Estimate estimate(Member member) const;
+  Estimate deflection() const { return estimate(&CamshaftFigures::deflection); }
+  Estimate torque() const { return estimate(&CamshaftFigures::torque); }
   /// At the source's step, mean of the runs; and as a cell of a table, with their range.
   double at_step(Member member) const;
   std::string step_cell(Member member) const;
@@ -87,9 +87,9 @@ std::vector<CamshaftCase> run_cases(const std::vector<ParameterValues>& cases, i
 double static_torque(const ModelCase& model_case);
 
 /// Mean of values with its 95 % interval (Student's t).
-Known mean_of(const std::vector<double>& values);
+Estimate mean_of(const std::vector<double>& values);
 /// fine, with twice its difference from coarse, and rounding.
-Known from_two(double coarse, double fine, double tolerance);
+Estimate from_two(double coarse, double fine, double tolerance);
 
 /// Relative, of solve_modes(): the worst measured (solvers/modes.hpp).
 inline constexpr double kModeError = 5e-12;

@@ -14,7 +14,8 @@ constexpr std::size_t kWidth = 110;
 std::string error_text(const StudyRow& row) {
   if (!row.converged) return "-";
   if (!std::isfinite(row.converged->error)) return "unknown";
-  return short_digits(row.converged->error, 2) + (row.converged->interval ? " (95 %)" : "");
+  return short_digits(row.converged->error, 2) +
+         (row.converged->kind == Estimate::Kind::interval ? " (95 %)" : "");
 }
 
 std::string cell_text(std::string text) {
@@ -28,7 +29,7 @@ std::string table_text(const StudyTable& table) {
                      "| source | quantity | unit | published | drev at 1 ms | converged | error | note |\n"
                      "|---|---|---|---|---|---|---|---|\n";
   for (const StudyRow& row : table.rows) {
-    const std::string converged = row.converged ? known_text(*row.converged) : "-";
+    const std::string converged = row.converged ? estimate_text(*row.converged) : "-";
     text += "|";
     for (const std::string& item : {row.source, row.name, row.unit, row.published, row.at_source_step,
                                     converged, error_text(row), row.note})
@@ -53,7 +54,7 @@ std::string paragraph(const std::string& text) {
 
 }  // namespace
 
-std::string known_text(const Known& known) {
+std::string estimate_text(const Estimate& known) {
   const double size = std::abs(known.value);
   int places = 6;
   if (known.error > 0.0 && size > 0.0 && std::isfinite(known.error))

@@ -164,7 +164,7 @@ class AccurateRun {
       error = std::max(error, kSafety * kLeastOrder * before);
       before = std::abs(coarse - fine);
     }
-    result_.figures.push_back({name, unit, fine, error, std::abs(scale)});
+    result_.figures.push_back({{fine, error}, name, unit, std::abs(scale)});
   }
 
   double error_of(double coarse, double fine, double scale, double t) const {
@@ -209,15 +209,17 @@ class AccurateRun {
            error_of(a[same].t, b[same].t, b[same].t, b[same].t) <= o_.accuracy * b[same].t)
       ++same;
     const double count = static_cast<double>(same);
-    result_.figures.push_back({"contact changes, comparable", "", count, 0.0, std::max(1.0, count)});
+    result_.figures.push_back({{count, 0.0}, "contact changes, comparable", "", std::max(1.0, count)});
     if (same > 0) {
       add("first contact change", "s", a[0].t, b[0].t, b[0].t, b[0].t);
       add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t, b[same - 1].t);
     }
     if (result_.horizon <= o_.t_end) return;
     const double all = static_cast<double>(b.size());
-    result_.figures.push_back({"contact changes", "", all,
-                               kSafety * std::abs(all - static_cast<double>(a.size())), std::max(1.0, all)});
+    result_.figures.push_back({{all, kSafety * std::abs(all - static_cast<double>(a.size()))},
+                               "contact changes",
+                               "",
+                               std::max(1.0, all)});
   }
 
   /// Whole cycles at the end of the run, as many as fit into its last half or else into the run.
@@ -274,8 +276,8 @@ class AccurateRun {
 
   std::string unit_of_deflection() const { return find_channel(system_, o_.deflection).unit(); }
 
-  void add_statistic(const std::string& name, const std::string& unit, const MeanInterval& m) {
-    result_.figures.push_back({name, unit, m.mean, m.half_width, std::abs(m.mean), Figure::Kind::interval});
+  void add_statistic(const std::string& name, const std::string& unit, const Estimate& mean) {
+    result_.figures.push_back({mean, name, unit, std::abs(mean.value)});
   }
 
   /// Replaces what cannot be compared by statistics, and adds the time averages.

@@ -23,6 +23,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/run/estimate.hpp"
+
 namespace drev {
 
 struct AccuracyOptions {
@@ -38,20 +40,8 @@ struct AccuracyOptions {
   std::function<bool(double)> progress = {};
 };
 
-struct Figure {
-  enum class Kind {
-    estimate,  ///< error estimated from two runs
-    interval   ///< statistic, with the half-width of its 95 % confidence interval
-  };
-  std::string name, unit;
-  double value = 0.0, error = 0.0;
-  double scale = 0.0;  ///< that the accuracy is relative to
-  Kind kind = Kind::estimate;
-  bool keeps(double accuracy) const { return error <= accuracy * scale; }
-};
-
 struct AccuracyResult {
-  std::vector<Figure> figures;
+  std::vector<Figure> figures;  ///< of kind estimate, from two runs, or interval, of a statistic
   /// Every estimate keeps the accuracy and nothing had to be given as a statistic.
   bool reached = false;
   std::string reason;  ///< why not

@@ -53,9 +53,10 @@ State neighbour(const System& system, int i, double z_scale, double v_scale) {
   return state;
 }
 
-MeanInterval batch_mean(const std::vector<double>& samples, int batches) {
+Estimate batch_mean(const std::vector<double>& samples, int batches) {
   const std::size_t n = samples.size(), count = std::min(static_cast<std::size_t>(batches), n);
-  if (count < 2) return {n == 1 ? samples[0] : 0.0, std::numeric_limits<double>::infinity()};
+  if (count < 2)
+    return {n == 1 ? samples[0] : 0.0, std::numeric_limits<double>::infinity(), Estimate::Kind::interval};
   std::vector<double> means;
   for (std::size_t b = 0; b < count; ++b) {
     const std::size_t begin = b * n / count, end = (b + 1) * n / count;
@@ -67,7 +68,8 @@ MeanInterval batch_mean(const std::vector<double>& samples, int batches) {
   const double k = static_cast<double>(count);
   for (const double m : means) mean += m / k;
   for (const double m : means) squares += (m - mean) * (m - mean);
-  return {mean, student(static_cast<int>(count) - 1) * std::sqrt(squares / (k - 1.0) / k)};
+  return {mean, student(static_cast<int>(count) - 1) * std::sqrt(squares / (k - 1.0) / k),
+          Estimate::Kind::interval};
 }
 
 double ErrorGrowth::time_of(double factor) const {
@@ -141,8 +143,8 @@ ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions&
     result.t.push_back(end);
     result.growth.push_back(std::exp(largest));
   }
-  const MeanInterval rate = batch_mean(rates);
-  result.rate = rate.mean, result.rate_error = rate.half_width;
+  const Estimate rate = batch_mean(rates);
+  result.rate = rate.value, result.rate_error = rate.error;
   return result;
 }
 

@@ -12,6 +12,8 @@
 #include <drev/core/state.hpp>
 #include <drev/solvers/method_choice.hpp>
 
+#include "solvers/run/estimate.hpp"
+
 namespace drev {
 
 struct ErrorGrowthOptions {
@@ -43,11 +45,8 @@ ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions&
 /// The model's initial state and beside it 1e-9 of the scales, in the i-th of arbitrary directions.
 State neighbour(const System& system, int i, double z_scale, double v_scale);
 
-/// Mean of samples in order of time with the half-width of its 95 % confidence interval, by the means of
-/// batches and Student's t. infinity with less than two samples.
-struct MeanInterval {
-  double mean = 0.0, half_width = 0.0;
-};
-MeanInterval batch_mean(const std::vector<double>& samples, int batches = 20);
+/// Mean of samples in order of time, with its 95 % confidence interval by the means of batches and Student's t.
+/// The interval is infinite with less than two samples.
+Estimate batch_mean(const std::vector<double>& samples, int batches = 20);
 
 }  // namespace drev

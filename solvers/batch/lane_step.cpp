@@ -1,8 +1,9 @@
 #include "solvers/batch/lane_step.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <type_traits>
+
+#include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {
 
@@ -24,9 +25,7 @@ struct Product {
       return;
     }
     out = Lanes{};
-    const int* const end = inner + outer[i + 1];
-    const T* value = values + outer[i];
-    for (const int* j = inner + outer[i]; j != end; ++j) out += each(*value++) * x[*j].v;
+    add_row_product(outer, inner, values, x, i, out);
   }
 };
 
@@ -172,16 +171,24 @@ void LanePoint::set(int lane, const EvaluatedState& point) {
   }
 }
 
+namespace {
+/// f(x, y) for every number of two balances.
+template <class A, class B, class F>
+void for_each_number(A& a, B& b, const F& f) {
+  f(a.start, b.start), f(a.kinetic, b.kinetic), f(a.stored, b.stored), f(a.input, b.input);
+  f(a.dissipated, b.dissipated), f(a.imbalance, b.imbalance), f(a.worst_imbalance, b.worst_imbalance);
+  f(a.worst_time, b.worst_time), f(a.given, b.given), f(a.scale, b.scale);
+}
+}  // namespace
+
 EnergyBalance LaneEnergy::get(int lane) const {
-  return {kinetic.v[lane], stored.v[lane],     input.v[lane], dissipated.v[lane], imbalance.v[lane],
-          worst.v[lane],   worst_time.v[lane], given.v[lane], scale.v[lane]};
+  EnergyBalance balance;
+  for_each_number(*this, balance, [lane](const LaneRow& from, double& to) { to = from.v[lane]; });
+  return balance;
 }
 
-void LaneEnergy::set(int lane, const EnergyBalance& b) {
-  kinetic.v[lane] = b.kinetic, stored.v[lane] = b.stored;
-  input.v[lane] = b.input, dissipated.v[lane] = b.dissipated;
-  imbalance.v[lane] = b.imbalance, worst.v[lane] = b.worst_imbalance, worst_time.v[lane] = b.worst_time;
-  given.v[lane] = b.given, scale.v[lane] = b.scale;
+void LaneEnergy::set(int lane, const EnergyBalance& balance) {
+  for_each_number(*this, balance, [lane](LaneRow& to, double from) { to.v[lane] = from; });
 }
 
 namespace {
@@ -378,28 +385,8 @@ void finish(const LaneMatrices& m, const StepScheme& c, double h, double t, cons
     stored += to.laws.energy[j].v;
     larger(largest, to.laws.y[j].v);
   }
-  LaneEnergy& b = energy;
-  const Lanes input = b.input.v + work + extra_input.v, dissipated = b.dissipated.v + loss;
-  const Lanes all = kinetic + stored;
-  const Lanes imbalance = all - b.start.v - input + dissipated;
-  Lanes given = b.given.v;
-  larger(given, input);
-  given = given < dissipated ? dissipated : given;
-  Lanes scale = b.scale.v < given ? given : b.scale.v;
-  scale = scale < all ? all : scale;
-  Lanes size = imbalance < 0.0 ? -imbalance : imbalance;
-  good &= size <= std::numeric_limits<double>::max();
-  const Lanes worst_so_far = b.worst.v < 0.0 ? -b.worst.v : b.worst.v;
-  const LaneMask worse = good & (size > worst_so_far);
-  b.worst.v = worse ? imbalance : b.worst.v;
-  b.worst_time.v = worse ? Lanes{} + t : b.worst_time.v;
-  b.kinetic.v = good ? kinetic : b.kinetic.v;
-  b.stored.v = good ? stored : b.stored.v;
-  b.input.v = good ? input : b.input.v;
-  b.dissipated.v = good ? dissipated : b.dissipated.v;
-  b.imbalance.v = good ? imbalance : b.imbalance.v;
-  b.given.v = good ? given : b.given.v;
-  b.scale.v = good ? scale : b.scale.v;
+  const Lanes input = energy.input.v + work + extra_input.v, dissipated = energy.dissipated.v + loss;
+  enter_step(energy, kinetic, stored, input, dissipated, t, good);
   force_scale.v = good ? largest : force_scale.v;
 }
 

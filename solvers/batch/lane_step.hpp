@@ -36,8 +36,7 @@ struct LanePoint {
 };
 
 /// EnergyBalance in lanes.
-struct LaneEnergy {
-  LaneRow start, kinetic, stored, input, dissipated, imbalance, worst, worst_time, given, scale;
+struct LaneEnergy : Balance<LaneRow> {
   EnergyBalance get(int lane) const;
   void set(int lane, const EnergyBalance& balance);
 };

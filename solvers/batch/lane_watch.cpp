@@ -60,41 +60,17 @@ struct LaneWatchKernels {
   }
 
   DREV_WIDEST static void peak(LaneWatch::Watched& c, const LaneRow& value, double t, const LaneMask& lanes) {
-    const LaneMask above = lanes & (value.v > c.max.v), below = lanes & (value.v < c.min.v);
-    if (!any(above | below)) return;
-    c.max.v = above ? value.v : c.max.v;
-    c.max_time.v = above ? Lanes{} + t : c.max_time.v;
-    c.min.v = below ? value.v : c.min.v;
-    c.min_time.v = below ? Lanes{} + t : c.min_time.v;
+    c.peak.note(value.v, t, lanes);
   }
 
-  /// contact_statistics.cpp in lanes. True: a lane passes an edge, its impacts are to be seen to.
+  /// True: a lane passes an edge, its impacts are to be seen to.
   DREV_WIDEST static bool contact(LaneWatch::Contact& c, const LanePointLaws& from, const LanePointLaws& to,
                                   double h, double t, const LaneMask& lanes) {
     const auto j = static_cast<std::size_t>(c.law);
-    const Lanes x_0 = from.x[j].v, x_1 = to.x[j].v, c_low = c.low.v, c_high = c.high.v;
-    const LaneMask above_0 = x_0 > c_high, above_1 = x_1 > c_high;
-    const LaneMask below_0 = x_0 < c_low, below_1 = x_1 < c_low;
     Lanes size = to.y[j].v;
     magnitude(size);
-    if (const LaneMask more = lanes & (size > c.force.v); any(more)) {
-      c.force.v = more ? size : c.force.v;
-      c.force_time.v = more ? Lanes{} + t : c.force_time.v;
-    }
-    c.largest.v = (lanes & (size > c.largest.v)) ? size : c.largest.v;
-    const LaneMask outside = above_0 | below_0;
-    if (!any(lanes & ((above_0 ^ above_1) | (below_0 ^ below_1)))) {  // each stays where it was
-      c.apart.v += (lanes & ~outside) ? Lanes{} + h : Lanes{};
-      return false;
-    }
-    const Lanes one = Lanes{} + 1.0;
-    const Lanes low = x_0 < x_1 ? x_0 : x_1, high = x_0 < x_1 ? x_1 : x_0;
-    Lanes inside = (high < c_high ? high : c_high) - (low > c_low ? low : c_low);
-    inside = inside > 0.0 ? inside : Lanes{};
-    const LaneMask stands = high == low;
-    const Lanes share = stands ? (outside ? Lanes{} : one) : inside / (stands ? one : high - low);
-    c.apart.v += lanes ? h * share : Lanes{};
-    return true;
+    note_force(c.totals, size, t, lanes, c.largest);
+    return note_time_apart(c.totals, c.low.v, c.high.v, from.x[j].v, to.x[j].v, h, lanes);
   }
 };
 
@@ -122,14 +98,14 @@ void LaneWatch::value(const Watched& c, const std::vector<Assembler>& assemblers
 
 void LaneWatch::start(const std::vector<Assembler>& assemblers, const LanePoint& point, double t) {
   for (Watched& c : watched_) {
-    value(c, assemblers, point, t, c.max);
-    c.min = c.max;
-    c.max_time.v = c.min_time.v = Lanes{} + t;
+    value(c, assemblers, point, t, c.peak.max);
+    c.peak.min = c.peak.max;
+    c.peak.max_time.v = c.peak.min_time.v = Lanes{} + t;
   }
   for (Contact& c : contacts_)
     for (int lane = 0; lane < kLanes; ++lane) {
-      c.force.v[lane] = std::abs(point.laws.y[idx(c.law)].v[lane]);
-      c.force_time.v[lane] = t;
+      c.totals.largest_force.v[lane] = std::abs(point.laws.y[idx(c.law)].v[lane]);
+      c.totals.largest_force_time.v[lane] = t;
     }
 }
 
@@ -159,8 +135,10 @@ void LaneWatch::cross(Contact& c, const LanePointLaws& from, const LanePointLaws
 
 std::vector<Peak> LaneWatch::peaks(int lane) const {
   std::vector<Peak> all;
-  for (const Watched& c : watched_)
-    all.push_back({c.max.v[lane], c.max_time.v[lane], c.min.v[lane], c.min_time.v[lane]});
+  for (const Watched& c : watched_) {
+    const Extremes<LaneRow>& p = c.peak;
+    all.push_back({{p.max.v[lane], p.max_time.v[lane], p.min.v[lane], p.min_time.v[lane]}});
+  }
   return all;
 }
 
@@ -170,9 +148,9 @@ std::vector<ContactRecord> LaneWatch::contacts(int lane) const {
     const System& system = *systems_[idx(lane)];
     ContactRecord r = c.records[idx(lane)];
     r.element = system.element_instances()[idx(index(system.scalars()[idx(c.law)].element))].name;
-    r.time_apart = c.apart.v[lane];
-    r.largest_force = c.force.v[lane];
-    r.largest_force_time = c.force_time.v[lane];
+    r.time_apart = c.totals.time_apart.v[lane];
+    r.largest_force = c.totals.largest_force.v[lane];
+    r.largest_force_time = c.totals.largest_force_time.v[lane];
     all.push_back(std::move(r));
   }
   return all;

@@ -30,11 +30,12 @@ class LaneWatch {
     int law = -1;
     std::vector<int> z, v;
     LaneArray z_coeff, v_coeff;
-    LaneRow max, max_time, min, min_time;
+    Extremes<LaneRow> peak;
   };
   struct Contact {
     int law = 0;
-    LaneRow low, high, apart, force, force_time;
+    LaneRow low, high;
+    ContactTotals<LaneRow> totals;
     LaneRow largest;  // of the contact at hand
     std::array<bool, kLanes> met{};
     std::array<double, kLanes> masses{};

@@ -121,8 +121,6 @@ void Lockstep::start(double t, bool first) {
     force_scale_.v[lane] = std::max<double>(force_scale_.v[lane], largest_force(point));
     if (first) {
       monitors_.push_back(std::make_unique<EnergyMonitor>(stepper.assembler(), point));
-      const EnergyBalance& b = monitors_.back()->balance();
-      energy_.start.v[lane] = b.kinetic + b.stored;
     } else {
       monitors_[idx(lane)]->restore(energy_.get(lane));
       monitors_[idx(lane)]->restart(*from_alone_, point);
@@ -280,8 +278,7 @@ bool Lockstep::accept_alone(int lane, double h) {
   RunSummary& s = results_[idx(lane)].summary;
   const Assembler& assembler = steppers_[idx(lane)]->assembler();
   ++s.steps;
-  monitors_[idx(lane)]->step(*from_alone_, *to_alone_, h);
-  if (!std::isfinite(monitors_[idx(lane)]->balance().imbalance)) {
+  if (!monitors_[idx(lane)]->step(*from_alone_, *to_alone_, h)) {
     end_not_finite(s, assembler, *from_alone_, *to_alone_);
     return false;
   }

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "solvers/batch/lockstep.hpp"
+#include "solvers/run/for_all.hpp"
 
 namespace drev {
 
@@ -90,24 +89,16 @@ class Many {
     if (first_) topology_.emplace(*first_);
     result_.variants.resize(count_);
     const std::size_t blocks = (count_ + block - 1) / block;
-    std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
-                                               : std::max(1u, std::thread::hardware_concurrency());
-    threads = std::min(threads, blocks);
-    parts_ = std::vector<std::atomic<double>>(threads);
-    std::vector<std::thread> others;
-    const auto work = [&](std::size_t thread) {
-      for (std::size_t b; !stop_ && (b = next_.fetch_add(1)) < blocks;) {
-        try {
-          run_block(thread, b * block, std::min(count_, (b + 1) * block), runner);
-        } catch (...) {
-          keep_exception();
-        }
+    parts_ = std::vector<std::atomic<double>>(thread_count(blocks, options_.threads));
+    for_all(blocks, options_.threads, [&](std::size_t b, std::size_t thread) {
+      if (stop_) return;
+      try {
+        run_block(thread, b * block, std::min(count_, (b + 1) * block), runner);
+      } catch (...) {
+        stop_ = true;  // the blocks beside it, too
+        throw;
       }
-    };
-    for (std::size_t thread = 1; thread < threads; ++thread) others.emplace_back(work, thread);
-    work(0);
-    for (std::thread& thread : others) thread.join();
-    if (exception_) std::rethrow_exception(exception_);
+    });
     if (stop_) {
       result_.interrupted = true;
       for (VariantResult& v : result_.variants)
@@ -207,12 +198,6 @@ class Many {
     return !stop_;
   }
 
-  void keep_exception() {
-    const std::lock_guard lock(mutex_);
-    if (!exception_) exception_ = std::current_exception();
-    stop_ = true;
-  }
-
   struct TopologyError final : ModelError {
     using ModelError::ModelError;
   };
@@ -225,10 +210,9 @@ class Many {
   std::optional<Topology> topology_;
   ManyResult result_;
   std::vector<std::atomic<double>> parts_;  // of the variants that each thread runs, how many are done
-  std::atomic<std::size_t> next_ = 0, finished_ = 0;
+  std::atomic<std::size_t> finished_ = 0;
   std::atomic<bool> stop_ = false;
   std::mutex mutex_;
-  std::exception_ptr exception_;
 };
 
 template <class Options>

@@ -120,9 +120,8 @@ class ExactRun {
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     evaluate(next_, ahead_of_break ? stop.evaluation_time() : t_new);
     const ProjectedLaws::Work smooth = smooth_.work(series_, s);
-    energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
-                  series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated);
-    if (!std::isfinite(energy_->balance().imbalance))
+    if (!energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
+                       series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated))
       return end_not_finite(summary_, assembler_, now_, next_);
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
     laws_.forget_roots();
@@ -256,27 +255,27 @@ class ExactRun {
     bool settled = false;
     const bool projects = known_.projects() || !smooth_.empty();
     // Each pass needs to be no better than the next one takes up of it.
-    double tolerance = projects ? std::clamp(share / gain_, share, kLoosest) : share;
+    double tolerance = projects ? std::clamp(share / contraction_, share, kLoosest) : share;
     for (int pass = 0;; ++pass) {
       const bool last = !projects || settled;
       const double got = series_.expand(from.z, from.v, h, last ? share : tolerance);
       if (got < h || last) return got;
       if (pass == kMaxPasses) return 0.5 * h;
       const double kinks = kProjected * share / std::max(projected_, share);
-      const LoadSeries::Change change =
+      const LoadSeries::Pass made =
           known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
       // In the shortest steps what is left is a jump that no one told of, or rounding.
-      if (change.rest > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
+      if (made.residual > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
         // Nearly always a law's knot in the step: a step to just behind it, which find_end() then cuts.
         const auto knot = smooth_.first_knot(series_, kBeforeEnd);
         if ((to_knot_ = knot && *knot > kAtStart)) return h * *knot * (1.0 + kBehindKnot);
-        return h * std::max(0.2, kShorten * std::pow(share / change.rest, 1.0 / kProjectionTerms));
+        return h * std::max(0.2, kShorten * std::pow(share / made.residual, 1.0 / kProjectionTerms));
       }
-      if (pass == 0) projected_ = change.size;
-      gain_ = std::max(change.gain, 1e-300);
-      // What this pass was off by comes back in the next one times the gain.
-      settled = std::max(change.size, tolerance) * change.gain <= std::max(share, kSettled);
-      tolerance = std::clamp(0.5 * share / gain_, share, kLoosest);
+      if (pass == 0) projected_ = made.change;
+      contraction_ = std::max(made.contraction, 1e-300);
+      // What this pass was off by comes back in the next one times the contraction factor.
+      settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kSettled);
+      tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
     }
   }
 
@@ -329,7 +328,7 @@ class ExactRun {
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
   bool to_knot_ = false;  // try_step()'s answer leads to a law's knot
-  double gain_ = 1.0,
+  double contraction_ = 1.0,
          projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
   int changes_here_ = 0, change_limit_ = 0;
 };

@@ -13,7 +13,7 @@ constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
 // What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
-// The same behind a kink, times its gain: the rest swings about zero there.
+// The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
@@ -141,13 +141,13 @@ double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k)
 double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
   if (loads_.empty()) return 0.0;
   kinks_.clear();
-  double gain = 0.0;
+  double contraction = 0.0;
   ranges_.resize(idx(3 * stride_));
   double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
   for (Linear& l : loads_) {
     l.watched = false;
-    l.gain = 0.0;
+    l.contraction = 0.0;
     l.ahead = l.stretch;
     l.ahead_angle_0 = l.angle_0;
     const auto row = idx(l.row);
@@ -185,17 +185,17 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
       l.ahead = next;
       l.ahead_angle_0 = bound;
     }
-    if (l.feedback) l.gain = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
-    gain = std::max(gain, l.gain);
+    if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
+    contraction = std::max(contraction, l.contraction);
   }
   kinks_.add_to(projection_, tolerance);
-  return gain;
+  return contraction;
 }
 
 double LoadSeries::project_smooth(const TaylorSeries& series) {
   if (smooth_.empty()) return 0.0;
   const GaussRule& rule = gauss_rule();
-  double gain = 0.0;
+  double contraction = 0.0;
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
     series.evaluate(rule.s[q], z_, v_);
     assembler_.set_time(t_ + h_ * rule.s[q]);
@@ -203,16 +203,16 @@ double LoadSeries::project_smooth(const TaylorSeries& series) {
       const LoadResponse at_node = assembler_.load(*l.term, z_, v_);
       projection_.add_node(q, l.row, l.coeff * (at_node.torque - l.torque));
       const double move = l.coeff * l.coeff * series.mobility(l.row);
-      gain = std::max(gain, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
-                                    h_ * std::abs(at_node.dtorque_dspeed)));
+      contraction = std::max(contraction, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
+                                                  h_ * std::abs(at_node.dtorque_dspeed)));
     }
   }
   assembler_.set_time(t_);
-  return gain;
+  return contraction;
 }
 
-LoadSeries::Change LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
-                                       double tolerance) {
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
+                                     double tolerance) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -220,11 +220,11 @@ LoadSeries::Change LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws
     std::swap(last_, projection_);
   }
   projection_.clear();
-  Change change;
-  change.gain = std::max(find_kinks(series, tolerance), project_smooth(series));
+  Pass pass;
+  pass.contraction = std::max(find_kinks(series, tolerance), project_smooth(series));
   if (!laws.empty()) {
     of_loads_ = projection_;
-    change.gain = std::max(change.gain, laws.project(series, projection_));
+    pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
   const auto note = [&](int row) {
     double size = 0.0;
@@ -233,7 +233,7 @@ LoadSeries::Change LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws
     const double move = series.reach(row) * h_;
     const auto kind = idx(row < series.size() ? series.kind(row) : 0);
     const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
-    if (size > 0.0) change.size = std::max(change.size, move * size / scale);
+    if (size > 0.0) pass.change = std::max(pass.change, move * size / scale);
     return scale > 0.0 ? move / scale : 0.0;
   };
   const auto tail = [&](int row) {
@@ -241,21 +241,21 @@ LoadSeries::Change LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws
            std::abs(projection_.coefficient(kProjectionDegree - 1, row));
   };
   const auto note_rest = [&](int row) {
-    change.rest = std::max(change.rest, kPathRest * tail(row) * note(row));
+    pass.residual = std::max(pass.residual, kPathRest * tail(row) * note(row));
   };
   // A kink is projected along a path that lacks the rest itself.
   for (const Linear& l : loads_)
-    change.rest = std::max(change.rest, kKinkRest * l.gain * tail(l.row) * note(l.row));
+    pass.residual = std::max(pass.residual, kKinkRest * l.contraction * tail(l.row) * note(l.row));
   for (const Smooth& l : smooth_) note_rest(l.row);
   for (const int row : laws.rows()) note_rest(row);
-  if (change.size == 0.0) return change;
+  if (pass.change == 0.0) return pass;
   projected_ = true;
   with_laws_ = !laws.empty();
   degree_ = kProjectionDegree;
   for (int k = 0; k < 3; ++k) std::copy_n(base_.data() + k * stride_, stride_, series.right_side(k));
   projection_.add_powers(3, series.right_side(0));
   series.set_right_degree(kProjectionDegree);
-  return change;
+  return pass;
 }
 
 void LoadSeries::shorten(double r) {

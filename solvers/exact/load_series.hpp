@@ -31,15 +31,20 @@ class LoadSeries {
   /// False: no load can differ from what add_to() adds.
   bool projects() const { return !loads_.empty() || !smooth_.empty(); }
 
-  /// What project() found, relative to the largest deflection and speed.
-  struct Change {
-    double size = 0.0;  ///< of the motion, by what the forces' projection changed; 0: nothing to project
-    double gain = 0.0;  ///< of that which comes back by the next projection: below 1 it settles
-    double rest = 0.0;  ///< of the motion, by what no polynomial of the projection's degree holds
+  /// One pass of the fixed-point iteration between the forces' projection and the path that they lead to.
+  /// Relative to the largest deflection and speed [-].
+  struct Pass {
+    /// Of the motion, by what this pass changed of the forces' projection; 0: nothing to project.
+    double change = 0.0;
+    /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated from
+    /// the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
+    double contraction = 0.0;
+    /// Of the motion, by what no polynomial of the projection's degree holds of the forces.
+    double residual = 0.0;
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. tolerance: relative, of the kinks' moments.
-  Change project(TaylorSeries& series, ProjectedLaws& laws, bool first, double tolerance);
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, double tolerance);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// The step became r h; only where nothing was projected.
@@ -70,7 +75,7 @@ class LoadSeries {
     double t_0 = 0.0, angle_0 = 0.0;                   // where `stretch` gives its torque
     double ahead_angle_0 = 0.0;                        // the same of `ahead`
     double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
-    double gain = 0.0;                                 // of its kinks in this step: Change::gain
+    double contraction = 0.0;                          // by its kinks in this step: Pass::contraction
     bool watched = false;                              // its angle may turn back in this step
   };
   struct Smooth : Place {

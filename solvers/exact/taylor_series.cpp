@@ -8,12 +8,13 @@
 
 #include "core/lanes.hpp"
 #include "solvers/exact/series_kernels.hpp"
+#include "solvers/linear/extreme_eigenvalue.hpp"
+#include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {
 
 namespace {
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
-constexpr int kPowerIterations = 60;
 constexpr double kEigenvalueMargin = 1.1;
 constexpr double kEnergyPart = 0.01;  // of the tolerance: terms that energies do without, 1e-13 to 1e-9
 constexpr double kShorten = 0.9;      // of the step at which the last terms are just small enough
@@ -128,7 +129,7 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
     const int* inner = system_.pattern().innerIndexPtr();
     for (int row = 0; row < n_; ++row) {
       double sum = 0.0;
-      for (int s = outer[row]; s < outer[row + 1]; ++s) sum += values[idx(s)] * x[inner[s]];
+      add_row_product(outer, inner, values.data(), x, row, sum);
       out[row] -= factor * sum;
     }
     return;
@@ -172,20 +173,13 @@ void TaylorSeries::widen(int row, double k, double c) {
 }
 
 double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
-  // Power iteration; what it lacks after some iterations is in the margin.
-  Vector x(n_), product(n_);
-  for (int i = 0; i < n_; ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.0 * i);
-  double largest = 0.0;
-  for (int i = 0; i < kPowerIterations; ++i) {
-    std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
-    std::copy_n(x.data(), n_, z_.data() + pad_);
-    subtract_product(values, false, z_.data() + pad_, -1.0, solve_in_.data());
-    solve_mass(solve_in_, product);
-    largest = product.norm();
-    if (!(largest > 0.0)) return 0.0;
-    x = product / largest;
-  }
-  return kEigenvalueMargin * largest;
+  // What the iteration lacks after its steps is in the margin.
+  return kEigenvalueMargin * extreme_eigenvalue(n_, [&](const Vector& x, Vector& product) {
+           std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
+           std::copy_n(x.data(), n_, z_.data() + pad_);
+           subtract_product(values, false, z_.data() + pad_, -1.0, solve_in_.data());
+           solve_mass(solve_in_, product);
+         });
 }
 
 TaylorSeries::Norm TaylorSeries::norm(const double* x) const {

@@ -33,9 +33,8 @@ MatrixProduct::MatrixProduct(const SparseMatrix& pattern, const Vector& values)
 }
 
 double MatrixProduct::row(const Vector& x, int i) const {
-  const int *outer = pattern_.outerIndexPtr(), *inner = pattern_.innerIndexPtr();
   double sum = 0.0;
-  for (int s = outer[i]; s < outer[i + 1]; ++s) sum += values_[s] * x[inner[s]];
+  add_row_product(pattern_.outerIndexPtr(), pattern_.innerIndexPtr(), values_.data(), x.data(), i, sum);
   return sum;
 }
 

@@ -15,6 +15,12 @@ struct Band {
   int offset = 0;  ///< >= 0
   Vector values;
 };
+/// out += row i of A x, A by rows on a pattern. Values and numbers: double, or LaneRow for kLanes of each.
+template <class Value, class Number, class Sum>
+[[gnu::always_inline]] inline void add_row_product(const int* outer, const int* inner, const Value* values,
+                                                   const Number* x, int i, Sum& out) {
+  for (int s = outer[i]; s < outer[i + 1]; ++s) out += each(values[s]) * each(x[inner[s]]);
+}
 /// What a step adds to the energy balance, and what is stored at its end [J].
 struct StepWork {
   double input = 0.0;       ///< sum (z_1 - z_0) (p_0 + p_1)/2

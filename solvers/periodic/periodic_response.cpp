@@ -61,7 +61,7 @@ Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& 
 
 /// Largest and smallest value of a channel: at the samples, and of the cubic between them.
 Peak peak_of(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& rate, double h) {
-  Peak p{y[0], 0.0, y[0], 0.0};
+  Peak p{{y[0], 0.0, y[0], 0.0}};
   for (Eigen::Index s = 0; s < y.size(); ++s) {
     const Eigen::Index next = (s + 1) % y.size();
     const double t = h * static_cast<double>(s);

@@ -55,8 +55,8 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
     if (!run.ok())
       return refuse(std::string("its trial ended with ") + to_text(run.status) + ": " + run.reason);
     trial.error = 0.0;
-    for (const ReductionErrorEstimate& e : left_out.estimates())
-      if (e.relative() >= *trial.error) trial.error = e.relative(), trial.channel = e.channel;
+    for (const Figure& f : left_out.estimates())
+      if (f.relative() >= *trial.error) trial.error = f.relative(), trial.channel = f.name;
     const bool pieces = std::any_of(system.scalars().begin(), system.scalars().end(),
                                     [](const auto& s) { return s.force->pieces().size() != 1; });
     double growth = 1.0;

@@ -151,7 +151,7 @@ void TruncationError::watch(const Assembler& assembler, const EvaluatedState& po
   }
 }
 
-std::vector<ReductionErrorEstimate> TruncationError::estimates() const {
+std::vector<Figure> TruncationError::estimates() const {
   const double factor = watched_.size() > asked_ ? kOfContacts : kOfLinear;
   const auto error = [&](const Watched& w) { return factor * (w.all + (all_followed_ ? 0.0 : w.upper)); };
   // Forces of laws by the roots of their energies, F^2/k.
@@ -164,10 +164,10 @@ std::vector<ReductionErrorEstimate> TruncationError::estimates() const {
     largest = std::max(largest, w.peak / std::sqrt(k));
   }
   const double of_laws = largest > 0.0 ? worst / largest : 0.0;
-  std::vector<ReductionErrorEstimate> all;
+  std::vector<Figure> all;
   for (std::size_t i = 0; i < asked_; ++i) {
     const Watched& w = watched_[i];
-    all.push_back({w.name, w.peak, std::max(error(w), of_laws * w.peak)});
+    all.push_back({{w.peak, std::max(error(w), of_laws * w.peak)}, w.name, w.channel->unit(), w.peak});
   }
   return all;
 }

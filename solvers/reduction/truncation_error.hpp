@@ -20,14 +20,9 @@
 #include <string>
 #include <vector>
 
-namespace drev {
+#include "solvers/run/estimate.hpp"
 
-struct ReductionErrorEstimate {
-  std::string channel;
-  double peak = 0.0;   ///< largest |value| of the reduced run, at the points seen; the channel's unit
-  double error = 0.0;  ///< estimate of the largest error over the run; the channel's unit
-  double relative() const { return peak > 0.0 ? error / peak : 0.0; }
-};
+namespace drev {
 
 /// Shares of modes, columns over the unknowns, in a channel: value = sum z_j e_j + v_j e_j', for a law's
 /// force times its slopes. False for channels that are no deviation, rate, shaft's torque, force or
@@ -49,7 +44,9 @@ class TruncationError final : public Observer {
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override { return false; }  // modal_shares() refuses what does
 
-  std::vector<ReductionErrorEstimate> estimates() const;
+  /// Of each channel the largest |value| of the reduced run at the points seen, which is its scale, too, with
+  /// the estimate of the largest error over the run; of the channel's name and unit.
+  std::vector<Figure> estimates() const;
 
  private:
   struct Watched {

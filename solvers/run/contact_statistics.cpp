@@ -7,18 +7,6 @@
 
 namespace drev {
 
-namespace {
-
-/// Part of a step from x0 to x1 (linear) that lies inside the gap [-].
-double share_apart(double x0, double x1, const Gap& gap) {
-  const double low = std::min(x0, x1), high = std::max(x0, x1);
-  const double inside = std::min(high, gap.high) - std::max(low, gap.low);
-  if (high == low) return low >= gap.low && low <= gap.high ? 1.0 : 0.0;
-  return std::max(0.0, inside) / (high - low);
-}
-
-}  // namespace
-
 std::vector<double> equivalent_masses(const System& system) {
   std::vector<double> all(system.scalars().size(), 0.0);
   SparseCholesky mass;
@@ -69,7 +57,7 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : 
     terms_.push_back(j);
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
-    records_.push_back({.element = system.element_instances()[idx(index(term.element))].name});
+    records_.emplace_back().element = system.element_instances()[idx(index(term.element))].name;
   }
   intervals_.resize(terms_.size());
 }
@@ -88,20 +76,14 @@ void ContactStatistics::step(const Assembler& /*assembler*/, const EvaluatedStat
     const std::size_t j = terms_[i];
     const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
     const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
-    note_force(i, r1.y, to.state.t);
+    double& largest = intervals_[i].largest;
+    note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
     if (inside_steps_)
       if (const auto peak = cubic_peak(r0.y, r0.dy_dx * a.x_dot, r1.y, r1.dy_dx * b.x_dot, h))
-        note_force(i, peak->value, from.state.t + peak->s * h);
-    records_[i].time_apart += h * share_apart(a.x, b.x, gaps_[i]);
-    note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
+        note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
+    if (note_time_apart(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
+      note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
   }
-}
-
-void ContactStatistics::note_force(std::size_t i, double y, double t) {
-  intervals_[i].largest = std::max(intervals_[i].largest, std::abs(y));
-  if (std::abs(y) <= records_[i].largest_force) return;
-  records_[i].largest_force = std::abs(y);
-  records_[i].largest_force_time = t;
 }
 
 }  // namespace drev

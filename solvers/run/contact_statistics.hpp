@@ -8,15 +8,22 @@
 #include <string>
 #include <vector>
 
+#include "core/lanes.hpp"
+
 namespace drev {
 
-struct ContactRecord {
+/// Of a contact, or (Number: LaneRow) of the same contact in kLanes variants.
+template <class Number>
+struct ContactTotals {
+  Number time_apart{};          ///< s, with both flanks open
+  Number largest_force{};       ///< N or N m, |y|
+  Number largest_force_time{};  ///< s
+};
+
+struct ContactRecord : ContactTotals<double> {
   std::string element;
-  long front_impacts = 0;      ///< times the gap closed on the front flank, x rising through its high edge
-  long back_impacts = 0;       ///< times it closed on the back flank
-  double time_apart = 0.0;     ///< s, with both flanks open
-  double largest_force = 0.0;  ///< N or N m, |y|
-  double largest_force_time = 0.0;  ///< s
+  long front_impacts = 0;  ///< times the gap closed on the front flank, x rising through its high edge
+  long back_impacts = 0;   ///< times it closed on the back flank
   /// Impact speeds |x'| as the gap closes [m/s or rad/s]: as many as impacts.
   Distribution front_speed = {}, back_speed = {};
   /// Largest |y| from an impact until the flank is left [N or N m]. Contact without an impact before it (at
@@ -48,6 +55,38 @@ struct ContactInterval {
   bool met = false;
   double largest = 0.0;
 };
+/// Enters a force of size |y| at time t in these lanes; largest: of the contact at hand. Value and Mask: double
+/// and bool, or Lanes and LaneMask.
+template <class Number, class Value, class Mask>
+[[gnu::always_inline]] inline void note_force(ContactTotals<Number>& totals, const Value& size, double t,
+                                              const Mask& lanes, Number& largest) {
+  put_where(lanes & (size > each(largest)), size, each(largest));
+  const Mask more = lanes & (size > each(totals.largest_force));
+  if (!any(more)) return;
+  put_where(more, size, each(totals.largest_force));
+  put_where(more, Value{} + t, each(totals.largest_force_time));
+}
+/// Enters the time that a step of length h, in which x goes linearly from x_0 to x_1, is inside the gap.
+/// Returns whether x passes an edge of it in one of the lanes.
+template <class Number, class Value, class Mask>
+[[gnu::always_inline]] inline bool note_time_apart(ContactTotals<Number>& totals, const Value& low,
+                                                   const Value& high, const Value& x_0, const Value& x_1,
+                                                   double h, const Mask& lanes) {
+  const Mask above = x_0 > high, below = x_0 < low, outside = above | below;
+  const Value zero{};
+  if (!any(lanes & ((above ^ (x_1 > high)) | (below ^ (x_1 < low))))) {  // each stays where it was
+    each(totals.time_apart) += (lanes & !outside) ? zero + h : zero;
+    return false;
+  }
+  const Value one = zero + 1.0, least = x_0 < x_1 ? x_0 : x_1, most = x_0 < x_1 ? x_1 : x_0;
+  Value inside = (most < high ? most : high) - (least > low ? least : low);
+  inside = inside > zero ? inside : zero;
+  const Mask stands = most == least;
+  const Value length = stands ? one : most - least;
+  const Value share = stands ? (outside ? zero : one) : inside / length;
+  each(totals.time_apart) += lanes ? h * share : zero;
+  return true;
+}
 /// Enters the flanks that a step a -> b leaves and meets; force: |y| at b.
 void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record);
@@ -65,8 +104,6 @@ class ContactStatistics final : public Observer {
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
-  void note_force(std::size_t i, double y, double t);
-
   bool inside_steps_ = false;
   std::vector<std::size_t> terms_;
   std::vector<Gap> gaps_;

@@ -1,20 +1,59 @@
 #pragma once
-/// EnergyBalance: the energy balance of a run, as energy_monitor.hpp keeps it.
+/// The energy balance of a run, of one or of kLanes variants, as energy_monitor.hpp keeps it:
+///
+///   kinetic + stored - start = input - dissipated + imbalance
+#include <limits>
+
+#include "core/lanes.hpp"
 
 namespace drev {
 
-struct EnergyBalance {
-  double kinetic = 0.0;          ///< J, at the end
-  double stored = 0.0;           ///< J, at the end
-  double input = 0.0;            ///< J, since the start
-  double dissipated = 0.0;       ///< J, since the start
-  double imbalance = 0.0;        ///< J, at the end: > 0 energy from nothing
-  double worst_imbalance = 0.0;  ///< J, largest in size over the run
-  double worst_time = 0.0;       ///< s
-  double given = 0.0;            ///< J, largest of |input|, dissipated and the start's energy over the run
-  double scale = 0.0;            ///< J, largest of input, dissipated, kinetic + stored over the run
+/// Number: double, or LaneRow for a number of each lane's.
+template <class Number>
+struct Balance {
+  Number start{};            ///< J, kinetic and stored at the start
+  Number kinetic{};          ///< J, at the end
+  Number stored{};           ///< J, at the end
+  Number input{};            ///< J, since the start
+  Number dissipated{};       ///< J, since the start
+  Number imbalance{};        ///< J, at the end: > 0 energy from nothing
+  Number worst_imbalance{};  ///< J, largest in size over the run
+  Number worst_time{};       ///< s
+  Number given{};            ///< J, largest of |input|, dissipated and the start's energy over the run
+  Number scale{};            ///< J, largest of input, dissipated, kinetic + stored over the run
+};
+
+struct EnergyBalance : Balance<double> {
   /// worst_imbalance over scale [-]; 0 for a run without energy.
   double relative_error() const { return scale > 0.0 ? worst_imbalance / scale : 0.0; }
 };
+
+/// Enters a step that ends at t [s]: what is kinetic and stored there, what was put in and what dissipated
+/// since the start [J]. Only where `good`, which is cleared where the imbalance is not finite. Value and Mask:
+/// double and bool, or Lanes and LaneMask.
+template <class Number, class Value, class Mask>
+[[gnu::always_inline]] inline void enter_step(Balance<Number>& b, const Value& kinetic, const Value& stored,
+                                              const Value& input, const Value& dissipated, double t,
+                                              Mask& good) {
+  const Value energy = kinetic + stored;
+  const Value imbalance = energy - each(b.start) - input + dissipated;
+  Value size = imbalance, worst = each(b.worst_imbalance), put_in = input;
+  magnitude(size), magnitude(worst), magnitude(put_in);
+  good &= size <= std::numeric_limits<double>::max();
+  Value given = each(b.given) < put_in ? put_in : each(b.given);
+  given = given < dissipated ? dissipated : given;
+  Value scale = each(b.scale) < given ? given : each(b.scale);
+  scale = scale < energy ? energy : scale;
+  const Mask worse = good & (size > worst);
+  put_where(worse, imbalance, each(b.worst_imbalance));
+  put_where(worse, Value{} + t, each(b.worst_time));
+  put_where(good, kinetic, each(b.kinetic));
+  put_where(good, stored, each(b.stored));
+  put_where(good, input, each(b.input));
+  put_where(good, dissipated, each(b.dissipated));
+  put_where(good, imbalance, each(b.imbalance));
+  put_where(good, given, each(b.given));
+  put_where(good, scale, each(b.scale));
+}
 
 }  // namespace drev

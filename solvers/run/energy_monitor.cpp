@@ -1,7 +1,5 @@
 #include "solvers/run/energy_monitor.hpp"
 
-#include <cmath>
-
 #include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {
@@ -12,8 +10,7 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& s
       damped_((assembler.system().damping_values().array() != 0.0).any()) {
   balance_.kinetic = 0.5 * mass_.energy(start.state.v);
   balance_.stored = stored(start);
-  start_energy_ = balance_.kinetic + balance_.stored;
-  balance_.given = balance_.scale = start_energy_;
+  balance_.start = balance_.given = balance_.scale = balance_.kinetic + balance_.stored;
 }
 
 double EnergyMonitor::stored(const EvaluatedState& point) const {
@@ -23,7 +20,7 @@ double EnergyMonitor::stored(const EvaluatedState& point) const {
   return sum;
 }
 
-void EnergyMonitor::step(const EvaluatedState& from, const EvaluatedState& to, double h) {
+bool EnergyMonitor::step(const EvaluatedState& from, const EvaluatedState& to, double h) {
   const System& system = assembler_.system();
   auto [input, dissipated, by_stiffness] =
       step_work(system.size(), from.state.z.data(), to.state.z.data(), from.p.data(), to.p.data(),
@@ -50,36 +47,23 @@ void EnergyMonitor::step(const EvaluatedState& from, const EvaluatedState& to, d
       input += 0.5 * ((v01 - r0.stored_energy) + (r1.stored_energy - v10));
     }
   }
-  enter(to, input, dissipated + 0.5 * h * power, stored);
+  return enter(to, input, dissipated + 0.5 * h * power, stored);
 }
 
-void EnergyMonitor::step(const EvaluatedState& to, double input, double dissipated) {
-  enter(to, input, dissipated, stored(to));
+bool EnergyMonitor::step(const EvaluatedState& to, double input, double dissipated) {
+  return enter(to, input, dissipated, stored(to));
 }
 
-void EnergyMonitor::enter(const EvaluatedState& to, double input, double dissipated, double stored) {
-  balance_.input += input;
-  balance_.dissipated += dissipated;
-  balance_.kinetic = 0.5 * mass_.energy(to.state.v);
-  balance_.stored = stored;
-  note(to.state.t);
+bool EnergyMonitor::enter(const EvaluatedState& to, double input, double dissipated, double stored) {
+  bool good = true;
+  enter_step(balance_, 0.5 * mass_.energy(to.state.v), stored, balance_.input + input,
+             balance_.dissipated + dissipated, to.state.t, good);
+  return good;
 }
 
 void EnergyMonitor::restart(const EvaluatedState& before, const EvaluatedState& after) {
   balance_.input += stored(after) - stored(before);
   balance_.stored = stored(after);
-}
-
-void EnergyMonitor::note(double t) {
-  EnergyBalance& b = balance_;
-  const double energy = b.kinetic + b.stored;
-  b.imbalance = energy - start_energy_ - b.input + b.dissipated;
-  b.given = std::max({b.given, std::abs(b.input), b.dissipated});
-  b.scale = std::max({b.scale, b.given, energy});
-  if (!(std::abs(b.imbalance) <= std::abs(b.worst_imbalance))) {
-    b.worst_imbalance = b.imbalance;
-    b.worst_time = t;
-  }
 }
 
 }  // namespace drev

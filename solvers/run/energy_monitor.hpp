@@ -20,10 +20,10 @@ namespace drev {
 class EnergyMonitor {
  public:
   EnergyMonitor(const Assembler& assembler, const EvaluatedState& start);
-  /// Accounts for one accepted step.
-  void step(const EvaluatedState& from, const EvaluatedState& to, double h);
+  /// Accounts for one accepted step. False: its energy is not finite, and the balance stays as it was.
+  bool step(const EvaluatedState& from, const EvaluatedState& to, double h);
   /// The same where the method itself integrated what was put in and what dissipated in the step [J].
-  void step(const EvaluatedState& to, double input, double dissipated);
+  bool step(const EvaluatedState& to, double input, double dissipated);
   /// The same point after a breakpoint: forces jumped, the state did not. Energy that a law's stored
   /// energy gained by the jump counts as input.
   void restart(const EvaluatedState& before, const EvaluatedState& after);
@@ -33,13 +33,11 @@ class EnergyMonitor {
 
  private:
   double stored(const EvaluatedState& point) const;
-  void enter(const EvaluatedState& to, double input, double dissipated, double stored);
-  void note(double t);
+  bool enter(const EvaluatedState& to, double input, double dissipated, double stored);
 
   const Assembler& assembler_;
   MatrixProduct mass_;
   bool damped_ = false;  // by constant dampers
-  double start_energy_ = 0.0;
   EnergyBalance balance_;
 };
 

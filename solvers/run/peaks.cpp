@@ -27,7 +27,7 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
 void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double value = channels_[c].evaluate(assembler, point.state);
-    peaks_[c] = {value, point.state.t, value, point.state.t};
+    peaks_[c] = {{value, point.state.t, value, point.state.t}};
     watched_[c].last = value;
     set_bounds(c);
   }

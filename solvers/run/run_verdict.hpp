@@ -4,7 +4,6 @@
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
-#include <cmath>
 #include <string>
 
 namespace drev {
@@ -28,14 +27,13 @@ void end_not_finite(RunSummary& summary, const Assembler& assembler, const Evalu
 /// Ends a run whose first point has an acceleration that is not finite.
 void check_start(RunSummary& summary, const System& system, const State& state);
 
-/// Ends a run whose energy is not finite as that, another as unstable.
-void end_growing_run(RunSummary& summary, const std::string& system, double t, const EnergyBalance& balance,
-                     double growth_limit);
-/// Ends a run as unstable where its energy grew from nothing beyond the limit, as not finite where it is so.
+/// Ends a run as unstable: its energy grew from nothing beyond the limit.
+void end_growing_run(RunSummary& summary, const std::string& system, double t, double growth_limit);
+/// Does so where the energy from nothing is more than the limit [-] times what was put in.
 inline void check_growth(RunSummary& summary, const std::string& system, double t,
                          const EnergyBalance& balance, double growth_limit) {
-  const bool grew = balance.imbalance > growth_limit * balance.given && balance.given > 0.0;
-  if (grew || !std::isfinite(balance.imbalance)) end_growing_run(summary, system, t, balance, growth_limit);
+  if (balance.imbalance > growth_limit * balance.given && balance.given > 0.0)
+    end_growing_run(summary, system, t, growth_limit);
 }
 /// The verdict on summary.energy of a run that came to its end. tolerance: relative to the energy [-].
 void judge_energy(RunSummary& summary, double tolerance);

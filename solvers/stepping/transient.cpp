@@ -250,15 +250,14 @@ class Run {
   /// A change within rounding of the stop: the step there is not located.
   void pass_at_stop() { changes_here_ = std::numeric_limits<int>::max() / 2; }
 
-  /// Enters the step into the energy balance.
-  void account(double h) {
+  /// Enters the step into the energy balance; false where its energy is not finite.
+  bool account(double h) {
     equation_.clock().enter(RunSection::balance);
     if (options_.scheme.tableau) {
       const auto [input, dissipated] = step_energy_.over(equation_, *now_, *next_, h);
-      energy_->step(*next_, input, dissipated);
-    } else {
-      energy_->step(*now_, *next_, h);
+      return energy_->step(*next_, input, dissipated);
     }
+    return energy_->step(*now_, *next_, h);
   }
 
   /// Shows the step to the observers, controlled ones with the times wanted inside it.
@@ -288,8 +287,7 @@ class Run {
   /// Enters the step from now_ to next_ and swaps them; returns whether the run goes on.
   bool accept(double h, double t_evaluate) {
     ++summary_.steps;
-    account(h);
-    if (!std::isfinite(energy_->balance().imbalance)) {
+    if (!account(h)) {
       end_not_finite(summary_, equation_.assembler(), *now_, *next_);
       return false;
     }

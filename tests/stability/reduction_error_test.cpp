@@ -77,7 +77,7 @@ TEST_CASE("Estimate of a reduced run's error: above the true one, and of its siz
         least = std::min(least, ratio);
         most = std::max(most, ratio);
         INFO(channels[c] << ": true " << error << ", estimate " << estimates[c].error << " of "
-                         << estimates[c].peak);
+                         << estimates[c].value);
         CHECK(ratio >= 1.0);
       }
     }

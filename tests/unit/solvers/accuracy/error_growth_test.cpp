@@ -54,11 +54,12 @@ TEST_CASE("Batch means: interval of independent samples") {
   // 0, 1, 0, 1, ...: every batch of an even number has mean 1/2.
   std::vector<double> even(400);
   for (std::size_t i = 0; i < even.size(); ++i) even[i] = static_cast<double>(i % 2);
-  CHECK(batch_mean(even).mean == Approx(0.5));
-  CHECK(batch_mean(even).half_width == Approx(0.0).margin(1e-15));
+  CHECK(batch_mean(even).value == Approx(0.5));
+  CHECK(batch_mean(even).error == Approx(0.0).margin(1e-15));
   // Two batches 1 and 3: mean 2, s / sqrt(2) = 1, t(1 degree) = 12.706.
-  const MeanInterval two = batch_mean({1.0, 3.0}, 2);
-  CHECK(two.mean == 2.0);
-  CHECK(two.half_width == Approx(12.706));
-  CHECK(std::isinf(batch_mean({1.0}).half_width));
+  const Estimate two = batch_mean({1.0, 3.0}, 2);
+  CHECK(two.value == 2.0);
+  CHECK(two.error == Approx(12.706));
+  CHECK(two.kind == Estimate::Kind::interval);
+  CHECK(std::isinf(batch_mean({1.0}).error));
 }
