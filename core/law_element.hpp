@@ -3,14 +3,16 @@
 ///
 ///   struct CubicLaw {                       // y = k x + k3 x^3   [N m]
 ///     double k, k3;
-///     ScalarResponse operator()(const ScalarInput& in) const;
+///     template <class T> T force(const T& x, const T&) const { return (k + k3 * x * x) * x; }
 ///   };
 ///   model.add<LawElement<CubicLaw>>("coupling", {"engine", "pump"}, {.k = 2e4, .k3 = 5e6});
 ///
-/// A law may state `static constexpr std::string_view type`, the name that findings and reports call it by.
-/// Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If the law has a member
-/// `void check(ParameterCheck&) const`, it is called when the model is built.
+/// law_force.hpp lists the ways to state a law. A law may state `static constexpr std::string_view type`, the name
+/// that findings and reports call it by. Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If
+/// the law has a member `void check(ParameterCheck&) const`, it is called when the model is built.
 #include <drev/core/element.hpp>
+
+#include "core/law_force.hpp"
 
 namespace drev {
 

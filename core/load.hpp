@@ -1,10 +1,10 @@
 #pragma once
 /// A load on one node: p(t, theta, theta_dot) on the RIGHT side of the equation of motion; positive
 /// accelerates the node in the positive sense.
-#include <limits>
 #include <optional>
-#include <span>
 #include <vector>
+
+#include "core/load_table.hpp"
 
 namespace drev {
 
@@ -23,24 +23,6 @@ struct LoadResponse {
   double dtorque_dspeed = 0.0;  ///< N m s/rad
 };
 
-/// A load over a stretch of its angle: torque + time_slope (t - t_0) + angle_slope (theta - theta_0),
-/// for low <= theta <= high and up to the load's next breakpoint. theta is the actual angle, or the
-/// nominal one of a load that does not depend on motion. The load is continuous at low and high.
-struct LoadStretch {
-  double torque = 0.0;       ///< at t_0, theta_0 [N m or N]
-  double time_slope = 0.0;   ///< N m/s
-  double angle_slope = 0.0;  ///< N m/rad
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-};
-
-/// A load that is a periodic curve of its angle, straight between evenly spaced knots: what table_loads.hpp
-/// looks up without a call. Knot k stands at first + k spacing, to within a quarter of it.
-struct LoadTable {
-  std::span<const double> arguments, values, slopes;  ///< rad, N m, N m/rad to the right of each knot
-  double period = 0.0, phase = 0.0;                   ///< rad; entered at theta + phase
-};
-
 class Load {
  public:
   virtual ~Load() = default;
@@ -54,9 +36,11 @@ class Load {
   virtual std::optional<LoadTable> table() const { return std::nullopt; }
   /// The stretch about (t, theta), for exact propagation; nullopt for a load that is smooth between its
   /// breakpoints. On a knot, or within rounding of it, the stretch ahead of it: on the side of growing theta
-  /// where direction > 0, else on the other.
-  virtual std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/, double /*direction*/) const {
-    return std::nullopt;
+  /// where direction > 0, else on the other. A load with a table need not state it.
+  virtual std::optional<LoadStretch> stretch(double /*t*/, double angle, double direction) const {
+    const std::optional<LoadTable> straight = table();
+    if (!straight) return std::nullopt;
+    return straight->stretch(angle, direction);
   }
 };
 

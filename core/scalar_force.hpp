@@ -3,11 +3,10 @@
 ///
 /// A law returns force, slopes, stored energy and dissipated power in one pure call: same input, same
 /// output, in any order, any number of times. Its tangent b b^T dy/dx is symmetric by construction.
-#include <concepts>
 #include <optional>
 #include <span>
-#include <string_view>
-#include <vector>
+
+#include "core/law_piece.hpp"
 
 namespace drev {
 
@@ -39,23 +38,7 @@ struct Offset {
   double e = 0.0, de_dangle = 0.0;
 };
 
-/// a + b_x x + b_v x_dot >= 0 holds on a piece; where it ceases to hold, piece `next` takes over.
-struct LawBound {
-  double a = 0.0, b_x = 0.0, b_v = 0.0;
-  int next = 0;
-};
-
-/// One piece of a piecewise-linear law, y = y_0 + k x + c x_dot while all its bounds hold. The part
-/// elastic_0 + elastic_k x of it is the slope of the stored energy; the rest dissipates. The pieces
-/// of a law cover the plane (x, x_dot) without overlap.
-struct LawPiece {
-  double y_0 = 0.0, k = 0.0, c = 0.0;
-  double elastic_0 = 0.0, elastic_k = 0.0;
-  std::vector<LawBound> bounds = {};
-  double product = 0.0;  ///< of x x_dot, in product_pieces() only
-};
-
-/// The law as the engine calls it. Users write a LawOf functor instead (law_element.hpp).
+/// The law as the engine calls it. Users write a law of a few lines instead (law_element.hpp).
 class ScalarForce {
  public:
   virtual ~ScalarForce() = default;
@@ -77,53 +60,15 @@ class ScalarForce {
   virtual std::optional<double> next_knot(double /*angle*/, double /*direction*/) const {
     return std::nullopt;
   }
-  /// The law as pieces, for exact propagation; empty: not piecewise linear in x and x_dot alone, but smooth
-  /// between its kinks() and knots.
+  /// The law as pieces; empty: it has none in x and x_dot alone, but is smooth between its kinks() and knots.
+  /// A law that states pieces should state nothing else (PiecewiseForce, piecewise_law.hpp).
   virtual std::span<const LawPiece> pieces() const { return {}; }
-  /// The same where a piece may have a term x x_dot too: a damper that grows with deflection. For many
-  /// variants in lanes (simulate_many.hpp).
-  virtual std::span<const LawPiece> product_pieces() const { return pieces(); }
 };
 
-/// A law in a few lines: any copyable type that can be called with a ScalarInput.
-template <class L>
-concept ScalarLaw = requires(const L& law, const ScalarInput& in) {
-  { law(in) } -> std::convertible_to<ScalarResponse>;
-};
-
-/// Makes a ScalarForce of a functor. Optional members of the functor are used where it has them:
-/// kinks(), gap(), closed_stiffness(), closed_damping(), pieces() (a vector or span of LawPiece).
-template <ScalarLaw L>
-class LawForce final : public ScalarForce {
- public:
-  explicit LawForce(L law) : law_(std::move(law)) {
-    if constexpr (requires { law_.pieces(); }) {
-      const auto& pieces = law_.pieces();
-      pieces_.assign(pieces.begin(), pieces.end());
-    }
-  }
-  ScalarResponse evaluate(const ScalarInput& in) const override { return law_(in); }
-  double closed_stiffness() const override {
-    if constexpr (requires { law_.closed_stiffness(); }) return law_.closed_stiffness();
-    return ScalarForce::closed_stiffness();
-  }
-  double closed_damping() const override {
-    if constexpr (requires { law_.closed_damping(); }) return law_.closed_damping();
-    return ScalarForce::closed_damping();
-  }
-  std::span<const double> kinks() const override {
-    if constexpr (requires { law_.kinks(); }) return law_.kinks();
-    return {};
-  }
-  std::optional<Gap> gap() const override {
-    if constexpr (requires { law_.gap(); }) return law_.gap();
-    return std::nullopt;
-  }
-  std::span<const LawPiece> pieces() const override { return pieces_; }
-
- private:
-  L law_;
-  std::vector<LawPiece> pieces_;
-};
+/// The pieces of a law where all of them are linear in x and x_dot, for methods that take no product; else none.
+inline std::span<const LawPiece> linear_pieces(const ScalarForce& force) {
+  const std::span<const LawPiece> pieces = force.pieces();
+  return is_linear(pieces) ? pieces : std::span<const LawPiece>();
+}
 
 }  // namespace drev

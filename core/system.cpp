@@ -34,7 +34,7 @@ void System::map_load(int number) {
   const bool follows = term.load->depends_on_motion();
   loads_depend_on_motion_ |= follows;
   if (map.prescribed >= 0) return;
-  if (const auto table = term.load->table())
+  if (const auto table = term.load->table(); table && table->evenly_spaced)
     table_loads_.add(*table, place(map), map.coeff, ratio(term.node), follows ? map.coeff : 0.0);
   else
     (follows ? moving_loads_ : known_loads_).push_back(number);

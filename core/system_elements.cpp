@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/contradictions.hpp"
 #include "core/system_builder.hpp"
 
 namespace drev {
@@ -99,7 +100,7 @@ namespace {
 
 /// The piece k x + c x' of a law that is nothing else; null for other laws.
 const LawPiece* straight_line(const ScalarSpec& s) {
-  const std::span<const LawPiece> pieces = s.force->pieces();
+  const std::span<const LawPiece> pieces = linear_pieces(*s.force);
   if (s.phase_node >= 0 || pieces.size() != 1) return nullptr;
   const LawPiece& p = pieces.front();
   const bool straight = p.bounds.empty() && p.y_0 == 0.0 && p.elastic_0 == 0.0 && p.elastic_k == p.k;
@@ -207,13 +208,19 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       return static_cast<int>((b.array() != 0.0).count());
     return -1;
   };
+  const auto contradiction = [&](const std::string& of, const Contradiction& wrong) {
+    fail(of + ", " + wrong.what, wrong.detail, "must agree with its call; check_element() finds all places");
+  };
   matrix("mass", terms.mass);
   matrix("damping", terms.damping);
   matrix("stiffness", terms.stiffness);
   for (const ScalarSpec& s : terms.scalars) {
     const int entries = row("scalar b", s.b, false);
     if (entries == 0) fail("scalar b", "0", "must have an entry that is not 0");
-    if (!s.force) fail("scalar force", "", "is missing (a null pointer)");
+    if (!s.force)
+      fail("scalar force", "", "is missing (a null pointer)");
+    else if (const auto wrong = first_contradiction(*s.force))
+      contradiction("law " + std::to_string(&s - terms.scalars.data()), *wrong);
     if (s.phase_node < -1 || s.phase_node >= n)
       fail("phase_node", std::to_string(s.phase_node), "is no node of the element");
     if (entries > 0 && s.along_line_of_action)
@@ -226,10 +233,13 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
   }
   for (const LoadSpec& l : terms.loads) {
     if (l.node < 0 || l.node >= n) fail("load node", std::to_string(l.node), "is no node of the element");
-    if (!l.load)
+    if (!l.load) {
       fail("load", "", "is missing (a null pointer)");
-    else
-      ParameterCheck(place(p.name), findings_).all_finite("breakpoints", l.load->breakpoints(), "s");
+      continue;
+    }
+    ParameterCheck(place(p.name), findings_).all_finite("breakpoints", l.load->breakpoints(), "s");
+    if (const auto wrong = first_contradiction(*l.load))
+      contradiction("load " + std::to_string(&l - terms.loads.data()), *wrong);
   }
   for (const GeneralForce* g : terms.generals) {
     if (!g) fail("general force", "", "is missing (a null pointer)");

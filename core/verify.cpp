@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 
+#include "core/contradictions.hpp"
 #include "core/dense_eigen.hpp"
 
 namespace drev {
@@ -29,14 +30,17 @@ class Findings {
   explicit Findings(CheckReport& report) : report_(report) {}
   void add(const std::string& kind, const std::string& detail) {
     const int n = ++count_[kind];
-    if (n <= kShown) report_.failures.push_back(kind + ": " + detail);
+    if (n <= kShown) report_.failures.push_back(place_ + kind + ": " + detail);
   }
+  /// Which law or load of several is looked at.
+  void set_place(std::string place) { place_ = std::move(place); }
   void require(bool good, const std::string& kind, const std::string& detail) {
     if (!good) add(kind, detail);
   }
 
  private:
   CheckReport& report_;
+  std::string place_;
   std::map<std::string, int> count_;
 };
 
@@ -153,10 +157,10 @@ void check_law_energy(const ScalarForce& law, const ScalarInput& in, const Check
   out.require(r.stored_energy >= 0.0, "negative stored energy",
               to_text(r.stored_energy) + " J at " + place(in));
 
-  out.require(r.dissipated_power >= 0.0, "negative dissipated power",
-              to_text(r.dissipated_power) + " W at " + place(in));
   const double power = (r.y - elastic) * in.x_dot;
   const double size = (std::abs(r.y) + std::abs(elastic)) * std::abs(in.x_dot);
+  out.require(r.dissipated_power >= -kRoundOff * kEps * size, "negative dissipated power",
+              to_text(r.dissipated_power) + " W at " + place(in));
   out.require(power >= -kRoundOff * kEps * size, "active damper",
               "(y - y at rest) x_dot = " + to_text(power) + " W at " + place(in));
   out.require(std::abs(r.dissipated_power - power) <= o.tolerance * std::abs(power) + kRoundOff * kEps * size,
@@ -205,6 +209,9 @@ void check_law(const ScalarSpec& spec, const CheckOptions& o, Draw& draw, Findin
   for (const auto& [in, before] : seen)
     out.require(same_bits(law.evaluate(in), before), "impure",
                 "the same input gave another response at " + place(in));
+  std::vector<ScalarInput> inputs;
+  for (const auto& [in, response] : seen) inputs.push_back(in);
+  for (const Contradiction& c : contradictions(law, inputs)) out.add(c.what, c.detail);
 }
 
 void check_load(const Load& load, const CheckOptions& o, Draw& draw, Findings& out) {
@@ -245,6 +252,9 @@ void check_load(const Load& load, const CheckOptions& o, Draw& draw, Findings& o
   for (const auto& [in, before] : seen)
     out.require(same_bits(load.evaluate(in), before), "impure",
                 "the same input gave another response at t = " + to_text(in.t));
+  std::vector<LoadInput> inputs;
+  for (const auto& [in, response] : seen) inputs.push_back(in);
+  for (const Contradiction& c : contradictions(load, inputs)) out.add(c.what, c.detail);
 }
 
 /// One general force with room for its response.
@@ -432,8 +442,15 @@ CheckReport check_element(const Element& element, int nodes, const CheckOptions&
   if (n > 0) check_closures(terms, n, options.tolerance, out);
 
   Draw draw(options.seed);
-  for (const ScalarSpec& s : terms.scalars) check_law(s, options, draw, out);
-  for (const LoadSpec& l : terms.loads) check_load(*l.load, options, draw, out);
+  for (std::size_t i = 0; i < terms.scalars.size(); ++i) {
+    out.set_place(terms.scalars.size() > 1 ? "law " + std::to_string(i) + ": " : "");
+    check_law(terms.scalars[i], options, draw, out);
+  }
+  for (std::size_t i = 0; i < terms.loads.size(); ++i) {
+    out.set_place(terms.loads.size() > 1 ? "load " + std::to_string(i) + ": " : "");
+    check_load(*terms.loads[i].load, options, draw, out);
+  }
+  out.set_place("");
   for (const GeneralForce* g : terms.generals) check_general(*g, n, options, draw, out);
   return report;
 }

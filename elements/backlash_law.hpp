@@ -29,7 +29,8 @@
 ///                 NTNU, 2015, equation 4.4; here to reproduce it. Drags on gears that do not
 ///                 touch.
 ///
-/// docs/catalogue.md compares them.
+/// docs/catalogue.md compares them. In units of k the law is piecewise, y = k Y(x, x_dot/k): Y is stated once,
+/// as pieces, and the call and the pieces at any k follow from it.
 ///
 /// p_ref (reference_penetration) wants to be small against the penetration under load, so that c is
 /// the mesh's damping, and large against the distance of one time step at impact, so that it is
@@ -38,13 +39,14 @@
 /// Without backlash (0) both flanks touch: y = k x + c x_dot for every damping law, linear,
 /// bilateral, no gap and no clip.
 #include <drev/core/error.hpp>
-#include <drev/core/scalar_force.hpp>
 #include <drev/elements/curve.hpp>
 #include <drev/elements/not_given.hpp>
 
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "core/piecewise_law.hpp"
 
 namespace drev {
 
@@ -61,28 +63,26 @@ class BacklashLaw {
   explicit BacklashLaw(const Params& params);
 
   /// stiffness: k [N/m] and its slope against the phase node's angle [N/(m rad)].
-  ScalarResponse evaluate(double x, double x_dot, CurvePoint stiffness) const;
+  ScalarResponse evaluate(double x, double x_dot, CurvePoint stiffness) const {
+    return unit_.evaluate(x, x_dot, stiffness.value, stiffness.slope);
+  }
   double damping() const { return params_.damping; }
   bool has_gap() const { return half_gap_ > 0.0; }
-  /// False for damping that grows with penetration: its force has a term x x_dot.
-  bool is_linear_in_pieces() const {
-    return !has_gap() || params_.damping == 0.0 || params_.damping_law != MeshDamping::proportional;
-  }
-  std::optional<Gap> gap() const;
+  std::optional<Gap> gap() const { return unit_.gap(); }
   /// Edges of the gap; with proportional damping also where it saturates.
-  std::span<const double> kinks() const { return {kinks_, kink_count_}; }
-  /// The law as linear pieces at a constant stiffness [N/m]; empty for damping that grows with
-  /// penetration (is_linear_in_pieces()).
-  std::vector<LawPiece> pieces(double stiffness) const;
-  /// The same for any damping: proportional damping has its product as LawPiece::product.
-  std::vector<LawPiece> product_pieces(double stiffness) const;
+  std::span<const double> kinks() const { return unit_.kinks(); }
+  /// The law as pieces at a constant stiffness [N/m]. Damping that grows with penetration has a product.
+  std::vector<LawPiece> pieces(double stiffness) const { return unit_.scaled(stiffness); }
   void check(ParameterCheck& check) const;
 
  private:
+  std::vector<LawPiece> unit_pieces() const;
+  std::vector<LawPiece> switched_damper(bool limited) const;
+  std::vector<LawPiece> rising_damper() const;
+
   Params params_;
   double half_gap_, p_ref_;
-  double kinks_[4] = {};
-  std::size_t kink_count_ = 0;
+  PiecewiseLaw unit_;  // the one statement of the law: y = k Y(x, x_dot/k), Y at k = 1
 };
 
 }  // namespace drev

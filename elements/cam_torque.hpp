@@ -37,21 +37,7 @@ class CamTorque final : public Element, public Load {
     return {.torque = p.value, .dtorque_dangle = params_.twist_feedback ? p.slope : 0.0};
   }
   bool depends_on_motion() const override { return params_.twist_feedback; }
-  std::optional<LoadTable> table() const override {
-    if (!params_.angle_table.evenly_spaced()) return std::nullopt;
-    return LoadTable{.arguments = params_.angle_table.arguments(),
-                     .values = params_.angle_table.values(),
-                     .slopes = params_.angle_table.slopes(),
-                     .period = params_.angle_table.period(),
-                     .phase = params_.phase};
-  }
-  std::optional<LoadStretch> stretch(double /*t*/, double angle, double direction) const override {
-    const TableStretch s = params_.angle_table.stretch(angle + params_.phase, direction);
-    return LoadStretch{.torque = s.value,
-                       .angle_slope = s.slope,
-                       .low = s.low - params_.phase,
-                       .high = s.high - params_.phase};
-  }
+  std::optional<LoadTable> table() const override { return params_.angle_table.as_load(params_.phase); }
 
  private:
   Params params_;

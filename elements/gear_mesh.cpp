@@ -30,7 +30,7 @@ GearMesh::GearMesh(Params params)
       radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
       teeth_per_radian_(params_.teeth_1 / kTwoPi) {
   if (!params_.stiffness.varies() && !params_.transmission_error.varies())
-    pieces_ = law_.product_pieces(params_.stiffness.mean());
+    pieces_ = law_.pieces(params_.stiffness.mean());
 }
 
 std::optional<double> GearMesh::next_knot(double angle, double direction) const {

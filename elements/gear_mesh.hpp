@@ -65,10 +65,8 @@ class GearMesh final : public Element, public ScalarForce {
   std::optional<Gap> gap() const override { return law_.gap(); }
   bool varies() const override { return params_.stiffness.varies(); }
   Offset offset(double nominal_angle) const override;
-  std::span<const LawPiece> pieces() const override {
-    return law_.is_linear_in_pieces() ? product_pieces() : std::span<const LawPiece>();
-  }
-  std::span<const LawPiece> product_pieces() const override { return pieces_; }
+  /// At constant stiffness, without transmission error.
+  std::span<const LawPiece> pieces() const override { return pieces_; }
   std::optional<double> next_knot(double angle, double direction) const override;
 
  private:

@@ -21,24 +21,10 @@ PeriodicTable::PeriodicTable(std::vector<double> arguments, std::vector<double> 
     const bool last = i + 1 == n;
     const double step = (last ? u[0] + period_ : u[i + 1]) - u[i];
     points->slopes.push_back((v[last ? 0 : i + 1] - v[i]) / step);
-    // Loose enough for angles written down with a few digits: segment() corrects by one.
+    // Loose enough for angles written down with a few digits: table_segment() corrects by one.
     even = even && std::abs(u[i] - u[0] - static_cast<double>(i) * spacing) < 0.25 * spacing;
   }
   if (even) inverse_spacing_ = 1.0 / spacing;
-}
-
-std::size_t PeriodicTable::segment(double u) const {
-  const std::vector<double>& a = points_->arguments;
-  const std::size_t n = a.size();
-  if (inverse_spacing_ > 0.0) {
-    const double guess = (u - a[0]) * inverse_spacing_;
-    std::size_t i = guess > 0.0 ? std::min(static_cast<std::size_t>(guess), n - 1) : 0;
-    while (i > 0 && u < a[i]) --i;
-    while (i + 1 < n && u >= a[i + 1]) ++i;
-    return i;
-  }
-  const auto after = std::upper_bound(a.begin(), a.end(), u);
-  return after == a.begin() ? 0 : static_cast<std::size_t>(after - a.begin()) - 1;
 }
 
 CurvePoint PeriodicTable::at(double argument) const {
@@ -51,44 +37,22 @@ CurvePoint PeriodicTable::at(double argument) const {
     if (whole > turns) whole -= 1.0;
   }
   const double u = argument - period_ * whole;
-  const std::size_t i = segment(u);
+  const std::size_t i = table_segment(p.arguments, inverse_spacing_, u);
   return {p.values[i] + p.slopes[i] * (u - p.arguments[i]), p.slopes[i]};
 }
 
 TableStretch PeriodicTable::stretch(double argument, double direction) const {
-  constexpr double kOnKnot = 1e-13;     // relative to the period and the argument
-  constexpr double kSameSlope = 1e-13;  // relative to the steepest
-  const Points& p = *points_;
-  const std::size_t n = p.arguments.size();
-  const double nudge = kOnKnot * std::max(period_, std::abs(argument));
-  const double beyond = argument + (direction > 0.0 ? nudge : -nudge);
-  const double base = period_ * std::floor((beyond - p.arguments[0]) * inverse_period_);
-  std::size_t i = segment(beyond - base);
-  const double slope = p.slopes[i];
-  const double value = p.values[i] + slope * (argument - base - p.arguments[i]);
-  double steepest = 0.0;
-  for (const double s : {p.slopes.front(), slope, p.slopes.back()})
-    steepest = std::max(steepest, std::abs(s));
-  const auto same = [&](std::size_t j) { return std::abs(p.slopes[j] - slope) <= kSameSlope * steepest; };
-  const auto knot = [&](std::size_t j, double turns) { return base + turns * period_ + p.arguments[j]; };
-  TableStretch s{value, slope, 0.0, 0.0};
-  std::size_t low = i, high = i, steps = 0;
-  double turns_low = 0.0, turns_high = 0.0;
-  const auto raise = [&] {
-    if (++high == n) high = 0, turns_high = 1.0;
-  };
-  for (raise(); steps < n && same(high); ++steps) raise();
-  if (steps == n) {
-    s.low = -std::numeric_limits<double>::infinity();
-    s.high = std::numeric_limits<double>::infinity();
-    return s;
-  }
-  const auto before = [&](std::size_t j) { return j == 0 ? n - 1 : j - 1; };
-  for (; same(before(low)); low = before(low))
-    if (low == 0) turns_low = -1.0;
-  s.low = knot(low, turns_low);
-  s.high = knot(high, turns_high);
-  return s;
+  const LoadStretch s = as_load().stretch(argument, direction);
+  return {s.torque, s.angle_slope, s.low, s.high};
+}
+
+LoadTable PeriodicTable::as_load(double phase) const {
+  return {.arguments = arguments(),
+          .values = values(),
+          .slopes = slopes(),
+          .period = period_,
+          .phase = phase,
+          .evenly_spaced = evenly_spaced()};
 }
 
 double PeriodicTable::mean() const {

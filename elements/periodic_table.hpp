@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "core/load_table.hpp"
+
 namespace drev {
 
 /// The straight stretch of a table about an argument; it holds from low to high.
@@ -32,6 +34,8 @@ class PeriodicTable {
   /// Knots where the slope does not change are passed over. Within rounding of a knot the stretch ahead
   /// of it: above it where direction > 0, else below.
   TableStretch stretch(double argument, double direction) const;
+  /// The same curve as a load's table, entered `phase` ahead. It refers to this table's points.
+  LoadTable as_load(double phase = 0.0) const;
   double mean() const;  ///< over one period
   double period() const { return period_; }
   const std::vector<double>& arguments() const { return points_->arguments; }
@@ -46,8 +50,6 @@ class PeriodicTable {
   struct Points {
     std::vector<double> arguments, values, slopes;
   };
-  std::size_t segment(double u) const;
-
   std::shared_ptr<const Points> points_ = std::make_shared<const Points>();  // shared by its copies
   double period_ = kTwoPi, inverse_period_ = 1.0 / kTwoPi;
   double inverse_spacing_ = 0.0;  // > 0 for an evenly spaced table

@@ -1,29 +1,42 @@
 #include <drev/elements/polyline_spring.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <string>
 
 namespace drev {
 
 namespace {
-constexpr int kFewKnots = 8;  // one after the other is faster than bisection
-}
 
-PolylineSpring::PolylineSpring(Params params) : params_(std::move(params)) {
-  if (!usable()) return;  // check() says why
-  find_segments();
-  find_gap();
-  find_pieces();
-}
-
-bool PolylineSpring::usable() const {
-  const auto& x = params_.x;
-  if (x.size() < 2 || params_.y.size() != x.size()) return false;
-  for (std::size_t i = 1; i < x.size(); ++i)
-    if (!(x[i] > x[i - 1])) return false;
+bool usable(const PolylineSpring::Params& p) {
+  if (p.x.size() < 2 || p.y.size() != p.x.size()) return false;
+  for (std::size_t i = 1; i < p.x.size(); ++i)
+    if (!(p.x[i] > p.x[i - 1])) return false;
   return true;
 }
+
+/// Of the segment to the right of point i.
+double slope(const PolylineSpring::Params& p, std::size_t i) {
+  return (p.y[i + 1] - p.y[i]) / (p.x[i + 1] - p.x[i]);
+}
+
+/// A segment is a piece; none for parameters that check() refuses.
+std::vector<LawPiece> pieces_of(const PolylineSpring::Params& p) {
+  std::vector<LawPiece> pieces;
+  if (!usable(p)) return pieces;
+  for (std::size_t i = 0; i + 1 < p.x.size(); ++i) {
+    const double k = slope(p, i), y_0 = p.y[i] - k * p.x[i];
+    LawPiece piece{.y_0 = y_0, .k = k, .c = p.damping, .elastic_0 = y_0, .elastic_k = k};
+    const int own = static_cast<int>(i);
+    if (i > 0) piece.bounds.push_back({-p.x[i], 1.0, 0.0, own - 1});
+    if (i + 2 < p.x.size()) piece.bounds.push_back({p.x[i + 1], -1.0, 0.0, own + 1});
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+}  // namespace
+
+PolylineSpring::PolylineSpring(Params params)
+    : PiecewiseForce(pieces_of(params)), params_(std::move(params)) {}
 
 PolylineSpring::Params PolylineSpring::dead_band(double stiffness, double half_gap, double damping) {
   if (half_gap == 0.0) return {.x = {-1.0, 1.0}, .y = {-stiffness, stiffness}, .damping = damping};
@@ -40,80 +53,6 @@ PolylineSpring::Params PolylineSpring::with_stops(double stiffness, double trave
           .damping = damping};
 }
 
-void PolylineSpring::find_segments() {
-  const auto &x = params_.x, &y = params_.y;
-  double energy = 0.0;
-  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-    segments_.push_back({x[i], y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i]), energy});
-    energy += 0.5 * (y[i] + y[i + 1]) * (x[i + 1] - x[i]);
-  }
-  // The least energy is where y = 0: in the segment in which y changes sign. That one is written
-  // from its zero, so that small deflections about the equilibrium keep all their digits.
-  std::size_t i = 0;
-  while (i + 1 < segments_.size() && y[i + 1] < 0.0) ++i;
-  Segment& s = segments_[i];
-  if (s.slope > 0.0) {
-    const double from_zero = s.y / s.slope;
-    s = {s.x - from_zero, 0.0, s.slope, s.energy - 0.5 * s.y * from_zero};
-  }
-  const double least = s.energy;
-  for (Segment& other : segments_) other.energy = std::max(other.energy - least, 0.0);
-}
-
-void PolylineSpring::find_gap() {
-  const auto &x = params_.x, &y = params_.y;
-  for (std::size_t i = 0; i < segments_.size(); ++i) {
-    if (y[i] != 0.0 || y[i + 1] != 0.0) continue;
-    const double infinity = std::numeric_limits<double>::infinity();
-    if (!gap_) gap_ = Gap{i == 0 ? -infinity : x[i], 0.0};
-    gap_->high = i + 1 == segments_.size() ? infinity : x[i + 1];
-  }
-}
-
-void PolylineSpring::find_pieces() {
-  for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const Segment& s = segments_[i];
-    const double y_0 = s.y - s.slope * s.x;
-    LawPiece piece{.y_0 = y_0, .k = s.slope, .c = params_.damping, .elastic_0 = y_0, .elastic_k = s.slope};
-    const int own = static_cast<int>(i);
-    if (i > 0) piece.bounds.push_back({-params_.x[i], 1.0, 0.0, own - 1});
-    if (i + 1 < segments_.size()) piece.bounds.push_back({params_.x[i + 1], -1.0, 0.0, own + 1});
-    pieces_.push_back(std::move(piece));
-  }
-}
-
-std::size_t PolylineSpring::segment_at(double x) const {
-  const double *first = params_.x.data() + 1, *end = params_.x.data() + params_.x.size() - 1;
-  const double* above = first;
-  if (end - first > kFewKnots)
-    above = std::upper_bound(first, end, x);
-  else
-    while (above != end && !(x < *above)) ++above;
-  return static_cast<std::size_t>(above - first);
-}
-
-ScalarResponse PolylineSpring::evaluate(const ScalarInput& in) const {
-  const Segment& segment = segments_[segment_at(in.x)];
-  const double s = in.x - segment.x, c = params_.damping;
-  ScalarResponse r;
-  r.y = segment.y + segment.slope * s + c * in.x_dot;
-  r.dy_dx = segment.slope;
-  r.dy_dx_dot = c;
-  // Rounding can leave -1e-17 J at the bottom of the valley.
-  r.stored_energy = std::max(segment.energy + s * (segment.y + 0.5 * segment.slope * s), 0.0);
-  r.dissipated_power = c * in.x_dot * in.x_dot;
-  return r;
-}
-
-double PolylineSpring::closed_stiffness() const {
-  if (!gap_) return segments_[segment_at(0.0)].slope;
-  const double low = segments_.front().slope, high = segments_.back().slope;
-  if (low == 0.0 || high == 0.0) return std::max(low, high);
-  return 0.5 * (low + high);
-}
-
-std::span<const double> PolylineSpring::kinks() const { return {params_.x.data() + 1, params_.x.size() - 2}; }
-
 void PolylineSpring::check(ParameterCheck& check) const {
   const auto &x = params_.x, &y = params_.y;
   check.non_negative("damping", params_.damping, "N m s/rad");
@@ -129,9 +68,9 @@ void PolylineSpring::check(ParameterCheck& check) const {
                  "must not be less than the value before it, " + to_text(y[i - 1]));
       return;
     }
-  if (!usable()) return;
-  const bool reaches_zero = (y.front() <= 0.0 || segments_.front().slope > 0.0) &&
-                            (y.back() >= 0.0 || segments_.back().slope > 0.0);
+  if (!usable(params_)) return;
+  const bool reaches_zero = (y.front() <= 0.0 || slope(params_, 0) > 0.0) &&
+                            (y.back() >= 0.0 || slope(params_, x.size() - 2) > 0.0);
   if (!reaches_zero)
     check.fail("y", to_text(y.front() > 0.0 ? y.front() : y.back()), "N m",
                "must pass through zero; this spring balances nowhere");
@@ -139,7 +78,8 @@ void PolylineSpring::check(ParameterCheck& check) const {
 
 void PolylineSpring::describe(int nodes, Terms& terms) const {
   terms.scalars.push_back({.b = relative_motion(nodes), .force = this});
-  terms.speed_ratio_constraints.push_back({.b = relative_motion(nodes), .only_in_contact = gap_.has_value()});
+  terms.speed_ratio_constraints.push_back(
+      {.b = relative_motion(nodes), .only_in_contact = gap().has_value()});
 }
 
 }  // namespace drev

@@ -6,17 +6,19 @@
 ///   x = q_b - q_a between two nodes,  x = q on one node, to ground
 ///
 /// y must not fall with x and must pass through zero. Stored energy: the exact integral of y from
-/// where y = 0, hence >= 0. A stretch with y = 0 is the gap; it reaches to infinity where an outer
-/// segment is zero (a one-sided stop). closed_stiffness(): mean of the outer slopes that are not
-/// zero where there is a gap, else the slope at x = 0 (right of it at a point). Units: rad and N m
+/// where y = 0, hence >= 0. Segments with y = 0 are the gap; it reaches to infinity where an outer
+/// segment is zero (a one-sided stop). Each segment is a piece; all else follows from the pieces
+/// (PiecewiseLaw): on a point the segment below it holds, but closed_stiffness() takes the one above. Units: rad and N m
 /// between rotational nodes, m and N between translational ones.
 #include <drev/core/element.hpp>
 
 #include <vector>
 
+#include "core/piecewise_law.hpp"
+
 namespace drev {
 
-class PolylineSpring final : public Element, public ScalarForce {
+class PolylineSpring final : public Element, public PiecewiseForce {
  public:
   struct Params {
     std::vector<double> x;  ///< ascending [rad], at least 2
@@ -37,29 +39,8 @@ class PolylineSpring final : public Element, public ScalarForce {
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
 
-  ScalarResponse evaluate(const ScalarInput& in) const override;
-  double closed_stiffness() const override;
-  double closed_damping() const override { return params_.damping; }
-  std::span<const double> kinks() const override;
-  std::optional<Gap> gap() const override { return gap_; }
-  std::span<const LawPiece> pieces() const override { return pieces_; }
-
  private:
-  bool usable() const;
-  std::size_t segment_at(double x) const;
-  void find_segments();
-  void find_gap();
-  void find_pieces();
-
-  /// y = y_0 + slope (x - x_0), with the stored energy at x_0.
-  struct Segment {
-    double x = 0.0, y = 0.0, slope = 0.0, energy = 0.0;
-  };
-
   Params params_;
-  std::vector<Segment> segments_;
-  std::vector<LawPiece> pieces_;
-  std::optional<Gap> gap_;
 };
 
 }  // namespace drev

@@ -1,5 +1,5 @@
 // An element of one's own in a few lines: a coupling whose stiffness grows with its twist.
-// Shows: a law, LawElement, check_element. The text is docs/adding_an_element.md.
+// Shows: a law in one formula, LawElement, check_element. The text is docs/adding_an_element.md.
 // Run:   build/release/bin/example_custom_element
 // Read first: two_inertia.
 #include <drev/core/channel.hpp>
@@ -17,12 +17,11 @@ struct CubicLaw {
   double k;   ///< N m/rad, > 0
   double k3;  ///< N m/rad^3, >= 0
 
-  drev::ScalarResponse operator()(const drev::ScalarInput& in) const {
-    const double x = in.x;
-    return {.y = k * x + k3 * x * x * x,
-            .dy_dx = k + 3 * k3 * x * x,
-            .stored_energy = 0.5 * k * x * x + 0.25 * k3 * x * x * x * x};
+  template <class T>
+  T force(const T& x, const T& /*x_dot*/) const {
+    return k * x + k3 * x * x * x;
   }
+  double stored_energy(double x) const { return 0.5 * k * x * x + 0.25 * k3 * x * x * x * x; }  // J
   void check(drev::ParameterCheck& check) const {
     check.positive("k", k, "N m/rad");
     check.non_negative("k3", k3, "N m/rad^3");

@@ -12,12 +12,7 @@ constexpr int kMostIterations = 8;
 
 std::span<const LawPiece> pieces_of(const ScalarTerm& term) {
   if (term.phase_node >= 0) return {};
-  return term.force->product_pieces();
-}
-
-bool holds(const LawPiece& piece, double x, double x_dot) {
-  return std::all_of(piece.bounds.begin(), piece.bounds.end(),
-                     [&](const LawBound& b) { return b.a + b.b_x * x + b.b_v * x_dot >= 0.0; });
+  return term.force->pieces();
 }
 
 }  // namespace
@@ -125,10 +120,8 @@ void LaneLaws::set_compliance(const LaneArray& w, double kappa_x, double kappa_v
 
 void LaneLaws::find_piece(Law& law, int lane, double x, double x_dot) {
   const ScalarForce& force = *law.terms[idx(lane)]->force;
-  const auto pieces = force.product_pieces();
-  auto found =
-      std::find_if(pieces.begin(), pieces.end(), [&](const LawPiece& p) { return holds(p, x, x_dot); });
-  if (found == pieces.end()) found = pieces.begin();  // not finite: Newton will not converge
+  const std::span<const LawPiece> pieces = force.pieces();
+  const LawPiece* found = &pieces[idx(piece_at(pieces, x, x_dot))];
   Piece& p = law.piece;
   p.y_0.v[lane] = found->y_0;
   p.k.v[lane] = found->k;
@@ -164,7 +157,8 @@ struct LaneLawKernels {
                                                     LaneRow& dy_dx, LaneRow& dy_dx_dot) {
     if (!law.in_pieces) return LaneLaws::evaluate(law, t, x, x_dot, angle, y, dy_dx, dy_dx_dot);
     LaneMask left{};
-    for (const LaneLaws::Bound& b : law.bounds) left |= b.a.v + b.b_x.v * x.v + b.b_v.v * x_dot.v < 0.0;
+    // On a bound piece_at() decides, as everywhere.
+    for (const LaneLaws::Bound& b : law.bounds) left |= ~(b.a.v + b.b_x.v * x.v + b.b_v.v * x_dot.v > 0.0);
     if (any(left))
       for (int lane = 0; lane < kLanes; ++lane)
         if (left[lane]) LaneLaws::find_piece(law, lane, x.v[lane], x_dot.v[lane]);

@@ -1,7 +1,7 @@
 #pragma once
 /// The laws of kLanes variants at once, and Newton on their forces (contact_newton.hpp) in lanes.
 ///
-/// A law with pieces (ScalarForce::product_pieces) is, in each lane, the piece that it is on: its bounds are
+/// A law with pieces (ScalarForce::pieces) is, in each lane, the piece that it is on: its bounds are
 /// watched in lanes, and a lane that left its piece looks for its new one by itself, which is rare. Other
 /// laws are evaluated lane by lane. Newton takes whole steps: it needs the line search only where it would
 /// cycle, and lanes that have not converged in a few iterations are left to the caller.

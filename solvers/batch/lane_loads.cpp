@@ -49,7 +49,8 @@ LaneLoads::LaneLoads(const std::array<const System*, kLanes>& systems) : base_(i
     }
     depend_on_motion_ = depend_on_motion_ || load.moves;
     const auto in_row = std::count(table_row_.begin(), table_row_.end(), load.row);
-    if (in_row == kBits || !std::all_of(tables.begin(), tables.end(), [](const auto& t) { return t; })) {
+    if (in_row == kBits ||
+        !std::all_of(tables.begin(), tables.end(), [](const auto& t) { return t && t->evenly_spaced; })) {
       evaluated_.push_back(load);
       evaluated_move_ = evaluated_move_ || load.moves;
       continue;

@@ -42,13 +42,13 @@ bool opposite(const LawBound& a, const LawBound& b) {
 LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scalars().size()) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    laws_[j].pieces = pieces_or_stretches(term, term.force->pieces());
+    laws_[j].pieces = pieces_or_stretches(term, linear_pieces(*term.force));
   }
 }
 
 void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
-    laws_[j].piece = piece_at(laws_[j].pieces, inputs[j]);
+    laws_[j].piece = piece_at(laws_[j].pieces, inputs[j].x, inputs[j].x_dot);
     laws_[j].root = -1;
   }
 }

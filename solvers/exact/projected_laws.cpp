@@ -11,7 +11,7 @@ ProjectedLaws::ProjectedLaws(const System& system)
     : system_(system), assembler_(system), offsets_(system.scalars().size()) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (!term.force->pieces().empty() && term.phase_node < 0) continue;
+    if (!linear_pieces(*term.force).empty() && term.phase_node < 0) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
     if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
     for (const Entry& e : term.z) rows_.push_back(e.index);

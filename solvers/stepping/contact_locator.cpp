@@ -38,7 +38,7 @@ double sum(const std::vector<Entry>& entries, const Vector& q) {
 ContactLocator::ContactLocator(const System& system) : system_(system), zero_(Vector::Zero(system.size())) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (auto pieces = pieces_or_stretches(term, term.force->product_pieces()); pieces.size() > 1)
+    if (auto pieces = pieces_or_stretches(term, term.force->pieces()); pieces.size() > 1)
       laws_.push_back({j, std::move(pieces)});
     if (term.phase_node >= 0 && (term.force->next_knot(0.0, 1.0) || term.force->next_knot(0.0, -1.0)))
       phased_.push_back(j);
@@ -79,7 +79,7 @@ std::pair<double, double> ContactLocator::distance(const Crossing& c, const Eval
 std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& law, const ScalarInput& from,
                                                                      const Coefficients& x, double h) const {
   std::optional<Crossing> best;
-  for (const LawBound& b : law.pieces[idx(piece_at(law.pieces, from))].bounds) {
+  for (const LawBound& b : law.pieces[idx(piece_at(law.pieces, from.x, from.x_dot))].bounds) {
     Coefficients g;
     for (std::size_t k = 0; k < g.size(); ++k) g[k] = b.b_x * x[k];
     if (b.b_v != 0.0)

@@ -21,15 +21,6 @@ namespace {
 
 /// A wall at x = 0 with k = 1e4 and a damper c = 20 that acts, and pulls, while x > 0.
 struct SwitchedDamper {
-  ScalarResponse operator()(const ScalarInput& in) const {
-    if (in.x <= 0.0) return {};
-    return {.y = 1e4 * in.x + 20.0 * in.x_dot,
-            .dy_dx = 1e4,
-            .dy_dx_dot = 20.0,
-            .stored_energy = 5e3 * in.x * in.x,
-            .dissipated_power = 20.0 * in.x_dot * in.x_dot};
-  }
-  std::optional<Gap> gap() const { return Gap{-1e3, 0.0}; }
   std::vector<LawPiece> pieces() const {
     return {{.bounds = {{0.0, -1.0, 0.0, 1}}},
             {.k = 1e4, .c = 20.0, .elastic_k = 1e4, .bounds = {{0.0, 1.0, 0.0, 0}}}};

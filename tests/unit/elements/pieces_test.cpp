@@ -52,11 +52,14 @@ TEST_CASE("Backlash law: its pieces are the law") {
       }
 }
 
-TEST_CASE("Backlash law: proportional damping has pieces only without a gap or a damper") {
+TEST_CASE("Backlash law: proportional damping has linear pieces only without a gap or a damper") {
   const auto pieces = [](double gap, double c) {
     return BacklashLaw({.normal_backlash = gap, .damping = c}).pieces(1.0);
   };
-  CHECK(pieces(0.1, 5.0).empty());
+  CHECK_FALSE(is_linear(pieces(0.1, 5.0)));
+  CHECK(is_linear(pieces(0.1, 0.0)));
+  CHECK(is_linear(pieces(0.0, 5.0)));
+  CHECK(pieces(0.1, 5.0).size() == 9);
   CHECK(pieces(0.1, 0.0).size() == 3);
   CHECK(pieces(0.0, 5.0).size() == 1);
 }
@@ -64,11 +67,7 @@ TEST_CASE("Backlash law: proportional damping has pieces only without a gap or a
 TEST_CASE("Backlash law: with products of deflection and rate, its pieces are the law for any damping") {
   const double k = 2000.0;
   const BacklashLaw law({.normal_backlash = 0.1, .damping = 300.0, .reference_penetration = 0.04});
-  check_pieces(law.product_pieces(k), 0.2, 10.0, [&](double x, double v) {
-    return law.evaluate(x, v, {k, 0.0});
-  });
-  const BacklashLaw limited({.normal_backlash = 0.1, .damping = 300.0, .damping_law = MeshDamping::limited});
-  CHECK(limited.product_pieces(k).size() == limited.pieces(k).size());
+  check_pieces(law.pieces(k), 0.2, 10.0, [&](double x, double v) { return law.evaluate(x, v, {k, 0.0}); });
 }
 
 TEST_CASE("Polyline spring: its pieces are the spring") {

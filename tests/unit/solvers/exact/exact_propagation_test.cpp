@@ -165,9 +165,6 @@ TEST_CASE("Exact propagation: two masses hit their stops at one instant") {
 TEST_CASE("Exact propagation: a law without a solution ends with an error that names it") {
   // A relay that always pushes away from x = 0 to the other side: it would slide there.
   struct Relay {
-    ScalarResponse operator()(const ScalarInput& in) const {
-      return {.y = in.x > 0.0 ? 1.0 : -1.0, .stored_energy = std::abs(in.x)};
-    }
     std::vector<LawPiece> pieces() const {
       return {{.y_0 = -1.0, .elastic_0 = -1.0, .bounds = {{0.0, -1.0, -1.0, 1}}},
               {.y_0 = 1.0, .elastic_0 = 1.0, .bounds = {{0.0, 1.0, 1.0, 0}}}};

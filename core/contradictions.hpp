@@ -1,0 +1,28 @@
+#pragma once
+/// What a law or a load says of itself twice must agree: a law's pieces, kinks, gap and closed slopes with its
+/// call, a load's table and stretch with its call. Each method takes what serves it best; a contradiction would
+/// give other results by another method.
+#include <drev/core/load.hpp>
+#include <drev/core/scalar_force.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace drev {
+
+struct Contradiction {
+  std::string what;    ///< what does not agree with the call, e.g. "pieces"
+  std::string detail;  ///< where, and both values
+};
+
+/// The first found by an evaluation or two for each piece, table or stretch: for every model that is built.
+std::optional<Contradiction> first_contradiction(const ScalarForce& law);
+std::optional<Contradiction> first_contradiction(const Load& load);
+
+/// All found at many points: inside each piece, on both sides of each bound, and at the inputs given.
+std::vector<Contradiction> contradictions(const ScalarForce& law, std::span<const ScalarInput> at);
+std::vector<Contradiction> contradictions(const Load& load, std::span<const LoadInput> at);
+
+}  // namespace drev
