@@ -1,13 +1,12 @@
 #include "core/contradictions.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/core/law/piecewise_law.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "core/piecewise_law.hpp"
 
 namespace drev {
 

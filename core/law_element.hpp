@@ -11,8 +11,7 @@
 /// that findings and reports call it by. Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If
 /// the law has a member `void check(ParameterCheck&) const`, it is called when the model is built.
 #include <drev/core/element.hpp>
-
-#include "core/law_force.hpp"
+#include <drev/core/law/law_force.hpp>
 
 namespace drev {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// A load on one node: p(t, theta, theta_dot) on the RIGHT side of the equation of motion; positive
 /// accelerates the node in the positive sense.
+#include <drev/core/load_table.hpp>
+
 #include <optional>
 #include <vector>
-
-#include "core/load_table.hpp"
 
 namespace drev {
 

@@ -1,6 +1,5 @@
-#include "core/load_table.hpp"
-
 #include <drev/core/error.hpp>
+#include <drev/core/load_table.hpp>
 
 #include <cmath>
 

@@ -3,10 +3,10 @@
 ///
 /// A law returns force, slopes, stored energy and dissipated power in one pure call: same input, same
 /// output, in any order, any number of times. Its tangent b b^T dy/dx is symmetric by construction.
+#include <drev/core/law/law_piece.hpp>
+
 #include <optional>
 #include <span>
-
-#include "core/law_piece.hpp"
 
 namespace drev {
 

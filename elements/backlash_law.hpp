@@ -39,14 +39,13 @@
 /// Without backlash (0) both flanks touch: y = k x + c x_dot for every damping law, linear,
 /// bilateral, no gap and no clip.
 #include <drev/core/error.hpp>
+#include <drev/core/law/piecewise_law.hpp>
 #include <drev/elements/curve.hpp>
 #include <drev/elements/not_given.hpp>
 
 #include <optional>
 #include <span>
 #include <vector>
-
-#include "core/piecewise_law.hpp"
 
 namespace drev {
 

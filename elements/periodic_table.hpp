@@ -7,14 +7,13 @@
 /// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
 /// in constant time, others by bisection.
 #include <drev/core/error.hpp>
+#include <drev/core/load_table.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/curve.hpp>
 
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "core/load_table.hpp"
 
 namespace drev {
 

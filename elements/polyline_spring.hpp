@@ -11,10 +11,9 @@
 /// (PiecewiseLaw): on a point the segment below it holds, but closed_stiffness() takes the one above. Units: rad and N m
 /// between rotational nodes, m and N between translational ones.
 #include <drev/core/element.hpp>
+#include <drev/core/law/piecewise_law.hpp>
 
 #include <vector>
-
-#include "core/piecewise_law.hpp"
 
 namespace drev {
 

@@ -204,18 +204,6 @@ int no_command(const CLI::App& app, const std::vector<CommandEntry>& commands) {
 
 }  // namespace
 
-std::optional<std::string> CommandLine::option(const std::string& name) const {
-  const auto found = options.find(name);
-  if (found == options.end()) return {};
-  return found->second.front();
-}
-
-std::optional<std::vector<std::string>> CommandLine::list(const std::string& name) const {
-  const auto found = options.find(name);
-  if (found == options.end()) return {};
-  return found->second;
-}
-
 ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<CommandEntry>& commands) {
   CLI::App app("drev: torsional dynamics of drivetrains", "drev");
   app.set_version_flag("--version", "drev " DREV_VERSION);

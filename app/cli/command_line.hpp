@@ -26,9 +26,15 @@ struct CommandLine {
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...
 
   /// The value of an option such as "--step"; nullopt if it was not given.
-  std::optional<std::string> option(const std::string& name) const;
+  std::optional<std::string> option(const std::string& name) const {
+    const auto found = options.find(name);
+    return found == options.end() ? std::nullopt : std::optional(found->second.front());
+  }
   /// The values of an option that takes several.
-  std::optional<std::vector<std::string>> list(const std::string& name) const;
+  std::optional<std::vector<std::string>> list(const std::string& name) const {
+    const auto found = options.find(name);
+    return found == options.end() ? std::nullopt : std::optional(found->second);
+  }
 };
 
 /// Either a command to be done, or the exit code of a process that has done what was asked (help, version)

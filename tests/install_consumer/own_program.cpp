@@ -5,12 +5,11 @@
 // here 2250 N m and x = 0.1 rad, where the coupling has k x + k3 x^3 = 7000 N m.
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/app/model_file/plugin.hpp>
+#include <drev/app/run_model.hpp>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-
-#include <drev/app/run_model.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

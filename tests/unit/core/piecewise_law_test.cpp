@@ -1,6 +1,5 @@
 // A law stated once, by pieces or by a formula: what follows from it.
-#include "core/piecewise_law.hpp"
-
+#include <drev/core/law/piecewise_law.hpp>
 #include <drev/core/law_element.hpp>
 #include <drev/core/verify.hpp>
 

@@ -1,6 +1,5 @@
-#include "core/piecewise_law.hpp"
-
 #include <drev/core/ids.hpp>
+#include <drev/core/law/piecewise_law.hpp>
 
 #include <algorithm>
 #include <cmath>

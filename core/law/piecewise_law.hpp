@@ -9,13 +9,12 @@
 /// Each piece is kept about the zero of its elastic force, or the end of its range that is nearest to it, so that
 /// small deflections from there keep all their digits. A law may be evaluated at another stiffness s:
 ///   y = s Y(x, x_dot/s)       Y: the law as stated
+#include <drev/core/law/law_piece.hpp>
 #include <drev/core/scalar_force.hpp>
 
 #include <optional>
 #include <span>
 #include <vector>
-
-#include "core/law_piece.hpp"
 
 namespace drev {
 

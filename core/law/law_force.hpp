@@ -14,13 +14,12 @@
 ///     methods that use them: check_element() compares them with the call.
 ///
 /// Optional members are used where the law has them: kinks(), gap(), closed_stiffness(), closed_damping().
+#include <drev/core/law/dual.hpp>
+#include <drev/core/law/piecewise_law.hpp>
 #include <drev/core/scalar_force.hpp>
 
 #include <array>
 #include <concepts>
-
-#include "core/dual.hpp"
-#include "core/piecewise_law.hpp"
 
 namespace drev {
 

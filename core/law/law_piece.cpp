@@ -1,4 +1,4 @@
-#include "core/law_piece.hpp"
+#include <drev/core/law/law_piece.hpp>
 
 #include <algorithm>
 #include <cmath>
