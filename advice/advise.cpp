@@ -1,4 +1,5 @@
 #include <drev/advice/advise.hpp>
+#include <drev/advice/recipe.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
@@ -198,8 +199,9 @@ class Ladder {
   }
 
   void measure_full(const Level& level) {
-    full_rung_ = {.name = level.name, .leaves_out = "", .recipe = {level.model, figure_}};
-    full_estimate_ = full_rung_.recipe.estimate();
+    full_rung_ = {
+        .name = level.name, .leaves_out = "", .recipe = std::make_shared<Recipe>(level.model, figure_)};
+    full_estimate_ = full_rung_.recipe->estimate();
     if (!full_estimate_.failure.empty()) throw SolverError(full_estimate_.failure);
     take(full_estimate_, full_rung_);
     full_rung_.holds = true;
@@ -212,12 +214,12 @@ class Ladder {
   /// Fills in value, error and cost.
   void take(const FigureEstimate& estimate, Rung& rung) const {
     rung.value = estimate.value, rung.error = estimate.error;
-    rung.recipe.figure.watch.clear();
+    rung.recipe->figure.watch.clear();
     rung.seconds = std::numeric_limits<double>::infinity();
     double spent = 0.0;
     for (int i = 0; i < kRepeats && spent < kEnoughSeconds; ++i) {
       const double begin = processor_seconds();
-      rung.recipe.run();
+      rung.recipe->run();
       const double seconds = processor_seconds() - begin;
       rung.seconds = std::min(rung.seconds, seconds);
       spent += seconds;
@@ -239,9 +241,11 @@ class Ladder {
   Rung measure(const Name& name, Recipe recipe) const {
     recipe.figure.watch.clear();
     recipe.figure.most_seconds = kMostCost * full_rung_.seconds;
-    Rung rung{.name = name.name, .leaves_out = name.leaves_out, .recipe = std::move(recipe)};
+    Rung rung{.name = name.name,
+              .leaves_out = name.leaves_out,
+              .recipe = std::make_shared<Recipe>(std::move(recipe))};
     try {
-      const FigureEstimate estimate = rung.recipe.estimate();
+      const FigureEstimate estimate = rung.recipe->estimate();
       rung.unsuitable = estimate.failure;
       if (!rung.unsuitable.empty()) return rung;
       take(estimate, rung);
@@ -277,7 +281,7 @@ class Ladder {
   Evidence evidence_;
   FigureOptions figure_;
   Advice advice_;
-  Rung full_rung_{.name = {}, .leaves_out = {}, .recipe = {Model(""), {}}};
+  Rung full_rung_{.name = {}, .leaves_out = {}, .recipe = nullptr};
   FigureEstimate full_estimate_;
 };
 

@@ -12,14 +12,18 @@
 /// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
 /// does so for this model case and this figure (docs/fidelity.md).
-#include <drev/advice/recipe.hpp>
 #include <drev/core/range.hpp>
 #include <drev/models/model_case.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace drev {
+
+class System;
+struct FigureOptions;
+struct Recipe;
 
 struct AdviseOptions {
   /// "peak deflection", "peak torque" (the model case's), "peak CHANNEL"; "steady peak ..." counts the last turns
@@ -39,7 +43,7 @@ struct Rung {
   double cost = 0.0;                                ///< seconds over the full model's
   bool holds = false;
   std::string evidence = {};
-  Recipe recipe;
+  std::shared_ptr<Recipe> recipe;  ///< the model to be run for the figure, and how (recipe.hpp)
 };
 
 struct Advice {

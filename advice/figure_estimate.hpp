@@ -8,16 +8,17 @@
 ///
 /// The method is the cheapest that keeps the accuracy: exact propagation, or constant steps of sdirk4, halved
 /// until two differences in a row are small, where those take less time.
-#include <drev/solvers/method_choice.hpp>
-#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/method.hpp>
+#include <drev/solvers/run/estimate.hpp>
+#include <drev/solvers/run/peak.hpp>
 
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "solvers/run/estimate.hpp"
-
 namespace drev {
+
+class System;
 
 struct FigureOptions {
   std::vector<std::string> channels = {};

@@ -2,6 +2,7 @@
 /// Assembler: evaluates the terms of a System that are not constant, at one time. Holds what is known
 /// about that time (nominal motion, prescribed motions) and nothing else; one per thread.
 #include <drev/core/general_force.hpp>
+#include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/state.hpp>
 #include <drev/core/weights.hpp>

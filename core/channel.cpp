@@ -1,3 +1,4 @@
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 

@@ -12,13 +12,15 @@
 /// mesh's force is positive on the front flank (x > 0); a load's torque is as it enters the right-hand side;
 /// an ideal gear's torque is the one it applies to its second node; a reaction is the torque that must be
 /// applied to the prescribed node to make it move as given.
-#include <drev/core/assembler.hpp>
+#include <drev/core/state.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace drev {
+
+class Assembler;
 
 class Channel {
  public:

@@ -17,7 +17,7 @@ constexpr double kNear = 1e-6;   // beside a bound: of the range, or of its own 
 constexpr double kParts[] = {kNear, 0.1, 0.4, 0.8, 1.0 - kNear};
 
 /// The point at a part f of a range, 0 < f < 1; an infinite side is entered by the scale of the other one.
-double inside(const Range& r, double f) {
+double inside(const Interval& r, double f) {
   const double beyond = f / (1.0 - f), before = (1.0 - f) / f;
   const bool low = std::isfinite(r.low), high = std::isfinite(r.high);
   if (low && high) return r.low + f * (r.high - r.low);
@@ -76,10 +76,10 @@ std::optional<Contradiction> wrong_next(std::span<const LawPiece> pieces) {
 template <class F>
 void inside_piece(const LawPiece& piece, std::span<const double> x_parts, std::span<const double> rate_parts,
                   const F& f) {
-  const Range x_range = piece.x_range();
+  const Interval x_range = piece.x_range();
   for (const double part : x_parts) {
     const double x = inside(x_range, part);
-    const Range rates = piece.rate_range(x);
+    const Interval rates = piece.rate_range(x);
     for (const double rate_part : rate_parts) {
       const double x_dot = inside(rates, rate_part);
       if (x > x_range.low && x < x_range.high && x_dot > rates.low && x_dot < rates.high)
@@ -198,7 +198,7 @@ void compare_gap(const ScalarForce& law, std::vector<Contradiction>& found) {
     if (const double y = law.evaluate(in).y; y != 0.0)
       found.push_back({"gap", "the call gives y = " + to_text(y) + " inside it" + where(in)});
   }
-  for (const Range& side : {Range{.high = gap->low}, Range{.low = gap->high}}) {
+  for (const Interval& side : {Interval{.high = gap->low}, Interval{.low = gap->high}}) {
     if (std::isinf(side.low) && std::isinf(side.high)) continue;
     if (side.low == side.high) continue;
     const bool front = std::isfinite(side.low);
@@ -228,7 +228,7 @@ class StretchComparison {
     const double reach = std::max(1.0, std::abs(angle));
     for (const double part : kParts) {
       LoadInput other = in;
-      const Range range{std::max(s.low, angle - reach), std::min(s.high, angle + reach)};
+      const Interval range{std::max(s.low, angle - reach), std::min(s.high, angle + reach)};
       const double moved = inside(range, part) - angle;
       other.nominal_angle += moved;
       const double later = std::isfinite(next_break) ? part * (next_break - in.t) : part;

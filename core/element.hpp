@@ -2,10 +2,7 @@
 /// One entry of the catalogue. An element is immutable, does not know its place in the model, and sees
 /// no global matrix: describe() states its terms in its own node order, once.
 #include <drev/core/error.hpp>
-#include <drev/core/general_force.hpp>
 #include <drev/core/ids.hpp>
-#include <drev/core/load.hpp>
-#include <drev/core/scalar_force.hpp>
 
 #include <Eigen/Core>
 #include <string>
@@ -13,6 +10,10 @@
 #include <vector>
 
 namespace drev {
+
+class GeneralForce;
+class Load;
+class ScalarForce;
 
 /// b^T q over the element's nodes (internal nodes after the named ones).
 using LocalRow = Eigen::VectorXd;

@@ -1,4 +1,5 @@
 #include <drev/core/error.hpp>
+#include <drev/core/load.hpp>
 #include <drev/core/ritz_projection.hpp>
 
 #include <Eigen/Cholesky>

@@ -1,5 +1,6 @@
 #include <drev/core/error.hpp>
 #include <drev/core/general_force.hpp>
+#include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/state.hpp>
 #include <drev/core/system.hpp>

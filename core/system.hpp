@@ -20,6 +20,7 @@
 namespace drev {
 
 class GeneralForce;
+class Load;
 class ScalarForce;
 
 static_assert(

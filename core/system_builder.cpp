@@ -1,5 +1,7 @@
 #include "core/system_builder.hpp"
 
+#include <drev/core/load.hpp>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,6 @@
 // The first part of SystemBuilder: the elements, each by itself. And what they report.
+#include <drev/core/general_force.hpp>
+
 #include <algorithm>
 #include <iterator>
 

@@ -1,10 +1,9 @@
+#include <drev/core/lanes.hpp>
 #include <drev/core/table_loads.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -6,13 +6,15 @@
 ///
 /// u is the argument modulo the period. A knot may lie off its even place by a quarter of the spacing
 /// (angles written down with a few digits): the nearest place still belongs to it, and to it alone.
-#include <drev/core/load.hpp>
+#include <drev/core/load_table.hpp>
 
 #include <map>
 #include <span>
 #include <vector>
 
 namespace drev {
+
+class Load;
 
 class TableLoads {
  public:

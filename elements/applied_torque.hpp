@@ -8,6 +8,7 @@
 /// A function, with the times at which it jumps or kinks as breakpoints (at a jump it must give the
 /// value after it); or a TimeTable, which knows its own; or harmonics, sum A cos(2 pi f t + phase).
 #include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/harmonic.hpp>
 #include <drev/elements/time_table.hpp>

@@ -9,6 +9,7 @@
 /// a load of time alone. The phase places a cylinder in the firing order: the table is entered
 /// `phase` ahead.
 #include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
 #include <drev/elements/periodic_table.hpp>
 
 namespace drev {

@@ -7,6 +7,7 @@
 /// + deviation); twist_feedback = false takes the nominal one. Orders are per revolution of the
 /// node; a four-stroke engine has half orders.
 #include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
 #include <drev/elements/harmonic.hpp>
 
 namespace drev {

@@ -9,8 +9,8 @@
 namespace drev {
 
 class Observer;
-struct MethodRow;
 class System;
+struct MethodRow;
 struct State;
 
 /// The name of exact propagation among the methods.

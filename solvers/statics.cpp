@@ -1,3 +1,5 @@
+#include <drev/core/assembler.hpp>
+#include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/statics.hpp>
 
@@ -16,7 +18,9 @@ constexpr double kShift = 1e-10;
 }  // namespace
 
 StaticSolver::StaticSolver(const System& system)
-    : system_(system), assembler_(system), newton_(std::make_unique<SparseNewton>(system)) {
+    : system_(system),
+      assembler_(std::make_unique<Assembler>(system)),
+      newton_(std::make_unique<SparseNewton>(system)) {
   const std::vector<std::string> floating = system.floating_parts(Contact::closed);
   if (!floating.empty()) {
     std::string names;
@@ -29,7 +33,7 @@ StaticSolver::StaticSolver(const System& system)
   start_ = zero_;
   if (system.scalars().empty() && system.generals().empty()) return;
   Vector closed;
-  assembler_.contact_values({0.0, 0.0, 1.0}, Contact::closed, closed);
+  assembler_->contact_values({0.0, 0.0, 1.0}, Contact::closed, closed);
   const SparseMatrix& pattern = system.pattern();
   for (int k = 0; k < pattern.cols(); ++k)
     for (int s = pattern.outerIndexPtr()[k]; s < pattern.outerIndexPtr()[k + 1]; ++s)
@@ -40,8 +44,8 @@ StaticSolver::StaticSolver(const System& system)
 StaticSolver::~StaticSolver() = default;
 
 StaticResult StaticSolver::solve(const StaticOptions& options) {
-  assembler_.set_time(options.t);
-  assembler_.stand_at_angle(options.nominal_angle);
+  assembler_->set_time(options.t);
+  assembler_->stand_at_angle(options.nominal_angle);
   StaticResult result;
   result.state = State::initial(system_, options.t);
   result.state.v.setZero();
@@ -56,7 +60,7 @@ StaticResult StaticSolver::solve(const StaticOptions& options) {
                                     .history = &history,
                                     .shift = shift_};
   const NewtonResult newton =
-      newton_->solve(assembler_, problem, options.newton, start_, result.state.history);
+      newton_->solve(*assembler_, problem, options.newton, start_, result.state.history);
   if (newton.status != NewtonStatus::converged) {
     start_ = zero_;
     throw SolverError(system_.name() + ": no static equilibrium found at the nominal angle " +

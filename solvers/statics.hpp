@@ -1,15 +1,16 @@
 #pragma once
 /// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle.
-#include <drev/core/assembler.hpp>
-#include <drev/core/channel.hpp>
+#include <drev/core/state.hpp>
 #include <drev/solvers/contact/newton_options.hpp>
-#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/peak.hpp>
 
 #include <memory>
 #include <vector>
 
 namespace drev {
 
+class Assembler;
+class Channel;
 class SparseNewton;
 
 struct StaticOptions {
@@ -34,11 +35,11 @@ class StaticSolver {
   /// Throws SolverError, with the angle, if Newton does not converge.
   StaticResult solve(const StaticOptions& options = {});
   /// Stands at the state solved last.
-  const Assembler& assembler() const { return assembler_; }
+  const Assembler& assembler() const { return *assembler_; }
 
  private:
   const System& system_;
-  Assembler assembler_;
+  std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<SparseNewton> newton_;
   Vector start_, zero_;
   double shift_ = 0.0;

@@ -87,7 +87,7 @@ Json as_json(const AdviseRequest& request, const Advice& advice) {
     r["difference_error"] = value(rung.difference_error);
     r["seconds"] = value(rung.seconds);
     r["cost"] = value(rung.cost);
-    r["method"] = suits && !rung.recipe.turns ? Json(to_text(rung.recipe.method)) : Json(nullptr);
+    r["method"] = suits && !rung.recipe->turns ? Json(to_text(rung.recipe->method)) : Json(nullptr);
     r["holds"] = rung.holds;
     r["evidence"] = text_or_null(rung.evidence);
     object["rungs"].push_back(std::move(r));

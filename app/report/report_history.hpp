@@ -10,6 +10,7 @@
 ///
 /// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
 /// and stored energy [J].
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>

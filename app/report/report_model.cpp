@@ -1,6 +1,7 @@
 #include "app/report/report_model.hpp"
 
 #include <drev/core/element.hpp>
+#include <drev/core/general_force.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 /// `drev study`: the source's studies repeated on the reconstructed camshaft. Each group of them is computed
 /// by one function, apart from writing, and gives tables with the published value, drev's at the source's
 /// step of 1 ms, and the converged one with its error.
+#include <drev/solvers/run/estimate.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "solvers/run/estimate.hpp"
 
 namespace drev::app {
 

@@ -1,5 +1,6 @@
 #pragma once
 /// Runs of the camshaft for the studies, side by side on all processors.
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/models/model_case.hpp>
 #include <drev/solvers/method_choice.hpp>

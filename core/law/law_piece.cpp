@@ -8,7 +8,7 @@ namespace drev {
 
 namespace {
 
-void cut(Range& range, double at, double direction) {
+void cut(Interval& range, double at, double direction) {
   if (direction > 0.0)
     range.low = std::max(range.low, at);
   else
@@ -17,15 +17,15 @@ void cut(Range& range, double at, double direction) {
 
 }  // namespace
 
-Range LawPiece::x_range() const {
-  Range range;
+Interval LawPiece::x_range() const {
+  Interval range;
   for (const LawBound& b : bounds)
     if (b.in_x_alone()) cut(range, b.kink(), b.b_x);
   return range;
 }
 
-Range LawPiece::rate_range(double x) const {
-  Range range;
+Interval LawPiece::rate_range(double x) const {
+  Interval range;
   for (const LawBound& b : bounds)
     if (b.b_v != 0.0) cut(range, -(b.a + b.b_x * x) / b.b_v, b.b_v);
   return range;

@@ -17,7 +17,7 @@ struct LawBound {
 };
 
 /// An open interval.
-struct Range {
+struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
@@ -38,9 +38,9 @@ struct LawPiece {
     return true;
   }
   /// The values of x that the bounds in x alone leave.
-  Range x_range() const;
+  Interval x_range() const;
   /// The values of x_dot that the other bounds leave at x.
-  Range rate_range(double x) const;
+  Interval rate_range(double x) const;
 };
 
 /// True where no piece has a term x x_dot.

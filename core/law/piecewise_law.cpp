@@ -64,7 +64,7 @@ void PiecewiseLaw::find_candidates() {
   const std::size_t zones = kinks_.size() + 1;
   std::vector<std::vector<int>> of_zone(zones);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Range range = pieces_[i].x_range();
+    const Interval range = pieces_[i].x_range();
     // The zones whose middle lies in the range: whatever its ends' rounding.
     std::size_t zone = range.low == -kInfinity ? 0 : count_below(range.low);
     for (; zone < zones; ++zone) {
@@ -88,7 +88,7 @@ void PiecewiseLaw::find_candidates() {
 
 void PiecewiseLaw::find_lines() {
   for (const LawPiece& p : pieces_) {
-    const Range range = p.x_range();
+    const Interval range = p.x_range();
     const double zero = -p.elastic_0 / p.elastic_k;  // not finite for a constant force
     const double origin = std::min(std::max(std::isfinite(zero) ? zero : 0.0, range.low), range.high);
     Line l{.origin = origin, .k = p.k, .product = p.product, .elastic_k = p.elastic_k};
@@ -121,7 +121,7 @@ void PiecewiseLaw::find_energies() {
   }
   double least = kInfinity;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Range range = pieces_[i].x_range();
+    const Interval range = pieces_[i].x_range();
     for (const double x : {range.low, lines_[i].origin, range.high})
       if (std::isfinite(x)) least = std::min(least, lines_[i].stored(x));
   }
@@ -133,7 +133,7 @@ void PiecewiseLaw::find_gap() {
   if (kinks_.empty() || std::none_of(pieces_.begin(), pieces_.end(), is_elastic)) return;
   for (const LawPiece& p : pieces_) {
     if (is_elastic(p)) continue;
-    const Range range = p.x_range();
+    const Interval range = p.x_range();
     if (!gap_) gap_ = Gap{range.low, range.high};
     gap_->low = std::min(gap_->low, range.low);
     gap_->high = std::max(gap_->high, range.high);

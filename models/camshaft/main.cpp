@@ -6,6 +6,7 @@
 #include <drev/core/units.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/statics.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 

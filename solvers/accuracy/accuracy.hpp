@@ -18,12 +18,11 @@
 #include <drev/core/range.hpp>
 #include <drev/core/system.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/run/estimate.hpp>
 
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "solvers/run/estimate.hpp"
 
 namespace drev {
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What accuracy.cpp watches in each of its runs: peaks with the state ahead of them, changes of contact with
 /// their times, time averages in batches. Internal to accuracy.cpp, but for the peaks.
+#include <drev/core/assembler.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>

@@ -11,8 +11,7 @@
 /// smooth dynamical systems and for Hamiltonian systems, Meccanica 15, 1980, doi:10.1007/BF02128236.
 #include <drev/core/state.hpp>
 #include <drev/solvers/method_choice.hpp>
-
-#include "solvers/run/estimate.hpp"
+#include <drev/solvers/run/estimate.hpp>
 
 namespace drev {
 

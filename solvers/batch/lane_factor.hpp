@@ -2,11 +2,10 @@
 /// A = L D L' for kLanes symmetric positive definite matrices of one pattern at once, each in its lane. Not
 /// LL': without square roots a step has no division, and a pivot that is not positive is seen all the same.
 /// Ordered from both ends of the unknowns' own order, in that order, or by AMD: the first that fills least.
+#include <drev/core/lanes.hpp>
 #include <drev/core/system.hpp>
 
 #include <vector>
-
-#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/lanes.hpp"
+#include <drev/core/lanes.hpp>
 
 namespace drev {
 

@@ -10,8 +10,8 @@
 /// A step that a variant cannot make with the others (Newton needs its line search, or the step must be
 /// halved) it makes by itself, as a single run would.
 #include <drev/core/state.hpp>
-#include <drev/solvers/run/contact_statistics.hpp>
-#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/contact_record.hpp>
+#include <drev/solvers/run/peak.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
 #include <cstddef>

@@ -7,10 +7,10 @@
 /// above that degree, so that kinks inside a step cost next to nothing at its end (Galerkin orthogonality;
 /// e.g. K. Eriksson, D. Estep, P. Hansbo, C. Johnson, Computational Differential Equations, 1996, chapter
 /// 9). Inside the step the motion is off by about h^2 |rest|/(m D^3).
+#include <drev/core/lanes.hpp>
+
 #include <array>
 #include <vector>
-
-#include "core/lanes.hpp"
 
 namespace drev {
 

@@ -1,8 +1,8 @@
 #include "solvers/exact/series_kernels.hpp"
 
-#include <algorithm>
+#include <drev/core/lanes.hpp>
 
-#include "core/lanes.hpp"
+#include <algorithm>
 
 namespace drev {
 

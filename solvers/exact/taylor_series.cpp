@@ -1,12 +1,12 @@
 #include "solvers/exact/taylor_series.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/core/lanes.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "core/lanes.hpp"
 #include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/extreme_eigenvalue.hpp"
 #include "solvers/linear/vector_kernels.hpp"

@@ -1,9 +1,10 @@
 #include "solvers/linear/low_fill_factor.hpp"
 
+#include <drev/core/lanes.hpp>
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/lanes.hpp"
 #include "solvers/linear/cholmod_factor.hpp"
 #include "solvers/linear/huge_pages.hpp"
 

@@ -31,8 +31,8 @@ enum class FactorStatus {
 };
 const char* to_text(FactorStatus status);
 
-struct LowFillPattern;
 class LowFillFactor;
+struct LowFillPattern;
 
 /// Order of elimination.
 enum class Ordering { natural, from_leaves, amd };

@@ -1,6 +1,6 @@
 #include "solvers/linear/vector_kernels.hpp"
 
-#include "core/lanes.hpp"
+#include <drev/core/lanes.hpp>
 
 namespace drev {
 

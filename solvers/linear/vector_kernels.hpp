@@ -1,11 +1,10 @@
 #pragma once
 /// The inner loops of a step over all unknowns, for a processor's widest vectors (core/lanes.hpp). Fewer
 /// unknowns than a vector holds are not worth the call: their loops stand here, those of more in wide.
+#include <drev/core/lanes.hpp>
 #include <drev/core/system.hpp>
 
 #include <vector>
-
-#include "core/lanes.hpp"
 
 namespace drev {
 

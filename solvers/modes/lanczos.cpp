@@ -1,12 +1,13 @@
 #include "solvers/modes/lanczos.hpp"
 
+#include <drev/core/lanes.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
-#include "core/lanes.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/vector_kernels.hpp"
 

@@ -1,6 +1,7 @@
 #include "solvers/modes/modal_problem.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/core/lanes.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <limits>
 
 #include "core/dense_eigen.hpp"
-#include "core/lanes.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/low_fill_factor.hpp"
 #include "solvers/linear/vector_kernels.hpp"

@@ -1,5 +1,6 @@
 #include "solvers/periodic/load_harmonics.hpp"
 
+#include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 
 #include <array>

@@ -1,3 +1,4 @@
+#include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>

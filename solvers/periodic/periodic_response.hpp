@@ -7,7 +7,8 @@
 /// A periodic motion that satisfies the equations, and nothing more: whether it is stable, or the one that a
 /// run from rest settles on where there are several (a gap that opens), harmonic balance does not tell; a
 /// transient from near it does.
-#include <drev/solvers/run/peaks.hpp>
+#include <drev/core/system.hpp>
+#include <drev/solvers/run/peak.hpp>
 
 #include <complex>
 #include <string>

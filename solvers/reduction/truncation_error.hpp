@@ -10,17 +10,17 @@
 /// their changes and so change everything, it is twice the sum, and no less, relative to the peak, than the
 /// worst error of such laws' forces relative to the largest of them (by F^2/k). It is no bound, and knows
 /// nothing of the growth of differences in motions that are sensitive to their start (growth.hpp).
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
+#include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "solvers/run/estimate.hpp"
 
 namespace drev {
 

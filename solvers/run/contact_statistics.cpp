@@ -1,4 +1,6 @@
+#include <drev/core/assembler.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 
 #include <cmath>
 

@@ -2,9 +2,9 @@
 /// The energy balance of a run, of one or of kLanes variants, as energy_monitor.hpp keeps it:
 ///
 ///   kinetic + stored - start = input - dissipated + imbalance
-#include <limits>
+#include <drev/core/lanes.hpp>
 
-#include "core/lanes.hpp"
+#include <limits>
 
 namespace drev {
 

@@ -1,3 +1,5 @@
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>

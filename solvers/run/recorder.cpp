@@ -1,4 +1,6 @@
+#include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>

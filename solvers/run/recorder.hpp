@@ -2,7 +2,6 @@
 /// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Constant steps are
 /// cut so that they end there; controlled steps and exact propagation show their polynomial there.
 #include <drev/core/channel.hpp>
-#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
 
 #include <functional>
@@ -10,6 +9,9 @@
 #include <vector>
 
 namespace drev {
+
+class Assembler;
+struct EvaluatedState;
 
 class Recorder final : public Observer {
  public:

@@ -1,4 +1,5 @@
 #include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/butcher_tableau.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>

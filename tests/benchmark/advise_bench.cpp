@@ -25,7 +25,7 @@ double times_cheaper(const ModelCase& model_case, const std::string& name, bool 
     if (rungs)
       std::printf("    %-46s %+9.3f +- %.3f %%  cost %.3f%s  %s %s\n", r.name.c_str(), 100 * r.difference,
                   100 * r.difference_error, r.cost, r.holds ? ", holds" : "",
-                  to_text(r.recipe.method).c_str(), r.unsuitable.c_str());
+                  to_text(r.recipe->method).c_str(), r.unsuitable.c_str());
   std::fflush(stdout);
   return 1.0 / a.best().cost;
 }

@@ -1,9 +1,11 @@
 // The four damping laws of a gear mesh compared (docs/catalogue.md): one gear pair, hammered by a cyclic
 // torque.
 //   build/release/bin/bench_mesh_laws
+#include <drev/core/assembler.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 /// Elements with a general force, for tests: of one's own making, with history or without symmetry.
 #include <drev/core/element.hpp>
+#include <drev/core/general_force.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 // camshaft with 6 to 10 cylinders at 750 rpm and at its worst speed. The full model is run by another method
 // than the advice's, and the figure of the model advised is found anew from its recipe.
 #include <drev/advice/advise.hpp>
+#include <drev/advice/figure_estimate.hpp>
 #include <drev/core/units.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
@@ -29,12 +30,12 @@ void check_promise(const ModelCase& model_case, const Advice& a) {
                             << "; " << rung.unsuitable << rung.evidence);
   const Rung& full = a.full();
   const System system = model_case.model.build();
-  const double truth = figure_of_run(system, another(full.recipe.method), full.recipe.figure);
+  const double truth = figure_of_run(system, another(full.recipe->method), full.recipe->figure);
   if (a.chosen + 1 == a.rungs.size() && a.statistic) {  // runs of the full model itself differ by more
     CHECK(std::abs(full.value - truth) <= 2.0 * full.error);
     return;
   }
-  CHECK(std::abs(a.best().recipe.run() - truth) <= kWithin * std::abs(truth));
+  CHECK(std::abs(a.best().recipe->run() - truth) <= kWithin * std::abs(truth));
   // Nor does any other rung that is said to hold.
   for (const Rung& rung : a.rungs)
     if (rung.holds && !a.statistic) CHECK(std::abs(rung.value - truth) <= kWithin * std::abs(truth));

@@ -2,6 +2,8 @@
 #include "advice/simplify.hpp"
 
 #include <drev/advice/figure_estimate.hpp>
+#include <drev/core/assembler.hpp>
+#include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>

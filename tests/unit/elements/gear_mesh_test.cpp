@@ -1,4 +1,5 @@
 // Gear mesh, its varying stiffness, its transmission error, involute geometry.
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>

@@ -1,5 +1,7 @@
 // check_element() must catch what is wrong: deliberately broken elements.
+#include <drev/core/general_force.hpp>
 #include <drev/core/law_element.hpp>
+#include <drev/core/load.hpp>
 #include <drev/core/verify.hpp>
 #include <drev/elements/shaft_spring.hpp>
 

@@ -1,4 +1,5 @@
 // Static equilibrium with contact.
+#include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/statics.hpp>

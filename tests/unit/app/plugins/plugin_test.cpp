@@ -140,6 +140,38 @@ TEST_CASE("An element with an internal ring: modes, steps, exact propagation, ex
       exact.at("results"));
 }
 
+TEST_CASE("An internal node along a line: modes, both ways to run, a reduction, export and report") {
+  const TemporaryFolder folder;
+  const std::string rack = plugin("rack"), out = (folder / "out").string();
+  const std::string file =
+      written(folder / "rack.toml",
+              "format = 1\nparameters = { r_mm = 50 }\n[nodes]\npinion = { initial_speed_rad_per_s = 2 "
+              "}\n[elements]\n"
+              "J = { type = \"inertia\", node = \"pinion\", inertia_kg_m2 = 0.02 }\n"
+              "rack = { type = \"rack\", node = \"pinion\", mass_kg = 3, radius_mm = \"r_mm\", "
+              "stiffness_N_per_um = 4 }\n"
+              "[run]\nduration_s = 0.05\ntorques = \"rack.force_N\"\nrecord = \"rack_1.*\"\n");
+  // omega^2 = k (r^2/J + 1/m); the teeth carry k r theta'(0)/omega at most.
+  const double omega = std::sqrt(4e6 * (0.05 * 0.05 / 0.02 + 1.0 / 3.0)), force = 4e6 * 0.05 * 2.0 / omega;
+  const Json modes = json_of({"modes", file, "--plugin", rack, "--json"});
+  CHECK(modes.at("rigid_modes") == 1);
+  CHECK(modes.at("frequencies_Hz")[0].get<double>() == Approx(omega / (2 * std::numbers::pi)).epsilon(1e-12));
+  for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{
+           {"--method", "exact"}, {"--method", "sdirk4", "--tolerance", "1e-8"}, {"--reduce", "1%"}}) {
+    std::vector<std::string> words{"run", file, "--plugin", rack, "--json", "--out", out};
+    words.insert(words.end(), how.begin(), how.end());
+    const Json results = json_of(words).at("results");
+    CHECK(results.at("max_force_N").get<double>() == Approx(force).epsilon(1e-5));
+  }
+  CHECK(drev::test::read_file(out + "/history.csv")
+            .starts_with("time_s,rack_1.position_m,rack_1.velocity_m_per_s"));
+  CHECK(contains(drev::test::read_file(out + "/report.html"), "{\"name\":\"rack_1\",\"turns\":false"));
+  const Outcome text = drev_command({"export", file, "--plugin", rack});
+  CHECK(contains(text.out,
+                 "rack = { type = \"rack\", node = \"pinion\", mass_kg = 3.0, radius_m = 0.05, "
+                 "stiffness_N_per_m = 4000000.0 }"));
+}
+
 TEST_CASE("Completion knows the channels of a file whose elements are a plugin's") {
   const TemporaryFolder folder;
   const std::string file =

@@ -6,6 +6,8 @@
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <atomic>

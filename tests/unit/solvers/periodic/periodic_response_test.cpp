@@ -8,6 +8,7 @@
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/periodic/speed_sweep.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,9 @@
 // Where steps end: breakpoints, times of observers, the end; even steps between them.
 #include "solvers/run/stops.hpp"
 
+#include <drev/core/assembler.hpp>
 #include <drev/elements/applied_torque.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 
 #include <cmath>
 

@@ -1,8 +1,10 @@
 // Integration in time: exact stops, restarts, energy, paths that must agree, refusals.
 // Covers solvers/run/energy_monitor.hpp, energy_balance.hpp, run_summary.hpp, run_verdict.hpp and
 // run_checks.hpp, and solvers/stepping/step_options.hpp, through simulate().
+#include <drev/core/assembler.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>
