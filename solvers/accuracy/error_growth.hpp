@@ -44,8 +44,8 @@ ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions&
 /// The model's initial state and beside it 1e-9 of the scales, in the i-th of arbitrary directions.
 State neighbour(const System& system, int i, double z_scale, double v_scale);
 
-/// Mean of samples in order of time, with its 95 % confidence interval by the means of batches and Student's t.
-/// The interval is infinite with less than two samples.
+/// Mean of samples in order of time, with its 95 % confidence interval by the means of batches and Student's
+/// t. The interval is infinite with less than two samples.
 Estimate batch_mean(const std::vector<double>& samples, int batches = 20);
 
 }  // namespace drev

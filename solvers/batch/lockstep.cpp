@@ -15,7 +15,6 @@ namespace drev {
 
 namespace {
 
-constexpr double kSameTime = 1e-9;   // as in transient.cpp
 constexpr double kSameStep = 1e-10;  // as in step_equation.cpp
 
 /// Up to kLanes variants; the last one fills what is left.
@@ -77,7 +76,7 @@ std::vector<VariantResult> Lockstep::run(const std::function<bool(double)>& go_o
   start(t_, true);
   watch_.start(assemblers_, now_, t_);
   // All systems have the same breakpoints.
-  const Stops stops(*systems_[0], options_.t_end, kSameTime * options_.step);
+  const Stops stops(*systems_[0], options_.t_end, kSameStop * options_.step);
   const Progress progress(go_on, options_.t_start, options_.t_end);
   while (any(alive_) && t_ < options_.t_end) {
     const Stop stop = stops.after(t_);

@@ -36,8 +36,8 @@ class LoadSeries {
   struct Pass {
     /// Of the motion, by what this pass changed of the forces' projection; 0: nothing to project.
     double change = 0.0;
-    /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated from
-    /// the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
+    /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated
+    /// from the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
     double contraction = 0.0;
     /// Of the motion, by what no polynomial of the projection's degree holds of the forces.
     double residual = 0.0;

@@ -21,8 +21,8 @@ struct ContactInterval {
   bool met = false;
   double largest = 0.0;
 };
-/// Enters a force of size |y| at time t in these lanes; largest: of the contact at hand. Value and Mask: double
-/// and bool, or Lanes and LaneMask.
+/// Enters a force of size |y| at time t in these lanes; largest: of the contact at hand. Value and Mask:
+/// double and bool, or Lanes and LaneMask.
 template <class Number, class Value, class Mask>
 [[gnu::always_inline]] inline void note_force(ContactTotals<Number>& totals, const Value& size, double t,
                                               const Mask& lanes, Number& largest) {

@@ -29,8 +29,8 @@ struct EnergyBalance : Balance<double> {
 };
 
 /// Enters a step that ends at t [s]: what is kinetic and stored there, what was put in and what dissipated
-/// since the start [J]. Only where `good`, which is cleared where the imbalance is not finite. Value and Mask:
-/// double and bool, or Lanes and LaneMask.
+/// since the start [J]. Only where `good`, which is cleared where the imbalance is not finite. Value and
+/// Mask: double and bool, or Lanes and LaneMask.
 template <class Number, class Value, class Mask>
 [[gnu::always_inline]] inline void enter_step(Balance<Number>& b, const Value& kinetic, const Value& stored,
                                               const Value& input, const Value& dissipated, double t,

@@ -16,6 +16,9 @@ struct Stop {
   double evaluation_time() const;
 };
 
+/// Of a step: stops of constant steps this close together are one.
+inline constexpr double kSameStop = 1e-9;
+
 class Stops {
  public:
   /// same >= 0: stops within this time of each other are one [s]. observers: whose times are stops, too; they

@@ -4,6 +4,7 @@
 #include <drev/core/error.hpp>
 
 #include <string>
+#include <utility>
 
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/stepping/stepper.hpp"
@@ -15,8 +16,8 @@ namespace drev {
 template <class Accept>
 class HalvedStep {
  public:
-  /// now, next: the points that the step goes between. max_halvings: how often a step is halved before the run
-  /// ends. All that is referred to outlives this.
+  /// now, next: the points that the step goes between. max_halvings: how often a step is halved before the
+  /// run ends. All that is referred to outlives this.
   HalvedStep(Stepper& stepper, EvaluatedState*& now, EvaluatedState*& next, int max_halvings,
              RunSummary& summary, Accept accept)
       : stepper_(stepper),
@@ -38,7 +39,8 @@ class HalvedStep {
     return make(0.5 * h, middle, middle, depth + 1) && make(0.5 * h, t_new, t_evaluate, depth + 1);
   }
 
-  /// For a step that no halving makes solvable: a force that jumps is taken inside its jump; else the run ends.
+  /// For a step that no halving makes solvable: a force that jumps is taken inside its jump; else the run
+  /// ends.
   bool last_resort(NewtonStatus status, double h, double t_new, double t_evaluate) {
     if (status == NewtonStatus::no_root) {
       const NewtonResult result = stepper_.step(*now_, h, t_new, t_evaluate, *next_, true);

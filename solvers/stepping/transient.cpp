@@ -21,7 +21,6 @@ namespace drev {
 
 namespace {
 
-constexpr double kSameTime = 1e-9;     // relative to the step
 constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
 constexpr double kLargestStep = 0.05;  // of the run
 constexpr double kLeastStep = 1e-9;    // of the run: not rejected for its error
@@ -61,7 +60,7 @@ class Run {
     check_start(summary_, system_, now_->state);
     // Controlled steps pass what observers ask for, and are interpolated there.
     const Stops stops(system_, options_.t_end,
-                      kSameTime * (options_.step > 0.0 ? options_.step : kLargestStep * duration()),
+                      kSameStop * (options_.step > 0.0 ? options_.step : kLargestStep * duration()),
                       control_ ? std::vector<Observer*>{} : observers_);
     while (running() && now_->state.t < options_.t_end) run_to(stops.after(now_->state.t));
     summary_.t_end = now_->state.t;

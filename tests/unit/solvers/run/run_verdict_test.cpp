@@ -1,4 +1,6 @@
-// The same fault has the same message from stepping, lockstep and exact propagation.
+// The same fault has the same message from stepping, lockstep and exact propagation; with it, when the
+// caller is asked (solvers/run/progress.hpp) and what is left of a step that fails
+// (solvers/stepping/halved_step.hpp).
 #include "solvers/run/run_verdict.hpp"
 
 #include <drev/core/law_element.hpp>
