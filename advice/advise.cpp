@@ -154,7 +154,8 @@ class Ladder {
     settle(rungs, first);
   }
 
-  /// Ever more modes until two in a row hold; where the static shapes of many loads are dear, without them.
+  /// Ever more modes until two in a row hold; where the static shapes of many loads are expensive, without
+  /// them.
   void modes(const Model& model, const std::string& in, const std::string& and_out, double cost,
              std::vector<Rung>& rungs) {
     const int unknowns = model.build().size();

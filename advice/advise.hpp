@@ -26,8 +26,8 @@ struct FigureOptions;
 struct Recipe;
 
 struct AdviseOptions {
-  /// "peak deflection", "peak torque" (the model case's), "peak CHANNEL"; "steady peak ..." counts the last turns
-  /// only: two of the model case's static_turn, or the last fifth of the run.
+  /// "peak deflection", "peak torque" (the model case's), "peak CHANNEL"; "steady peak ..." counts the last
+  /// turns only: two of the model case's static_turn, or the last fifth of the run.
   std::string figure = "peak deflection";
   double within = 0.02;  ///< relative
   static constexpr Range kWithin{1e-4, 0.5};

@@ -1,6 +1,7 @@
 #pragma once
-/// A run as `drev run` does it, for a program of one's own: reads the model, runs it, writes history, summary and
-/// report. Elements that the program has registered (app/model_file/element_table.hpp) stand in its files.
+/// A run as `drev run` does it, for a program of one's own: reads the model, runs it, writes history, summary
+/// and report. Elements that the program has registered (app/model_file/element_table.hpp) stand in its
+/// files.
 ///
 ///   const RunOutcome outcome = run_model({.model = "my.toml", .options = {{"--report", {"my.html"}}}});
 ///   std::cout << outcome.text;
@@ -16,7 +17,8 @@ namespace drev::app {
 struct RunOrder {
   std::string model;  ///< a model file, FILE.toml, or the name of a built-in model
   std::vector<std::pair<std::string, std::string>> parameters = {};  ///< of the model, as --set gives them
-  /// As on the command line of drev run, which has their ranges: {{"--out", {"DIR"}}, {"--method", {"exact"}}}.
+  /// As on the command line of drev run, which has their ranges: {{"--out", {"DIR"}}, {"--method",
+  /// {"exact"}}}.
   std::map<std::string, std::vector<std::string>> options = {};
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-/// What a law or a load says of itself twice must agree: a law's pieces, kinks, gap and closed slopes with its
-/// call, a load's table and stretch with its call. Each method takes what serves it best; a contradiction would
-/// give other results by another method.
+/// What a law or a load says of itself twice must agree: a law's pieces, kinks, gap and closed slopes with
+/// its call, a load's table and stretch with its call. Each method takes what serves it best; a contradiction
+/// would give other results by another method.
 #include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 

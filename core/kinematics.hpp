@@ -1,6 +1,6 @@
 #pragma once
-/// Nominal kinematics: theta_i = n_i phi(t) + q_i. The ratios n follow from the speed_ratio_constraints b^T n = 0 of
-/// shafts, meshes and ideal gears, walked as a graph from the reference node. A loop whose ratios
+/// Nominal kinematics: theta_i = n_i phi(t) + q_i. The ratios n follow from the speed_ratio_constraints b^T n
+/// = 0 of shafts, meshes and ideal gears, walked as a graph from the reference node. A loop whose ratios
 /// contradict each other cannot turn and is an error that names the loop.
 #include <drev/core/error.hpp>
 #include <drev/core/model.hpp>

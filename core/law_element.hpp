@@ -7,9 +7,9 @@
 ///   };
 ///   model.add<LawElement<CubicLaw>>("coupling", {"engine", "pump"}, {.k = 2e4, .k3 = 5e6});
 ///
-/// law_force.hpp lists the ways to state a law. A law may state `static constexpr std::string_view type`, the name
-/// that findings and reports call it by. Between two nodes x = q_b - q_a; on one node it acts to ground, x = q. If
-/// the law has a member `void check(ParameterCheck&) const`, it is called when the model is built.
+/// law_force.hpp lists the ways to state a law. A law may state `static constexpr std::string_view type`, the
+/// name that findings and reports call it by. Between two nodes x = q_b - q_a; on one node it acts to ground,
+/// x = q. If the law has a member `void check(ParameterCheck&) const`, it is called when the model is built.
 #include <drev/core/element.hpp>
 #include <drev/core/law/law_force.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// A load that is linear in pieces of its angle, said once: as a table. What is linear about a point of it, its
-/// stretch, follows from the table.
+/// A load that is linear in pieces of its angle, said once: as a table. What is linear about a point of it,
+/// its stretch, follows from the table.
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -24,12 +24,12 @@ struct LoadStretch {
 struct LoadTable {
   std::span<const double> arguments, values, slopes;  ///< rad, N m, N m/rad to the right of each knot
   double period = 0.0, phase = 0.0;                   ///< rad; entered at theta + phase
-  /// Knot k stands at first + k period/n to within a quarter of that: table_loads.hpp then looks it up without
-  /// a call.
+  /// Knot k stands at first + k period/n to within a quarter of that: table_loads.hpp then looks it up
+  /// without a call.
   bool evenly_spaced = false;
 
-  /// The stretch about an angle. Knots where the slope does not change are passed over. Within rounding of a knot
-  /// the stretch ahead of it: above it where direction > 0, else below.
+  /// The stretch about an angle. Knots where the slope does not change are passed over. Within rounding of a
+  /// knot the stretch ahead of it: above it where direction > 0, else below.
   LoadStretch stretch(double angle, double direction) const;
   /// What is wrong with the table: sizes, order of the arguments, slopes, spacing; empty if nothing is.
   std::string fault() const;

@@ -65,7 +65,8 @@ class ScalarForce {
   virtual std::span<const LawPiece> pieces() const { return {}; }
 };
 
-/// The pieces of a law where all of them are linear in x and x_dot, for methods that take no product; else none.
+/// The pieces of a law where all of them are linear in x and x_dot, for methods that take no product; else
+/// none.
 inline std::span<const LawPiece> linear_pieces(const ScalarForce& force) {
   const std::span<const LawPiece> pieces = force.pieces();
   return is_linear(pieces) ? pieces : std::span<const LawPiece>();

@@ -1,6 +1,7 @@
 #pragma once
-/// TableLoads: loads that are periodic tables of even spacing (LoadTable::evenly_spaced), all at once, in constant time and without
-/// calls. Entry e puts the torque coeff table(w + gain z[unknown]) on its unknown, w = ratio phi + phase.
+/// TableLoads: loads that are periodic tables of even spacing (LoadTable::evenly_spaced), all at once, in
+/// constant time and without calls. Entry e puts the torque coeff table(w + gain z[unknown]) on its unknown,
+/// w = ratio phi + phase.
 ///
 ///   table(u) = v_i + (u < u_i ? s_{i-1} : s_i) (u - u_i),   i = the knot nearest to u
 ///

@@ -14,9 +14,9 @@
 ///   energy        dV/dx = y at x' = 0 and stored energy >= 0; it may depend on t or the angle only
 ///                 where varies() says so
 ///   passivity     dissipated power >= 0 and equal to (y(x, x') - y(x, 0)) x'
-///   agreement     what is said twice, with the call: a law's pieces (force, slopes, energy and power inside each
-///                 of them and on both sides of each bound; exactly one holds everywhere), kinks, gap and closed
-///                 slopes; a load's table and stretch
+///   agreement     what is said twice, with the call: a law's pieces (force, slopes, energy and power inside
+///                 each of them and on both sides of each bound; exactly one holds everywhere), kinks, gap
+///                 and closed slopes; a load's table and stretch
 ///   purity        the same input gives the same bits, whatever was evaluated between
 ///   matrices      M, C, K symmetric and positive semi-definite
 ///   speed_ratio_constraints      no constant stiffness and no law sees a nominal motion n that satisfies the

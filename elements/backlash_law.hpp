@@ -29,8 +29,8 @@
 ///                 NTNU, 2015, equation 4.4; here to reproduce it. Drags on gears that do not
 ///                 touch.
 ///
-/// docs/catalogue.md compares them. In units of k the law is piecewise, y = k Y(x, x_dot/k): Y is stated once,
-/// as pieces, and the call and the pieces at any k follow from it.
+/// docs/catalogue.md compares them. In units of k the law is piecewise, y = k Y(x, x_dot/k): Y is stated
+/// once, as pieces, and the call and the pieces at any k follow from it.
 ///
 /// p_ref (reference_penetration) wants to be small against the penetration under load, so that c is
 /// the mesh's damping, and large against the distance of one time step at impact, so that it is

@@ -8,8 +8,8 @@
 /// y must not fall with x and must pass through zero. Stored energy: the exact integral of y from
 /// where y = 0, hence >= 0. Segments with y = 0 are the gap; it reaches to infinity where an outer
 /// segment is zero (a one-sided stop). Each segment is a piece; all else follows from the pieces
-/// (PiecewiseLaw): on a point the segment below it holds, but closed_stiffness() takes the one above. Units: rad and N m
-/// between rotational nodes, m and N between translational ones.
+/// (PiecewiseLaw): on a point the segment below it holds, but closed_stiffness() takes the one above. Units:
+/// rad and N m between rotational nodes, m and N between translational ones.
 #include <drev/core/element.hpp>
 #include <drev/core/law/piecewise_law.hpp>
 

@@ -114,7 +114,8 @@ MethodChoice choose_method(const System& system, double duration, double step) {
     return {{.name = kExact, .tolerance = ExactOptions{}.tolerance},
             model + ": exact between located changes",
             exact_work};
-  text << "would cost exact propagation " << kProductsInStep * steps << " products: controlled steps";
+  text << "would cost exact propagation " << kProductsInStep * steps
+       << " matrix-vector products: controlled steps";
   return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str(), exact_work};
 }
 

@@ -1,5 +1,6 @@
 #include "app/chart/chart_computation.hpp"
 
+#include <drev/core/scalar_force.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 #include <drev/solvers/modes/modes.hpp>
 

@@ -1,4 +1,5 @@
 #include <drev/advice/advise.hpp>
+#include <drev/advice/recipe.hpp>
 
 #include "app/base/json_values.hpp"
 #include "app/base/parameter_text.hpp"

@@ -103,7 +103,8 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
   return offered;
 }
 
-/// Plugins named before the last word: the model file may need them. What is wrong with them the command says.
+/// Plugins named before the last word: the model file may need them. What is wrong with them the command
+/// says.
 void load_named_plugins(const std::vector<std::string>& words) {
   const std::string option = "--plugin";
   for (std::size_t i = 0; i + 1 < words.size(); ++i) try {

@@ -1,5 +1,6 @@
 #pragma once
-/// `drev list --elements`: the types of elements of model files, those of plugins among them, with their keys.
+/// `drev list --elements`: the types of elements of model files, those of plugins among them, with their
+/// keys.
 #include <string>
 
 namespace drev::app {

@@ -1,6 +1,6 @@
 #pragma once
-/// Values that --vary gives to parameters: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where the
-/// steps lead to it.
+/// Values that --vary gives to parameters: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where
+/// the steps lead to it.
 #include <drev/core/error.hpp>
 
 #include <string>

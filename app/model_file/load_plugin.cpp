@@ -19,8 +19,8 @@ Function* symbol(void* library, const char* name) {
   return reinterpret_cast<Function*>(::dlsym(library, name));
 }
 
-/// What is wrong with it as a library or as a plugin of this drev; empty: nothing, and it is registered. Throws
-/// what registering throws.
+/// What is wrong with it as a library or as a plugin of this drev; empty: nothing, and it is registered.
+/// Throws what registering throws.
 std::string load(const std::string& file) {
   const std::filesystem::path path(file);
   std::error_code error;

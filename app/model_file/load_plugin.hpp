@@ -5,9 +5,10 @@
 
 namespace drev::app {
 
-/// Loads shared libraries, which stay until the program ends; their types then stand in every model file. Throws
-/// ModelError with what is wrong with each: no such file, no plugin of drev, one for another drev, a type
-/// that is there already. The program must export its symbols (CMake: ENABLE_EXPORTS), as the command drev does.
+/// Loads shared libraries, which stay until the program ends; their types then stand in every model file.
+/// Throws ModelError with what is wrong with each: no such file, no plugin of drev, one for another drev, a
+/// type that is there already. The program must export its symbols (CMake: ENABLE_EXPORTS), as the command
+/// drev does.
 void load_plugins(const std::vector<std::string>& files);
 
 /// Those that were loaded, as they were named.

@@ -1,12 +1,12 @@
 #pragma once
-/// A plugin: a shared library whose elements `drev ... --plugin FILE` takes in. One of its sources says what it
-/// registers; nothing of it is called before the stamp has shown that it fits.
+/// A plugin: a shared library whose elements `drev ... --plugin FILE` takes in. One of its sources says what
+/// it registers; nothing of it is called before the stamp has shown that it fits.
 ///
 ///   #include <drev/app/model_file/plugin.hpp>
 ///   DREV_PLUGIN() { drev::app::register_element<MyCoupling>("my_coupling", list); }
 ///
-/// It is compiled against drev's headers and linked to none of its libraries (CMake target drev::plugin): what
-/// it calls is in the program that loads it, so that there is one table of elements.
+/// It is compiled against drev's headers and linked to none of its libraries (CMake target drev::plugin):
+/// what it calls is in the program that loads it, so that there is one table of elements.
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/core/version.hpp>
 

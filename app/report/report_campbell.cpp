@@ -1,5 +1,6 @@
 #include "app/report/report_campbell.hpp"
 
+#include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/solvers/periodic/spectrum.hpp>

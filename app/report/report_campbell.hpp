@@ -3,7 +3,7 @@
 /// frequencies, which do not depend on speed in drev.
 ///
 /// The orders of a load are those of its torque over two turns of its node. How much order o excites mode m
-/// is the static answer of the mode to the phase sum over all loads,
+/// is the static response of the mode to the phase sum over all loads,
 ///
 ///   q_om = |sum_l x_l A_lo exp(i phase_lo)| / omega_m^2,   x_m' M x_m = 1,
 ///

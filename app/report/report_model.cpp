@@ -2,6 +2,7 @@
 
 #include <drev/core/element.hpp>
 #include <drev/core/general_force.hpp>
+#include <drev/core/scalar_force.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 #pragma once
-/// The files of one run: history, summary and reports. They get their own names only if the run came to its end.
+/// The files of one run: history, summary and reports. They get their own names only if the run came to its
+/// end.
 #include <drev/app/report/run_outcome.hpp>
 #include <drev/solvers/run/recorder.hpp>
 

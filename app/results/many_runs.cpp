@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kFigures[] = {"deflection_deg",        "deflection_m",     "max_torque_Nm",
                                     "max_force_N",           "static_torque_Nm", "static_force_N",
                                     "dynamic_amplification", "max_mesh_force_N", "front_contacts",
-                                    "back_contacts",         "time_apart_s"};
+                                    "back_contacts",         "time_separated_s"};
 
 Json figure(const OneOfMany& run, const char* key) {
   return run.summary.is_object() ? run.summary.at("results").at(key) : Json();

@@ -43,8 +43,8 @@ Json contact_object(const Contacts& c, double duration) {
   return {{"element", c.record.element},
           {"front_contacts", c.record.front_impacts},
           {"back_contacts", c.record.back_impacts},
-          {"time_apart_s", number(c.record.time_apart)},
-          {"time_apart_share", duration > 0.0 ? number(c.record.time_apart / duration) : Json()},
+          {"time_separated_s", number(c.record.time_separated)},
+          {"time_separated_share", duration > 0.0 ? number(c.record.time_separated / duration) : Json()},
           {"max_force_N", newton ? number(c.record.largest_force) : Json()},
           {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
           {"max_at_time_s", number(c.record.largest_force_time)},
@@ -60,22 +60,22 @@ void add_contacts(Json& results, const RunResult& r) {
   results["max_mesh_force_N"] = in_unit(r.mesh_force, "N");
   results["max_mesh_force_at"] = place_of(r.mesh_force, "N");
   if (r.contacts.empty()) {  // no gap anywhere, or no figures
-    for (const char* key : {"front_contacts", "back_contacts", "time_apart_s"}) results[key] = nullptr;
+    for (const char* key : {"front_contacts", "back_contacts", "time_separated_s"}) results[key] = nullptr;
     results["contacts"] = Json::array();
     return;
   }
   long front = 0, back = 0;
-  double apart = 0.0;
+  double separated = 0.0;
   Json list = Json::array();
   for (const Contacts& c : r.contacts) {
     front += c.record.front_impacts;
     back += c.record.back_impacts;
-    apart += c.record.time_apart;
+    separated += c.record.time_separated;
     list.push_back(contact_object(c, r.summary.t_end));
   }
   results["front_contacts"] = front;
   results["back_contacts"] = back;
-  results["time_apart_s"] = number(apart);
+  results["time_separated_s"] = number(separated);
   results["contacts"] = std::move(list);
 }
 

@@ -73,10 +73,10 @@ std::string force_rows(const ModelCase& model_case, const RunResult& r) {
   return text;
 }
 
-std::string contact_line(const std::string& name, long front, long back, double apart, double share,
+std::string contact_line(const std::string& name, long front, long back, double separated, double share,
                          const std::string& force) {
   return "  " + pad_right(name, kLabel - 2) + pad_left(std::to_string(front), 8) +
-         pad_left(std::to_string(back), 8) + pad_left(digits(apart, 4), 12) +
+         pad_left(std::to_string(back), 8) + pad_left(digits(separated, 4), 15) +
          pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
 }
 
@@ -109,23 +109,24 @@ std::string contact_rows(const RunResult& r) {
                                               " s; no backlash, so no impacts");
   }
   std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
-                     pad_left("apart [s]", 12) + pad_left("[%]", 10) + pad_left("largest force", 18) + "\n";
+                     pad_left("separated [s]", 15) + pad_left("[%]", 10) + pad_left("largest force", 18) +
+                     "\n";
   const double duration = r.summary.t_end > 0.0 ? r.summary.t_end : 1.0;
   long front = 0, back = 0;
-  double apart = 0.0;
+  double separated = 0.0;
   const Contacts* hardest = &r.contacts.front();
   for (const Contacts& c : r.contacts) {
     const ContactRecord& k = c.record;
-    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_apart, k.time_apart / duration,
-                         digits(k.largest_force, 5) + " " + c.force_unit);
+    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_separated,
+                         k.time_separated / duration, digits(k.largest_force, 5) + " " + c.force_unit);
     front += k.front_impacts;
     back += k.back_impacts;
-    apart += k.time_apart;
+    separated += k.time_separated;
     if (k.largest_force > hardest->record.largest_force) hardest = &c;
   }
   if (r.contacts.size() > 1)
-    text += contact_line("together", front, back, apart,
-                         apart / (duration * static_cast<double>(r.contacts.size())),
+    text += contact_line("all", front, back, separated,
+                         separated / (duration * static_cast<double>(r.contacts.size())),
                          digits(hardest->record.largest_force, 5) + " " + hardest->force_unit);
   return text + impact_rows(r, duration);
 }
@@ -164,7 +165,7 @@ std::string effort_text(const RunResult& r) {
   add(false, s.fallbacks, "with a force inside its jump");
   add(false, s.forced, "of the least length, with an error above their share");
   add(!exact && !controlled, s.iterations, "iterations");
-  add(false, s.solves, exact ? "products" : "linear solves");
+  add(false, s.solves, exact ? "matrix-vector products" : "linear solves");
   return join(items) + ", " + digits(r.run_time, 3) + " s";
 }
 

@@ -4,7 +4,8 @@
 ///
 ///   f(Dual) = f(value) + f'(value) (by_x, by_x_dot)
 ///
-/// Functions are found by their unqualified names: `using std::sin; ... sin(x)`. Comparisons are those of the values.
+/// Functions are found by their unqualified names: `using std::sin; ... sin(x)`. Comparisons are those of the
+/// values.
 #include <cmath>
 #include <compare>
 

@@ -1,17 +1,17 @@
 #pragma once
-/// LawForce: a ScalarForce made of a law of a few lines. The law is any copyable type that states its formula in
-/// one of three ways:
+/// LawForce: a ScalarForce made of a law of a few lines. The law is any copyable type that states its formula
+/// in one of three ways:
 ///
 ///   template <class T> T force(const T& x, const T& x_dot) const          y(x, x_dot) over any scalar
-///     The slopes come from the same formula by dual numbers (dual.hpp); dissipated power = (y - y at rest) x_dot.
-///     Optional: double stored_energy(double x) const, J, whose derivative is y at rest. Without it the energy is
-///     the integral of y at rest from x = 0, by 8 Gauss points between kinks: exact to degree 15, but it costs
-///     as many calls.
+///     The slopes come from the same formula by dual numbers (dual.hpp); dissipated power = (y - y at rest)
+///     x_dot. Optional: double stored_energy(double x) const, J, whose derivative is y at rest. Without it
+///     the energy is the integral of y at rest from x = 0, by 8 Gauss points between kinks: exact to degree
+///     15, but it costs as many calls.
 ///   pieces() const: a vector or span of LawPiece
 ///     Everything else follows from them (PiecewiseLaw).
 ///   ScalarResponse operator()(const ScalarInput&) const
-///     The law gives slopes, energy and power itself; it may follow the time. It may state pieces too, for the
-///     methods that use them: check_element() compares them with the call.
+///     The law gives slopes, energy and power itself; it may follow the time. It may state pieces too, for
+///     the methods that use them: check_element() compares them with the call.
 ///
 /// Optional members are used where the law has them: kinks(), gap(), closed_stiffness(), closed_damping().
 #include <drev/core/law/dual.hpp>

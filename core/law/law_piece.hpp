@@ -51,8 +51,8 @@ inline bool is_linear(std::span<const LawPiece> pieces) {
 }
 
 /// The piece that holds at (x, x_dot), by the one rule that every method follows: the first whose bounds are
-/// all positive. On a bound, or off all pieces by rounding, the one whose least bound, relative to the size of
-/// its terms, is largest; of equals the first. 0 where the input is not finite.
+/// all positive. On a bound, or off all pieces by rounding, the one whose least bound, relative to the size
+/// of its terms, is largest; of equals the first. 0 where the input is not finite.
 int piece_at(std::span<const LawPiece> pieces, double x, double x_dot);
 
 }  // namespace drev

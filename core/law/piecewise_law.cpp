@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace drev {
 
@@ -28,9 +30,9 @@ double of_both(double a, double b) { return a == 0.0 || b == 0.0 ? std::max(a, b
 PiecewiseLaw::PiecewiseLaw(std::vector<LawPiece> pieces) : pieces_(std::move(pieces)) {
   if (pieces_.empty()) return;
   find_kinks();
-  find_candidates();
-  find_lines();
-  find_energies();
+  std::vector<Line> all = lines();
+  find_energies(all);
+  find_candidates(all);
   find_gap();
   find_closed();
 }
@@ -48,62 +50,69 @@ std::vector<LawPiece> PiecewiseLaw::scaled(double s) const {
 void PiecewiseLaw::find_kinks() {
   for (const LawPiece& p : pieces_)
     for (const LawBound& b : p.bounds)
-      if (b.in_x_alone() && std::isfinite(b.kink())) kinks_.push_back(b.kink());
-  std::sort(kinks_.begin(), kinks_.end());
+      if (b.in_x_alone() && std::isfinite(b.kink())) edges_.push_back(b.kink());
+  std::sort(edges_.begin(), edges_.end());
   const auto same = [](double a, double b) {
     return b - a <= kSameKink * std::max(std::abs(a), std::abs(b));
   };
-  kinks_.erase(std::unique(kinks_.begin(), kinks_.end(), same), kinks_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end(), same), edges_.end());
+  edges_.push_back(kInfinity);
 }
 
 std::size_t PiecewiseLaw::count_below(double x) const {
-  return idx(static_cast<int>(std::lower_bound(kinks_.begin(), kinks_.end(), x) - kinks_.begin()));
+  const std::span<const double> all = kinks();
+  return idx(static_cast<int>(std::lower_bound(all.begin(), all.end(), x) - all.begin()));
 }
 
-void PiecewiseLaw::find_candidates() {
-  const std::size_t zones = kinks_.size() + 1;
-  std::vector<std::vector<int>> of_zone(zones);
+void PiecewiseLaw::find_candidates(const std::vector<Line>& lines) {
+  const std::size_t zones = edges_.size();
+  const auto middle = [&](std::size_t zone) {
+    return between(zone == 0 ? -kInfinity : edges_[zone - 1], edges_[zone]);
+  };
+  zone_begin_.assign(zones + 1, 0);
+  std::vector<std::pair<std::size_t, std::size_t>> spans(pieces_.size());  // zones of each piece
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Interval range = pieces_[i].x_range();
-    // The zones whose middle lies in the range: whatever its ends' rounding.
-    std::size_t zone = range.low == -kInfinity ? 0 : count_below(range.low);
-    for (; zone < zones; ++zone) {
-      const double middle =
-          between(zone == 0 ? -kInfinity : kinks_[zone - 1], zone + 1 == zones ? kInfinity : kinks_[zone]);
-      if (middle > range.high) break;
-      if (middle > range.low) of_zone[zone].push_back(static_cast<int>(i));
-    }
+    // The zones whose middle lies in the range, whatever the rounding of its ends.
+    auto& [first, end] = spans[i];
+    first = range.low == -kInfinity ? 0 : count_below(range.low);
+    while (first < zones && !(middle(first) > range.low)) ++first;
+    for (end = first; end < zones && !(middle(end) > range.high); ++end) ++zone_begin_[end + 1];
   }
-  for (const std::vector<int>& pieces : of_zone) {
-    zone_begin_.push_back(static_cast<int>(candidates_.size()));
-    for (const int i : pieces) {
-      const auto first = static_cast<int>(bounds_.size());
-      for (const LawBound& b : pieces_[idx(i)].bounds)
-        if (!b.in_x_alone()) bounds_.push_back(b);
-      candidates_.push_back({i, first, static_cast<int>(bounds_.size())});
-    }
+  std::partial_sum(zone_begin_.begin(), zone_begin_.end(), zone_begin_.begin());
+  candidates_.resize(idx(zone_begin_.back()));
+  std::vector<int> next = zone_begin_;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const auto first = static_cast<int>(bounds_.size());
+    for (const LawBound& b : pieces_[i].bounds)
+      if (!b.in_x_alone()) bounds_.push_back(b);
+    const Candidate candidate{lines[i], static_cast<int>(i), first, static_cast<int>(bounds_.size())};
+    for (std::size_t zone = spans[i].first; zone < spans[i].second; ++zone)
+      candidates_[idx(next[zone]++)] = candidate;
   }
-  zone_begin_.push_back(static_cast<int>(candidates_.size()));
+  if (candidates_.empty()) candidates_.push_back({lines.front()});  // pieces that hold nowhere
 }
 
-void PiecewiseLaw::find_lines() {
+std::vector<PiecewiseLaw::Line> PiecewiseLaw::lines() const {
+  std::vector<Line> all;
   for (const LawPiece& p : pieces_) {
     const Interval range = p.x_range();
     const double zero = -p.elastic_0 / p.elastic_k;  // not finite for a constant force
     const double origin = std::min(std::max(std::isfinite(zero) ? zero : 0.0, range.low), range.high);
-    Line l{.origin = origin, .k = p.k, .product = p.product, .elastic_k = p.elastic_k};
+    Line l{.origin = origin, .k = p.k, .product = p.product, .half_k = 0.5 * p.elastic_k};
     l.y = p.y_0 + p.k * origin;
     l.c = p.c + p.product * origin;
     l.elastic = origin == zero ? 0.0 : p.elastic_0 + p.elastic_k * origin;
     if (p.y_0 == p.elastic_0 && p.k == p.elastic_k) l.y = l.elastic;
     l.lost = l.y - l.elastic;
     l.lost_k = p.k - p.elastic_k;
-    lines_.push_back(l);
+    all.push_back(l);
   }
+  return all;
 }
 
 /// From piece to piece over their bounds, where the energy is continuous; then the least is made 0.
-void PiecewiseLaw::find_energies() {
+void PiecewiseLaw::find_energies(std::vector<Line>& lines) const {
   std::vector<bool> known(pieces_.size(), false);
   std::vector<std::size_t> open{0};
   known[0] = true;
@@ -112,9 +121,9 @@ void PiecewiseLaw::find_energies() {
     open.pop_back();
     for (const LawBound& b : pieces_[i].bounds) {
       if (b.next < 0 || idx(b.next) >= pieces_.size() || known[idx(b.next)]) continue;
-      Line& next = lines_[idx(b.next)];
-      const double x = b.in_x_alone() ? b.kink() : lines_[i].origin;
-      next.energy += lines_[i].stored(x) - next.stored(x);
+      Line& next = lines[idx(b.next)];
+      const double x = b.in_x_alone() ? b.kink() : lines[i].origin;
+      next.energy += lines[i].stored(x) - next.stored(x);
       known[idx(b.next)] = true;
       open.push_back(idx(b.next));
     }
@@ -122,15 +131,15 @@ void PiecewiseLaw::find_energies() {
   double least = kInfinity;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Interval range = pieces_[i].x_range();
-    for (const double x : {range.low, lines_[i].origin, range.high})
-      if (std::isfinite(x)) least = std::min(least, lines_[i].stored(x));
+    for (const double x : {range.low, lines[i].origin, range.high})
+      if (std::isfinite(x)) least = std::min(least, lines[i].stored(x));
   }
   if (!std::isfinite(least)) return;
-  for (Line& l : lines_) l.energy = std::max(l.energy - least, 0.0);
+  for (Line& l : lines) l.energy = std::max(l.energy - least, 0.0);
 }
 
 void PiecewiseLaw::find_gap() {
-  if (kinks_.empty() || std::none_of(pieces_.begin(), pieces_.end(), is_elastic)) return;
+  if (kinks().empty() || std::none_of(pieces_.begin(), pieces_.end(), is_elastic)) return;
   for (const LawPiece& p : pieces_) {
     if (is_elastic(p)) continue;
     const Interval range = p.x_range();
@@ -146,19 +155,20 @@ void PiecewiseLaw::find_closed() {
     return {.dy_dx = p.k, .dy_dx_dot = p.c + p.product * x};
   };
   if (gap_) {
-    const double low = kinks_.front(), high = kinks_.back();
+    const double low = kinks().front(), high = kinks().back();
     const ScalarResponse a = at(between(-kInfinity, low), low), b = at(between(high, kInfinity), high);
     closed_ = {.dy_dx = of_both(a.dy_dx, b.dy_dx), .dy_dx_dot = of_both(a.dy_dx_dot, b.dy_dx_dot)};
     return;
   }
-  const auto above = std::upper_bound(kinks_.begin(), kinks_.end(), 0.0);
-  closed_ = at(between(above == kinks_.begin() ? -kInfinity : *(above - 1),
-                       above == kinks_.end() ? kInfinity : *above),
-               0.0);
+  const auto above = std::upper_bound(edges_.begin(), edges_.end(), 0.0);
+  closed_ = at(between(above == edges_.begin() ? -kInfinity : *(above - 1), *above), 0.0);
 }
 
-const PiecewiseLaw::Line& PiecewiseLaw::slow_line_at(double x, double x_dot, double s) const {
-  return lines_[idx(piece_at(pieces_, x, x_dot / s))];
+const PiecewiseLaw::Line& PiecewiseLaw::line_on_edge(double x, double x_dot, double s) const {
+  const int piece = piece_at(pieces_, x, x_dot / s);
+  const auto found = std::find_if(candidates_.begin(), candidates_.end(),
+                                  [&](const Candidate& c) { return c.piece == piece; });
+  return found == candidates_.end() ? candidates_.front().line : found->line;
 }
 
 }  // namespace drev

@@ -27,8 +27,8 @@ int main() {
   const RunSummary run = simulate(system, {.step = 1e-5, .t_end = 1.0}, {&contacts, &peaks});
   std::printf("largest deflection from first to last cam: %.3f deg\n", to_deg(peaks.peaks()[0].amplitude()));
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time\n", c.element.c_str(),
-                c.front_impacts, c.back_impacts, 100 * c.time_apart);
+    std::printf("%s: %ld impacts in front, %ld behind, separated for %.1f %% of the time\n",
+                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_separated);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

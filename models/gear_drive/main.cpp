@@ -25,9 +25,9 @@ int main() {
   const RunSummary run =
       simulate(system, {.step = model_case.default_step, .t_end = model_case.duration}, {&contacts});
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, apart for %.1f %% of the time, at most %.0f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart / model_case.duration,
-                c.largest_force);
+    std::printf("%s: %ld impacts in front, %ld behind, separated for %.1f %% of the time, at most %.0f N\n",
+                c.element.c_str(), c.front_impacts, c.back_impacts,
+                100 * c.time_separated / model_case.duration, c.largest_force);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

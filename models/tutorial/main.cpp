@@ -95,7 +95,7 @@ int main() {
       {.harmonics = {{.order = 2, .amplitude = 700.0}, {.order = 4, .amplitude = 250.0}}, .mean = -600.0});
   const System system = train.build();
   print_modes("teeth in contact", system, Contact::closed);
-  print_modes("teeth apart", system, Contact::open);
+  print_modes("teeth separated", system, Contact::open);
   // [backlash]
 
   // [run]
@@ -115,8 +115,8 @@ int main() {
   ContactStatistics contacts(system);
   const RunSummary run = run_method(system, result.fine, {.t_end = 1.0}, {&contacts});
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, apart %.1f %% of the time, at most %.0f N\n",
-                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_apart, c.largest_force);
+    std::printf("%s: %ld impacts in front, %ld behind, separated %.1f %% of the time, at most %.0f N\n",
+                c.element.c_str(), c.front_impacts, c.back_impacts, 100 * c.time_separated, c.largest_force);
   // [contacts]
   return run.ok() ? 0 : 1;
 }

@@ -25,8 +25,8 @@ int main() {
   for (std::size_t i = 0; i < recorder.times().size(); ++i)
     std::printf("%6.2f %10.6f %10.6f\n", recorder.times()[i], recorder.samples(0)[i], recorder.samples(1)[i]);
   for (const ContactRecord& c : contacts.records())
-    std::printf("%s: %ld impacts in front, %ld behind, %.3f s apart, at most %.1f N\n", c.element.c_str(),
-                c.front_impacts, c.back_impacts, c.time_apart, c.largest_force);
+    std::printf("%s: %ld impacts in front, %ld behind, %.3f s separated, at most %.1f N\n", c.element.c_str(),
+                c.front_impacts, c.back_impacts, c.time_separated, c.largest_force);
   std::printf("%s\n", run.brief_report().c_str());
   return run.ok() ? 0 : 1;
 }

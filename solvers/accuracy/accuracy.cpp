@@ -295,7 +295,7 @@ class AccurateRun {
     if (peaks) add_ensemble(kept);
     add_cycles(kept, fine.recorder.samples(0));
     for (const BatchWatch::Contact& c : fine.batches.contacts()) {
-      add_statistic(c.element + ": share of time apart", "", batch_mean(c.share_apart, kBatches));
+      add_statistic(c.element + ": share of time separated", "", batch_mean(c.share_separated, kBatches));
       add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
       add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
       add_statistic(c.element + ": mean force", c.unit, batch_mean(c.mean_force, kBatches));

@@ -145,7 +145,7 @@ void BatchWatch::step(const Assembler& assembler, const EvaluatedState& from, co
 void BatchWatch::begin_batch() {
   before_.clear();
   for (const ContactRecord& r : statistics_.records())
-    before_.push_back({r.time_apart, r.impact_energy, r.impacts()});
+    before_.push_back({r.time_separated, r.impact_energy, r.impacts()});
 }
 
 void BatchWatch::close() {
@@ -153,7 +153,7 @@ void BatchWatch::close() {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Begin& a = before_[i];
     const ContactRecord& b = statistics_.records()[i];
-    contacts_[i].share_apart.push_back((b.time_apart - a.time_apart) / length_);
+    contacts_[i].share_separated.push_back((b.time_separated - a.time_separated) / length_);
     contacts_[i].impacts_per_second.push_back(static_cast<double>(b.impacts() - a.impacts) / length_);
     contacts_[i].impact_power.push_back((b.impact_energy - a.impact_energy) / length_);
     contacts_[i].mean_force.push_back(forces_[i].value / length_);

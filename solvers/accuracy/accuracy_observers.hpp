@@ -63,7 +63,7 @@ class BatchWatch final : public Observer {
   /// Of one contact or channel: a value a batch.
   struct Contact {
     std::string element, unit;  ///< of its force
-    std::vector<double> share_apart = {}, impacts_per_second = {}, impact_power = {}, mean_force = {},
+    std::vector<double> share_separated = {}, impacts_per_second = {}, impact_power = {}, mean_force = {},
                         rms_force = {};
   };
   struct Average {
@@ -84,7 +84,7 @@ class BatchWatch final : public Observer {
   ContactStatistics statistics_;
   /// Of each contact where the batch began.
   struct Begin {
-    double time_apart = 0.0, impact_energy = 0.0;
+    double time_separated = 0.0, impact_energy = 0.0;
     long impacts = 0;
   };
   std::vector<Begin> before_;

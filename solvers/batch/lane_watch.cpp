@@ -70,7 +70,7 @@ struct LaneWatchKernels {
     Lanes size = to.y[j].v;
     magnitude(size);
     note_force(c.totals, size, t, lanes, c.largest);
-    return note_time_apart(c.totals, c.low.v, c.high.v, from.x[j].v, to.x[j].v, h, lanes);
+    return note_time_separated(c.totals, c.low.v, c.high.v, from.x[j].v, to.x[j].v, h, lanes);
   }
 };
 
@@ -148,7 +148,7 @@ std::vector<ContactRecord> LaneWatch::contacts(int lane) const {
     const System& system = *systems_[idx(lane)];
     ContactRecord r = c.records[idx(lane)];
     r.element = system.element_instances()[idx(index(system.scalars()[idx(c.law)].element))].name;
-    r.time_apart = c.totals.time_apart.v[lane];
+    r.time_separated = c.totals.time_separated.v[lane];
     r.largest_force = c.totals.largest_force.v[lane];
     r.largest_force_time = c.totals.largest_force_time.v[lane];
     all.push_back(std::move(r));

@@ -39,7 +39,7 @@ struct ManyOptions {
 };
 
 struct VariantResult {
-  /// Nothing to look at but this, if not empty: the variant threw it.
+  /// Text of the exception that the variant threw; if set, the other fields are unset.
   std::string error;
   RunSummary summary;
   State state;                          ///< at the end

@@ -10,8 +10,8 @@ namespace drev {
 
 /// The stretches of x between a law's kinks, as pieces without forces of their own.
 std::vector<LawPiece> stretches_between_kinks(const ScalarForce& force);
-/// The `own` pieces of a term's law; where it has none, or where its stiffness follows the phase of a node, the
-/// stretches between its kinks.
+/// The `own` pieces of a term's law; where it has none, or where its stiffness follows the phase of a node,
+/// the stretches between its kinks.
 std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term, std::span<const LawPiece> own);
 
 }  // namespace drev

@@ -23,7 +23,7 @@ constexpr double kShorten = 0.9;           // of the step at which the loads' re
 constexpr double kLoosest = 1e-3;          // tolerance of a pass that is not the last
 constexpr double kSettled = 1e-15;         // of the motion: rounding of what is projected
 constexpr double kProjected = 0.1;         // of a step's share, that the projection may add
-constexpr double kJump = 1e-4;             // of the tolerance: what a jump that no one told of may add
+constexpr double kJump = 1e-4;             // of the tolerance: error allowed per undeclared discontinuity
 constexpr double kShortest = 1e-6;         // of the largest step
 constexpr double kBehindKnot = 1e-3;       // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;        // of the step: a knot that its nodes see
@@ -264,7 +264,7 @@ class ExactRun {
       const double kinks = kProjected * share / std::max(projected_, share);
       const LoadSeries::Pass made =
           known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
-      // In the shortest steps what is left is a jump that no one told of, or rounding.
+      // In the shortest steps what is left is an undeclared discontinuity, or rounding.
       if (made.residual > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
         // Nearly always a law's knot in the step: a step to just behind it, which find_end() then cuts.
         const auto knot = smooth_.first_knot(series_, kBeforeEnd);

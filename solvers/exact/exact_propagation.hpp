@@ -15,7 +15,7 @@
 /// is passed by short steps.
 ///
 /// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
-/// parts are dear. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
+/// parts are expensive. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
 /// system only statistics are comparable, with any method.
 #include <drev/core/range.hpp>
 #include <drev/core/state.hpp>

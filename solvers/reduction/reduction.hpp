@@ -50,8 +50,8 @@ struct Reduction {
   std::string what = {};           ///< one sentence for a summary, without full stop
 };
 
-/// Throws ModelError for options out of range and for what ritz_projection() refuses, SolverError as solve_modes()
-/// does and where a part hangs on no kept node.
+/// Throws ModelError for options out of range and for what ritz_projection() refuses, SolverError as
+/// solve_modes() does and where a part hangs on no kept node.
 Reduction reduce(const System& system, const ReductionOptions& options);
 
 }  // namespace drev

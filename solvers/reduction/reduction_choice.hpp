@@ -8,8 +8,8 @@
 ///
 /// in a channel: f_jh harmonics of the loads on the mode, zeta 0.01, and what rings when loads set in at the
 /// start. Contacts ask for modes up to within^(-1/4) times the frequency of their closed stiffness on the
-/// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; TruncationError gives a better
-/// one with the run.
+/// masses next to it, as no spectrum knows impacts beforehand. It is an estimate; TruncationError gives a
+/// better one with the run.
 ///
 /// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
 /// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
@@ -32,8 +32,8 @@ struct ReductionChoice {
 /// Errors that a reduction may be allowed to add, relative.
 inline constexpr Range kReductionErrors{1e-6, 0.5};
 
-/// within: relative, of the channels' peaks, one of kReductionErrors. channels: as TruncationError takes them, at least one.
-/// duration: of the run [s]. Throws ModelError for bad input.
+/// within: relative, of the channels' peaks, one of kReductionErrors. channels: as TruncationError takes
+/// them, at least one. duration: of the run [s]. Throws ModelError for bad input.
 ReductionChoice choose_reduction(const System& system, double within,
                                  const std::vector<std::string>& channels, double duration);
 

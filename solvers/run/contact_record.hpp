@@ -10,7 +10,7 @@ namespace drev {
 /// Of a contact, or (Number: LaneRow) of the same contact in kLanes variants.
 template <class Number>
 struct ContactTotals {
-  Number time_apart{};          ///< s, with both flanks open
+  Number time_separated{};      ///< s, with both flanks open
   Number largest_force{};       ///< N or N m, |y|
   Number largest_force_time{};  ///< s
 };

@@ -83,7 +83,7 @@ void ContactStatistics::step(const Assembler& /*assembler*/, const EvaluatedStat
     if (inside_steps_)
       if (const auto peak = cubic_peak(r0.y, r0.dy_dx * a.x_dot, r1.y, r1.dy_dx * b.x_dot, h))
         note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
-    if (note_time_apart(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
+    if (note_time_separated(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
       note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What happens in each contact: impacts on both flanks with their speeds and forces, time apart, rattle.
+/// What happens in each contact: impacts on both flanks with their speeds and forces, time separated, rattle.
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/contact_record.hpp>
@@ -35,13 +35,13 @@ template <class Number, class Value, class Mask>
 /// Enters the time that a step of length h, in which x goes linearly from x_0 to x_1, is inside the gap.
 /// Returns whether x passes an edge of it in one of the lanes.
 template <class Number, class Value, class Mask>
-[[gnu::always_inline]] inline bool note_time_apart(ContactTotals<Number>& totals, const Value& low,
-                                                   const Value& high, const Value& x_0, const Value& x_1,
-                                                   double h, const Mask& lanes) {
+[[gnu::always_inline]] inline bool note_time_separated(ContactTotals<Number>& totals, const Value& low,
+                                                       const Value& high, const Value& x_0, const Value& x_1,
+                                                       double h, const Mask& lanes) {
   const Mask above = x_0 > high, below = x_0 < low, outside = above | below;
   const Value zero{};
   if (!any(lanes & ((above ^ (x_1 > high)) | (below ^ (x_1 < low))))) {  // each stays where it was
-    each(totals.time_apart) += (lanes & !outside) ? zero + h : zero;
+    each(totals.time_separated) += (lanes & !outside) ? zero + h : zero;
     return false;
   }
   const Value one = zero + 1.0, least = x_0 < x_1 ? x_0 : x_1, most = x_0 < x_1 ? x_1 : x_0;
@@ -50,7 +50,7 @@ template <class Number, class Value, class Mask>
   const Mask stands = most == least;
   const Value length = stands ? one : most - least;
   const Value share = stands ? (outside ? zero : one) : inside / length;
-  each(totals.time_apart) += lanes ? h * share : zero;
+  each(totals.time_separated) += lanes ? h * share : zero;
   return true;
 }
 /// Enters the flanks that a step a -> b leaves and meets; force: |y| at b.

@@ -61,8 +61,8 @@ StepScheme average_acceleration();
 /// Deviation: alpha is positive here, negative in the paper.
 StepScheme hht(double alpha = *kHhtAlpha.standard);
 
-/// Chung-Hulbert, kGeneralizedAlphaRho: spectral radius at infinity rho_inf; second order, least low-frequency
-/// damping for its high-frequency damping. rho_inf = 1 keeps all, 0 annihilates in one step.
+/// Chung-Hulbert, kGeneralizedAlphaRho: spectral radius at infinity rho_inf; second order, least
+/// low-frequency damping for its high-frequency damping. rho_inf = 1 keeps all, 0 annihilates in one step.
 StepScheme generalized_alpha(double rho_inf = *kGeneralizedAlphaRho.standard);
 
 /// rho_inf-Bathe, kBatheRho: two stages of one matrix; second order. Without a number 0, the

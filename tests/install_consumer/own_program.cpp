@@ -1,8 +1,9 @@
-// A program of one's own that runs a model file with an element of its own, by the installed libraries alone. The
-// element is the plugin's, built in. Argument: the model file. Exit status 0: the peak is the closed form's.
+// A program of one's own that runs a model file with an element of its own, by the installed libraries alone.
+// The element is the plugin's, built in. Argument: the model file. Exit status 0: the peak is the closed
+// form's.
 //
-// A torque T that sets in at once turns a disc from rest as far as its work is stored: T x = k x^2/2 + k3 x^4/4,
-// here 2250 N m and x = 0.1 rad, where the coupling has k x + k3 x^3 = 7000 N m.
+// A torque T that sets in at once turns a disc from rest as far as its work is stored: T x = k x^2/2 + k3
+// x^4/4, here 2250 N m and x = 0.1 rad, where the coupling has k x + k3 x^3 = 7000 N m.
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/app/model_file/plugin.hpp>
 #include <drev/app/run_model.hpp>

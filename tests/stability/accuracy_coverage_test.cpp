@@ -113,7 +113,7 @@ TEST_CASE("Accuracy: past the horizon the chaotic oscillator is given by its sta
   };
   agrees("mean of x-hub", 0.3926, 0.0039);
   agrees("rms of x-hub", std::hypot(0.3926, 0.9676), 0.0042);
-  agrees("stop: share of time apart", 0.5816, 0.0036);
+  agrees("stop: share of time separated", 0.5816, 0.0036);
   agrees("1 % quantile", -1.849, 0.009);
   agrees("99 % quantile", 1.996, 0.005);
   CHECK(r.find("peak deflection, mean of 8 runs") != nullptr);

@@ -220,7 +220,7 @@ function showCampbell() {
     section.append(
       make("h3", {}, "Resonances between half and twice the speed of the run, most excited first"),
       table(
-        ["mode", "frequency [Hz]", "order", "speed [rpm]", "from this run", "static answer"],
+        ["mode", "frequency [Hz]", "order", "speed [rpm]", "from this run", "static response"],
         near.map((x) => [
           x.mode + 1,
           sig(frequencies[x.mode], 5),
@@ -233,7 +233,7 @@ function showCampbell() {
       make(
         "p",
         { class: "note" },
-        "Static answer: what the order's torques, all nodes and phases together, would move the mode by " +
+        "Static response: what the order's torques, all nodes and phases together, would move the mode by " +
           "at its " +
           "largest node if it were at rest; at the resonance it is 1/(2ζ) times that, as far as contacts " +
           "stay closed.",

@@ -11,7 +11,7 @@ const RESULT_NAMES = {
   max_mesh_force_N: ["Largest mesh force", "N", "max_mesh_force_at"],
   front_contacts: ["Impacts on front flanks", "", null],
   back_contacts: ["Impacts on back flanks", "", null],
-  time_apart_s: ["Time apart, all contacts", "s", null],
+  time_separated_s: ["Time separated, all contacts", "s", null],
 };
 
 const unitOf = (key) => {

@@ -105,7 +105,7 @@ function showHistories() {
           "contact.",
         ...[
           ["--front", "front flank, from below"],
-          ["--open", "apart"],
+          ["--open", "separated"],
           ["--back", "back flank, from above"],
         ].flatMap(([color, text]) => [
           make(

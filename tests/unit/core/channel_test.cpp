@@ -1,4 +1,5 @@
 // Every kind of channel: value, sign and unit, against hand computation.
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/statics.hpp>

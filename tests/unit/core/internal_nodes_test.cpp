@@ -27,8 +27,8 @@ struct ToothLaw {
   }
 };
 
-/// A pinion of radius r [m] drives a rack of mass m [kg], its internal node, through teeth of stiffness k [N/m]:
-/// x = r theta - s. A spring of k_ground [N/m] may hold the rack to ground.
+/// A pinion of radius r [m] drives a rack of mass m [kg], its internal node, through teeth of stiffness k
+/// [N/m]: x = r theta - s. A spring of k_ground [N/m] may hold the rack to ground.
 class Rack final : public Element {
  public:
   struct Params {

@@ -51,12 +51,12 @@ TEST_CASE("An accuracy that rattling does not allow is refused point by point, a
   CHECK(accuracy.at("horizon_s").get<double>() < 0.3);
   CHECK(accuracy.at("growth_rate_per_s").get<double>() > 0.0);
   CHECK(contains(accuracy.at("reason").get<std::string>(), "two runs differ by more than 0.001"));
-  const Json apart = figure(json, "mesh_1: share of time apart");
+  const Json apart = figure(json, "mesh_1: share of time separated");
   CHECK(apart.at("kind") == "95 % interval");
   CHECK(figure(json, "mesh_1: rattle index").at("unit") == "W");
   // The run's own share over all its time, less than the batches' over nine tenths of it knows.
   CHECK(std::abs(apart.at("value").get<double>() -
-                 json.at("results").at("contacts")[0].at("time_apart_share").get<double>()) < 0.1);
+                 json.at("results").at("contacts")[0].at("time_separated_share").get<double>()) < 0.1);
 }
 
 TEST_CASE("The error stated of a torque that is a function of time covers what small steps give") {

@@ -1,5 +1,5 @@
-// Elements of plugins in everything that takes a model file, and what is wrong with a plugin. The plugins are in
-// tests/plugins and tests/install_consumer/plugin.
+// Elements of plugins in everything that takes a model file, and what is wrong with a plugin. The plugins are
+// in tests/plugins and tests/install_consumer/plugin.
 #include <nlohmann/json.hpp>
 #include <numbers>
 

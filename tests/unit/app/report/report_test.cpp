@@ -127,7 +127,7 @@ TEST_CASE("A report records by itself, and does not change the run") {
         Approx(energy.at("stored_J").get<double>()).epsilon(1e-6));
 }
 
-TEST_CASE("Contact bands add up to the time apart") {
+TEST_CASE("Contact bands add up to the time separated") {
   const Json data = block_of_run({"two_mass_backlash"});
   const Json& history = data.at("history");
   const double length = history.at("every").get<double>() * history.at("group").get<double>();
@@ -147,13 +147,13 @@ TEST_CASE("Contact bands add up to the time apart") {
     // A byte is 1/255 of a group; only groups with a change in them are rounded.
     const double impacts =
         contact.at("front_contacts").get<double>() + contact.at("back_contacts").get<double>();
-    CHECK(std::abs(apart - contact.at("time_apart_s").get<double>()) <=
+    CHECK(std::abs(apart - contact.at("time_separated_s").get<double>()) <=
           length * (2.0 + 2.0 * impacts) / 255.0);
   }
 }
 
-TEST_CASE("Resonances: speeds and static answers as in closed form") {
-  // One cyclic torque on the last of three gears, the first held: the modes' static answers, each taken at
+TEST_CASE("Resonances: speeds and static responses as in closed form") {
+  // One cyclic torque on the last of three gears, the first held: the modes' static responses, each taken at
   // the loaded gear, add up to torque times static compliance.
   const Json data =
       block_of_run({"gear_drive", "--set", "engine_rpm=3000", "torque_order=9", "duration_s=0.2"});

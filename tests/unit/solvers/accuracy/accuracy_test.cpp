@@ -1,5 +1,5 @@
 // Figures with their errors against closed forms.
-// Covers solvers/accuracy/accuracy_observers.hpp through run_to_accuracy().
+// Covers solvers/accuracy/accuracy_observers.hpp and solvers/run/estimate.hpp through run_to_accuracy().
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>

@@ -69,7 +69,7 @@ ManyResult check_same(const VariantBuilder& build, TransientOptions options, dou
       CHECK(v.contacts[c].element == expected.element);
       CHECK(v.contacts[c].front_impacts == expected.front_impacts);
       CHECK(v.contacts[c].back_impacts == expected.back_impacts);
-      CHECK(std::abs(v.contacts[c].time_apart - expected.time_apart) <= tolerance * single.t_end);
+      CHECK(std::abs(v.contacts[c].time_separated - expected.time_separated) <= tolerance * single.t_end);
       CHECK(std::abs(v.contacts[c].largest_force - expected.largest_force) <=
             tolerance * std::max(1.0, expected.largest_force));
       CHECK(v.contacts[c].impact_energy == Approx(expected.impact_energy).epsilon(10 * tolerance));

@@ -1,5 +1,5 @@
-// LegendreProjection of forces on polynomials: moments of kinks and conversion to powers, by quadrature in long
-// double.
+// LegendreProjection of forces on polynomials: moments of kinks and conversion to powers, by quadrature in
+// long double.
 #include <cmath>
 
 #include "solvers/exact/legendre_projection.hpp"

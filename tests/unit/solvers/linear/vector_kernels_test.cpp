@@ -1,5 +1,5 @@
-// The loops over all unknowns, short and wide, beside sums in extended precision; products by diagonals and by rows
-// beside dense ones.
+// The loops over all unknowns, short and wide, beside sums in extended precision; products by diagonals and
+// by rows beside dense ones.
 #include "solvers/linear/vector_kernels.hpp"
 
 #include <drev/elements/catalogue.hpp>

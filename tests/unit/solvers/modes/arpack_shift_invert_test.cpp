@@ -1,5 +1,5 @@
-// Lowest eigenpairs of a fixed-free chain of equal masses and springs, by ARPACK and by Lanczos' method without restarts
-// (modes.hpp takes it; modal_problem.hpp prepares it), beside the closed form
+// Lowest eigenpairs of a fixed-free chain of equal masses and springs, by ARPACK and by Lanczos' method
+// without restarts (modes.hpp takes it; modal_problem.hpp prepares it), beside the closed form
 //   omega_k = 2 sqrt(k/m) sin((2k - 1) pi / (2 (2n + 1))).
 // Covers solvers/modes/lanczos.hpp and solvers/modes/modal_problem.hpp through solve_modes().
 #include "solvers/modes/arpack_shift_invert.hpp"
@@ -33,7 +33,9 @@ TEST_CASE("ARPACK finds the lowest eigenpairs of a chain") {
     if (i > 0) k(i, i - 1) = k(i - 1, i) = -1.0;
   }
   const Eigen::LDLT<Eigen::MatrixXd> factor(k);
-  ShiftInvertProblem problem{.size = kMasses, .count = kCount};
+  ShiftInvertProblem problem;
+  problem.size = kMasses;
+  problem.count = kCount;
   problem.solve = [&](const double* b, double* x) {
     Eigen::Map<Vector>(x, kMasses) = factor.solve(Eigen::Map<const Vector>(b, kMasses));
   };

@@ -1,5 +1,6 @@
 // Reduced systems: closed forms of uniform chains, and the full system.
 // Covers solvers/reduction/residual_vectors.hpp and craig_bampton.hpp through reduce().
+#include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>

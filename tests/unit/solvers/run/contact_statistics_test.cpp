@@ -81,7 +81,7 @@ TEST_CASE("A mass thrown to and fro between two stops meets each at its speed") 
     check_all(r.front_force, periods, v * std::sqrt(k * mass), 2e-5);
     check_all(r.back_force, periods, v * std::sqrt(k * mass), 2e-5);
     check_all(r.speed(), 2 * periods, v, 1e-10);
-    CHECK(r.time_apart == Approx(periods * 4 * b / v).epsilon(1e-9));
+    CHECK(r.time_separated == Approx(periods * 4 * b / v).epsilon(1e-9));
     CHECK(r.impact_energy == Approx(2 * periods * 0.5 * mass * v * v).epsilon(1e-10));
     CHECK(r.rattle_index(periods * period) == Approx(mass * v * v / period).epsilon(1e-10));
   }
@@ -109,7 +109,7 @@ TEST_CASE("A mass that falls on one flank: speed sqrt(2 g h), force m g + sqrt((
   check_all(r.front_speed, 10, v, 1e-9);
   const double weight = mass * g;
   check_all(r.front_force, 10, weight + std::sqrt(weight * weight + k * mass * v * v), 2e-5);
-  CHECK(r.time_apart == Approx(10 * 2 * v / g).epsilon(1e-8));
+  CHECK(r.time_separated == Approx(10 * 2 * v / g).epsilon(1e-8));
 }
 
 TEST_CASE("Equivalent mass of a contact: 1/(b^T M^-1 b), lumped and consistent") {

@@ -1,5 +1,5 @@
-// What one run and eight in lanes share: balance (energy_balance.hpp), extremes (peaks.hpp) and contact
-// totals (contact_statistics.hpp) are the same numbers for a double as in each lane.
+// What one run and eight in lanes share: balance (energy_balance.hpp), extremes (peak.hpp) and contact
+// totals (contact_record.hpp) are the same numbers for a double as in each lane.
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/energy_balance.hpp>
 #include <drev/solvers/run/peaks.hpp>
@@ -72,13 +72,13 @@ TEST_CASE("Extremes and contact totals: the same for one run and in lanes") {
     magnitude(size);
     lane_peaks.note(value.v, t, kAll);
     note_force(lane_totals, size, t, kAll, lane_largest);
-    const bool passes = note_time_apart(lane_totals, low, high, row(step - 1, 0.5).v, value.v, h, kAll);
+    const bool passes = note_time_separated(lane_totals, low, high, row(step - 1, 0.5).v, value.v, h, kAll);
     bool any_passes = false;
     for (int lane = 0; lane < kLanes; ++lane) {
       const double x_0 = some(lane, step - 1, 0.5), x_1 = some(lane, step, 0.5);
       peaks[lane].note(x_1, t, true);
       note_force(totals[lane], std::abs(x_1), t, true, largest[lane]);
-      any_passes |= note_time_apart(totals[lane], kLow, kHigh, x_0, x_1, h, true);
+      any_passes |= note_time_separated(totals[lane], kLow, kHigh, x_0, x_1, h, true);
     }
     CHECK(passes == any_passes);
   }
@@ -87,9 +87,9 @@ TEST_CASE("Extremes and contact totals: the same for one run and in lanes") {
     CHECK(peaks[lane].max_time == lane_peaks.max_time.v[lane]);
     CHECK(peaks[lane].min == lane_peaks.min.v[lane]);
     CHECK(peaks[lane].min_time == lane_peaks.min_time.v[lane]);
-    CHECK(totals[lane].time_apart == Approx(lane_totals.time_apart.v[lane]).epsilon(1e-14));
-    CHECK(totals[lane].time_apart > 0.1 * kSteps * h);
-    CHECK(totals[lane].time_apart < 0.9 * kSteps * h);
+    CHECK(totals[lane].time_separated == Approx(lane_totals.time_separated.v[lane]).epsilon(1e-14));
+    CHECK(totals[lane].time_separated > 0.1 * kSteps * h);
+    CHECK(totals[lane].time_separated < 0.9 * kSteps * h);
     CHECK(totals[lane].largest_force == lane_totals.largest_force.v[lane]);
     CHECK(totals[lane].largest_force_time == lane_totals.largest_force_time.v[lane]);
     CHECK(largest[lane] == lane_largest.v[lane]);
