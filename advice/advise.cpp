@@ -36,7 +36,7 @@ double turn_time(const ModelCase& model_case, const System& system) {
 class Ladder {
  public:
   Ladder(const ModelCase& model_case, const AdviseOptions& options)
-      : scene_(model_case),
+      : model_case_(model_case),
         options_(options),
         full_(model_case.model.build()),
         evidence_(full_),
@@ -76,7 +76,7 @@ class Ladder {
 
   /// From the full model down.
   std::vector<Level> find_levels() const {
-    std::vector<Level> levels{{"full model", "", scene_.model}};
+    std::vector<Level> levels{{"full model", "", model_case_.model}};
     std::vector<std::size_t> last{0};
     const auto add = [&](Level level) {
       level.from = last;
@@ -84,8 +84,8 @@ class Ladder {
       last = {levels.size() - 1};
     };
     const Flanks& flanks = evidence_.flanks();
-    const auto mean = with_mean_stiffness(scene_.model);
-    const auto closed = without_backlash(scene_.model, flanks);
+    const auto mean = with_mean_stiffness(model_case_.model);
+    const auto closed = without_backlash(model_case_.model, flanks);
     if (mean)
       add({closed ? "backlash, mean mesh stiffness" : "elastic meshes, mean stiffness",
            "variation of the mesh stiffness", *mean, false, true});
@@ -98,9 +98,9 @@ class Ladder {
       add({"no backlash, mean mesh stiffness", "backlash and variation of the mesh stiffness",
            *without_backlash(*mean, flanks), true, true});
     }
-    if (const auto rigid = with_rigid_meshes(scene_.model))
+    if (const auto rigid = with_rigid_meshes(model_case_.model))
       add({"rigid meshes", "compliance and backlash of the meshes", *rigid, true, true});
-    if (const auto held = with_drive_held(scene_.model, nodes_of(scene_.model, figure_.channels)))
+    if (const auto held = with_drive_held(model_case_.model, nodes_of(model_case_.model, figure_.channels)))
       add({"gear held", "the gear drive", *held, true, true});
     return levels;
   }
@@ -131,7 +131,7 @@ class Ladder {
   /// The periodic steady state of the level.
   void steady(const Model& model, const std::string& in, const std::string& and_out,
               std::vector<Rung>& rungs) {
-    const double turns = scene_.static_turn > 0.0 ? scene_.static_turn / kTwoPi : 1.0;
+    const double turns = model_case_.static_turn > 0.0 ? model_case_.static_turn / kTwoPi : 1.0;
     rungs.push_back(measure({in + "periodic steady state", and_out + "the transient"},
                             {.model = model, .figure = figure_, .turns = turns}));
   }
@@ -276,7 +276,7 @@ class Ladder {
     advice_.sentence = evidence_.sentence(advice_);
   }
 
-  const ModelCase& scene_;
+  const ModelCase& model_case_;
   const AdviseOptions& options_;
   System full_;
   Evidence evidence_;

@@ -6,7 +6,7 @@
 ///
 /// Every node's deviation is q_i = coeff z_k or q_i = coeff u_k: prescribed nodes (u) and ideal gear
 /// ratios are eliminated. m = T^T M n, and d = T^T C n is the mean drag of dashpots whose ends differ in
-/// nominal speed (zero for shafts and meshes). Of a projected system (projected_system.hpp) also q_i =
+/// nominal speed (zero for shafts and meshes). Of a projected system (ritz_projection.hpp) also q_i =
 /// coeff r z with a row r over all unknowns.
 #include <drev/core/model.hpp>
 #include <drev/core/table_loads.hpp>

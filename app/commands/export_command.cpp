@@ -12,7 +12,7 @@ namespace drev::app {
 
 int export_command(const CommandLine& line) {
   const ModelRequest model = request_model(line);
-  const std::string text = export_scene(*model.entry, model.parameters, model.model_case);
+  const std::string text = export_model(*model.entry, model.parameters, model.model_case);
   const std::optional<std::string> out = line.option("--out");
   if (!out) {
     print(line.json ? json_text({{"file", text}}) : text);

@@ -157,7 +157,7 @@ class SceneWriter {
 
 }  // namespace
 
-std::string export_scene(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case) {
+std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case) {
   return SceneWriter(model_case).text(entry, parameters);
 }
 

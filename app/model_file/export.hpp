@@ -7,6 +7,6 @@
 namespace drev::app {
 
 /// Throws ModelError for what a file cannot hold: functions of one's own, elements of one's own.
-std::string export_scene(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case);
+std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case);
 
 }  // namespace drev::app

@@ -1,7 +1,7 @@
 #pragma once
 /// Figures of a run, each with its error, to an accuracy that is asked for.
 ///
-///   1. How fast do small differences grow (growth.hpp)?
+///   1. How fast do small differences grow (error_growth.hpp)?
 ///   2. The run at one tolerance (exact, controlled steps) or step, then at a tighter one. A figure of the
 ///      tighter run has the error 2 |difference| + max(tolerance, 1e-14) growth |figure|; with controlled and
 ///      constant steps not less than half of the difference before, which second order quarters. Tightened

@@ -1,6 +1,6 @@
 #pragma once
 /// The arithmetic of a step of the generalized-alpha family (step_scheme.hpp) and of its energy balance
-/// (energy_monitor.hpp) for kLanes variants at once: step_solver.hpp and step_equation.hpp in lanes.
+/// (energy_monitor.hpp) for kLanes variants at once: generalized_alpha.hpp and step_equation.hpp in lanes.
 #include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <array>

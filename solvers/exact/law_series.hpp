@@ -3,10 +3,10 @@
 ///
 /// On a piece, y = y_0 + k x + c x': k and c go into the matrices, y_0 and what is known of x to
 /// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
-/// fall below zero is the change (polynomial.hpp). Behind a change the crossed bound of the new
+/// fall below zero is the change (roots.hpp). Behind a change the crossed bound of the new
 /// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
 /// not zero says whether the piece holds or changes back at once. Laws without linear pieces
-/// (smooth_laws.hpp) take part with the stretches between their kinks.
+/// (projected_laws.hpp) take part with the stretches between their kinks.
 #include <functional>
 #include <optional>
 

@@ -5,7 +5,7 @@
 /// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope
 /// against the deviation to the stiffness's diagonal. Knots that theta(s) passes in the step add kinks,
 /// and loads without stretches (functions, engine orders) what they differ from their tangent: both are
-/// projected on polynomials (projection.hpp) along the path that the series gives, and the series is
+/// projected on polynomials (legendre_projection.hpp) along the path that the series gives, and the series is
 /// expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
 #include <optional>
 

@@ -3,9 +3,9 @@
 /// grows with penetration, a user's own), for TaylorSeries.
 ///
 /// Between its kinks() such a law is smooth. Its tangent at the step's start goes into the matrices; what
-/// y(x, x', t, angle) differs from it along the series' path is projected (projection.hpp), pass by pass
-/// until the path settles. Steps end where x passes a kink (law_pieces.hpp) or the angle passes a knot of
-/// the law (a stiffness that steps).
+/// y(x, x', t, angle) differs from it along the series' path is projected (legendre_projection.hpp), pass by
+/// pass until the path settles. Steps end where x passes a kink (law_series.hpp) or the angle passes a knot
+/// of the law (a stiffness that steps).
 #include <drev/solvers/run/evaluated_state.hpp>
 
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 /// Reduction: a system with fewer unknowns, z = R y, that every solver but lockstep runs
-/// (projected_system.hpp).
+/// (ritz_projection.hpp).
 ///
 /// Modal: R = [Phi X]. Phi: rigid and lowest elastic modes, contacts closed. X: what the modes left out give
 /// under a constant force, for the row b of each law, for prescribed nodes that move, and for the loads,

@@ -3,8 +3,8 @@
 ///
 /// Trial: the reduced system is run with TruncationError, which gives the error of every channel. Where
 /// contacts change, that error is multiplied by what a small difference grows to in the reduced motion
-/// (growth.hpp). Where the error is above what is allowed, more modes are tried once: as many as the spectrum
-/// asks for an error smaller by what it was out, and by a half. Then the reduction is given up.
+/// (error_growth.hpp). Where the error is above what is allowed, more modes are tried once: as many as the
+/// spectrum asks for an error smaller by what it was out, and by a half. Then the reduction is given up.
 #include <drev/solvers/method_choice.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 

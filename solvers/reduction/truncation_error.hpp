@@ -9,7 +9,7 @@
 /// fall as 1/omega^2 or faster. The estimate is 1.5 times the sum. With laws that are not linear, which shift
 /// their changes and so change everything, it is twice the sum, and no less, relative to the peak, than the
 /// worst error of such laws' forces relative to the largest of them (by F^2/k). It is no bound, and knows
-/// nothing of the growth of differences in motions that are sensitive to their start (growth.hpp).
+/// nothing of the growth of differences in motions that are sensitive to their start (error_growth.hpp).
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>

@@ -1,7 +1,7 @@
 #pragma once
-/// Where inside a step a law leaves its piece (law_pieces.hpp) or its phase angle passes a knot (a jump of
+/// Where inside a step a law leaves its piece (pieces.hpp) or its phase angle passes a knot (a jump of
 /// the mesh stiffness), as the first root of the bound a + b_x x + b_v x' on the step's polynomial, isolated
-/// with a certificate (polynomial.hpp): of two crossings in one step the first is found.
+/// with a certificate (roots.hpp): of two crossings in one step the first is found.
 /// What is known of a deflection or angle (prescribed ends, transmission error, nominal angle) enters as the
 /// polynomial of degree 5 through its values and rates at both ends and in the middle.
 #include <drev/core/assembler.hpp>

@@ -228,14 +228,14 @@ std::string write_again(const drev::app::ModelFile& file, const drev::Parameters
   using namespace drev;
   std::string first;
   try {
-    first = app::export_scene(file.entry(), parameters, model_case);
+    first = app::export_model(file.entry(), parameters, model_case);
   } catch (const ModelError&) {
     return "";  // a motion that a file gives, but an export cannot name
   }
   try {
     const app::ModelFile back(first, "again.toml", "");
     const ModelCase same = back.entry().build(Parameters(back.entry().name, {}));
-    const std::string second = app::export_scene(file.entry(), parameters, same);
+    const std::string second = app::export_model(file.entry(), parameters, same);
     return first == second ? "" : "written twice, it differs:\n" + first + "\n----\n" + second;
   } catch (const ModelError& error) {
     return "written, it is refused: " + std::string(error.what()) + "\n" + first;

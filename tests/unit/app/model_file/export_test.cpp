@@ -89,7 +89,7 @@ TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
     Parameters parameters(entry.name, entry.parameters);
     for (const auto& [name, value] : c.set) parameters.set(name, value);
     const ModelCase model_case = entry.build(parameters);
-    const std::string text = app::export_scene(entry, parameters, model_case);
+    const std::string text = app::export_model(entry, parameters, model_case);
     INFO(c.model << (c.set.empty() ? "" : c.set.front().second) << "\n" << text.substr(0, 400));
     check_same(model_case, read_back(text), c.t_end);
   }
@@ -168,13 +168,13 @@ TEST_CASE("Every element, exported and read back, gives the same bits") {
   ModelCase model_case{
       .model = std::move(m), .duration = 0.05, .default_step = 1e-5, .torques = {"support.torque_Nm"}};
   const ModelEntry entry{"all", "every element", {}, {}};
-  const std::string text = app::export_scene(entry, Parameters("all", {}), model_case);
+  const std::string text = app::export_model(entry, Parameters("all", {}), model_case);
   INFO(text);
   // The second export is the fixed point: nothing was lost on the way.
   const ModelCase back = read_back(text);
-  CHECK(app::export_scene(entry, Parameters("all", {}), back) == text);
+  CHECK(app::export_model(entry, Parameters("all", {}), back) == text);
   model_case.model.hold("pinion");
-  check_same(read_back(app::export_scene(entry, Parameters("all", {}), model_case)), model_case, 0.02);
+  check_same(read_back(app::export_model(entry, Parameters("all", {}), model_case)), model_case, 0.02);
 }
 
 TEST_CASE("The reference shaft's motion is written where it is one of the catalogue's") {
@@ -190,7 +190,7 @@ TEST_CASE("The reference shaft's motion is written where it is one of the catalo
   };
   const ModelEntry entry{"driven", "", {}, {}};
   const auto write = [&](const ModelCase& model_case) {
-    return app::export_scene(entry, Parameters("driven", {}), model_case);
+    return app::export_model(entry, Parameters("driven", {}), model_case);
   };
   const std::string constant = write(driven(constant_speed(rpm(100), 0.3)));
   CHECK(constant.find("nominal_angle_rad = 0.3") != std::string::npos);
