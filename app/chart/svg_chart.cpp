@@ -17,7 +17,7 @@ constexpr double kCharacter = 6.6, kLegendRow = 18.0;  // px, of 12 px text
 constexpr const char* kDashes[kStyles] = {"", "9 4", "3 3", "12 3 3 3", "6 2", "1.5 3", "14 3 3 3 3 3"};
 
 /// Fixed or shortest decimal text, whatever the locale.
-std::string number(double value, int decimals) {
+std::string with_decimals(double value, int decimals) {
   char buffer[400];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value == 0.0 ? 0.0 : value,
                                  std::chars_format::fixed, decimals);
@@ -26,7 +26,7 @@ std::string number(double value, int decimals) {
   return text;
 }
 
-std::string px(double value) { return number(value, 2); }
+std::string px(double value) { return with_decimals(value, 2); }
 
 /// XML text: markup escaped, control characters (which XML cannot hold) as spaces.
 std::string escaped(std::string_view text) {
@@ -109,7 +109,7 @@ void add_linear_ticks(Axis& axis, double most) {
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step / unit) - 1e-9)), 0, 12);
   const double first = std::ceil(axis.low / step - 1e-9), last = std::floor(axis.high / step + 1e-9);
   for (double i = first; i <= last; i += 1.0)
-    axis.ticks.push_back({i * step, number(i * step / unit, decimals)});
+    axis.ticks.push_back({i * step, with_decimals(i * step / unit, decimals)});
 }
 
 void add_log_ticks(Axis& axis, double most) {
@@ -124,7 +124,7 @@ void add_log_ticks(Axis& axis, double most) {
     if (shown(n)) {
       const bool labelled = std::fmod(std::abs(n), stride) == 0.0;
       if (between && std::abs(power) <= 4)
-        axis.ticks.push_back({n, number(std::pow(10.0, n), std::max(0, -power))});
+        axis.ticks.push_back({n, with_decimals(std::pow(10.0, n), std::max(0, -power))});
       else if (labelled || decades < 60.0)
         axis.ticks.push_back({n, labelled ? "10" : "", labelled ? std::to_string(power) : ""});
     }
@@ -133,7 +133,8 @@ void add_log_ticks(Axis& axis, double most) {
       const double at = n + std::log10(factor);
       if (!shown(at)) continue;
       const bool labelled = between && std::abs(power) <= 4 && (factor == 2 || factor == 5);
-      axis.ticks.push_back({at, labelled ? number(factor * std::pow(10.0, n), std::max(0, -power)) : ""});
+      axis.ticks.push_back(
+          {at, labelled ? with_decimals(factor * std::pow(10.0, n), std::max(0, -power)) : ""});
     }
   }
 }

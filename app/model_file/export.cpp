@@ -14,16 +14,16 @@ namespace drev::app {
 
 namespace {
 
-class SceneWriter {
+class CaseWriter {
  public:
-  SceneWriter(const ModelCase& model_case) : scene_(model_case), model_(model_case.model) {}
+  CaseWriter(const ModelCase& model_case) : model_case_(model_case), model_(model_case.model) {}
 
   std::string text(const ModelEntry& entry, const Parameters& parameters) {
     const std::string nodes = write_nodes(), elements = write_elements();
     std::string head = "# Written by drev export " + entry.name + settings_of(parameters) + ".\n";
     head += "format = " + std::to_string(kFormat) + "\nname = " + toml_text(model_.name()) + "\n";
     if (!entry.summary.empty()) head += "summary = " + toml_text(entry.summary) + "\n";
-    if (!scene_.note.empty()) head += "note = " + toml_text(scene_.note) + "\n";
+    if (!model_case_.note.empty()) head += "note = " + toml_text(model_case_.note) + "\n";
     std::string all = head + "\n" + nodes + "\n" + store_.text() + elements + "\n" + write_run();
     if (!findings_.empty()) throw ModelError(std::move(findings_));
     return all;
@@ -139,16 +139,16 @@ class SceneWriter {
     const auto add = [&](const char* key, const std::string& value) {
       text += std::string(key) + " = " + value + "\n";
     };
-    add("duration_s", toml_number(scene_.duration));
-    add("step_s", toml_number(scene_.default_step));
-    if (!scene_.deflection.empty()) add("deflection", toml_text(scene_.deflection));
-    add("torques", toml_texts(scene_.torques));
-    if (scene_.static_turn != 0.0) add("static_turn_rad", toml_number(scene_.static_turn));
-    add("record", toml_texts(scene_.channels));
+    add("duration_s", toml_number(model_case_.duration));
+    add("step_s", toml_number(model_case_.default_step));
+    if (!model_case_.deflection.empty()) add("deflection", toml_text(model_case_.deflection));
+    add("torques", toml_texts(model_case_.torques));
+    if (model_case_.static_turn != 0.0) add("static_turn_rad", toml_number(model_case_.static_turn));
+    add("record", toml_texts(model_case_.channels));
     return text;
   }
 
-  const ModelCase& scene_;
+  const ModelCase& model_case_;
   const Model& model_;
   TableStore store_;
   std::map<std::string, NodeKind> kinds_;
@@ -158,7 +158,7 @@ class SceneWriter {
 }  // namespace
 
 std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case) {
-  return SceneWriter(model_case).text(entry, parameters);
+  return CaseWriter(model_case).text(entry, parameters);
 }
 
 }  // namespace drev::app

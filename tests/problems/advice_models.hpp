@@ -44,13 +44,13 @@ class AdviceModelMaker {
     build(kKinds[kind_], gears, ratio_);
     if (kind_ == 4 || kind_ == 5) {
       // Teeth pass at 2 f_1, or a third beyond the highest of the lower resonances.
-      const double f = solve_modes(scene_.model.build(), {.count = 1}).frequency_Hz[0];
+      const double f = solve_modes(model_case_.model.build(), {.count = 1}).frequency_Hz[0];
       const double tooth = kind_ == 5 ? 2.0 * f * random_(0.98, 1.02) : 2.0 * f * random_(2.7, 4.3);
       speed_ = hz(tooth) / kTeeth;
       build(kKinds[kind_], gears, ratio_);
     }
     if (kind_ == 1 || kind_ == 2 || kind_ == 4 || kind_ == 5) start_in_equilibrium();
-    return scene_;
+    return model_case_;
   }
 
  private:
@@ -85,12 +85,12 @@ class AdviceModelMaker {
     const double first = std::sqrt(stiffness_ / (3.0 * inertia_));  // rad/s, rough
     m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 2.0 * keep(0.01, 0.04) * first});
     load(m, loaded, first / turn, keep);
-    scene_ = ModelCase{.model = std::move(m),
-                       .duration = keep(8.0, 14.0) * kTwoPi / first,
-                       .default_step = 1e-5,
-                       .deflection = "end-gear.twist_rad",
-                       .torques = torques,
-                       .static_turn = kTwoPi / ratio};
+    model_case_ = ModelCase{.model = std::move(m),
+                            .duration = keep(8.0, 14.0) * kTwoPi / first,
+                            .default_step = 1e-5,
+                            .deflection = "end-gear.twist_rad",
+                            .torques = torques,
+                            .static_turn = kTwoPi / ratio};
   }
 
   void mesh(Model& m, const std::string& name, const std::string& a, const std::string& b, double ratio,
@@ -174,20 +174,21 @@ class AdviceModelMaker {
   }
 
   void start_in_equilibrium() {
-    const System system = scene_.model.build();
+    const System system = model_case_.model.build();
     StaticSolver statics(system);
     const StaticResult rest = statics.solve();
     for (int i = 0; i < system.node_count(); ++i) {
       const NodeMap& map = system.node_map(i);
       if (map.unknown >= 0)
-        scene_.model.set_initial(system.node_names()[idx(i)], map.coeff * rest.state.z[map.unknown], 0.0);
+        model_case_.model.set_initial(system.node_names()[idx(i)], map.coeff * rest.state.z[map.unknown],
+                                      0.0);
     }
   }
 
   int kind_, seed_;
   Random random_;
   double speed_ = 0.0, ratio_ = 1.0, tooth_k_ = 1e8, inertia_ = 1.0, stiffness_ = 1e5;
-  ModelCase scene_{.model = Model("")};
+  ModelCase model_case_{.model = Model("")};
 };
 
 inline ModelCase advice_model(int which) { return AdviceModelMaker(which).make(); }
