@@ -3,7 +3,7 @@
 # otherwise.
 #
 #   format_test.sh format ROOT                 all code
-#   format_test.sh tidy ROOT OPTION...         core/ and elements/; options: include folders, -D
+#   format_test.sh tidy ROOT OPTION...         core/law/ and elements/; options: include folders, -D
 #
 # Skipped (status 77) where the tool is not installed.
 set -euo pipefail
@@ -30,7 +30,7 @@ case $what in
     ;;
   tidy)
     need clang-tidy-14
-    files=$(code core elements -maxdepth 1 | grep '\.cpp$')
+    files=$(code core/law elements | grep '\.cpp$')
     log=$(xargs -P "$jobs" -I{} clang-tidy-14 --quiet {} -- -std=c++20 -I. "$@" 2>/dev/null <<<"$files") || failed=1
     if [ -n "${failed:-}" ]; then echo "$log"; exit 1; fi
     ;;
