@@ -17,7 +17,7 @@ using namespace drev;
 
 namespace {
 
-constexpr int kMasses = 60, kCount = 6;
+constexpr int kMasses = 60, kWanted = 6;
 
 double closed_form(int k) {  // k = 0 is the lowest, (rad/s)^2
   const double s = std::sin((2 * k + 1) * std::numbers::pi / (2 * (2 * kMasses + 1)));
@@ -35,14 +35,14 @@ TEST_CASE("ARPACK finds the lowest eigenpairs of a chain") {
   const Eigen::LDLT<Eigen::MatrixXd> factor(k);
   ShiftInvertProblem problem;
   problem.size = kMasses;
-  problem.count = kCount;
+  problem.count = kWanted;
   problem.solve = [&](const double* b, double* x) {
     Eigen::Map<Vector>(x, kMasses) = factor.solve(Eigen::Map<const Vector>(b, kMasses));
   };
   const ShiftInvertResult found = arpack_shift_invert(problem);
   REQUIRE(found.status == ArpackStatus::success);
-  REQUIRE(found.lambda.size() == kCount);
-  for (int i = 0; i < kCount; ++i) {
+  REQUIRE(found.lambda.size() == kWanted);
+  for (int i = 0; i < kWanted; ++i) {
     CAPTURE(i);
     CHECK(found.lambda[i] == Approx(closed_form(i)).epsilon(1e-11));
     const Vector x = found.vectors.col(i);
@@ -60,8 +60,8 @@ TEST_CASE("ARPACK finds the lowest eigenpairs of a chain") {
     else
       model.add<GroundSpring>("k0", {"n0"}, {.stiffness = 1.0});
   }
-  const ModeSet modes = solve_modes(model.build(), {.count = kCount});
-  REQUIRE(modes.count() == kCount);
-  for (int i = 0; i < kCount; ++i)
+  const ModeSet modes = solve_modes(model.build(), {.count = kWanted});
+  REQUIRE(modes.count() == kWanted);
+  for (int i = 0; i < kWanted; ++i)
     CHECK(modes.omega(i) * modes.omega(i) == Approx(found.lambda[i]).epsilon(1e-10));
 }
