@@ -239,6 +239,7 @@ TEST_CASE("A report that cannot be written is refused before the run, or said") 
   if (!std::filesystem::exists("/dev/full")) return;
   std::filesystem::create_symlink("/dev/full", folder / "f.partial.html");
   const auto full = drev_command({"run", "two_inertia", "--report", (folder / "f.html").string()});
+  CAPTURE(full.err);
   CHECK(full.exit_code == 3);
   CHECK(contains(full.err, "f.partial.html: No space left on device"));
   CHECK_FALSE(std::filesystem::exists(folder / "f.html"));
