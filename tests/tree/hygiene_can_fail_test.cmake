@@ -1,6 +1,7 @@
 # Proves that hygiene_test.cmake sees each kind of fault: a clean tree passes, and with any one fault it fails and
 # names the file. -DSCRIPT=hygiene_test.cmake -DFOLDER=<scratch>
 cmake_minimum_required(VERSION 3.22)
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 
 macro(clean_tree)
   file(REMOVE_RECURSE ${FOLDER})
@@ -12,16 +13,6 @@ macro(clean_tree)
     file(WRITE ${FOLDER}/core/file_${i}.hpp "int f_${i}();\n")
   endforeach()
 endmacro()
-
-function(expect what outcome file)
-  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${FOLDER} -P ${SCRIPT}
-                  RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(outcome STREQUAL "pass" AND NOT result EQUAL 0)
-    message(FATAL_ERROR "${what} should pass:\n${text}")
-  elseif(outcome STREQUAL "fail" AND (result EQUAL 0 OR NOT text MATCHES "  ${file}: "))
-    message(FATAL_ERROR "${what} should fail and name ${file} (exit ${result}):\n${text}")
-  endif()
-endfunction()
 
 clean_tree()
 expect("a clean tree" pass "")
@@ -44,10 +35,4 @@ expect("a full folder" fail core)
 clean_tree()
 file(WRITE ${FOLDER}/solvers/run/recorder.hpp "int recorder();\n")
 expect("a header without a test" fail solvers/run/recorder.hpp)
-file(REMOVE_RECURSE ${FOLDER})
-file(MAKE_DIRECTORY ${FOLDER})
-execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${FOLDER} -P ${SCRIPT} RESULT_VARIABLE result
-                OUTPUT_QUIET ERROR_QUIET)
-if(result EQUAL 0)
-  message(FATAL_ERROR "An empty tree should fail: nothing is checked there.")
-endif()
+expect_empty_tree_fails()

@@ -1,6 +1,7 @@
 # Proves that layering_test.cmake sees each kind of violation: a clean tree of a few lines passes; with any
 # one violation added, it fails and names the file. -DSCRIPT=layering_test.cmake -DFOLDER=<scratch>
 cmake_minimum_required(VERSION 3.22)
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 macro(clean_tree)
   file(REMOVE_RECURSE ${FOLDER})
   file(WRITE ${FOLDER}/cmake/public_headers.txt "# public\ncore/a.hpp\n")
@@ -13,16 +14,6 @@ macro(clean_tree)
   file(WRITE ${FOLDER}/app/model_file/b.cpp "#include <toml++/toml.h>\n")
   file(WRITE ${FOLDER}/app/commands/a.cpp "#include <CLI/CLI.hpp>\n#include <iostream>\n#include \"models/m/m.hpp\"\n#include \"app/cli/a.hpp\"\n")
 endmacro()
-
-function(expect what outcome file)
-  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${FOLDER} -P ${SCRIPT}
-                  RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(outcome STREQUAL "pass" AND NOT result EQUAL 0)
-    message(FATAL_ERROR "${what} should pass:\n${text}")
-  elseif(outcome STREQUAL "fail" AND (result EQUAL 0 OR NOT text MATCHES "  [^\n]*${file}[^\n]*: "))
-    message(FATAL_ERROR "${what} should fail and name ${file} (exit ${result}):\n${text}")
-  endif()
-endfunction()
 
 function(violation file line)
   clean_tree()
@@ -75,10 +66,4 @@ violation(models/m/main.cpp "#include \"tests/catch.hpp\"")
 violation(models/m/main.cpp "#include <umfpack.h>")
 violation(app/cli/x.cpp "#include <toml++/toml.h>")
 violation(app/x.cpp "#include \"tests/catch.hpp\"")
-file(REMOVE_RECURSE ${FOLDER})
-file(MAKE_DIRECTORY ${FOLDER}/core)
-execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${FOLDER} -P ${SCRIPT} RESULT_VARIABLE result
-                OUTPUT_QUIET ERROR_QUIET)
-if(result EQUAL 0)
-  message(FATAL_ERROR "An empty tree should fail: nothing is checked there.")
-endif()
+expect_empty_tree_fails()

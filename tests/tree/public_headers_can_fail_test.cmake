@@ -1,5 +1,6 @@
 # Proves that public_headers_test.cmake can fail. -DSCRIPT=public_headers_test.cmake -DFOLDER=<scratch>
 cmake_minimum_required(VERSION 3.22)
+include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 
 # 17 headers of which each includes the next: the first pulls in 16 less `fewer`.
 macro(tree fewer)
@@ -17,16 +18,6 @@ macro(tree fewer)
   endforeach()
   file(WRITE ${FOLDER}/cmake/public_headers.txt "${list}")
 endmacro()
-
-function(expect what outcome file)
-  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${FOLDER} -P ${SCRIPT}
-                  RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(outcome STREQUAL "pass" AND NOT result EQUAL 0)
-    message(FATAL_ERROR "${what} should pass:\n${text}")
-  elseif(outcome STREQUAL "fail" AND (result EQUAL 0 OR NOT text MATCHES "  ${file}: "))
-    message(FATAL_ERROR "${what} should fail and name ${file} (exit ${result}):\n${text}")
-  endif()
-endfunction()
 
 tree(1)
 expect("a chain of 15 others" pass "")
