@@ -24,12 +24,14 @@ std::string message(const std::string& path, const std::string& reason) {
 }
 
 /// Two processes must not write one file, nor may one change what the other has just given its name. Closes
-/// the file and throws OutputError if another process writes it.
+/// the file and throws OutputError if another process writes it. Devices, which many may write, are not locked.
 void lock(int descriptor, const std::string& path) {
   struct stat opened {
   }, named{};
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &opened) == 0 &&
-      ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino)
+  const bool known = ::fstat(descriptor, &opened) == 0;
+  if (known && !S_ISREG(opened.st_mode)) return;
+  if (known && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::stat(path.c_str(), &named) == 0 &&
+      opened.st_ino == named.st_ino)
     return;
   ::close(descriptor);
   throw OutputError(message(path, "another process is writing it"));

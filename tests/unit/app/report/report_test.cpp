@@ -4,9 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/file.h>
 #include <thread>
+#include <unistd.h>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -238,10 +241,14 @@ TEST_CASE("A report that cannot be written is refused before the run, or said") 
   CHECK(std::filesystem::is_empty(folder / ""));
   if (!std::filesystem::exists("/dev/full")) return;
   std::filesystem::create_symlink("/dev/full", folder / "f.partial.html");
+  // Another process that holds a device does not stand in the way.
+  const int device = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  REQUIRE(::flock(device, LOCK_SH) == 0);
   const auto full = drev_command({"run", "two_inertia", "--report", (folder / "f.html").string()});
   CAPTURE(full.err);
   CHECK(full.exit_code == 3);
   CHECK(contains(full.err, "f.partial.html: No space left on device"));
+  ::close(device);
   CHECK_FALSE(std::filesystem::exists(folder / "f.html"));
 }
 
