@@ -31,6 +31,7 @@ class FigureWatch final : public Observer {
  public:
   FigureWatch(const System& system, const FigureOptions& o)
       : peak_(find_channels(system, o.channels)), from_(o.from) {}
+  void look_through(StepMotion& motion) override { peak_.look_through(motion); }
   void start(const Assembler& assembler, const EvaluatedState& point) override {
     begun_ = point.state.t >= from_;
     if (begun_) peak_.start(assembler, point);
@@ -61,7 +62,7 @@ struct Run {
 Run run_once(const System& system, const Method& method, const FigureOptions& o, State state,
              double most_seconds = std::numeric_limits<double>::infinity()) {
   FigureWatch figure(system, o);
-  Peaks watched(find_channels(system, o.watch), method.tolerance > 0.0);
+  Peaks watched(find_channels(system, o.watch));
   std::vector<Observer*> observers{&figure};
   if (!o.watch.empty()) observers.push_back(&watched);
   Run run;
@@ -77,7 +78,6 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
   if (!summary.ok()) run.failure = summary.reason;
   if (summary.status == RunStatus::interrupted)
     run.failure = "a run takes longer than " + to_text(most_seconds) + " s";
-  figure.peak().refine(system, method);
   run.value = figure.peak().value();
   run.end = std::move(state);
   run.watched = watched.peaks();

@@ -233,19 +233,35 @@ double reaction(const Assembler& assembler, const State& s, int k) {
 }
 
 std::optional<double> Channel::rate(const Assembler& assembler, const State& state) const {
-  if (kind_ == Kind::force) {
-    const ScalarTerm& term = assembler.system().scalars()[idx(index_)];
-    const ScalarInput in = assembler.input(term, state.z, state.v);
-    const ScalarResponse r = term.force->evaluate(in);
-    double x_dot_dot = 0.0;
-    for (const Entry& e : term.z) x_dot_dot += e.coeff * state.a[e.index];
-    return r.dy_dx * in.x_dot + r.dy_dx_dot * x_dot_dot;
+  const System& system = assembler.system();
+  if (direct_) {
+    double y = 0.0;
+    for (const Entry& e : z_) y += e.coeff * state.v[e.index];
+    for (const Entry& e : v_) y += e.coeff * state.a[e.index];
+    return y;
   }
-  if (!direct_) return std::nullopt;
-  double y = 0.0;
-  for (const Entry& e : z_) y += e.coeff * state.v[e.index];
-  for (const Entry& e : v_) y += e.coeff * state.a[e.index];
-  return y;
+  switch (kind_) {
+    case Kind::value:
+      return assembler.node_motion(index_, state).rate;
+    case Kind::rate:
+      return assembler.node_motion(index_, state).acceleration;
+    case Kind::difference:
+      return assembler.node_motion(index_, state).rate - assembler.node_motion(second_, state).rate;
+    case Kind::deflection:
+      return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x_dot;
+    case Kind::force: {
+      const ScalarTerm& term = system.scalars()[idx(index_)];
+      if (term.phase_node >= 0) return std::nullopt;  // its stiffness or its offset moves by itself
+      const ScalarInput in = assembler.input(term, state.z, state.v);
+      const ScalarResponse r = term.force->evaluate(in);
+      double x_dot_dot = 0.0;
+      for (const Entry& e : term.z) x_dot_dot += e.coeff * state.a[e.index];
+      for (const Entry& e : term.u) x_dot_dot += e.coeff * assembler.prescribed(e.index).acceleration;
+      return r.dy_dx * in.x_dot + r.dy_dx_dot * x_dot_dot;
+    }
+    default:
+      return std::nullopt;
+  }
 }
 
 bool Channel::value_needs_acceleration() const {

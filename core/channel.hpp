@@ -28,13 +28,15 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time.
   double evaluate(const Assembler& assembler, const State& state) const;
-  /// Its rate of change at a state, for values linear in deviations and rates, and for laws (dy/dx x' +
-  /// dy/dx' x'', at constant phase and time); none for others.
+  /// Its rate of change at a state: of motions, deflections and forces of laws that follow x and x' alone;
+  /// none for others (accelerations, reactions, loads, ideal gears, laws that follow a phase).
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
   /// Whether evaluate() reads the state's accelerations, or rate() does.
   bool value_needs_acceleration() const;
-  bool rate_needs_acceleration() const { return kind_ == Kind::force || !v_.empty(); }
+  bool rate_needs_acceleration() const {
+    return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty();
+  }
 
   /// For a value that is sum z_row z + sum v_row v and nothing else.
   bool is_linear() const { return direct_; }

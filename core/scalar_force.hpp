@@ -60,6 +60,10 @@ class ScalarForce {
   virtual std::optional<double> next_knot(double /*angle*/, double /*direction*/) const {
     return std::nullopt;
   }
+  /// The same of the offset's slope, along the NOMINAL angle.
+  virtual std::optional<double> next_offset_knot(double /*nominal_angle*/, double /*direction*/) const {
+    return std::nullopt;
+  }
   /// The law as pieces; empty: it has none in x and x_dot alone, but is smooth between its kinks() and knots.
   /// A law that states pieces should state nothing else (PiecewiseForce, piecewise_law.hpp).
   virtual std::span<const LawPiece> pieces() const { return {}; }

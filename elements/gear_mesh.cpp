@@ -33,10 +33,17 @@ GearMesh::GearMesh(Params params)
     pieces_ = law_.pieces(params_.stiffness.mean());
 }
 
-std::optional<double> GearMesh::next_knot(double angle, double direction) const {
-  const std::optional<double> knot = params_.stiffness.next_knot(phase(angle), direction);
+std::optional<double> GearMesh::angle_of(std::optional<double> knot, double angle) const {
   if (!knot) return std::nullopt;
   return angle + (*knot - phase(angle)) / teeth_per_radian_;
+}
+
+std::optional<double> GearMesh::next_knot(double angle, double direction) const {
+  return angle_of(params_.stiffness.next_knot(phase(angle), direction), angle);
+}
+
+std::optional<double> GearMesh::next_offset_knot(double nominal_angle, double direction) const {
+  return angle_of(params_.transmission_error.next_knot(phase(nominal_angle), direction), nominal_angle);
 }
 
 void GearMesh::check(ParameterCheck& check) const {

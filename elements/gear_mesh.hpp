@@ -68,9 +68,11 @@ class GearMesh final : public Element, public ScalarForce {
   /// At constant stiffness, without transmission error.
   std::span<const LawPiece> pieces() const override { return pieces_; }
   std::optional<double> next_knot(double angle, double direction) const override;
+  std::optional<double> next_offset_knot(double nominal_angle, double direction) const override;
 
  private:
   void check_radii(ParameterCheck& check) const;
+  std::optional<double> angle_of(std::optional<double> knot, double angle) const;  // of a phase near it
   double phase(double angle) const { return teeth_per_radian_ * angle + params_.mesh_phase; }
 
   Params params_;

@@ -61,11 +61,7 @@ std::optional<double> MeshStiffness::next_knot(double phase, double direction) c
     if (direction > 0.0) return beyond < middle ? middle : base + 1.0;
     return beyond > middle ? middle : base;
   }
-  if (const auto* table = std::get_if<PeriodicTable>(&law_)) {
-    const TableStretch s = table->stretch(phase, direction);
-    const double knot = direction > 0.0 ? s.high : s.low;
-    if (std::isfinite(knot)) return knot;
-  }
+  if (const auto* table = std::get_if<PeriodicTable>(&law_)) return table->next_knot(phase, direction);
   return std::nullopt;
 }
 

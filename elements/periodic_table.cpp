@@ -46,6 +46,12 @@ TableStretch PeriodicTable::stretch(double argument, double direction) const {
   return {s.torque, s.angle_slope, s.low, s.high};
 }
 
+std::optional<double> PeriodicTable::next_knot(double argument, double direction) const {
+  const TableStretch s = stretch(argument, direction);
+  const double knot = direction > 0.0 ? s.high : s.low;
+  return std::isfinite(knot) ? std::optional(knot) : std::nullopt;
+}
+
 LoadTable PeriodicTable::as_load(double phase) const {
   return {.arguments = arguments(),
           .values = values(),

@@ -12,6 +12,7 @@
 #include <drev/elements/curve.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class PeriodicTable {
   /// Knots where the slope does not change are passed over. Within rounding of a knot the stretch ahead
   /// of it: above it where direction > 0, else below.
   TableStretch stretch(double argument, double direction) const;
+  /// The next argument at which the slope changes, upwards where direction > 0; within rounding of one, the
+  /// next but that; none where it never does.
+  std::optional<double> next_knot(double argument, double direction) const;
   /// The same curve as a load's table, entered `phase` ahead. It refers to this table's points.
   LoadTable as_load(double phase = 0.0) const;
   double mean() const;  ///< over one period

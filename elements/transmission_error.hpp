@@ -33,6 +33,11 @@ class TransmissionError {
     const CurvePoint sum = sum_at(std::get<std::vector<Harmonic>>(law_), kTwoPi * phase);
     return {sum.value, kTwoPi * sum.slope};
   }
+  /// The next phase beyond at which the slope jumps, upwards where direction > 0; none for harmonics.
+  std::optional<double> next_knot(double phase, double direction) const {
+    const auto* table = std::get_if<PeriodicTable>(&law_);
+    return table ? table->next_knot(phase, direction) : std::nullopt;
+  }
   bool varies() const {
     const auto* harmonics = std::get_if<std::vector<Harmonic>>(&law_);
     return harmonics == nullptr || !harmonics->empty();

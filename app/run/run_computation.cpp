@@ -191,11 +191,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
 
   std::vector<Channel> deflections;
   if (!model_case.deflection.empty()) deflections = find_channels(system, {model_case.deflection});
-  // Exact propagation and controlled steps take long ones: their peaks may lie inside.
-  const bool inside = plan.method.tolerance > 0.0;
-  Peaks torque_peaks(torques, inside), deflection_peaks(deflections, inside);
-  Peaks mesh_peaks(mesh_channels(system), inside);
-  ContactStatistics contacts(system, inside);
+  Peaks torque_peaks(torques), deflection_peaks(deflections), mesh_peaks(mesh_channels(system));
+  ContactStatistics contacts(system);
   observers.insert(observers.begin(), {&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts});
   if (request.accuracy && !find_accuracy(request, result)) return result;
   const Timer timer;

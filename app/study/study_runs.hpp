@@ -38,6 +38,7 @@ class WindowPeaks final : public Observer {
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double /*t*/) const override { return edge(window_ + 1); }
   bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
+  void look_through(StepMotion& motion) override { peaks_.look_through(motion); }
   /// Of the windows that are over.
   const std::vector<double>& amplitudes() const { return amplitudes_; }
   /// Of the whole run, what is before `start` with it.

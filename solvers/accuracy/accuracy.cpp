@@ -133,8 +133,6 @@ class AccurateRun {
     w->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     // An energy balance that is off is an error of the figures like any other.
     if (w->summary.status == RunStatus::energy_error) w->summary.status = RunStatus::success;
-    w->deflection.refine(system_, method);
-    w->torque.refine(system_, method);
     return w;
   }
 

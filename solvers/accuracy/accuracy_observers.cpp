@@ -7,23 +7,8 @@ namespace drev {
 
 namespace {
 
-constexpr int kParts = 64;          // of the step that held a peak
 constexpr int kBisections = 48;     // of a step, for a contact change
 constexpr double kSameTime = 1e-9;  // relative to a batch
-
-/// Ends steps at equal distances.
-class Stops final : public Observer {
- public:
-  Stops(double begin, double distance) : begin_(begin), distance_(distance) {}
-  void start(const Assembler&, const EvaluatedState&) override {}
-  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
-  double next_stop(double t) const override {
-    return begin_ + distance_ * (std::floor((t - begin_) / distance_ + 1e-6) + 1.0);
-  }
-
- private:
-  double begin_, distance_;
-};
 
 /// Cubic through values and rates at the ends of a step of length h, at s in [0, 1].
 double hermite(double y_0, double r_0, double y_1, double r_1, double h, double s) {
@@ -33,35 +18,6 @@ double hermite(double y_0, double r_0, double y_1, double r_1, double h, double 
 }
 
 }  // namespace
-
-void PeakWatch::start(const Assembler& assembler, const EvaluatedState& point) {
-  if (empty()) return;
-  peaks_.start(assembler, point);
-  value_ = peaks_.peaks()[peaks_.largest()].amplitude();
-  time_ = end_ = point.state.t;
-}
-
-void PeakWatch::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
-  if (empty()) return;
-  peaks_.step(assembler, from, to);
-  const Peak& peak = peaks_.peaks()[peaks_.largest()];
-  if (!(peak.amplitude() > value_)) return;
-  value_ = peak.amplitude(), time_ = peak.time(), end_ = to.state.t;
-  before_ = from.state;
-}
-
-void PeakWatch::refine(const System& system, const Method& method) {
-  if (before_.z.size() == 0 || (!method.exact() && !method.controlled())) return;
-  const double begin = before_.t, distance = (end_ - begin) / kParts;
-  if (!(begin + distance > begin)) return;
-  PeakWatch close({channel()});
-  Stops stops(begin, distance);
-  State state = before_;
-  const Method again = method.exact() ? method : Method{.name = method.name, .step = distance};
-  const RunSummary run = run_method(
-      system, again, {.t_start = begin, .t_end = end_, .energy_tolerance = 1e300}, state, {&close, &stops});
-  if (run.ok()) value_ = close.value(), time_ = close.time();
-}
 
 EdgeWatch::EdgeWatch(const System& system) : system_(system) {}
 

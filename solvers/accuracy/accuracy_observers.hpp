@@ -11,25 +11,25 @@
 
 namespace drev {
 
-/// Largest |value| over channels, and the step that held it, from which it can be found again more closely.
+/// Largest |value| over channels.
 class PeakWatch final : public Observer {
  public:
-  explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels), true) {}
-  void start(const Assembler& assembler, const EvaluatedState& point) override;
-  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
+  explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels)) {}
+  void look_through(StepMotion& motion) override { peaks_.look_through(motion); }
+  void start(const Assembler& assembler, const EvaluatedState& point) override {
+    peaks_.start(assembler, point);
+  }
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
+    peaks_.step(assembler, from, to);
+  }
 
   bool empty() const { return peaks_.channels().empty(); }
-  double value() const { return value_; }
-  double time() const { return time_; }
+  double value() const { return empty() ? 0.0 : peaks_.peaks()[peaks_.largest()].amplitude(); }
+  double time() const { return empty() ? 0.0 : peaks_.peaks()[peaks_.largest()].time(); }
   const Channel& channel() const { return peaks_.channels()[peaks_.largest()]; }
-  /// Runs the step that held the peak once more, in 64 parts: the cubic between two points leaves nothing.
-  /// Not with constant steps.
-  void refine(const System& system, const Method& method);
 
  private:
   Peaks peaks_;
-  double value_ = 0.0, time_ = 0.0, end_ = 0.0;
-  State before_;
 };
 
 /// The deflection of a law passed an edge of its gap.
@@ -56,6 +56,7 @@ class EdgeWatch final : public Observer {
 class BatchWatch final : public Observer {
  public:
   BatchWatch(const System& system, std::vector<Channel> channels, double begin, double end, int batches);
+  void look_through(StepMotion& motion) override { statistics_.look_through(motion); }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solvers/exact/law_series.hpp"
+#include "solvers/exact/step_expansion.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
 #include "solvers/run/run_checks.hpp"
@@ -16,26 +17,17 @@ namespace drev {
 
 namespace {
 
-constexpr double kFastestTimesStep = 3.0;  // omega h: bounds degree and growth of rounding
 constexpr double kWatchedAngle = 0.3;      // omega h between points that observers see
 constexpr double kGrowth = 1.5;            // of the step after one that had to be shortened
-constexpr double kShorten = 0.9;           // of the step at which the loads' rest is just small enough
-constexpr double kLoosest = 1e-3;          // tolerance of a pass that is not the last
-constexpr double kSettled = 1e-15;         // of the motion: rounding of what is projected
-constexpr double kProjected = 0.1;         // of a step's share, that the projection may add
-constexpr double kJump = 1e-4;             // of the tolerance: error allowed per undeclared discontinuity
-constexpr double kShortest = 1e-6;         // of the largest step
-constexpr double kBehindKnot = 1e-3;       // of the step to it: behind the last node of Gauss' rule
-constexpr double kBeforeEnd = 0.98;        // of the step: a knot that its nodes see
-constexpr int kMaxPasses = 20;             // of projected loads
 constexpr int kMaxCuts = 20;
+constexpr double kShortest = 1e-6;  // of the largest step
+constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
 constexpr double kRetreat = 1.0 / 16.0;                             // of the step where the series overflowed
 constexpr double kSameTime = 1e-14;                                 // relative to the run's times
 constexpr double kNoProgress = 1e-12;                               // relative to the largest step
-constexpr double kLeastTolerance = 1e-16;                           // a step's own: below it is rounding
 
-class ExactRun {
+class ExactRun final : public StepMotion {
  public:
   ExactRun(const System& system, const ExactOptions& options, State& state,
            const std::vector<Observer*>& observers)
@@ -43,10 +35,12 @@ class ExactRun {
         options_(options),
         observers_(observers),
         assembler_(system),
-        series_(system),
-        known_(system),
+        inside_assembler_(system),
+        expansion_(system),
+        series_(expansion_.series),
+        known_(expansion_.known),
         laws_(system),
-        smooth_(system),
+        smooth_(expansion_.smooth),
         progress_(options.progress, options.t_start, options.t_end) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
@@ -61,14 +55,15 @@ class ExactRun {
   }
 
   RunSummary run() {
-    evaluate(now_, now_.state.t);
+    evaluate(assembler_, now_, now_.state.t);
     laws_.locate(now_.inputs);
     EnergyMonitor energy(assembler_, now_);
     energy_ = &energy;
+    for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
     check_start(summary_, system_, now_.state);
     const Stops stops(system_, options_.t_end, 0.0);
-    while (running() && now_.state.t < options_.t_end) run_to(stops.after(now_.state.t));
+    while (running() && now_.state.t < options_.t_end) run_to(next_stop(stops));
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
@@ -78,8 +73,25 @@ class ExactRun {
 
   State take_state() { return std::move(now_.state); }
 
+  Point at(double t) override {
+    move_inside(t, look_);
+    evaluate(inside_assembler_, look_, t);
+    return {inside_assembler_, look_};
+  }
+
  private:
   bool running() const { return summary_.status == RunStatus::success; }
+
+  /// A breakpoint, the end, or a knot of a law's offset; there the step's end is evaluated ahead of the knot
+  /// and the next step's start behind it, as far away as rounding of the angle asks for.
+  Stop next_stop(const Stops& stops) const {
+    const Stop stop = stops.after(now_.state.t);
+    const auto knot = smooth_.next_break(now_.state.t, stop.t);
+    if (!knot) return stop;
+    const double width = kKnotWidth * std::abs(*knot);
+    if (!(*knot + width < stop.t)) return stop;
+    return {*knot + width, true, 2.0 * width};
+  }
 
   void run_to(const Stop& stop) {
     known_.locate(now_.state.t, now_.state.z, now_.state.v);
@@ -90,7 +102,7 @@ class ExactRun {
   /// Behind a breakpoint: forces and known motions have their new values.
   void restart() {
     next_ = now_;
-    evaluate(now_, now_.state.t);
+    evaluate(assembler_, now_, now_.state.t);
     if (system_.any_prescribed_moves()) laws_.locate(now_.inputs);
     energy_->restart(next_, now_);
   }
@@ -112,19 +124,23 @@ class ExactRun {
     const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop.t : std::min(from.t + s * got, stop.t);
 
-    const EvaluatedState& before = watch(t_new, s);
+    const EvaluatedState& before = watch(t_new, end);
     State& to = next_.state;
     to.t = t_new;
     to.history = from.history;
     series_.evaluate(s, to.z, to.v);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
-    evaluate(next_, ahead_of_break ? stop.evaluation_time() : t_new);
+    evaluate(assembler_, next_, ahead_of_break ? stop.evaluation_time() : t_new);
     const ProjectedLaws::Work smooth = smooth_.work(series_, s);
     if (!energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
                        series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated))
       return end_not_finite(summary_, assembler_, now_, next_);
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
+    ++summary_.steps;
+    if (t_new > from.t)
+      for (Observer* o : observers_) o->step(assembler_, before, next_);
     laws_.forget_roots();
+    changed_ = end.change;
     if (end.change) pass(*end.change, t_new);
     if (!ahead_of_break) {
       known_.advance(t_new, to.z, to.v, s == 1.0);
@@ -133,9 +149,6 @@ class ExactRun {
         count_change(known_.knot_element(), t_new);
       }
     }
-    ++summary_.steps;
-    if (t_new > from.t)
-      for (Observer* o : observers_) o->step(assembler_, before, next_);
     std::swap(now_, next_);
     if (!progress_.goes_on(summary_.steps, now_.state.t))
       end_interrupted(summary_, system_.name(), now_.state.t);
@@ -152,6 +165,7 @@ class ExactRun {
       if (!running()) return {};
       laws_.expand(series_, known_, smooth_);
       if (const auto change = laws_.change_at_once()) {
+        changed_ = change;
         pass(*change, now_.state.t);
         cut.reset();
         continue;
@@ -176,32 +190,41 @@ class ExactRun {
     }
   }
 
-  /// Shows the observers points inside a step to t_new (s of the series): where they asked for one, and
-  /// close enough for a cubic between them to be off by at most 2e-5 of what moves with the fastest mode.
-  /// Returns the last one.
-  const EvaluatedState& watch(double t_new, double s) {
+  /// Shows the observers points inside a step to t_new: where they asked for one, beside a contact change at
+  /// either end, so that each side of it is seen, and close enough for a cubic between them to be off by at
+  /// most 2e-5 of what moves with the fastest mode. Returns the last one.
+  const EvaluatedState& watch(double t_new, const End& end) {
     const EvaluatedState* last = &now_;
     const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     const double parts = std::ceil(fastest_ * length / kWatchedAngle);
+    const double behind = changed_ ? t_0 + length * laws_.clear_of_change(*changed_, 0.0) / end.s : t_0;
+    const double ahead = end.change ? t_0 + length * laws_.clear_of_change(*end.change, end.s) / end.s : t_new;
+    step_ = {t_0, length, end.s};
     const bool forces = std::any_of(observers_.begin(), observers_.end(),
                                     [](const Observer* o) { return o->needs_acceleration(); });
     for (double i = 1.0;;) {
       double t = i < parts ? t_0 + length * (i / parts) : t_new;
       const double part = t;
+      bool exactly = false;
+      for (const double beside : {behind, ahead})
+        if (beside > last->state.t) t = std::min(t, beside);
       for (const Observer* o : observers_) {
         const double wanted = o->next_stop(last->state.t);
-        if (wanted > last->state.t + same) t = std::min(t, wanted);
+        if (!(wanted > last->state.t + same) || wanted > t) continue;
+        t = wanted;
+        exactly = true;
       }
-      if (!(t < t_new - same)) return *last;
+      if (!(t < t_new - (t == ahead ? 0.0 : same))) return *last;
       if (t == part) i += 1.0;
       EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      point.state.t = t;
-      point.state.history = now_.state.history;
-      series_.evaluate(s * ((t - t_0) / length), point.state.z, point.state.v);
+      if (exactly)
+        move_inside(t, point);
+      else
+        move_along(t, point);
       if (forces)
-        evaluate(point, t);
+        evaluate(assembler_, point, t);
       else
         evaluate_motion(point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
@@ -209,15 +232,30 @@ class ExactRun {
     }
   }
 
+  /// The motion at t on the step's series.
+  void move_along(double t, EvaluatedState& point) const {
+    point.state.t = t;
+    point.state.history = now_.state.history;
+    series_.evaluate(step_.s * ((t - step_.t_0) / step_.length), point.state.z, point.state.v);
+  }
+
+  /// The same as exact as the step's end: where kinks are projected, at the end of a series of its own.
+  void move_inside(double t, EvaluatedState& point) {
+    move_along(t, point);
+    const double s = step_.s * ((t - step_.t_0) / step_.length);
+    if (!known_.kinked() || !(s > kAtStart && s < 1.0)) return;
+    if (!part_) part_.emplace(system_);
+    if (part_->expand_part(expansion_, now_, laws_, s, limits(series_.step())))
+      part_->series.evaluate(1.0, point.state.z, point.state.v);
+  }
+
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 where
   /// that ends the run.
   double expand(double h) {
     for (;;) {
-      const double share =
-          std::max(options_.tolerance * h / (options_.t_end - options_.t_start), kLeastTolerance);
-      to_knot_ = false;
-      const double got = try_step(h, share);
-      if (to_knot_) {
+      const StepExpansion::Attempt made = expansion_.attempt(now_, laws_, h, limits(h));
+      const double got = made.h;
+      if (made.to_knot) {
         h = got;
         continue;
       }
@@ -233,6 +271,11 @@ class ExactRun {
     }
   }
 
+  StepExpansion::Limits limits(double h) const {
+    const double share = options_.tolerance * h / (options_.t_end - options_.t_start);
+    return {std::max(share, kLeastShare), options_.tolerance, kShortest * largest_step_};
+  }
+
   /// No step is short enough: a force that is not finite in the step of length h ends the run.
   double give_up(double h) {
     assembler_.set_time(now_.state.t + h);
@@ -240,43 +283,6 @@ class ExactRun {
       throw SolverError(at_time(system_.name(), now_.state.t) + "the series does not converge");
     end_not_finite(summary_, assembler_, now_, now_);
     return 0.0;
-  }
-
-  /// The step that the series holds for, <= h; 0 if its terms overflow.
-  double try_step(double h, double share) {
-    const State& from = now_.state;
-    series_.reset();
-    known_.add_to(series_, h);
-    laws_.add_to(series_, known_, h);
-    smooth_.add_to(series_, now_, h);
-    // Loads and smooth laws can be stiffer than what bounded the largest step.
-    const double steepest = 1.5 * kFastestTimesStep / series_.rate();
-    if (h > steepest) return steepest;
-    bool settled = false;
-    const bool projects = known_.projects() || !smooth_.empty();
-    // Each pass needs to be no better than the next one takes up of it.
-    double tolerance = projects ? std::clamp(share / contraction_, share, kLoosest) : share;
-    for (int pass = 0;; ++pass) {
-      const bool last = !projects || settled;
-      const double got = series_.expand(from.z, from.v, h, last ? share : tolerance);
-      if (got < h || last) return got;
-      if (pass == kMaxPasses) return 0.5 * h;
-      const double kinks = kProjected * share / std::max(projected_, share);
-      const LoadSeries::Pass made =
-          known_.project(series_, smooth_, pass == 0, std::max(kinks, kLeastTolerance));
-      // In the shortest steps what is left is an undeclared discontinuity, or rounding.
-      if (made.residual > std::max(share, kJump * options_.tolerance) && h > kShortest * largest_step_) {
-        // Nearly always a law's knot in the step: a step to just behind it, which find_end() then cuts.
-        const auto knot = smooth_.first_knot(series_, kBeforeEnd);
-        if ((to_knot_ = knot && *knot > kAtStart)) return h * *knot * (1.0 + kBehindKnot);
-        return h * std::max(0.2, kShorten * std::pow(share / made.residual, 1.0 / kProjectionTerms));
-      }
-      if (pass == 0) projected_ = made.change;
-      contraction_ = std::max(made.contraction, 1e-300);
-      // What this pass was off by comes back in the next one times the contraction factor.
-      settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kSettled);
-      tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
-    }
   }
 
   void pass(const LawSeries::Change& change, double t) {
@@ -300,13 +306,13 @@ class ExactRun {
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void evaluate(EvaluatedState& point, double t) {
+  void evaluate(Assembler& assembler, EvaluatedState& point, double t) {
     const State& s = point.state;
-    assembler_.set_time(t);
-    evaluate_laws(assembler_, point);
-    assembler_.external(s.z, s.v, point.p);
-    assembler_.multiply_stiffness(s.z, point.kz);
-    assembler_.multiply_damping(s.v, point.cv);
+    assembler.set_time(t);
+    evaluate_laws(assembler, point);
+    assembler.external(s.z, s.v, point.p);
+    assembler.multiply_stiffness(s.z, point.kz);
+    assembler.multiply_damping(s.v, point.cv);
     point.total = point.kz + point.cv - point.p;
     add_law_forces(system_, point, 1.0, point.total);
     rhs_ = -point.total;
@@ -316,20 +322,23 @@ class ExactRun {
   const System& system_;
   const ExactOptions& options_;
   const std::vector<Observer*>& observers_;
-  Assembler assembler_;
-  TaylorSeries series_;
-  LoadSeries known_;
+  Assembler assembler_, inside_assembler_;
+  StepExpansion expansion_;
+  TaylorSeries& series_;  // its parts
+  LoadSeries& known_;
   LawSeries laws_;
-  ProjectedLaws smooth_;
-  EvaluatedState now_, next_, inside_[2];
+  ProjectedLaws& smooth_;
+  std::optional<StepExpansion> part_;  // of a step, to a point inside
+  std::optional<LawSeries::Change> changed_;  // at the start of this step
+  struct {
+    double t_0 = 0.0, length = 0.0, s = 1.0;
+  } step_;  // which observers are shown: its end is s of the series
+  EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;
   Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
-  bool to_knot_ = false;  // try_step()'s answer leads to a law's knot
-  double contraction_ = 1.0,
-         projected_ = 1.0;  // of the last step: what the projection changed, and how it came back
   int changes_here_ = 0, change_limit_ = 0;
 };
 

@@ -16,6 +16,8 @@ constexpr double kZero = 1e-13;
 // The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not
 // seen).
 constexpr double kFloor = 4e-15;
+constexpr double kClear = 1e-14;     // of the terms that a deflection is summed from
+constexpr double kMostClear = 1e-3;  // of the step
 constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
@@ -176,6 +178,13 @@ std::optional<LawSeries::Change> LawSeries::first_change(double end) {
         end = *s;
       }
   return first;
+}
+
+double LawSeries::clear_of_change(const Change& change, double s) const {
+  const Law& law = laws_[idx(change.law)];
+  const double rate = std::abs(polynomial_slope(law.x, s));
+  const double away = std::min(rate > 0.0 ? kClear * law.x_size[0] / rate : kMostClear, kMostClear);
+  return s > 0.0 ? std::max(0.0, s - away) : away;
 }
 
 double LawSeries::beyond_end(const Change& change) const {

@@ -40,6 +40,9 @@ class LawSeries {
   std::optional<Change> change_at_once();
   /// The first change in (0, end].
   std::optional<Change> first_change(double end);
+  /// The s nearest to a change, behind it at the start (s = 0) or ahead of it at s > 0, at which the law's
+  /// deflection is clear of the bound by more than rounding.
+  double clear_of_change(const Change& change, double s) const;
   /// How far behind s = 1 the bound is crossed, by Newton's rule.
   double beyond_end(const Change& change) const;
   /// The law goes over to the piece behind the bound.

@@ -11,12 +11,15 @@ constexpr int kMaxKinkTerms = 33;  // coefficients of theta
 constexpr int kMaxNewton = 30;
 constexpr double kSettled = 1e-14;  // last Newton step in s
 
-using Powers = std::array<std::array<double, kProjectionTerms>, kProjectionTerms>;
+template <int kTerms>
+using PowersOf = std::array<std::array<double, kTerms>, kTerms>;
+using Powers = PowersOf<kProjectionTerms>;
 
 /// L_j = sum_k t[j][k] s^k, t[j][k] = (-1)^(j+k) binomial(j, k) binomial(j+k, k).
-Powers legendre_powers() {
-  Powers t{};
-  for (int j = 0; j <= kProjectionDegree; ++j) {
+template <int kTerms>
+PowersOf<kTerms> legendre_powers() {
+  PowersOf<kTerms> t{};
+  for (int j = 0; j < kTerms; ++j) {
     double value = j % 2 ? -1.0 : 1.0;
     for (int k = 0; k <= j; ++k) {
       t[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] = value;
@@ -145,6 +148,28 @@ const GaussRule& gauss_rule() {
   return rule;
 }
 
+NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values) {
+  constexpr int n = GaussRule::kNodes;
+  static const PowersOf<n> powers = legendre_powers<n>();
+  const GaussRule& rule = gauss_rule();
+  std::array<double, n> a{};  // Gauss' rule is exact for products of two of these L_j
+  for (std::size_t q = 0; q < n; ++q) {
+    const double u = 2.0 * rule.s[q] - 1.0;
+    double below = 0.0, now = 1.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double order = static_cast<double>(j);
+      a[j] += (2.0 * order + 1.0) * rule.weight[q] * now * values[q];
+      const double next = ((2.0 * order + 1.0) * u * now - order * below) / (order + 1.0);
+      below = now;
+      now = next;
+    }
+  }
+  NodePolynomial result{.tail = std::abs(a[n - 1]) + std::abs(a[n - 2])};
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t k = 0; k <= j; ++k) result.power[k] += a[j] * powers[j][k];
+  return result;
+}
+
 void LegendreProjection::add_node(std::size_t q, int row, double value) {
   const GaussRule& rule = gauss_rule();
   for (int j = 0; j < kProjectionTerms; ++j)
@@ -153,7 +178,7 @@ void LegendreProjection::add_node(std::size_t q, int row, double value) {
 }
 
 void LegendreProjection::add_powers(int kept, double* out) const {
-  static const Powers powers = legendre_powers();
+  static const Powers powers = legendre_powers<kProjectionTerms>();
   to_powers(stride_, powers, a_.data(), kept, out);
 }
 

@@ -25,6 +25,13 @@ struct GaussRule {
 };
 const GaussRule& gauss_rule();
 
+/// The polynomial of degree kNodes - 1 through values at the nodes of the Gauss rule, by powers of s.
+struct NodePolynomial {
+  std::array<double, GaussRule::kNodes> power{};
+  double tail = 0.0;  ///< size of its last two Legendre coefficients: what a smooth function's rest is below
+};
+NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values);
+
 /// Coefficients a_j of one force a row, and their conversion to powers of s.
 class LegendreProjection {
  public:
@@ -32,6 +39,10 @@ class LegendreProjection {
   explicit LegendreProjection(int stride) : stride_(stride), a_(kProjectionTerms * size()) {}
 
   void clear() { a_.assign(a_.size(), 0.0); }
+  LegendreProjection& operator+=(const LegendreProjection& other) {
+    for (std::size_t i = 0; i < a_.size(); ++i) a_[i] += other.a_[i];
+    return *this;
+  }
   double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
   double coefficient(int j, int row) const { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
   /// Adds what a force of `row` that is `value` at node q of the Gauss rule gives to its coefficients.

@@ -15,6 +15,10 @@ constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
 constexpr double kPathRest = 4e-3;
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
+// Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
+constexpr double kKinkInside = 1e-4;
+// A kink that leaves more of the motion than this inside the step ends it.
+constexpr double kMostInside = 1e-6;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -31,6 +35,7 @@ LoadSeries::LoadSeries(const System& system)
       projection_(stride_),
       last_(stride_),
       of_loads_(stride_),
+      of_kinks_(stride_),
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
@@ -67,6 +72,13 @@ void LoadSeries::look_up(Linear& l, double direction) {
 void LoadSeries::locate(double t, const Vector& z, const Vector& v) {
   move(t, z, v);
   for (Linear& l : loads_) look_up(l, l.speed);
+}
+
+void LoadSeries::locate_as(const LoadSeries& other) {
+  t_ = other.t_;
+  assembler_.set_time(t_);
+  loads_ = other.loads_;
+  smooth_ = other.smooth_;
 }
 
 void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole) {
@@ -180,6 +192,10 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
         have_theta = true;
       }
       const double jump = next.angle_slope - l.ahead.angle_slope;
+      if (kKinkInside * std::abs(l.coeff * jump * first) * relative_move(series, l.row) > kMostInside) {
+        l.watched = true;
+        break;
+      }
       kinks_.add(l.row, bound, l.coeff * jump, theta_);
       jumps += std::abs(jump);
       l.ahead = next;
@@ -188,7 +204,8 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
     if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
     contraction = std::max(contraction, l.contraction);
   }
-  kinks_.add_to(projection_, tolerance);
+  of_kinks_.clear();
+  kinks_.add_to(of_kinks_, tolerance);
   return contraction;
 }
 
@@ -211,6 +228,13 @@ double LoadSeries::project_smooth(const TaylorSeries& series) {
   return contraction;
 }
 
+double LoadSeries::relative_move(const TaylorSeries& series, int row) const {
+  const double move = series.reach(row) * h_;
+  const auto kind = idx(row < series.size() ? series.kind(row) : 0);
+  const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
+  return scale > 0.0 ? move / scale : 0.0;
+}
+
 LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
                                      double tolerance) {
   if (first) {
@@ -224,30 +248,31 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   pass.contraction = std::max(find_kinks(series, tolerance), project_smooth(series));
   if (!laws.empty()) {
     of_loads_ = projection_;
+    if (kinks_.count() > 0) of_loads_ += of_kinks_;
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
-  const auto note = [&](int row) {
+  // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
+  const auto note_rest = [&](const LegendreProjection& forces, double part, int row) {
+    const double tail = std::abs(forces.coefficient(kProjectionDegree, row)) +
+                        std::abs(forces.coefficient(kProjectionDegree - 1, row));
+    if (tail > 0.0) pass.residual = std::max(pass.residual, part * tail * relative_move(series, row));
+  };
+  for (const Smooth& l : smooth_) note_rest(projection_, kPathRest, l.row);
+  for (const int row : laws.rows()) note_rest(projection_, kPathRest, row);
+  if (kinks_.count() > 0) {
+    // A kink is projected along a path that lacks the rest itself.
+    for (const Linear& l : loads_) note_rest(of_kinks_, kKinkRest * l.contraction, l.row);
+    projection_ += of_kinks_;
+  }
+  const auto note_change = [&](int row) {
     double size = 0.0;
     for (int j = 0; j < kProjectionTerms; ++j)
       size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
-    const double move = series.reach(row) * h_;
-    const auto kind = idx(row < series.size() ? series.kind(row) : 0);
-    const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
-    if (size > 0.0) pass.change = std::max(pass.change, move * size / scale);
-    return scale > 0.0 ? move / scale : 0.0;
+    if (size > 0.0) pass.change = std::max(pass.change, size * relative_move(series, row));
   };
-  const auto tail = [&](int row) {
-    return std::abs(projection_.coefficient(kProjectionDegree, row)) +
-           std::abs(projection_.coefficient(kProjectionDegree - 1, row));
-  };
-  const auto note_rest = [&](int row) {
-    pass.residual = std::max(pass.residual, kPathRest * tail(row) * note(row));
-  };
-  // A kink is projected along a path that lacks the rest itself.
-  for (const Linear& l : loads_)
-    pass.residual = std::max(pass.residual, kKinkRest * l.contraction * tail(l.row) * note(l.row));
-  for (const Smooth& l : smooth_) note_rest(l.row);
-  for (const int row : laws.rows()) note_rest(row);
+  for (const Linear& l : loads_) note_change(l.row);
+  for (const Smooth& l : smooth_) note_change(l.row);
+  for (const int row : laws.rows()) note_change(row);
   if (pass.change == 0.0) return pass;
   projected_ = true;
   with_laws_ = !laws.empty();

@@ -26,6 +26,9 @@ class LoadSeries {
   /// are on the stretch that they came to.
   void advance(double t, const Vector& z, const Vector& v, bool whole);
 
+  /// Takes over where loads of the same system were located.
+  void locate_as(const LoadSeries& other);
+
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
   /// False: no load can differ from what add_to() adds.
@@ -47,6 +50,9 @@ class LoadSeries {
   Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, double tolerance);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
+  /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
+  /// polynomial holds of them, up to 1e-6 of the motion.
+  bool kinked() const { return kinks_.count() > 0; }
   /// The step became r h; only where nothing was projected.
   void shorten(double r);
 
@@ -88,6 +94,8 @@ class LoadSeries {
   }
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
   double find_kinks(const TaylorSeries& series, double tolerance);
+  /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest.
+  double relative_move(const TaylorSeries& series, int row) const;
   double project_smooth(const TaylorSeries& series);
 
   const System& system_;
@@ -100,6 +108,7 @@ class LoadSeries {
   int degree_ = 2;            // of p_
   LegendreProjection projection_, last_;  // of this pass, and the last
   LegendreProjection of_loads_;           // of this pass, where there are laws too
+  LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
   KinkMoments kinks_;
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};

@@ -7,6 +7,10 @@
 
 namespace drev {
 
+namespace {
+constexpr double kRounding = 2e-14;  // of an offset, and of the angle that it is looked up at
+}
+
 ProjectedLaws::ProjectedLaws(const System& system)
     : system_(system), assembler_(system), offsets_(system.scalars().size()) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
@@ -24,9 +28,10 @@ double ProjectedLaws::along(const ScalarTerm& term, const Vector& q) {
   return sum;
 }
 
-void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
+double ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
   t_ = start.state.t;
   h_ = h;
+  double rest = 0.0;
   for (Law& law : laws_) {
     const ScalarTerm& term = *law.term;
     const ScalarResponse& r = start.responses[idx(law.index)];
@@ -49,25 +54,57 @@ void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, do
       }
       series.right_side(0)[row.index] -= row.coeff * (law.y - law.k * law.x - law.c * law.x_dot);
     }
-    // - e along the nominal angle, which is known.
-    std::vector<double>& offset = offsets_[idx(law.index)];
-    offset.clear();
-    if (term.phase_node < 0 || !system_.reference()) continue;
-    const double ratio = system_.ratio(term.phase_node);
-    const GaussRule& rule = gauss_rule();
-    LegendreProjection one(kLanes);
-    bool any = false;
-    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-      const double phi = system_.reference()->at(t_ + h * rule.s[q]).value;
-      const double e = term.force->offset(ratio * phi).e;
-      any |= e != 0.0;
-      one.add_node(q, 0, -e);
-    }
-    if (!any) continue;
-    std::vector<double> powers(idx(kProjectionTerms * kLanes));
-    one.add_powers(0, powers.data());
-    for (int k = 0; k < kProjectionTerms; ++k) offset.push_back(powers[idx(k * kLanes)]);
+    rest = std::max(rest, expand_offset(law, series));
   }
+  return rest;
+}
+
+/// - e along the nominal angle, which is known; returns the polynomial's rest.
+double ProjectedLaws::expand_offset(const Law& law, const TaylorSeries& series) {
+  const ScalarTerm& term = *law.term;
+  std::vector<double>& offset = offsets_[idx(law.index)];
+  offset.clear();
+  if (term.phase_node < 0) return 0.0;
+  const double ratio = system_.ratio(term.phase_node);
+  const GaussRule& rule = gauss_rule();
+  std::array<double, GaussRule::kNodes> values{};
+  double largest = 0.0, rounding = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    const double angle = system_.reference() ? ratio * system_.reference()->at(t_ + h_ * rule.s[q]).value : 0.0;
+    const Offset at_node = term.force->offset(angle);
+    values[q] = -at_node.e;
+    largest = std::max(largest, std::abs(at_node.e));
+    rounding = std::max(rounding, std::abs(at_node.de_dangle * angle));
+  }
+  if (largest == 0.0) return 0.0;
+  const NodePolynomial polynomial = through_nodes(values);
+  offset.assign(polynomial.power.begin(), polynomial.power.end());
+  double scale = largest;
+  for (const Entry& e : term.z)
+    scale = std::max(scale, std::abs(e.coeff) * series.z_scale()[idx(series.kind(e.index))]);
+  return std::max(0.0, polynomial.tail - kRounding * (largest + rounding)) / scale;
+}
+
+std::optional<double> ProjectedLaws::next_break(double t, double end) const {
+  std::optional<double> first;
+  if (!system_.reference()) return first;
+  const MotionPoint phi = system_.reference()->at(t);
+  for (const Law& law : laws_) {
+    if (law.term->phase_node < 0) continue;
+    const double ratio = system_.ratio(law.term->phase_node);
+    for (const double side : {1.0, -1.0}) {
+      const auto knot = law.term->force->next_offset_knot(ratio * phi.value, side);
+      if (!knot) continue;
+      const std::array<double, 3> g{side * (*knot - ratio * phi.value), -side * ratio * phi.rate,
+                                    -0.5 * side * ratio * phi.acceleration};
+      if (!(g[0] > 0.0)) continue;
+      if (const auto s = first_crossing(g, end - t)) {
+        first = t + *s;
+        end = *first;
+      }
+    }
+  }
+  return first;
 }
 
 double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& projection) {

@@ -23,12 +23,16 @@ class ProjectedLaws {
   bool empty() const { return laws_.empty(); }
 
   /// Adds the tangents at the step's start, the point's inputs and responses; the step has h seconds.
-  void add_to(TaylorSeries& series, const EvaluatedState& start, double h);
+  /// Returns what the offsets' polynomials may be off by, relative to the deflections.
+  double add_to(TaylorSeries& series, const EvaluatedState& start, double h);
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
   /// What projection leaves of law forces, by row, is judged there.
   const std::vector<int>& rows() const { return rows_; }
+
+  /// The first time in (t, end) at which the offset of a law has a knot: a step must end there.
+  std::optional<double> next_break(double t, double end) const;
 
   /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
   const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
@@ -52,6 +56,7 @@ class ProjectedLaws {
     double angle = 0.0, stored = 0.0;
   };
   static double along(const ScalarTerm& term, const Vector& q);
+  double expand_offset(const Law& law, const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;

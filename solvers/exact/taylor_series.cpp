@@ -182,6 +182,13 @@ double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
          });
 }
 
+void TaylorSeries::scale_as(const TaylorSeries& other) {
+  k_norm_ = other.k_norm_;
+  c_norm_ = other.c_norm_;
+  z_scale_ = z_step_scale_ = other.z_scale_;
+  v_scale_ = v_step_scale_ = other.v_scale_;
+}
+
 TaylorSeries::Norm TaylorSeries::norm(const double* x) const {
   if (kinds_.empty()) return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
   Norm result{};

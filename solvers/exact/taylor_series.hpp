@@ -56,6 +56,8 @@ class TaylorSeries {
   /// them and returns an estimate from above of the fastest rate |lambda| [1/s] (power iteration).
   double bound_rates();
 
+  /// Takes over the bounds and the largest motion so far from a series of the same system.
+  void scale_as(const TaylorSeries& other);
   /// Expands from (z, v) over h [s]; returns the step that it holds for, <= h; 0 if the terms
   /// overflow. tolerance: relative to the largest deflection and speed noted so far.
   double expand(const Vector& z, const Vector& v, double h, double tolerance);

@@ -50,7 +50,17 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
   record.impact_energy += 0.5 * equivalent_mass * square;
 }
 
-ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : inside_steps_(inside_steps) {
+/// Force channels of the laws that have a gap, in the order of the laws.
+static std::vector<Channel> gap_forces(const System& system) {
+  std::vector<Channel> forces = all_channels(system);
+  std::erase_if(forces, [&](const Channel& c) {
+    return c.force_of() < 0 || !system.scalars()[idx(c.force_of())].force->gap();
+  });
+  return forces;
+}
+
+ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
+    : inside_steps_(inside_steps), forces_(inside_steps ? gap_forces(system) : std::vector<Channel>()) {
   const std::vector<double> masses = equivalent_masses(system);
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
@@ -64,15 +74,17 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps) : 
   intervals_.resize(terms_.size());
 }
 
-void ContactStatistics::start(const Assembler& /*assembler*/, const EvaluatedState& point) {
+void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& point) {
+  forces_.start(assembler, point);
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
     records_[i].largest_force_time = point.state.t;
   }
 }
 
-void ContactStatistics::step(const Assembler& /*assembler*/, const EvaluatedState& from,
+void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& from,
                              const EvaluatedState& to) {
+  forces_.step(assembler, from, to);
   const double h = to.state.t - from.state.t;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const std::size_t j = terms_[i];
@@ -85,6 +97,10 @@ void ContactStatistics::step(const Assembler& /*assembler*/, const EvaluatedStat
         note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
     if (note_time_separated(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
       note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
+    if (!inside_steps_) continue;
+    const Peak& peak = forces_.peaks()[i];
+    records_[i].largest_force = peak.amplitude();
+    records_[i].largest_force_time = peak.time();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/contact_record.hpp>
 #include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
 #include <string>
 #include <vector>
@@ -58,19 +59,21 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record);
 
 /// Every law that has a gap. Crossings inside a step are placed by linear interpolation of x, the speed there
-/// by that of x'^2 over x (exact propagation ends its steps at crossings: both are exact); a flank touched
-/// and left inside one step is not seen.
+/// by that of x'^2 over x (exact propagation ends its steps at crossings and shows both sides of each: count,
+/// time and speed are exact); with constant steps a flank touched and left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
-  bool needs_acceleration() const override { return false; }
-  /// inside_steps: as in Peaks, for forces.
-  explicit ContactStatistics(const System& system, bool inside_steps = false);
+  bool needs_acceleration() const override { return inside_steps_; }
+  void look_through(StepMotion& motion) override { forces_.look_through(motion); }
+  /// inside_steps: as in Peaks, for the largest forces.
+  explicit ContactStatistics(const System& system, bool inside_steps = true);
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
-  bool inside_steps_ = false;
+  bool inside_steps_ = true;
+  Peaks forces_;  // of each law, where they are looked for inside steps
   std::vector<std::size_t> terms_;
   std::vector<Gap> gaps_;
   std::vector<double> masses_;

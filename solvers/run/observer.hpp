@@ -8,9 +8,25 @@ namespace drev {
 class Assembler;
 struct EvaluatedState;
 
+/// The motion inside the step, or part of one, that observers are being shown.
+class StepMotion {
+ public:
+  virtual ~StepMotion() = default;
+  struct Point {
+    const Assembler& assembler;  ///< stands at the point's time
+    const EvaluatedState& at;    ///< its motion, accelerations too, and the laws' inputs and responses
+  };
+  /// At a time [s] between the two points that step() was given; valid until the next call. To the accuracy
+  /// of the step's end in exact propagation; elsewhere on the polynomial through both ends of the step.
+  virtual Point at(double t) = 0;
+};
+
 class Observer {
  public:
   virtual ~Observer() = default;
+  /// Once, before start(): where to look inside steps. It may be asked in step() alone. An observer that holds
+  /// others hands it on.
+  virtual void look_through(StepMotion& /*motion*/) {}
   /// Once, at the first point.
   virtual void start(const Assembler& assembler, const EvaluatedState& point) = 0;
   /// After every accepted step, or part of one; the assembler stands at to's time.

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
-#include "solvers/run/cubic_peak.hpp"
+#include "solvers/run/peak_search.hpp"
 
 namespace drev {
 
 namespace {
-constexpr double kNear = 0.05;  // of the range so far: steps that may hold a new peak inside
+constexpr double kNear = 0.05;   // of the range so far: steps that may hold a new peak inside
+constexpr double kShort = 1e-6;  // of the longest step: nothing moves in shorter ones
 }
 
 Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
@@ -26,26 +27,44 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
   }
 }
 
+double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const {
+  const Channel& channel = channels_[c];
+  if (watched_[c].two_entries) return watched_[c].sum(point.state.z);
+  if (const int law = channel.force_of(); law >= 0) return point.responses[idx(law)].y;
+  if (const int law = channel.deflection_of(); law >= 0) return point.inputs[idx(law)].x;
+  return channel.evaluate(assembler, point.state);
+}
+
+std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler, const State& state) const {
+  if (watched_[c].two_entries) return watched_[c].sum(state.v);
+  // Known motions are those of the assembler's time, which may be another than the state's.
+  if (!channels_[c].is_linear() && assembler.system().any_prescribed_moves()) return std::nullopt;
+  return channels_[c].rate(assembler, state);
+}
+
 void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const double value = channels_[c].evaluate(assembler, point.state);
-    peaks_[c] = {{value, point.state.t, value, point.state.t}};
-    watched_[c].last = value;
+    const double y = value(c, assembler, point);
+    peaks_[c] = {{y, point.state.t, y, point.state.t}};
+    watched_[c].last = y;
     set_bounds(c);
   }
 }
 
 void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
+  const double length = to.state.t - from.state.t;
+  longest_ = std::max(longest_, length);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     Watched& w = watched_[c];
-    const double value = w.two_entries ? w.sum(to.state.z) : channels_[c].evaluate(assembler, to.state);
-    const double higher = std::max(value, w.last), lower = std::min(value, w.last);
-    w.last = value;
+    const double y = value(c, assembler, to), before = w.last;
+    const double higher = std::max(y, before), lower = std::min(y, before);
+    w.last = y;
     if (higher <= w.high && lower >= w.low) continue;
     Peak& p = peaks_[c];
     const double near = kNear * (p.max - p.min);
-    p.note(value, to.state.t);
-    if (inside_steps_ && (higher > p.max - near || lower < p.min + near)) look_inside(c, assembler, from, to);
+    p.note(y, to.state.t);
+    if (inside_steps_ && length > kShort * longest_ && (higher > p.max - near || lower < p.min + near))
+      look_inside(c, assembler, from, to, before, y);
     set_bounds(c);
   }
 }
@@ -64,16 +83,15 @@ bool Peaks::needs_acceleration() const {
 }
 
 void Peaks::look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
-                        const EvaluatedState& to) {
-  const auto rate = [&](const State& s) {
-    return watched_[c].two_entries ? watched_[c].sum(s.v) : channels_[c].rate(assembler, s);
+                        const EvaluatedState& to, double y_0, double y_1) {
+  Peak& p = peaks_[c];
+  const PeakSample a{from.state.t, y_0, rate(c, assembler, from.state)};
+  const PeakSample b{to.state.t, y_1, rate(c, assembler, to.state)};
+  const auto look = [&](double t) -> PeakSample {
+    const StepMotion::Point inside = motion_->at(t);
+    return {t, value(c, inside.assembler, inside.at), rate(c, inside.assembler, inside.at.state)};
   };
-  const std::optional<double> rate_0 = rate(from.state), rate_1 = rate(to.state);
-  if (!rate_0 || !rate_1 || !(*rate_0 * *rate_1 < 0.0)) return;
-  const double h = to.state.t - from.state.t;
-  const auto inside = cubic_peak(channels_[c].evaluate(assembler, from.state), *rate_0,
-                                 channels_[c].evaluate(assembler, to.state), *rate_1, h);
-  if (inside) peaks_[c].note(inside->value, from.state.t + inside->s * h);
+  if (motion_) search_peak(a, b, look, p.max - p.min, p);
 }
 
 std::size_t Peaks::largest() const {

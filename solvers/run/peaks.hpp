@@ -13,12 +13,12 @@ struct EvaluatedState;
 
 class Peaks final : public Observer {
  public:
-  /// inside_steps: false: values at the ends of steps count. true: between them a channel whose rate is
-  /// known (deviations, shaft torques, laws) is taken as the cubic through both values and rates, so that a
-  /// peak inside a step is found to the fourth order of its length; for methods whose steps are long beside
-  /// their accuracy. Laws: a change of mesh phase or time inside the step is left out of the rate.
-  explicit Peaks(std::vector<Channel> channels, bool inside_steps = false);
+  /// inside_steps: true: extremes are found on the motion itself (observer.hpp), to rounding, inside steps as
+  /// at their ends, for channels of every kind (peak_search.hpp). false: values at the ends of steps count;
+  /// for constant steps that are short beside the accuracy, and to compare with what samples such ends.
+  explicit Peaks(std::vector<Channel> channels, bool inside_steps = true);
 
+  void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override;
@@ -29,8 +29,11 @@ class Peaks final : public Observer {
   std::size_t largest() const;
 
  private:
+  double value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
+  std::optional<double> rate(std::size_t c, const Assembler& assembler, const State& state) const;
+  /// y_0, y_1: values at both ends.
   void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
-                   const EvaluatedState& to);
+                   const EvaluatedState& to, double y_0, double y_1);
 
   /// What a step needs of a channel, close together: there are many steps and few new peaks.
   struct Watched {
@@ -47,7 +50,9 @@ class Peaks final : public Observer {
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
   std::vector<Watched> watched_;
-  bool inside_steps_ = false;
+  bool inside_steps_ = true;
+  StepMotion* motion_ = nullptr;
+  double longest_ = 0.0;  // step so far [s]
 };
 
 }  // namespace drev

@@ -12,7 +12,7 @@ constexpr double kWholeStep = 1e-6;  // of a step: a count of steps that is off 
 }
 
 double Stop::evaluation_time() const {
-  return at_break ? std::nextafter(t, -std::numeric_limits<double>::infinity()) : t;
+  return at_break ? std::nextafter(t - width, -std::numeric_limits<double>::infinity()) : t;
 }
 
 Stops::Stops(const System& system, double t_end, double same, std::vector<Observer*> observers)

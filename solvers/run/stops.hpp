@@ -11,6 +11,7 @@ namespace drev {
 struct Stop {
   double t = 0.0;         ///< s
   bool at_break = false;  ///< loads and known motions may jump here
+  double width = 0.0;     ///< s, at a break: it lies within this time before t
   /// Time at which a step that ends here evaluates its end [s]: just before a breakpoint, loads have their
   /// old values.
   double evaluation_time() const;

@@ -30,7 +30,7 @@ constexpr double kLeastShare = 1e-3;   // of the energy error for one step
 constexpr int kEnergyTries = 3;
 
 /// One run: the loop over stops, the steps between them, and what is kept about it.
-class Run {
+class Run final : public StepMotion {
  public:
   Run(const System& system, const TransientOptions& options, State& state,
       const std::vector<Observer*>& observers)
@@ -39,6 +39,7 @@ class Run {
         observers_(observers),
         stepper_(make_stepper(system, options.scheme, step_options(options))),
         equation_(stepper_->equation()),
+        look_assembler_(system),
         located_(system, *stepper_),
         progress_(options.progress, options.t_start, options.t_end) {
     now_->state = std::move(state);
@@ -55,6 +56,7 @@ class Run {
     stepper_->start(*now_);
     EnergyMonitor energy(equation_.assembler(), *now_);
     energy_ = &energy;
+    for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(equation_.assembler(), *now_);
     if (control_) control_->look_at(now_->state);
     check_start(summary_, system_, now_->state);
@@ -83,6 +85,16 @@ class Run {
   }
 
   State take_state() { return std::move(now_->state); }
+
+  Point at(double t) override {
+    const double h = next_->state.t - now_->state.t;
+    StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
+        .at((t - now_->state.t) / h, look_.state);
+    look_.state.t = t;
+    look_assembler_.set_time(t);
+    evaluate_laws(look_assembler_, look_);
+    return {look_assembler_, look_};
+  }
 
   static StepOptions step_options(const TransientOptions& o) {
     StepOptions options = o.newton;
@@ -304,6 +316,8 @@ class Run {
   const std::vector<Observer*>& observers_;
   std::unique_ptr<Stepper> stepper_;
   StepEquation& equation_;
+  Assembler look_assembler_;
+  EvaluatedState look_;  // inside the step that observers are shown
   LocatedStep located_;
   std::optional<StepControl> control_;
   StepEnergy step_energy_;

@@ -1,0 +1,70 @@
+#include "solvers/exact/step_expansion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+constexpr double kShorten = 0.9;      // of the step at which the loads' rest is just small enough
+constexpr double kLoosest = 1e-3;     // tolerance of a pass that is not the last
+constexpr double kSettled = 1e-15;    // of the motion: rounding of what is projected
+constexpr double kProjected = 0.1;    // of a step's share, that the projection may add
+constexpr double kJump = 1e-4;        // of the tolerance: error allowed per undeclared discontinuity
+constexpr double kBehindKnot = 1e-3;  // of the step to it: behind the last node of Gauss' rule
+constexpr double kBeforeEnd = 0.98;   // of the step: a knot that its nodes see
+constexpr double kAtStart = 1e-8;     // of the step
+constexpr int kMaxPasses = 20;        // of projected loads
+
+}  // namespace
+
+StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const LawSeries& laws, double h,
+                                              const Limits& limits) {
+  const double share = limits.share;
+  series.reset();
+  known.add_to(series, h);
+  laws.add_to(series, known, h);
+  const double rest = smooth.add_to(series, from, h);
+  if (rest > share && h > limits.shortest)
+    return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
+  // Loads and smooth laws can be stiffer than what bounded the largest step.
+  const double steepest = 1.5 * kFastestTimesStep / series.rate();
+  if (h > steepest) return {steepest};
+  bool settled = false;
+  const bool projects = known.projects() || !smooth.empty();
+  // Each pass needs to be no better than the next one takes up of it.
+  double tolerance = projects ? std::clamp(share / contraction_, share, kLoosest) : share;
+  for (int pass = 0;; ++pass) {
+    const bool last = !projects || settled;
+    const double got = series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
+    if (got < h || last) return {got};
+    if (pass == kMaxPasses) return {0.5 * h};
+    const double kinks = kProjected * share / std::max(projected_, share);
+    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, std::max(kinks, kLeastShare));
+    if (made.residual > std::max(share, kJump * limits.tolerance) && h > limits.shortest) {
+      // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
+      const auto knot = smooth.first_knot(series, kBeforeEnd);
+      if (knot && *knot > kAtStart) return {h * *knot * (1.0 + kBehindKnot), true};
+      return {h * std::max(0.2, kShorten * std::pow(share / made.residual, 1.0 / kProjectionTerms))};
+    }
+    if (pass == 0) projected_ = made.change;
+    contraction_ = std::max(made.contraction, 1e-300);
+    // What this pass was off by comes back in the next one times the contraction factor.
+    settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kSettled);
+    tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
+  }
+}
+
+bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState& from, const LawSeries& laws,
+                                double s, const Limits& limits) {
+  known.locate_as(other.known);
+  const double h = s * other.series.step();
+  contraction_ = other.contraction_;
+  projected_ = other.projected_;
+  series.scale_as(other.series);
+  const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
+  return !made.to_knot && made.h == h;
+}
+
+}  // namespace drev

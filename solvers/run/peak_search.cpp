@@ -1,0 +1,92 @@
+#include "solvers/run/peak_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/run/cubic_peak.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kMostLooks = 40;
+constexpr double kRounding = 4e-16;  // of the largest value
+constexpr double kSettled = 1e-13;   // of the range: the last parabola's gain
+constexpr double kCubicError = 0.25;  // of the rise that a cubic shows, and
+constexpr double kRangeError = 1e-6;  // of the range: what the cubic may be off by
+constexpr double kSwing = 0.5;        // of the ends' difference: the most that an extremum rises above them
+
+using Look = std::function<PeakSample(double t)>;
+
+/// sign 1: the largest value, -1: the smallest.
+double beyond(const Peak& peak, double y, double sign) { return sign > 0.0 ? y - peak.max : peak.min - y; }
+
+void search_by_rates(PeakSample a, PeakSample b, const Look& look, double range, Peak& peak) {
+  const double sign = *a.rate > 0.0 ? 1.0 : -1.0;
+  for (int i = 0; i < kMostLooks; ++i) {
+    const auto cubic = cubic_peak(a.y, *a.rate, b.y, *b.rate, b.t - a.t);
+    if (!cubic) return;
+    const double rise = sign * (cubic->value - (sign > 0.0 ? std::max(a.y, b.y) : std::min(a.y, b.y)));
+    if (i == 0 && beyond(peak, cubic->value, sign) + kCubicError * rise + kRangeError * range < 0.0) return;
+    const double t = a.t + cubic->s * (b.t - a.t);
+    if (!(t > a.t && t < b.t)) return;
+    const PeakSample m = look(t);
+    peak.note(m.y, m.t);
+    if (!m.rate || std::abs(m.y - cubic->value) <= kRounding * std::max(std::abs(m.y), range)) return;
+    (*m.rate * sign > 0.0 ? a : b) = m;
+  }
+}
+
+void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, const Look& look, double range,
+                      Peak& peak) {
+  double last = b.t - a.t;
+  for (int i = 0; i < kMostLooks; ++i) {
+    // The vertex of the parabola through the three.
+    const double d_1 = m.t - a.t, d_2 = b.t - m.t;
+    if (!(d_1 > 0.0 && d_2 > 0.0)) return;
+    const double s_1 = (m.y - a.y) / d_1, s_2 = (b.y - m.y) / d_2;
+    const double bend = (s_2 - s_1) / (d_1 + d_2);
+    double t = 0.5 * (a.t + m.t) - 0.5 * s_1 / bend;
+    const bool inside = sign * bend < 0.0 && t > a.t && t < b.t;
+    const bool middle_best = sign * m.y >= sign * a.y && sign * m.y >= sign * b.y;
+    if (!inside && !middle_best) return;  // the extremum is at an end
+    const bool slow = b.t - a.t > 0.5 * last && i > 1;
+    if (!inside || t == m.t || slow) t = d_1 > d_2 ? m.t - 0.5 * d_1 : m.t + 0.5 * d_2;
+    last = b.t - a.t;
+    if (!(t > a.t && t < b.t) || t == m.t) return;
+    const PeakSample v = look(t);
+    peak.note(v.y, v.t);
+    const double gain = sign * (v.y - m.y);
+    if (gain > 0.0) {
+      (v.t < m.t ? b : a) = m;
+      m = v;
+    } else {
+      (v.t < m.t ? a : b) = v;
+    }
+    if (!slow && inside && std::abs(gain) <= kSettled * range) return;
+  }
+}
+
+}  // namespace
+
+void search_peak(const PeakSample& a, const PeakSample& b, const Look& look, double range, Peak& peak) {
+  if (a.rate && b.rate) {
+    if (*a.rate * *b.rate < 0.0) search_by_rates(a, b, look, range, peak);
+    return;
+  }
+  const double swing = kSwing * std::abs(b.y - a.y) + kRangeError * range;
+  std::optional<PeakSample> middle;
+  for (const double sign : {1.0, -1.0}) {
+    const double best = sign > 0.0 ? std::max(a.y, b.y) : std::min(a.y, b.y);
+    if (beyond(peak, best, sign) + swing < 0.0) continue;
+    const double t = 0.5 * (a.t + b.t);
+    if (!(t > a.t && t < b.t)) return;
+    if (!middle) {
+      middle = look(t);
+      peak.note(middle->y, middle->t);
+    }
+    search_by_values(a, *middle, b, sign, look, range, peak);
+  }
+}
+
+}  // namespace drev
