@@ -32,6 +32,7 @@ class FigureWatch final : public Observer {
   FigureWatch(const System& system, const FigureOptions& o)
       : peak_(find_channels(system, o.channels)), from_(o.from) {}
   void look_through(StepMotion& motion) override { peak_.look_through(motion); }
+  bool watches_loads() const override { return peak_.watches_loads(); }
   void start(const Assembler& assembler, const EvaluatedState& point) override {
     begun_ = point.state.t >= from_;
     if (begun_) peak_.start(assembler, point);

@@ -34,9 +34,9 @@ class Channel {
 
   /// Whether evaluate() reads the state's accelerations, or rate() does.
   bool value_needs_acceleration() const;
-  bool rate_needs_acceleration() const {
-    return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty();
-  }
+  /// Whether the value jumps or kinks where a load does.
+  bool follows_loads() const { return kind_ == Kind::load || value_needs_acceleration(); }
+  bool rate_needs_acceleration() const { return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty(); }
 
   /// For a value that is sum z_row z + sum v_row v and nothing else.
   bool is_linear() const { return direct_; }

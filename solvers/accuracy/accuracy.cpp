@@ -246,8 +246,7 @@ class AccurateRun {
     if (r.cycles == 0) return;
     const auto of = [&](const std::vector<double>& all) {
       const std::vector<double> record = part(all, r.begin, r.end);
-      return ordered ? cycle_spectrum(record, every_)
-                     : spectrum(record, every_, {.window = Window::flat_top, .remove_mean = true});
+      return ordered ? cycle_spectrum(record, every_) : line_spectrum(record);
     };
     const Spectrum coarse = of(x), fine = of(y);
     std::vector<std::size_t> lines;
@@ -269,7 +268,32 @@ class AccurateRun {
       orders_[name.str()] = k / r.cycles;
       add(name.str(), unit_of_deflection(), coarse.amplitude[k], fine.amplitude[k], b.deflection.value(),
           o_.t_end);
+      if (ordered) continue;
+      Figure& line = result_.figures.back();
+      line.error += spread_over_halves(y, r, fine.frequency_Hz[k], fine.amplitude[k]);
+      // What is no steady line has no one amplitude: it is another in each half of the record.
+      if (!line.keeps(o_.accuracy)) result_.figures.pop_back();
     }
+  }
+
+  /// By how much the amplitude at a frequency differs in either half of the record.
+  double spread_over_halves(const std::vector<double>& all, const Record& r, double frequency,
+                            double amplitude) const {
+    double most = 0.0;
+    const std::size_t middle = (r.begin + r.end) / 2;
+    for (const auto& [begin, end] : {std::pair{r.begin, middle}, {middle, r.end}}) {
+      const Spectrum half = line_spectrum(part(all, begin, end));
+      std::size_t nearest = 0;
+      for (std::size_t i = 1; i < half.frequency_Hz.size(); ++i)
+        if (std::abs(half.frequency_Hz[i] - frequency) < std::abs(half.frequency_Hz[nearest] - frequency))
+          nearest = i;
+      most = std::max(most, std::abs(half.amplitude[nearest] - amplitude));
+    }
+    return most;
+  }
+
+  Spectrum line_spectrum(const std::vector<double>& record) const {
+    return spectrum(record, every_, {.window = Window::flat_top, .remove_mean = true});
   }
 
   std::string unit_of_deflection() const { return find_channel(system_, o_.deflection).unit(); }
@@ -296,12 +320,12 @@ class AccurateRun {
       add_statistic(c.element + ": share of time separated", "", batch_mean(c.share_separated, kBatches));
       add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
       add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
-      add_statistic(c.element + ": mean force", c.unit, batch_mean(c.mean_force, kBatches));
-      add_statistic(c.element + ": rms force", c.unit, batch_mean(c.rms_force, kBatches));
+      add_statistic(c.element + ": mean force", c.unit, c.mean_force.estimate(kBatches));
+      add_statistic(c.element + ": rms force", c.unit, c.rms_force.estimate(kBatches));
     }
     for (const BatchWatch::Average& a : fine.batches.averages()) {
-      add_statistic("mean of " + a.channel, a.unit, batch_mean(a.mean, kBatches));
-      add_statistic("rms of " + a.channel, a.unit, batch_mean(a.rms, kBatches));
+      add_statistic("mean of " + a.channel, a.unit, a.mean.estimate(kBatches));
+      add_statistic("rms of " + a.channel, a.unit, a.rms.estimate(kBatches));
     }
     add_quantiles(fine.recorder.samples(0), fine.batches.averages().front());
   }

@@ -4,6 +4,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 
@@ -16,6 +17,7 @@ class PeakWatch final : public Observer {
  public:
   explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels)) {}
   void look_through(StepMotion& motion) override { peaks_.look_through(motion); }
+  bool watches_loads() const override { return peaks_.watches_loads(); }
   void start(const Assembler& assembler, const EvaluatedState& point) override {
     peaks_.start(assembler, point);
   }
@@ -61,15 +63,25 @@ class BatchWatch final : public Observer {
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
 
+  /// A mean or rms value of each batch, and what its integration over sampled points may be off by.
+  struct Integrals {
+    std::vector<double> values = {}, errors = {};
+    void add(double value, double error) {
+      values.push_back(value);
+      errors.push_back(error);
+    }
+    /// The mean over batches; its interval holds the integration's error too.
+    Estimate estimate(int batches) const;
+  };
   /// Of one contact or channel: a value a batch.
   struct Contact {
     std::string element, unit;  ///< of its force
-    std::vector<double> share_separated = {}, impacts_per_second = {}, impact_power = {}, mean_force = {},
-                        rms_force = {};
+    std::vector<double> share_separated = {}, impacts_per_second = {}, impact_power = {};
+    Integrals mean_force = {}, rms_force = {};
   };
   struct Average {
     std::string channel, unit;
-    std::vector<double> mean = {}, rms = {};
+    Integrals mean = {}, rms = {};
   };
   const std::vector<Contact>& contacts() const { return contacts_; }
   const std::vector<Average>& averages() const { return averages_; }
@@ -90,9 +102,20 @@ class BatchWatch final : public Observer {
   };
   std::vector<Begin> before_;
   std::vector<std::size_t> laws_;
-  struct Sum {
-    double value = 0.0, square = 0.0;
+  /// Integrals over a batch of a value and of its square, by single intervals and by pairs of them.
+  class Sum {
+   public:
     void add(double y_0, double r_0, double y_1, double r_1, double h);
+    /// Enters mean and rms value over the batch's length, and begins the next batch.
+    void close(double length, Integrals& mean, Integrals& rms);
+
+   private:
+    struct Pair {
+      double value = 0.0, square = 0.0;
+      void add(double y_0, double r_0, double y_1, double r_1, double h);
+    };
+    Pair fine_, coarse_, open_;  // open_: the first interval of a pair
+    double y_ = 0.0, r_ = 0.0, h_ = 0.0;
   };
   std::vector<Sum> forces_, values_;
   std::vector<Contact> contacts_;

@@ -17,10 +17,11 @@ namespace drev {
 
 namespace {
 
-constexpr double kWatchedAngle = 0.3;      // omega h between points that observers see
-constexpr double kGrowth = 1.5;            // of the step after one that had to be shortened
+constexpr double kWatchedAngle = 0.3;  // omega h between points that observers see
+constexpr double kProjectedParts = kProjectionDegree;
+constexpr double kGrowth = 1.5;  // of the step after one that had to be shortened
 constexpr int kMaxCuts = 20;
-constexpr double kShortest = 1e-6;  // of the largest step
+constexpr double kShortest = 1e-6;    // of the largest step
 constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
 constexpr double kRetreat = 1.0 / 16.0;                             // of the step where the series overflowed
@@ -198,10 +199,14 @@ class ExactRun final : public StepMotion {
     const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
-    const double parts = std::ceil(fastest_ * length / kWatchedAngle);
+    double parts = std::ceil(fastest_ * length / kWatchedAngle);
+    if (known_.projected()) parts = std::max(parts, kProjectedParts);  // what projection holds swings faster
     const double behind = changed_ ? t_0 + length * laws_.clear_of_change(*changed_, 0.0) / end.s : t_0;
-    const double ahead = end.change ? t_0 + length * laws_.clear_of_change(*end.change, end.s) / end.s : t_new;
+    const double ahead =
+        end.change ? t_0 + length * laws_.clear_of_change(*end.change, end.s) / end.s : t_new;
     step_ = {t_0, length, end.s};
+    find_kinks();
+    auto kink = kinks_.begin();
     const bool forces = std::any_of(observers_.begin(), observers_.end(),
                                     [](const Observer* o) { return o->needs_acceleration(); });
     for (double i = 1.0;;) {
@@ -210,6 +215,11 @@ class ExactRun final : public StepMotion {
       bool exactly = false;
       for (const double beside : {behind, ahead})
         if (beside > last->state.t) t = std::min(t, beside);
+      while (kink != kinks_.end() && !(*kink > last->state.t)) ++kink;
+      if (kink != kinks_.end() && *kink < t) {
+        t = *kink;
+        exactly = true;
+      }
       for (const Observer* o : observers_) {
         const double wanted = o->next_stop(last->state.t);
         if (!(wanted > last->state.t + same) || wanted > t) continue;
@@ -230,6 +240,17 @@ class ExactRun final : public StepMotion {
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
+  }
+
+  /// Times at which loads' kinks are passed in the step, where an observer watches loads.
+  void find_kinks() {
+    kinks_.clear();
+    if (std::none_of(observers_.begin(), observers_.end(),
+                     [](const Observer* o) { return o->watches_loads(); }))
+      return;
+    known_.append_knots(step_.s, kinks_);
+    for (double& kink : kinks_) kink = step_.t_0 + step_.length * (kink / step_.s);
+    std::sort(kinks_.begin(), kinks_.end());
   }
 
   /// The motion at t on the step's series.
@@ -328,11 +349,12 @@ class ExactRun final : public StepMotion {
   LoadSeries& known_;
   LawSeries laws_;
   ProjectedLaws& smooth_;
-  std::optional<StepExpansion> part_;  // of a step, to a point inside
+  std::optional<StepExpansion> part_;         // of a step, to a point inside
   std::optional<LawSeries::Change> changed_;  // at the start of this step
   struct {
     double t_0 = 0.0, length = 0.0, s = 1.0;
-  } step_;  // which observers are shown: its end is s of the series
+  } step_;                     // which observers are shown: its end is s of the series
+  std::vector<double> kinks_;  // times of, inside this step
   EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;
   Progress progress_;

@@ -18,7 +18,7 @@ constexpr double kZero = 1e-13;
 constexpr double kFloor = 4e-15;
 constexpr double kClear = 1e-14;     // of the terms that a deflection is summed from
 constexpr double kMostClear = 1e-3;  // of the step
-constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
+constexpr double kParallel = 1e-9;   // bounds that are one line but for rounding
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
 double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {

@@ -77,7 +77,7 @@ void to_powers(int stride, const Powers& t, const double* a, int kept, double* o
 /// Moments int_s^1 jump (theta - knot) L_j ds of kLanes kinks, behind the s at which theta = knot.
 DREV_WIDEST
 void kink_moments(const double* const* theta, std::size_t terms, std::size_t first, const double* knot,
-                  const double* jump, const double* end, double tolerance, double* moments) {
+                  const double* jump, const double* end, double tolerance, double* place, double* moments) {
   Lanes target, delta, x, s;
   load(knot + first, target);
   load(jump + first, delta);
@@ -99,6 +99,7 @@ void kink_moments(const double* const* theta, std::size_t terms, std::size_t fir
     for (int l = 0; l < kLanes; ++l) largest = std::max(largest, std::abs(step[l]));
     if (largest < kSettled) break;
   }
+  store(s, place + first);
   // theta = sum d_p (u - s)^p behind the kink, as far as it counts.
   Lanes d[kMaxKinkTerms + 1];
   for (std::size_t k = 0; k < terms; ++k) load(theta[k] + first, d[k]);
@@ -191,7 +192,7 @@ void KinkMoments::add(int row, double knot, double jump, const std::vector<doubl
   const auto room = static_cast<std::size_t>(whole_lanes(count_));
   if (row_.size() < room) {
     row_.resize(room);
-    for (auto* list : {&knot_, &jump_, &end_}) list->resize(room);
+    for (auto* list : {&knot_, &jump_, &end_, &place_}) list->resize(room);
   }
   double sum = 0.0;
   for (std::size_t k = 0; k < terms_; ++k) {
@@ -217,7 +218,7 @@ void KinkMoments::add_to(LegendreProjection& projection, double tolerance) {
   }
   for (int first = 0; first < count_; first += kLanes) {
     kink_moments(columns_.data(), terms_, static_cast<std::size_t>(first), knot_.data(), jump_.data(),
-                 end_.data(), tolerance, moments_.data());
+                 end_.data(), tolerance, place_.data(), moments_.data());
     const int lanes = std::min(kLanes, count_ - first);
     for (int j = 0; j < kProjectionTerms; ++j)
       for (int l = 0; l < lanes; ++l)

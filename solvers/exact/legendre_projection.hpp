@@ -67,12 +67,14 @@ class KinkMoments {
   void add(int row, double knot, double jump, const std::vector<double>& theta);
   /// Adds the moments of all kinks. tolerance: relative, of each.
   void add_to(LegendreProjection& projection, double tolerance);
+  /// After add_to(): the s at which theta passes the knot of kink i.
+  double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
 
  private:
   int count_ = 0;
   std::size_t terms_ = 0;
   std::vector<int> row_;
-  std::vector<double> knot_, jump_, end_;
+  std::vector<double> knot_, jump_, end_, place_;
   std::vector<std::vector<double>> theta_;  // by degree, then knot
   std::vector<const double*> columns_;
   std::vector<double> moments_;

@@ -39,7 +39,10 @@ LoadSeries::LoadSeries(const System& system)
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
-    if (map.prescribed >= 0) continue;  // its work is the prescribed node's
+    if (map.prescribed >= 0) {  // its work is the prescribed node's
+      if (term.load->stretch(0.0, 0.0, 1.0)) on_prescribed_.push_back(&term);
+      continue;
+    }
     const Place place{&term, system.place(map), map.coeff, system.ratio(term.node),
                       term.load->depends_on_motion()};
     if (term.load->stretch(0.0, 0.0, 1.0))
@@ -232,7 +235,7 @@ double LoadSeries::relative_move(const TaylorSeries& series, int row) const {
   const double move = series.reach(row) * h_;
   const auto kind = idx(row < series.size() ? series.kind(row) : 0);
   const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
-  return scale > 0.0 ? move / scale : 0.0;
+  return move / scale;
 }
 
 LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
@@ -255,7 +258,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   const auto note_rest = [&](const LegendreProjection& forces, double part, int row) {
     const double tail = std::abs(forces.coefficient(kProjectionDegree, row)) +
                         std::abs(forces.coefficient(kProjectionDegree - 1, row));
-    if (tail > 0.0) pass.residual = std::max(pass.residual, part * tail * relative_move(series, row));
+    const double rest = part * tail * relative_move(series, row);
+    if (std::isfinite(rest)) pass.residual = std::max(pass.residual, rest);
   };
   for (const Smooth& l : smooth_) note_rest(projection_, kPathRest, l.row);
   for (const int row : laws.rows()) note_rest(projection_, kPathRest, row);
@@ -318,6 +322,30 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
     }
   }
   return first;
+}
+
+void LoadSeries::append_knots(double end, std::vector<double>& s) const {
+  for (int i = 0; i < kinks_.count(); ++i)
+    if (const double place = kinks_.place(i); place < end) s.push_back(place);
+  for (const LoadTerm* term : on_prescribed_) {
+    const NodeMap& map = system_.node_map(term->node);
+    std::array<double, 3> theta = phi_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      theta[k] *= system_.ratio(term->node);
+      if (term->load->depends_on_motion()) theta[k] += map.coeff * u_[idx(map.prescribed)][k];
+    }
+    const double side = theta[1] < 0.0 ? -1.0 : 1.0;
+    for (double angle = theta[0];;) {
+      const LoadStretch stretch = term->load->stretch(t_, angle, side).value_or(LoadStretch{});
+      const double bound = side > 0.0 ? stretch.high : stretch.low;
+      const std::array<double, 3> g{side * (bound - theta[0]), -side * theta[1], -side * theta[2]};
+      if (!std::isfinite(bound) || !(side * (bound - angle) > 0.0)) break;
+      const std::optional<double> place = first_crossing(g, end);
+      if (!place) break;
+      s.push_back(*place);
+      angle = bound;
+    }
+  }
 }
 
 double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end) {

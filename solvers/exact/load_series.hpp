@@ -53,6 +53,8 @@ class LoadSeries {
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0; }
+  /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
+  void append_knots(double end, std::vector<double>& s) const;
   /// The step became r h; only where nothing was projected.
   void shorten(double r);
 
@@ -94,7 +96,8 @@ class LoadSeries {
   }
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
   double find_kinks(const TaylorSeries& series, double tolerance);
-  /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest.
+  /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
+  /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const;
   double project_smooth(const TaylorSeries& series);
 
@@ -102,6 +105,7 @@ class LoadSeries {
   Assembler assembler_;
   std::vector<Linear> loads_;
   std::vector<Smooth> smooth_;
+  std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
   std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
   std::vector<double> base_;  // of the series' right side, degrees 0 to 2, before projection

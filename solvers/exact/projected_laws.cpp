@@ -8,8 +8,9 @@
 namespace drev {
 
 namespace {
-constexpr double kRounding = 2e-14;  // of an offset, and of the angle that it is looked up at
-}
+// What is left of rounding in the last coefficients: of an offset, and of the angle that it is looked up at.
+constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
+}  // namespace
 
 ProjectedLaws::ProjectedLaws(const System& system)
     : system_(system), assembler_(system), offsets_(system.scalars().size()) {
@@ -70,7 +71,8 @@ double ProjectedLaws::expand_offset(const Law& law, const TaylorSeries& series) 
   std::array<double, GaussRule::kNodes> values{};
   double largest = 0.0, rounding = 0.0;
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-    const double angle = system_.reference() ? ratio * system_.reference()->at(t_ + h_ * rule.s[q]).value : 0.0;
+    const double angle =
+        system_.reference() ? ratio * system_.reference()->at(t_ + h_ * rule.s[q]).value : 0.0;
     const Offset at_node = term.force->offset(angle);
     values[q] = -at_node.e;
     largest = std::max(largest, std::abs(at_node.e));
@@ -82,7 +84,7 @@ double ProjectedLaws::expand_offset(const Law& law, const TaylorSeries& series) 
   double scale = largest;
   for (const Entry& e : term.z)
     scale = std::max(scale, std::abs(e.coeff) * series.z_scale()[idx(series.kind(e.index))]);
-  return std::max(0.0, polynomial.tail - kRounding * (largest + rounding)) / scale;
+  return std::max(0.0, polynomial.tail - kRounding * largest - kAngleRounding * rounding) / scale;
 }
 
 std::optional<double> ProjectedLaws::next_break(double t, double end) const {

@@ -37,6 +37,9 @@ class Observer {
   /// Whether it reads accelerations, or loads and forces of the whole system (p, kz, cv, total). Where no
   /// observer does, points inside a step of exact propagation have none: a is not a number there.
   virtual bool needs_acceleration() const { return true; }
+  /// Whether it watches what kinks where a load does (loads, accelerations, reactions, ideal gears): exact
+  /// propagation then shows it the points at which tables' kinks are passed.
+  virtual bool watches_loads() const { return false; }
 };
 
 }  // namespace drev

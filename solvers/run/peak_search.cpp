@@ -10,11 +10,12 @@ namespace drev {
 namespace {
 
 constexpr int kMostLooks = 40;
-constexpr double kRounding = 4e-16;  // of the largest value
-constexpr double kSettled = 1e-13;   // of the range: the last parabola's gain
+constexpr double kRounding = 4e-16;   // of the largest value
+constexpr double kSettled = 1e-13;    // of the range: the last parabola's gain
 constexpr double kCubicError = 0.25;  // of the rise that a cubic shows, and
 constexpr double kRangeError = 1e-6;  // of the range: what the cubic may be off by
-constexpr double kSwing = 0.5;        // of the ends' difference: the most that an extremum rises above them
+constexpr double kSwing = 0.5;        // of the ends' difference, and
+constexpr double kRangeSwing = 0.02;  // of the range: the most that an extremum rises above them
 
 using Look = std::function<PeakSample(double t)>;
 
@@ -48,6 +49,10 @@ void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, con
     const double bend = (s_2 - s_1) / (d_1 + d_2);
     double t = 0.5 * (a.t + m.t) - 0.5 * s_1 / bend;
     const bool inside = sign * bend < 0.0 && t > a.t && t < b.t;
+    // The parabola's rise above its three points may be off by a part of itself.
+    const double vertex = m.y + (t - m.t) * (s_1 + bend * (t - a.t));
+    const double best = sign > 0.0 ? std::max({a.y, m.y, b.y}) : std::min({a.y, m.y, b.y});
+    if (i == 0 && beyond(peak, vertex, sign) + sign * (vertex - best) + kRangeError * range < 0.0) return;
     const bool middle_best = sign * m.y >= sign * a.y && sign * m.y >= sign * b.y;
     if (!inside && !middle_best) return;  // the extremum is at an end
     const bool slow = b.t - a.t > 0.5 * last && i > 1;
@@ -74,7 +79,7 @@ void search_peak(const PeakSample& a, const PeakSample& b, const Look& look, dou
     if (*a.rate * *b.rate < 0.0) search_by_rates(a, b, look, range, peak);
     return;
   }
-  const double swing = kSwing * std::abs(b.y - a.y) + kRangeError * range;
+  const double swing = std::max(kSwing * std::abs(b.y - a.y), kRangeSwing * range);
   std::optional<PeakSample> middle;
   for (const double sign : {1.0, -1.0}) {
     const double best = sign > 0.0 ? std::max(a.y, b.y) : std::min(a.y, b.y);

@@ -21,7 +21,7 @@ struct PeakSample {
 
 /// Searches [a.t, b.t] for values above peak.max and below peak.min and notes those it finds. range >= 0: of
 /// the function so far; what is smaller than 1e-6 of it beside the cubic's own rise is not looked for.
-void search_peak(const PeakSample& a, const PeakSample& b,
-                 const std::function<PeakSample(double t)>& look, double range, Peak& peak);
+void search_peak(const PeakSample& a, const PeakSample& b, const std::function<PeakSample(double t)>& look,
+                 double range, Peak& peak);
 
 }  // namespace drev

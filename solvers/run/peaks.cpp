@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solvers/run/cubic_peak.hpp"
 #include "solvers/run/peak_search.hpp"
 
 namespace drev {
@@ -11,7 +12,7 @@ namespace drev {
 namespace {
 constexpr double kNear = 0.05;   // of the range so far: steps that may hold a new peak inside
 constexpr double kShort = 1e-6;  // of the longest step: nothing moves in shorter ones
-}
+}  // namespace
 
 Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
     : channels_(std::move(channels)),
@@ -35,11 +36,17 @@ double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedSt
   return channel.evaluate(assembler, point.state);
 }
 
-std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler, const State& state) const {
-  if (watched_[c].two_entries) return watched_[c].sum(state.v);
-  // Known motions are those of the assembler's time, which may be another than the state's.
+std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
+                                  const EvaluatedState& point) const {
+  if (watched_[c].two_entries) return watched_[c].sum(point.state.v);
+  if (const int law = channels_[c].deflection_of(); law >= 0) return point.inputs[idx(law)].x_dot;
+  // Known motions are those of the assembler's time, which may be another than the point's.
   if (!channels_[c].is_linear() && assembler.system().any_prescribed_moves()) return std::nullopt;
-  return channels_[c].rate(assembler, state);
+  return channels_[c].rate(assembler, point.state);
+}
+
+bool Peaks::watches_loads() const {
+  return std::any_of(channels_.begin(), channels_.end(), [](const Channel& c) { return c.follows_loads(); });
 }
 
 void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
@@ -85,13 +92,18 @@ bool Peaks::needs_acceleration() const {
 void Peaks::look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
                         const EvaluatedState& to, double y_0, double y_1) {
   Peak& p = peaks_[c];
-  const PeakSample a{from.state.t, y_0, rate(c, assembler, from.state)};
-  const PeakSample b{to.state.t, y_1, rate(c, assembler, to.state)};
+  const PeakSample a{from.state.t, y_0, rate(c, assembler, from)};
+  const PeakSample b{to.state.t, y_1, rate(c, assembler, to)};
   const auto look = [&](double t) -> PeakSample {
     const StepMotion::Point inside = motion_->at(t);
-    return {t, value(c, inside.assembler, inside.at), rate(c, inside.assembler, inside.at.state)};
+    return {t, value(c, inside.assembler, inside.at), rate(c, inside.assembler, inside.at)};
   };
-  if (motion_) search_peak(a, b, look, p.max - p.min, p);
+  if (motion_) return search_peak(a, b, look, p.max - p.min, p);
+  // Shown by a caller that has no motion: the cubic itself.
+  if (!a.rate || !b.rate) return;
+  const double h = b.t - a.t;
+  if (const auto inside = cubic_peak(a.y, *a.rate, b.y, *b.rate, h))
+    p.note(inside->value, a.t + inside->s * h);
 }
 
 std::size_t Peaks::largest() const {

@@ -22,6 +22,7 @@ class Peaks final : public Observer {
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override;
+  bool watches_loads() const override;
 
   const std::vector<Channel>& channels() const { return channels_; }
   const std::vector<Peak>& peaks() const { return peaks_; }
@@ -30,7 +31,7 @@ class Peaks final : public Observer {
 
  private:
   double value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
-  std::optional<double> rate(std::size_t c, const Assembler& assembler, const State& state) const;
+  std::optional<double> rate(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
   /// y_0, y_1: values at both ends.
   void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
                    const EvaluatedState& to, double y_0, double y_1);

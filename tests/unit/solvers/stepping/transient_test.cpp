@@ -251,7 +251,7 @@ TEST_CASE("Peaks at the ends of steps, or inside them to fourth order") {
   };
   double last = 0.0;
   for (const double h : {0.06, 0.03}) {
-    Peaks ends({find_channel(system, "m.position_m")}), inside(ends.channels(), true);
+    Peaks ends({find_channel(system, "m.position_m")}, false), inside(ends.channels(), true);
     EvaluatedState from = point(0.25 - 3.4 * h);
     ends.start(assembler, from);
     inside.start(assembler, from);

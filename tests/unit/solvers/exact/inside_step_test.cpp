@@ -1,0 +1,184 @@
+// Exact propagation inside its steps: histories and peaks where loads have kinks, laws switch, and flanks
+// meet for a short time; the steps that kinks and harmonics in one model cost.
+// Covers solvers/exact/step_expansion.hpp and solvers/run/observer.hpp through propagate().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
+#include <array>
+#include <cmath>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+constexpr double kJ = 0.05, kShaft = 1e5, kSpeed = 3000.0 * kPi / 30.0;
+constexpr std::array<double, 6> kAngles{0, 20, 40, 60, 80, 360}, kTorques{0, 400, 400, -300, 0, 0};
+
+Model cam_on_a_shaft() {
+  Model m("cam on a shaft");
+  for (const char* node : {"drive", "disc"}) m.add_node(node);
+  m.constant_speed("drive", kSpeed);
+  m.add<Inertia>("J", {"disc"}, {.inertia = kJ});
+  m.add<ShaftSpring>("shaft", {"drive", "disc"}, {.stiffness = kShaft});
+  std::vector<double> angles(kAngles.begin(), kAngles.end() - 1);
+  for (double& a : angles) a *= kPi / 180.0;
+  m.add<CamTorque>("cam", {"disc"},
+                   {.angle_table = PeriodicTable(angles, {kTorques.begin(), kTorques.end() - 1}),
+                    .twist_feedback = false});
+  return m;
+}
+
+/// J q'' + k q = T, T straight between the table's points: q in closed form, straight by straight.
+struct ClosedForm {
+  static constexpr double w = 1414.2135623730950488;  // sqrt(k/J)
+  struct Piece {
+    double begin, f, slope, a, b;
+    double q(double t) const {
+      const double s = t - begin;
+      return (f + slope * s) / kShaft + a * std::cos(w * s) + b * std::sin(w * s);
+    }
+    double v(double t) const {
+      const double s = t - begin;
+      return slope / kShaft - a * w * std::sin(w * s) + b * w * std::cos(w * s);
+    }
+  };
+  std::vector<Piece> pieces;
+
+  explicit ClosedForm(double end) {
+    double q = 0.0, v = 0.0;
+    for (int turn = 0;; ++turn)
+      for (std::size_t i = 0; i < 5; ++i) {
+        const auto time = [&](double deg) { return (deg * kPi / 180.0 + kTwoPi * turn) / kSpeed; };
+        const double begin = time(kAngles[i]), length = time(kAngles[i + 1]) - begin;
+        if (begin >= end) return;
+        const double slope = (kTorques[i + 1] - kTorques[i]) / length;
+        pieces.push_back({begin, kTorques[i], slope, q - kTorques[i] / kShaft, (v - slope / kShaft) / w});
+        q = pieces.back().q(begin + length);
+        v = pieces.back().v(begin + length);
+      }
+  }
+  const Piece& at(double t) const {
+    std::size_t i = pieces.size() - 1;
+    while (pieces[i].begin > t) --i;
+    return pieces[i];
+  }
+  /// Largest |q| at a turn of q, by halving between samples.
+  double peak(double end) const {
+    double most = 0.0;
+    constexpr int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      double low = end * i / n, high = end * (i + 1) / n;
+      const double v_low = at(low).v(low);
+      if (v_low * at(high).v(high) > 0.0) continue;
+      for (int half = 0; half < 60; ++half) {
+        const double middle = 0.5 * (low + high);
+        (at(middle).v(middle) * v_low > 0.0 ? low : high) = middle;
+      }
+      most = std::max(most, std::abs(at(low).q(low)));
+    }
+    return most;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A cam of five points at the nominal angle: the motion inside steps and its peak in closed form") {
+  constexpr double kEnd = 0.1;
+  const System system = cam_on_a_shaft().build();
+  const ClosedForm truth(kEnd);
+  const double peak = kShaft * truth.peak(kEnd);
+  CHECK(peak == Approx(1032.837164206).epsilon(1e-12));
+  for (const double tolerance : {1e-8, 1e-12}) {
+    Recorder history(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 1.7e-4);
+    Peaks peaks(find_channels(system, {"shaft.torque_Nm", "disc.acceleration_rad_per_s2"}));
+    CHECK(propagate(system, {.tolerance = tolerance, .t_end = kEnd}, {&history, &peaks}).ok());
+    CHECK(peaks.peaks()[0].amplitude() == Approx(peak).epsilon(tolerance));
+    for (std::size_t i = 0; i < history.times().size(); ++i) {
+      const double t = history.times()[i];
+      INFO(t);
+      CHECK(std::abs(history.samples(0)[i] - truth.at(t).q(t)) <= tolerance * peak / kShaft);
+      CHECK(std::abs(history.samples(1)[i] - truth.at(t).v(t)) <= tolerance * ClosedForm::w * peak / kShaft);
+    }
+  }
+}
+
+TEST_CASE("Peaks of what has no rate: torque of an ideal gear, acceleration, load, reaction") {
+  constexpr double kA = 10.0, kF = 5.0, kJ1 = 0.1, kJ2 = 2.0, kRatio = 0.1;
+  Model m("motor and gear");
+  for (const char* node : {"motor", "load"}) m.add_node(node);
+  m.add<Inertia>("J1", {"motor"}, {.inertia = kJ1});
+  m.add<IdealGear>("gear", {"motor", "load"}, {.ratio = kRatio});
+  m.add<Inertia>("J2", {"load"}, {.inertia = kJ2});
+  m.add<AppliedTorque>("sine", {"motor"}, {.harmonics = {{kF, kA, -kPi / 2}}});
+  const System system = m.build();
+  Peaks peaks(find_channels(system, {"gear.torque_Nm", "motor.acceleration_rad_per_s2", "sine.torque_Nm"}));
+  CHECK(propagate(system, {.t_end = 0.17}, {&peaks}).ok());
+  // omega_2 = ratio omega_1: the motor feels J1 + ratio^2 J2.
+  const double acceleration = kA / (kJ1 + kRatio * kRatio * kJ2);
+  CHECK(peaks.peaks()[0].amplitude() == Approx(kJ2 * kRatio * acceleration).epsilon(1e-12));
+  CHECK(peaks.peaks()[1].amplitude() == Approx(acceleration).epsilon(1e-12));
+  CHECK(peaks.peaks()[1].max_time == Approx(0.05).epsilon(1e-5));
+  CHECK(peaks.peaks()[2].amplitude() == Approx(kA).epsilon(1e-12));
+}
+
+TEST_CASE("A load's peak lies at the knot of its table, on free and on prescribed nodes") {
+  for (const bool prescribed : {false, true}) {
+    Model m = cam_on_a_shaft();
+    m.add<CamTorque>("sharp", {prescribed ? "drive" : "disc"},
+                     {.angle_table = PeriodicTable({0.0, 1.0, 1.013, 1.03}, {0.0, 0.0, 371.0, 0.0}),
+                      .twist_feedback = !prescribed});
+    const System system = m.build();
+    Peaks peaks(find_channels(system, {"sharp.torque_Nm"}));
+    CHECK(propagate(system, {.t_end = 0.1}, {&peaks}).ok());
+    CHECK(peaks.peaks()[0].amplitude() == Approx(371.0).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("Contacts of any duration are counted, and the largest force has the same digits everywhere") {
+  // A mass thrown to and fro between two walls, in contact with each for one step: m v sqrt(k/m) at most.
+  Model m("short contacts");
+  m.add_node("m", NodeKind::translational);
+  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
+  m.add<PolylineSpring>("walls", {"m"}, PolylineSpring::dead_band(1e8, 1.0));
+  m.set_initial("m", 0.0, 1.0);
+  const System system = m.build();
+  ContactStatistics contacts(system);
+  Peaks peaks(find_channels(system, {"walls.force_N"}));
+  long changes = 0;
+  const ExactOptions options{.t_end = 8.5, .on_change = [&](const ContactChange&) { ++changes; }};
+  CHECK(propagate(system, options, {&contacts, &peaks}).ok());
+  const ContactRecord& record = contacts.records().front();
+  CHECK(changes == 2 * record.impacts());
+  CHECK(record.impacts() == 4);
+  CHECK(record.largest_force == peaks.peaks()[0].amplitude());
+  CHECK(record.largest_force == Approx(1e4).epsilon(1e-9));
+}
+
+TEST_CASE("A table and harmonics in one model cost no more steps than the dearer of them") {
+  const auto steps = [](bool table, bool harmonic) {
+    Model m("two discs");
+    for (const char* node : {"grid", "crank", "rotor"}) m.add_node(node);
+    m.constant_speed("grid", kSpeed / 2);
+    m.add<Inertia>("J1", {"crank"}, {.inertia = 1.0});
+    m.add<Inertia>("J2", {"rotor"}, {.inertia = 3.0});
+    m.add<ShaftSpring>("s", {"crank", "rotor"}, {.stiffness = 2e5});
+    m.add<ShaftSpring>("soft", {"rotor", "grid"}, {.stiffness = 1e3});
+    std::vector<double> angles, torques;
+    for (int i = 0; i < 72; ++i) {
+      angles.push_back(kTwoPi * i / 72);
+      torques.push_back(500.0 * std::exp(-0.1 * i) * std::sin(angles.back()));
+    }
+    if (table) m.add<CamTorque>("gas", {"crank"}, {.angle_table = PeriodicTable(angles, torques)});
+    if (harmonic)
+      m.add<EngineOrderTorque>("mass", {"crank"}, {.harmonics = {{2.0, 300.0, 0.3}, {4.0, 50.0, 1.0}}});
+    return propagate(m.build(), {.t_end = 0.2}).steps;
+  };
+  const long one = steps(true, false), other = steps(false, true);
+  CHECK(steps(true, true) < 2 * std::max(one, other));
+}

@@ -1,0 +1,50 @@
+// Extremes found on a function itself, with and without its rate.
+#include "solvers/run/peak_search.hpp"
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// Searches y over [0, 1] in `parts`; counts its calls.
+template <class F, class Rate>
+std::pair<Peak, int> searched(const F& y, const Rate& rate, bool with_rate, int parts) {
+  int looks = 0;
+  const auto sample = [&](double t) -> PeakSample {
+    return {t, y(t), with_rate ? std::optional<double>(rate(t)) : std::nullopt};
+  };
+  const auto look = [&](double t) {
+    ++looks;
+    return sample(t);
+  };
+  Peak peak{{y(0.0), 0.0, y(0.0), 0.0}};
+  for (int i = 0; i < parts; ++i) {
+    const PeakSample a = sample(static_cast<double>(i) / parts), b = sample((i + 1.0) / parts);
+    peak.note(b.y, b.t);
+    search_peak(a, b, look, peak.max - peak.min, peak);
+  }
+  return {peak, looks};
+}
+
+}  // namespace
+
+TEST_CASE("Peak search: maximum and minimum of a sine to rounding, in few looks") {
+  const auto y = [](double t) { return 3.0 + std::sin(9.0 * t + 0.2); };
+  const auto rate = [](double t) { return 9.0 * std::cos(9.0 * t + 0.2); };
+  for (const bool with_rate : {true, false}) {
+    const auto [peak, looks] = searched(y, rate, with_rate, 30);
+    CHECK(peak.max == Approx(4.0).epsilon(1e-14));
+    CHECK(peak.min == Approx(2.0).epsilon(1e-14));
+    CHECK(peak.max_time == Approx((1.5707963267948966 - 0.2) / 9.0).epsilon(1e-6));
+    CHECK(looks < (with_rate ? 40 : 250));
+  }
+}
+
+TEST_CASE("Peak search: a kink between two samples of one height, without a rate") {
+  const auto y = [](double t) { return 1.0 - std::abs(t - 0.437); };
+  const auto none = [](double) { return 0.0; };
+  CHECK(searched(y, none, false, 10).first.max == Approx(1.0).epsilon(1e-9));
+}
