@@ -2,7 +2,6 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/peaks.hpp>
@@ -125,9 +124,13 @@ void cover_runs(const Case& c, Table& table) {
   for (const double tolerance : {1e-8, 1e-11}) {
     Watch watch(drev::find_channels(system, names), c.times);
     drev::Peaks peaks(drev::find_channels(system, names), true);
-    drev::ContactStatistics contacts(system, true);
-    const drev::RunSummary run = drev::propagate(system, {.tolerance = tolerance, .t_end = c.spec.duration},
-                                                 {&watch, &peaks, &contacts});
+    drev::RunSummary run;
+    try {
+      run = drev::propagate(system, {.tolerance = tolerance, .t_end = c.spec.duration}, {&watch, &peaks});
+    } catch (const drev::SolverError& e) {
+      run.status = drev::RunStatus::no_convergence;
+      run.reason = e.what();
+    }
     const std::string at = tolerance == 1e-8 ? ", exact at 1e-8" : ", exact at 1e-11";
     const std::string model_name = c.spec.name + " (" + c.spec.family + ")";
     table.add_claim("run is a success" + at, model_name + " " + run.reason, run.ok());
