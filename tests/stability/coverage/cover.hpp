@@ -21,9 +21,15 @@ Case make_case(const Spec& spec);
 
 /// Values at random times and contact counts of exact propagation at tolerances 1e-8 and 1e-11, peaks beside them.
 void cover_runs(const Case& c, Table& table);
-/// Peaks of `pairs` times two channels, each of another kind, contact changes, and whether "reached" is true, from
-/// run_to_accuracy. `which` chooses the channels.
-void cover_accuracy(const Case& c, double accuracy, std::size_t which, int pairs, Table& table);
+/// What run_to_accuracy is asked for: `pairs` times two channels, each of another kind; `which` chooses them.
+struct Asked {
+  double accuracy = 1e-6;
+  std::string method = "exact";
+  std::size_t which = 0;
+  int pairs = 2;
+};
+/// Peaks, contact changes, and whether "reached" is true.
+void cover_accuracy(const Case& c, const Asked& asked, Table& table);
 /// Impacts, times apart and largest forces of drev's contact table, from exact propagation at 1e-11.
 void cover_contacts(const Case& c, Table& table);
 /// Frequencies, and values lambda of the damped motion, contacts closed.

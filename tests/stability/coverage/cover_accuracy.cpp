@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "tests/stability/coverage/cover.hpp"
 #include "tests/stability/coverage/to_drev.hpp"
@@ -27,7 +28,7 @@ double seconds(Real t) { return static_cast<double>(t); }
 
 /// Contact changes: as many as stated, and the first and the last comparable one when stated.
 void compare_edges(const Case& c, const drev::AccuracyResult& result, const std::string& where,
-                   Table& table) {
+                   const std::string& by, Table& table) {
   const std::vector<EdgeTime>&truth = c.fine.edges, &check = c.check.edges;
   const auto error = [&](std::size_t i) {
     return i < check.size() ? 2.0 * std::abs(seconds(truth[i].t - check[i].t)) + 1e-18 : 1e300;
@@ -37,44 +38,48 @@ void compare_edges(const Case& c, const drev::AccuracyResult& result, const std:
     if (f.kind != drev::Estimate::Kind::estimate) continue;
     if (f.name == "contact changes, comparable") comparable = static_cast<std::size_t>(f.value);
     if (f.name == "contact changes")
-      table.add("accuracy: contact changes",
+      table.add(by + "contact changes",
                 {where, f.value, f.error, static_cast<double>(truth.size()),
                  2.0 * std::abs(static_cast<double>(truth.size()) - static_cast<double>(check.size()))});
     if (f.name == "first contact change" && !truth.empty())
-      table.add("accuracy: time of first contact change",
+      table.add(by + "time of first contact change",
                 {where, f.value, f.error, seconds(truth[0].t), error(0)});
     if (f.name == "last comparable contact change" && comparable > 0 && comparable <= truth.size())
-      table.add("accuracy: time of last comparable contact change",
+      table.add(by + "time of last comparable contact change",
                 {where, f.value, f.error, seconds(truth[comparable - 1].t), error(comparable - 1)});
   }
 }
 
 }  // namespace
 
-void cover_accuracy(const Case& c, double accuracy, std::size_t which, int pairs, Table& table) {
+void cover_accuracy(const Case& c, const Asked& asked, Table& table) {
   const ReferenceModel model(c.spec);
   const drev::System system = to_drev(c.spec);
-  std::vector<std::size_t> channels = one_of_each_kind(model, c.fine, which);
+  std::vector<std::size_t> channels = one_of_each_kind(model, c.fine, asked.which);
   if (channels.empty()) return;
-  std::rotate(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>((which * 5) % channels.size()),
+  std::rotate(channels.begin(),
+              channels.begin() + static_cast<std::ptrdiff_t>((asked.which * 5) % channels.size()),
               channels.end());
-  for (std::size_t pair = 0; pair < static_cast<std::size_t>(pairs) && 2 * pair < channels.size(); ++pair) {
-    const std::size_t a = channels[2 * pair], b = channels[(2 * pair + 1) % channels.size()];
-    const std::string where =
-        c.spec.name + " (" + c.spec.family + "), accuracy " + (accuracy < 1e-8 ? "1e-10" : "1e-6");
+  const bool exact = asked.method == drev::kExact;
+  std::ostringstream text;
+  text << c.spec.name << " (" << c.spec.family << "), " << asked.method << " to " << asked.accuracy;
+  const std::string where = text.str(), by = exact ? "accuracy: " : "accuracy by steps: ";
+  for (std::size_t i = 0; i < static_cast<std::size_t>(asked.pairs) && 2 * i < channels.size(); ++i) {
+    const std::size_t a = channels[2 * i], b = channels[(2 * i + 1) % channels.size()];
     drev::AccuracyResult result;
     try {
-      result = drev::run_to_accuracy(system, {.accuracy = accuracy,
-                                              .t_end = c.spec.duration,
-                                              .deflection = model.channels()[a].name,
-                                              .torques = {model.channels()[b].name},
-                                              .method = {.name = "exact"},
-                                              .most_seconds = 5.0});
+      result = drev::run_to_accuracy(
+          system, {.accuracy = asked.accuracy,
+                   .t_end = c.spec.duration,
+                   .deflection = model.channels()[a].name,
+                   .torques = {model.channels()[b].name},
+                   .method = {.name = asked.method, .tolerance = exact ? 0.0 : asked.accuracy},
+                   .most_seconds = 2.0});
     } catch (const drev::SolverError& e) {
-      table.add_claim("accuracy: the run ends", where + " " + e.what(), false);
+      table.add_claim(by + "the run ends", where + " " + e.what(), false);
       continue;
     }
-    table.add_claim("accuracy: the run ends", where + " " + result.summary.reason, result.summary.ok());
+    table.add_claim(by + "the run ends", where + " " + result.summary.reason, result.summary.ok());
     if (!result.summary.ok()) continue;
     bool true_to_word = true;
     for (const drev::Figure& f : result.figures) {
@@ -84,12 +89,12 @@ void cover_accuracy(const Case& c, double accuracy, std::size_t which, int pairs
       const std::size_t channel = first ? a : b;
       const double truth = static_cast<double>(c.fine.peaks[channel].amplitude());
       table.add(
-          "accuracy: peak of " + std::string(to_text(model.channels()[channel].kind)),
+          by + "peak of " + to_text(model.channels()[channel].kind),
           {where + " " + model.channels()[channel].name, f.value, f.error, truth, c.truth_error(channel)});
-      if (std::abs(f.value - truth) > accuracy * f.scale + c.truth_error(channel)) true_to_word = false;
+      if (std::abs(f.value - truth) > asked.accuracy * f.scale + c.truth_error(channel)) true_to_word = false;
     }
-    compare_edges(c, result, where, table);
-    if (result.reached) table.add_claim("accuracy: reached", where, true_to_word);
+    compare_edges(c, result, where, by, table);
+    if (result.reached) table.add_claim(by + "reached", where, true_to_word);
   }
 }
 

@@ -21,7 +21,8 @@ namespace coverage {
 namespace {
 
 constexpr int kTimes = 20;
-constexpr double kMoved = 1e-9;  // relative, of the perturbed run
+constexpr double kMoved = 1e-9;    // relative, of the perturbed run
+constexpr double kBeside = 1e-15;  // relative, of a time: its two sides
 
 /// Values of channels at given times.
 class Watch final : public drev::Observer {
@@ -87,6 +88,33 @@ double difference(const ReferenceModel& model, const ReferenceResult& a, const R
       most[which] = std::max(most[which], static_cast<double>(std::abs(a.samples[c][i] - b.samples[c][i])));
   }
   return std::max(scale[0] > 0.0 ? most[0] / scale[0] : 0.0, scale[1] > 0.0 ? most[1] / scale[1] : 0.0);
+}
+
+/// At the time that drev gives for a peak the true value is the peak, on one side of it where it jumps.
+void compare_peak_times(const Case& c, const ReferenceModel& model, const drev::Peaks& peaks, double share,
+                        const std::vector<double>& scale, Table& table) {
+  std::vector<double> times;
+  for (const drev::Peak& p : peaks.peaks())
+    for (const double side : {1.0 - kBeside, 1.0 + kBeside})
+      times.push_back(std::min(p.time() * side, c.spec.duration));
+  std::sort(times.begin(), times.end());
+  const ReferenceResult there = reference_result(c.spec, kCheck, times);
+  if (there.failed) return;
+  for (std::size_t i = 0; i < peaks.peaks().size(); ++i) {
+    const double time = peaks.peaks()[i].time();
+    Real most = 0;
+    for (const double side : {1.0 - kBeside, 1.0 + kBeside}) {
+      const auto at = std::lower_bound(times.begin(), times.end(), std::min(time * side, c.spec.duration));
+      most = std::max(most, std::abs(there.samples[i][static_cast<std::size_t>(at - times.begin())]));
+    }
+    table.add("peak's time: " + std::string(to_text(model.channels()[i].kind)) + ", exact at 1e-11",
+              {.where = c.spec.name + " (" + c.spec.family + ") " + model.channels()[i].name + " at " +
+                        std::to_string(time),
+               .value = static_cast<double>(most),
+               .stated = share * scale[i],
+               .truth = size(c.fine, i),
+               .truth_error = c.truth_error(i)});
+  }
 }
 
 }  // namespace
@@ -157,6 +185,7 @@ void cover_runs(const Case& c, Table& table) {
                                        .truth = size(c.fine, i),
                                        .truth_error = c.truth_error(i)});
     }
+    if (tolerance == 1e-11) compare_peak_times(c, model, peaks, share, scale, table);
   }
 }
 

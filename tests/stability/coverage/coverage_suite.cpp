@@ -46,8 +46,12 @@ int main(int argc, char** argv) {
       if (!c.usable) table.add_note("the reference fails: " + c.spec.name + ": " + c.problem);
       if (c.usable && (all() || part == "runs")) cover_runs(c, table);
       if (c.usable && (all() || part == "contacts")) cover_contacts(c, table);
-      if (c.usable && (all() || part == "accuracy"))
-        cover_accuracy(c, seed / 10 % 2 ? 1e-10 : 1e-6, seed / 10, 2, table);
+      if (c.usable && (all() || part == "accuracy")) {
+        cover_accuracy(c, {.accuracy = seed / 10 % 2 ? 1e-10 : 1e-6, .which = seed / 10}, table);
+        if (seed / 10 % 3 == 0)
+          cover_accuracy(
+              c, {.accuracy = 1e-3, .method = "dormand_prince", .which = seed / 10 + 1, .pairs = 1}, table);
+      }
       std::cerr << c.spec.name << " (" << c.spec.family << "): " << c.spec.nodes.size() << " nodes, "
                 << c.fine.edges.size() << " contact changes, growth " << c.growth;
     }

@@ -154,7 +154,7 @@ TEST_CASE("Coverage: every stated error of twelve random models and four periodi
     REQUIRE(c.usable);
     cover_runs(c, table);
     cover_contacts(c, table);
-    cover_accuracy(c, seed % 2 ? 1e-10 : 1e-6, seed, 1, table);
+    cover_accuracy(c, {.accuracy = seed % 2 ? 1e-10 : 1e-6, .which = seed, .pairs = 1}, table);
   }
   constexpr int kHarmonics[] = {8, 32, 128, 0};
   for (unsigned i = 0; i < 4; ++i) cover_periodic(random_periodic_spec(3 * i + 6), kHarmonics[i], table);
