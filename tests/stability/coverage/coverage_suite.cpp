@@ -1,6 +1,6 @@
 // The coverage suite as a program: random models, every kind of figure, each against the reference.
-//   coverage_suite [--models N] [--first SEED] [--missed] [--family TEXT] [--part NAME]
-// --missed lists what does not hold; --family takes only models whose family holds the text; --part: only
+//   coverage_suite [--models N] [--first SEED] [--missed] [--channels] [--family TEXT] [--part NAME]
+// --missed lists what does not hold; --channels gives each kind of channel a row; --family takes only models whose family holds the text; --part: only
 // runs, accuracy, contacts, modes, periodic or statistics.
 #include <chrono>
 #include <cstdlib>
@@ -20,7 +20,7 @@ constexpr int kRuns = 4;  // of each chaotic model
 int main(int argc, char** argv) {
   using namespace coverage;
   unsigned models = 300, first = 1;
-  bool missed = false;
+  bool missed = false, channels = false;
   std::string family, part;
   for (int i = 1; i < argc; ++i) {
     if (!std::strcmp(argv[i], "--models") && i + 1 < argc)
@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
       part = argv[++i];
     else if (!std::strcmp(argv[i], "--missed"))
       missed = true;
+    else if (!std::strcmp(argv[i], "--channels"))
+      channels = true;
   }
   Table table;
   const auto all = [&] { return part.empty(); };
@@ -63,5 +65,5 @@ int main(int argc, char** argv) {
     std::cerr << " [" << seed << ", "
               << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s]\n";
   }
-  table.print(std::cout, missed);
+  table.print(std::cout, missed, channels);
 }

@@ -115,7 +115,7 @@ namespace {
 
 std::string text_of(const Table& table) {
   std::ostringstream text;
-  table.print(text, true);
+  table.print(text, true, true);
   return text.str();
 }
 
