@@ -21,7 +21,23 @@ Case make_case(const Spec& spec);
 
 /// Values at random times and contact counts of exact propagation at tolerances 1e-8 and 1e-11, peaks beside them.
 void cover_runs(const Case& c, Table& table);
-/// Peaks of one channel of every kind, contact changes and order amplitudes from run_to_accuracy.
-void cover_accuracy(const Case& c, double accuracy, Table& table);
+/// What run_to_accuracy is asked for: `pairs` times two channels, each of another kind; `which` chooses them.
+struct Asked {
+  double accuracy = 1e-6;
+  std::string method = "exact";
+  std::size_t which = 0;
+  int pairs = 2;
+};
+/// Peaks, contact changes, and whether "reached" is true.
+void cover_accuracy(const Case& c, const Asked& asked, Table& table);
+/// Impacts, times apart and largest forces of drev's contact table, from exact propagation at 1e-11.
+void cover_contacts(const Case& c, Table& table);
+/// Frequencies, and values lambda of the damped motion, contacts closed.
+void cover_modes(const Spec& spec, Table& table);
+/// Motion, peaks and order amplitudes of solve_periodic, against a reference run that has settled; order
+/// amplitudes of run_to_accuracy. The spec has a period.
+void cover_periodic(const Spec& spec, int harmonics, Table& table);
+/// 95 % intervals of time averages of a chaotic model, `runs` times from other starts, against a longer run.
+void cover_statistics(unsigned seed, int runs, Table& table);
 
 }  // namespace coverage

@@ -10,7 +10,7 @@ namespace coverage {
 
 namespace {
 
-constexpr double kRounding = 4e-16;  // of a double's own last digit, relative
+constexpr double kLastDigit = 4e-16;  // of a double's own last digit, relative
 
 double median(std::vector<double> x) {
   if (x.empty()) return 0.0;
@@ -43,7 +43,7 @@ void Table::enter(Row& row, const Comparison& c, double ratio, bool undecided) {
 
 void Table::add(const std::string& kind, const Comparison& c) {
   const double actual = std::abs(c.value - c.truth);
-  const double stated = c.stated + kRounding * std::abs(c.truth);
+  const double stated = c.stated + kLastDigit * std::abs(c.truth);
   // What the reference does not know counts for drev up to the size of the statement; beyond, nothing is said.
   const bool undecided = c.truth_error > std::max(stated, 0.1 * actual);
   const double left = std::max(0.0, actual - c.truth_error);
@@ -66,14 +66,26 @@ void Table::add_claim(const std::string& kind, const std::string& where, bool ho
   add(kind, {.where = where, .value = holds ? 0.0 : 1.0});
 }
 
+void Table::append(Row& to, const Row& from) {
+  to.tried += from.tried, to.held += from.held, to.undecided += from.undecided;
+  to.ratios.insert(to.ratios.end(), from.ratios.begin(), from.ratios.end());
+  if (from.worst > to.worst) to.worst = from.worst, to.worst_case = from.worst_case;
+}
+
+std::map<std::string, Table::Row> Table::grouped(const std::map<std::string, Row>& rows) {
+  std::map<std::string, Row> groups;
+  for (const auto& [kind, row] : rows) {
+    const std::size_t open = kind.find(" ["), close = kind.find(']');
+    append(groups[open == std::string::npos ? kind : kind.substr(0, open) + kind.substr(close + 1)], row);
+  }
+  return groups;
+}
+
 void Table::merge(const Table& other) {
   for (const auto* from : {&other.errors_, &other.intervals_}) {
     auto& to = from == &other.errors_ ? errors_ : intervals_;
     for (const auto& [kind, row] : *from) {
-      Row& r = to[kind];
-      r.tried += row.tried, r.held += row.held, r.undecided += row.undecided;
-      r.ratios.insert(r.ratios.end(), row.ratios.begin(), row.ratios.end());
-      if (row.worst > r.worst) r.worst = row.worst, r.worst_case = row.worst_case;
+      append(to[kind], row);
     }
   }
   missed_.insert(missed_.end(), other.missed_.begin(), other.missed_.end());
@@ -82,15 +94,12 @@ void Table::merge(const Table& other) {
 
 Table::Row Table::all() const {
   Row sum;
-  for (const auto& [kind, row] : errors_) {
-    sum.tried += row.tried, sum.held += row.held, sum.undecided += row.undecided;
-    if (row.worst > sum.worst) sum.worst = row.worst, sum.worst_case = row.worst_case;
-  }
+  for (const auto& [kind, row] : errors_) append(sum, row);
   return sum;
 }
 
-void Table::print(std::ostream& out, bool list_missed) const {
-  print_rows(out, errors_);
+void Table::print(std::ostream& out, bool list_missed, bool every_channel) const {
+  print_rows(out, every_channel ? errors_ : grouped(errors_));
   const Row sum = all();
   out << "\nstated errors: " << sum.held << " of " << sum.tried << " hold (" << std::fixed
       << std::setprecision(2) << 100.0 * sum.share() << " %), " << sum.undecided << " undecided\n"

@@ -36,9 +36,12 @@ class Table {
   const std::vector<Comparison>& missed() const { return missed_; }
   /// Over all kinds of errors.
   Row all() const;
-  void print(std::ostream& out, bool list_missed) const;
+  /// A row a kind; of kinds "... [channel] ..." one for all channels, or (every_channel) one each.
+  void print(std::ostream& out, bool list_missed, bool every_channel = false) const;
 
  private:
+  static void append(Row& to, const Row& from);
+  static std::map<std::string, Row> grouped(const std::map<std::string, Row>& rows);
   static void enter(Row& row, const Comparison& c, double ratio, bool undecided);
   std::map<std::string, Row> errors_, intervals_;
   std::vector<Comparison> missed_;

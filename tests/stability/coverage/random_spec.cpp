@@ -182,7 +182,7 @@ class Maker {
   void hold() {
     if (turns_) {
       spec_.nominal = {.node = 0, .omega_0 = speed_, .omega_1 = speed_};
-      spec_.nodes[0].prescribed = dice_.one_in(2);
+      spec_.nodes[0].prescribed = periodic_ || dice_.one_in(2);
     } else if (dice_.one_in(2)) {
       spec_.nodes[0].prescribed = true;
     } else if (dice_.one_in(2)) {
@@ -298,6 +298,33 @@ Spec random_periodic_spec(unsigned seed) {
                                  {.name = "periodic, backlash", .gaps = true},
                                  {.name = "periodic, feedback", .feedback = true}};
   return Maker(seed, families[seed % 3], true).make();
+}
+
+Spec random_chaotic_spec(unsigned seed) {
+  Dice dice(seed);
+  Spec spec;
+  spec.name = "chaotic " + std::to_string(seed);
+  spec.family = "chaotic";
+  const double inertia = dice.logarithmic(0.01, 0.1), stiffness = dice.logarithmic(5e3, 5e4);
+  const double omega = std::sqrt(stiffness / inertia), torque = dice.logarithmic(20.0, 100.0);
+  spec.nodes = {{.inertia = 1.0, .prescribed = true}, {.inertia = inertia}};
+  const double half = torque / stiffness * dice(1.7, 2.4), reach = 3 * half;
+  spec.polylines = {{.a = 0,
+                     .b = 1,
+                     .x = {-reach, -half, half, reach},
+                     .y = {-stiffness * (reach - half), 0.0, 0.0, stiffness * (reach - half)}}};
+  spec.dashpots = {{.a = 1, .b = -1, .damping = dice(0.06, 0.12) * inertia * omega}};
+  const double f = omega / kTwoPi * dice(0.9, 1.1);
+  spec.loads = {
+      {.kind = Load::Kind::harmonics_in_time, .node = 1, .harmonics = {{f, torque, dice.phase()}}},
+      {.kind = Load::Kind::table_in_time, .node = 1, .times = {0.0}, .torques = {torque * dice(0.1, 0.3)}}};
+  if (dice.one_in(3)) {
+    spec.nodes.push_back({.inertia = inertia * dice(0.05, 0.2)});
+    spec.shafts = {{.a = 1, .b = 2, .stiffness = stiffness * dice(1.0, 4.0), .damping = 0.0}};
+  }
+  spec.period = 1.0 / f;
+  spec.duration = 400 * spec.period;
+  return spec;
 }
 
 }  // namespace coverage

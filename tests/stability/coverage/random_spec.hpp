@@ -11,7 +11,10 @@ namespace coverage {
 /// stiffness, run-ups and twist feedback without it; `family` says which.
 Spec random_spec(unsigned seed);
 
-/// The same with the nominal speed or the loads' frequency constant, damped, and with one period.
+/// With one period, damped, its first node moving as given, so that the motion settles.
 Spec random_periodic_spec(unsigned seed);
+
+/// A dead band that a harmonic torque crosses over and over for 400 periods; most are chaotic.
+Spec random_chaotic_spec(unsigned seed);
 
 }  // namespace coverage
