@@ -141,9 +141,9 @@ function toolbar(group, ...more) {
   );
 }
 
-/// Names of curves for dygraphs, which reads them as HTML, finds curves by them, and takes some words (__proto__)
-/// for its own: a blank of no width makes each a word of no meaning.
-const curveName = (label) => `\u200b${asMarkup(label)}`;
+/// Names of curves for dygraphs, which finds curves by them and takes some words (__proto__) for its own: a blank
+/// of no width makes each a word of no meaning. It shows them as texts; titles of axes it reads as HTML.
+const curveName = (label) => `\u200b${label}`;
 
 /// One chart. options: {group, title, caption, labels, rows(from, to, columns) -> {rows, sparse}, xName, xLabel; and
 /// where they are not the usual: yLabel, valueRange, log, tall, colors(), series(label, i), underlay}.

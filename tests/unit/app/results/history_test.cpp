@@ -179,7 +179,7 @@ TEST_CASE("What someone else has put in the way of a file is neither followed no
 
 TEST_CASE("A name that a spreadsheet would take for a formula is marked in history.csv") {
   const TemporaryFolder folder;
-  std::ofstream(folder / "m.toml") << R"(format = 1
+  std::ofstream(folder / "m.toml") << R"toml(format = 1
 [nodes]
 "=HYPERLINK(1)" = { initial_speed_rpm = 1 }
 "+1" = {}
@@ -194,7 +194,7 @@ J4 = { type = "inertia", node = "@x", inertia_kg_m2 = 1 }
 J5 = { type = "inertia", node = "a=b", inertia_kg_m2 = 1 }
 [run]
 duration_s = 0.1
-)";
+)toml";
   const auto run = drev_command({"run", (folder / "m.toml").string(), "--out", (folder / "r").string()});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
