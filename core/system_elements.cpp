@@ -74,12 +74,14 @@ void SystemBuilder::describe_elements() {
       faulty();
       continue;
     }
-    bool right = true, ties = false;
-    usable = usable && check_kinds(p, nodes);
+    bool right = true, ties = false, kinds_known = false;
     parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
       right = right && check_terms(terms, of_part, p);
       ties = ties || !right || !terms.mass.isZero(0.0) || !terms.constraints.empty();
-      if (right && usable) keep(e, of_part, terms);
+      if (!right || !usable) return;
+      if (!kinds_known) usable = check_kinds(p, nodes);
+      kinds_known = true;
+      if (usable) keep(e, of_part, terms);
     });
     if (!resolved) inertia_in_doubt_ |= ties;
     if (!right || !usable) faulty();

@@ -78,6 +78,11 @@ class Process {
   }
 
   void send(int signal) const { ::kill(id_, signal); }
+  /// From now on, what it writes fits into files of so many bytes.
+  void limit_files(rlim_t bytes) const {
+    const rlimit file{bytes, bytes};
+    ::prlimit(id_, RLIMIT_FSIZE, &file, nullptr);
+  }
 
   Outcome wait() const {
     int status = 0;

@@ -288,16 +288,15 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
 }
 
 TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
-  if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryFolder folder;
   const Process process({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  std::filesystem::create_symlink("/dev/full", folder / "r/summary.partial.json.next");
+  process.limit_files(100);
   process.send(SIGTERM);
   const auto run = process.wait();
   CHECK(run.exit_code == 130);
-  CHECK(contains(run.err, "summary.partial.json: No space left on device"));
+  CHECK(contains(run.err, "summary.partial.json: File too large"));
   CHECK(Json::parse(read_file(folder / "r/summary.partial.json")).at("status") == "running");
 }
 
