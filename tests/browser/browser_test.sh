@@ -31,7 +31,7 @@ fail() {
 headless() {
   local root=()
   [ "$(id -u)" != 0 ] || root=(--no-sandbox)
-  timeout 120 "$browser" --headless --disable-gpu --no-first-run "${root[@]}" --enable-logging=stderr \
+  timeout 280 "$browser" --headless --disable-gpu --no-first-run "${root[@]}" --enable-logging=stderr \
     --user-data-dir="$folder/profile" "$@"
 }
 

@@ -53,6 +53,6 @@ plain() { local text=${1//\"/}; printf %s "${text//[.,]/}"; }
   echo '[run]'
   echo 'duration_s = 0.2'
   echo 'record = ['
-  for ((i = 0; i < ${#nodes[@]}; i += 4)); do echo "  \"${nodes[$i]}.angle_rad\","; done
+  for ((i = 0; i < ${#nodes[@]}; i += 8)); do echo "  \"${nodes[$i]}.angle_rad\","; done
   echo ']'
 } >"$1"

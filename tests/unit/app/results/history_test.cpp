@@ -289,12 +289,16 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
 
 TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
   const TemporaryFolder folder;
-  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  // A summary has more bytes than there is room for, the history few.
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "5000", "--record",
+                         "end.angle_rad", "--out", (folder / "r").string()},
+                        "/dev/null");
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  process.limit_files(100);
+  process.limit_files(1000);
   process.send(SIGTERM);
   const auto run = process.wait();
+  CAPTURE(run.err);
   CHECK(run.exit_code == 130);
   CHECK(contains(run.err, "summary.partial.json: File too large"));
   CHECK(Json::parse(read_file(folder / "r/summary.partial.json")).at("status") == "running");
