@@ -20,6 +20,7 @@ constexpr int kRepeats = 3;
 constexpr double kMostCost = 3.0;     // of a rung over the full model; dearer ones are given up
 constexpr double kDear = 0.5;         // cost of few modes over that of all, with their static shapes
 constexpr double kStaticPart = 0.25;  // of the static shapes of loads, over what is allowed
+constexpr double kAsCheap = 1.25;     // times the least cost: no difference that would last
 constexpr int kSteadyTurns = 2;
 constexpr double kSteadyPart = 0.2;
 
@@ -269,10 +270,14 @@ class Ladder {
   /// What differences are relative to; a figure may be zero.
   double scale() const { return full_rung_.value != 0.0 ? std::abs(full_rung_.value) : 1.0; }
 
+  /// Of those that cost about as little as the cheapest, the one that leaves out least, which stands last: times
+  /// vary from run to run, and the choice should not.
   void choose() {
+    double least = full_rung_.seconds;
+    for (const Rung& rung : advice_.rungs)
+      if (rung.holds) least = std::min(least, rung.seconds);
     advice_.chosen = advice_.rungs.size() - 1;
-    for (std::size_t i = 0; i < advice_.rungs.size(); ++i)
-      if (advice_.rungs[i].holds && advice_.rungs[i].seconds < advice_.best().seconds) advice_.chosen = i;
+    while (!advice_.best().holds || advice_.best().seconds > kAsCheap * least) --advice_.chosen;
     advice_.sentence = evidence_.sentence(advice_);
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <limits>
 
@@ -60,6 +61,13 @@ struct Run {
   std::string failure;
 };
 
+/// To two digits: more of a measured time mean nothing.
+std::string rounded(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", seconds);
+  return text;
+}
+
 Run run_once(const System& system, const Method& method, const FigureOptions& o, State state,
              double most_seconds = std::numeric_limits<double>::infinity()) {
   FigureWatch figure(system, o);
@@ -78,7 +86,7 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
       state, observers);
   if (!summary.ok()) run.failure = summary.reason;
   if (summary.status == RunStatus::interrupted)
-    run.failure = "a run takes longer than " + to_text(most_seconds) + " s";
+    run.failure = "a run takes longer than the time allowed for it, " + rounded(most_seconds) + " s";
   run.value = figure.peak().value();
   run.end = std::move(state);
   run.watched = watched.peaks();

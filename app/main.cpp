@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string_view>
 
 #include "app/base/output_file.hpp"
@@ -48,6 +49,12 @@ int guarded_main(int argc, char** argv) {
     return kNotWritten;
   } catch (const SolverError& error) {
     std::fprintf(stderr, "drev: the computation failed: %s\n", error.what());
+    return kNotTrusted;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(
+        stderr,
+        "drev: there is not enough memory: take a model with fewer nodes or segments, record fewer channels "
+        "(--record), or fewer rows (--every)\n");
     return kNotTrusted;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "drev: failed: %s\n", error.what());

@@ -85,6 +85,15 @@ class Element {
   virtual void check(ParameterCheck& check) const = 0;
   /// Adds its terms; nodes = named nodes given + internal nodes.
   virtual void describe(int nodes, Terms& terms) const = 0;
+
+  /// An element of very many nodes may state its terms in parts, each over few of them, so that memory and time
+  /// grow with their number and not with its square. 0: it has no parts, and describe() says all. Otherwise the
+  /// parts say together what describe() says.
+  virtual int part_count() const { return 0; }
+  /// The nodes of a part, in the numbering of describe().
+  virtual std::vector<int> part_nodes(int /*part*/) const { return {}; }
+  /// Adds the terms of a part, over its own nodes.
+  virtual void describe_part(int /*part*/, Terms& /*terms*/) const {}
 };
 
 /// Shared by the elements with two ends or one end and ground: (-1, 1) or (1). The relative motion is

@@ -36,7 +36,38 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// Names may come from anywhere: what would steer a terminal is shown as \xNN.
+std::string printable(const std::string& text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = control_bytes(text, i);
+    for (std::size_t k = 0; k < bytes; ++k) {
+      constexpr char kDigits[] = "0123456789abcdef";
+      const auto c = static_cast<unsigned char>(text[i + k]);
+      shown += {'\\', 'x', kDigits[c / 16], kDigits[c % 16]};
+    }
+    if (bytes == 0) shown += text[i];
+    i += std::max<std::size_t>(bytes, 1);
+  }
+  return shown;
+}
+
 }  // namespace
+
+std::size_t control_bytes(std::string_view text, std::size_t at) {
+  const auto c = static_cast<unsigned char>(text[at]);
+  if (c < 0x20 || c == 0x7f) return 1;
+  // U+0080 to U+009F, in UTF-8.
+  if (c != 0xc2 || at + 1 == text.size()) return 0;
+  const auto next = static_cast<unsigned char>(text[at + 1]);
+  return next >= 0x80 && next < 0xa0 ? 2 : 0;
+}
+
+bool has_control_characters(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (control_bytes(text, i) > 0) return true;
+  return false;
+}
 
 std::string Finding::text() const {
   std::string line = place;
@@ -46,7 +77,7 @@ std::string Finding::text() const {
     if (!unit.empty()) line += " " + unit;
   }
   if (!range.empty()) line += (parameter.empty() && value.empty() ? ": " : ", ") + range;
-  return line;
+  return printable(line);
 }
 
 ModelError::ModelError(std::vector<Finding> findings)

@@ -14,6 +14,7 @@ struct Finding {
   std::string value;      ///< as given, e.g. "-0.0001"
   std::string unit;       ///< SI unit, e.g. "m"; empty if it has none
   std::string range;      ///< what is admissible, e.g. "must be >= 0"
+  /// In one line; control characters are shown as \xNN.
   std::string text() const;
 };
 
@@ -61,6 +62,9 @@ std::string to_text(double value);
 
 /// The candidate closest in spelling (edit distance), or empty if none is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+/// Bytes of the control character (C0, DEL or C1, in UTF-8) that begins at text[at]; 0: none does.
+std::size_t control_bytes(std::string_view text, std::size_t at);
+bool has_control_characters(std::string_view text);
 /// "; did you mean 'x'?" or empty.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 

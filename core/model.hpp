@@ -76,8 +76,8 @@ class Model {
  public:
   explicit Model(std::string name) : name_(std::move(name)) {}
 
-  /// Adds a node. Names are unique and non-empty, without '.', ',' and line ends (channel names are
-  /// NODE.angle_rad); build() reports those that are not.
+  /// Adds a node. Names are unique and non-empty, without '.', ',', quotes and control characters
+  /// (channel names are NODE.angle_rad); build() reports those that are not.
   NodeId add_node(std::string name, NodeKind kind = NodeKind::rotational);
 
   /// Adds an element of the catalogue or of one's own, e.g.

@@ -13,7 +13,7 @@ constexpr double kSpeedTolerance = 1e-9;    // relative, constant_speed against 
 constexpr double kInitialTolerance = 1e-9;  // relative, of initial conditions that say the same
 
 bool usable_name(const std::string& name) {
-  return !name.empty() && name.find_first_of(".,\n\r\"") == std::string::npos;
+  return !name.empty() && name.find_first_of(".,\"") == std::string::npos && !has_control_characters(name);
 }
 
 }  // namespace
@@ -45,12 +45,14 @@ void SystemBuilder::check_names() {
   system_.node_names_ = model_.node_names_;
   system_.node_kinds_ = model_.node_kinds();
   system_.element_instances_ = model_.element_instances_;
+  if (has_control_characters(model_.name()))
+    findings_.push_back({model_.name(), "name", model_.name(), "", "must be without control characters"});
   if (model_.node_names().empty())
     findings_.push_back({model_.name(), "nodes", "0", "", "the model is empty; add nodes"});
   const auto check = [this](const char* what, const std::string& name, bool first) {
     if (!usable_name(name))
-      findings_.push_back(
-          {model_.name(), what, name, "", "must be non-empty, without '.', ',', quotes and line ends"});
+      findings_.push_back({model_.name(), what, name, "",
+                           "must be non-empty, without '.', ',', quotes and control characters"});
     if (!first) findings_.push_back({model_.name(), what, name, "", "is used twice"});
   };
   const auto name_of_node = [this](int i) -> const std::string& { return node_name(i); };

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/contradictions.hpp"
+#include "core/element_parts.hpp"
 #include "core/system_builder.hpp"
 
 namespace drev {
@@ -41,7 +42,7 @@ std::vector<int> SystemBuilder::resolve_nodes(const ElementInstance& p, bool& us
 }
 
 void SystemBuilder::describe_elements() {
-  Terms zero(0), terms(0);  // kept, so that elements of one size allocate their matrices once
+  ElementParts parts;
   for (int e = 0; e < static_cast<int>(model_.element_instances().size()); ++e) {
     const ElementInstance& p = model_.element_instances()[idx(e)];
     bool usable = true;
@@ -73,20 +74,17 @@ void SystemBuilder::describe_elements() {
       faulty();
       continue;
     }
-    if (zero.mass.rows() != static_cast<Eigen::Index>(nodes.size()))
-      zero = Terms(static_cast<int>(nodes.size()));
-    terms = zero;
-    p.element->describe(static_cast<int>(nodes.size()), terms);
-    if (!check_terms(terms, nodes, p)) {
-      inertia_in_doubt_ |= !resolved;
-      faulty();
-      continue;
-    }
-    if (!resolved) inertia_in_doubt_ |= !terms.mass.isZero(0.0) || !terms.constraints.empty();
-    if (usable && check_kinds(p, nodes))
-      keep(e, nodes, terms);
-    else
-      faulty();
+    bool right = true, ties = false, kinds_known = false;
+    parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
+      right = right && check_terms(terms, of_part, p);
+      ties = ties || !right || !terms.mass.isZero(0.0) || !terms.constraints.empty();
+      if (!right || !usable) return;
+      if (!kinds_known) usable = check_kinds(p, nodes);
+      kinds_known = true;
+      if (usable) keep(e, of_part, terms);
+    });
+    if (!resolved) inertia_in_doubt_ |= ties;
+    if (!right || !usable) faulty();
   }
 }
 
@@ -161,24 +159,24 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
 std::vector<OutputTerm> System::outputs() const {
   const NameIndex by_name(node_count(), [this](int i) -> const std::string& { return node_names()[idx(i)]; });
   std::vector<OutputTerm> outputs;
+  ElementParts parts;
   for (std::size_t e = 0; e < element_instances().size(); ++e) {
     const ElementInstance& p = element_instances()[e];
     std::vector<int> nodes;
     for (const NodeRef& ref : p.nodes) nodes.push_back(ref.id ? index(*ref.id) : by_name.find(ref.name));
     for (const NodeId id : p.internal) nodes.push_back(index(id));
-    Terms terms(static_cast<int>(nodes.size()));
-    p.element->describe(static_cast<int>(nodes.size()), terms);
     const ElementId id{static_cast<int>(e)};
-    for (OutputSpec& o : terms.outputs)
-      outputs.push_back(
-          {id, std::move(o.suffix), over_nodes(o.stiffness, nodes), over_nodes(o.damping, nodes)});
-    for (const ScalarSpec& s : terms.scalars)
-      if (const LawPiece* line = straight_line(s)) {
-        const bool along = s.along_line_of_action;
-        outputs.push_back(
-            {id, "", over_nodes(line->k * s.b, nodes), over_nodes(line->c * s.b, nodes), along});
-        outputs.push_back({id, "", over_nodes(s.b, nodes), {}, along, true});
-      }
+    parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
+      for (const OutputSpec& o : terms.outputs)
+        outputs.push_back({id, o.suffix, over_nodes(o.stiffness, of_part), over_nodes(o.damping, of_part)});
+      for (const ScalarSpec& s : terms.scalars)
+        if (const LawPiece* line = straight_line(s)) {
+          const bool along = s.along_line_of_action;
+          outputs.push_back(
+              {id, "", over_nodes(line->k * s.b, of_part), over_nodes(line->c * s.b, of_part), along});
+          outputs.push_back({id, "", over_nodes(s.b, of_part), {}, along, true});
+        }
+    });
   }
   return outputs;
 }

@@ -39,7 +39,7 @@ class AppliedTorque final : public Element, public Load {
                  "exactly one of torque, table and harmonics must be given");
     check.all_finite("breakpoints", params_.breakpoints, "s");
     if (params_.table) params_.table->check(check, "table", "N m");
-    check_harmonics(check, "harmonics", params_.harmonics, "N m", false);
+    check_harmonics(check, "harmonics", params_.harmonics, "N m", false, "frequency", "Hz");
   }
   void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
 

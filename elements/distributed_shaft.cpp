@@ -45,30 +45,45 @@ double DistributedShaft::segment_inertia() const {
   return params_.density * polar_area_moment(params_) * params_.length / params_.segments;
 }
 
-void DistributedShaft::describe(int nodes, Terms& terms) const {
+// Positions along the shaft 0..n in the element's node order: a, b, internal.
+std::vector<int> DistributedShaft::part_nodes(int part) const {
+  const auto local = [n = params_.segments](int position) {
+    return position == 0 ? 0 : position == n ? 1 : position + 1;
+  };
+  return {local(part), local(part + 1)};
+}
+
+void DistributedShaft::describe_part(int part, Terms& terms) const {
   const double k = segment_stiffness(), j = segment_inertia();
-  const int n = params_.segments;
   const double coupled = params_.mass == SegmentMass::lumped       ? 0.0
                          : params_.mass == SegmentMass::consistent ? j / 6.0
                                                                    : j / 12.0;
-  // Positions along the shaft 0..n in the element's node order: a, b, internal.
-  const auto local = [n](int position) { return position == 0 ? 0 : position == n ? 1 : position + 1; };
-  for (int s = 0; s < n; ++s) {
-    const int a = local(s), b = local(s + 1);
-    terms.mass(a, a) += 0.5 * j - coupled;
-    terms.mass(b, b) += 0.5 * j - coupled;
-    terms.mass(a, b) += coupled;
-    terms.mass(b, a) += coupled;
-    LocalRow row = LocalRow::Zero(nodes);
-    row[a] = -1.0;
-    row[b] = 1.0;
-    terms.stiffness(a, a) += k;
-    terms.stiffness(b, b) += k;
-    terms.stiffness(a, b) -= k;
-    terms.stiffness(b, a) -= k;
-    terms.outputs.push_back(
-        {.suffix = std::to_string(s + 1), .stiffness = k * row, .damping = LocalRow::Zero(nodes)});
-    terms.speed_ratio_constraints.push_back({.b = std::move(row)});
+  const LocalRow b = relative_motion(2);
+  terms.mass.diagonal().setConstant(0.5 * j - coupled);
+  terms.mass(0, 1) = terms.mass(1, 0) = coupled;
+  terms.stiffness = k * b * b.transpose();
+  terms.outputs.push_back(
+      {.suffix = std::to_string(part + 1), .stiffness = k * b, .damping = LocalRow::Zero(2)});
+  terms.speed_ratio_constraints.push_back({.b = b});
+  terms.rayleigh = true;
+}
+
+void DistributedShaft::describe(int nodes, Terms& terms) const {
+  for (int part = 0; part < params_.segments; ++part) {
+    const std::vector<int> own = part_nodes(part);
+    const auto spread = [&](const LocalRow& row) {
+      LocalRow wide = LocalRow::Zero(nodes);
+      wide(own) = row;
+      return wide;
+    };
+    Terms segment(2);
+    describe_part(part, segment);
+    terms.mass(own, own) += segment.mass;
+    terms.stiffness(own, own) += segment.stiffness;
+    for (OutputSpec& o : segment.outputs)
+      terms.outputs.push_back({std::move(o.suffix), spread(o.stiffness), spread(o.damping)});
+    for (const SpeedRatioConstraint& c : segment.speed_ratio_constraints)
+      terms.speed_ratio_constraints.push_back({.b = spread(c.b)});
   }
   terms.rayleigh = true;
 }

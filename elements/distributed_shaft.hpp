@@ -39,6 +39,9 @@ class DistributedShaft final : public Element {
   std::vector<NodeKind> internal_nodes() const override;
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
+  int part_count() const override { return params_.segments; }  ///< the segments, from a to b
+  std::vector<int> part_nodes(int part) const override;
+  void describe_part(int part, Terms& terms) const override;
 
   const Params& params() const { return params_; }
   double segment_stiffness() const;  ///< k [N m/rad]

@@ -31,15 +31,16 @@ inline CurvePoint sum_at(const std::vector<Harmonic>& harmonics, double angle) {
   return sum;
 }
 
-/// Orders > 0 (whole where asked), amplitudes and phases finite.
+/// Orders > 0 (whole where asked), amplitudes and phases finite. `order` is what the caller calls an order.
 inline void check_harmonics(ParameterCheck& check, const std::string& parameter,
                             const std::vector<Harmonic>& harmonics, const std::string& unit,
-                            bool whole_orders) {
+                            bool whole_orders, const std::string& order = "order",
+                            const std::string& order_unit = "") {
   for (std::size_t i = 0; i < harmonics.size(); ++i) {
     const std::string item = parameter + "[" + std::to_string(i) + "]";
-    check.positive(item + ".order", harmonics[i].order, "");
+    check.positive(item + "." + order, harmonics[i].order, order_unit);
     if (whole_orders && harmonics[i].order != std::floor(harmonics[i].order))
-      check.fail(item + ".order", to_text(harmonics[i].order), "", "must be a whole number");
+      check.fail(item + "." + order, to_text(harmonics[i].order), order_unit, "must be a whole number");
     check.finite(item + ".amplitude", harmonics[i].amplitude, unit);
     check.finite(item + ".phase", harmonics[i].phase, "rad");
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace drev {
 
@@ -29,6 +30,46 @@ MeshStiffness MeshStiffness::fourier_of_step(double single, double both, double 
 
 MeshStiffness MeshStiffness::table(std::vector<double> phases, std::vector<double> stiffnesses) {
   return MeshStiffness(Law(PeriodicTable(std::move(phases), std::move(stiffnesses), 1.0)));
+}
+
+/// A value over the period that is not positive, if there is one; else some positive value. A stretch of half
+/// width r about a point is left as soon as value - |slope| r - curvature r^2/2, which no value in it is below, is
+/// positive; the others are halved.
+double MeshStiffness::low_value_of(const Fourier& series) {
+  constexpr double kFinest = 1e-9;  // of the period: a minimum so narrow that is positive is taken as such
+  double size = 0.0, curvature = 0.0, phases = 0.0;
+  for (const Harmonic& h : series.harmonics) {
+    size += std::abs(h.amplitude);
+    curvature += std::abs(h.amplitude) * std::pow(kTwoPi * h.order, 2);
+    phases += h.phase;
+  }
+  if (size < series.mean || !std::isfinite(curvature + phases)) return series.mean - size;
+  // mean + Re sum c_n z^n at z = exp(2 pi i s), by Horner's rule: far cheaper than cosines where n is large.
+  std::vector<std::complex<double>> c(1, series.mean);
+  for (const Harmonic& h : series.harmonics) {
+    const auto n = static_cast<std::size_t>(h.order);
+    if (c.size() <= n) c.resize(n + 1);
+    c[n] += std::polar(1.0, h.phase) * h.amplitude;
+  }
+  struct Stretch {
+    double middle, r;
+  };
+  std::vector<Stretch> open;
+  const auto count = static_cast<double>(c.size());
+  for (double i = 0.0; i < count; i += 1.0) open.push_back({(i + 0.5) / count, 0.5 / count});
+  double lowest = series.mean;
+  while (!open.empty() && lowest > 0.0) {
+    const auto [middle, r] = open.back();
+    open.pop_back();
+    const std::complex<double> z = std::polar(1.0, kTwoPi * middle);
+    std::complex<double> sum, slope;
+    for (auto n = c.rbegin(); n != c.rend(); ++n) slope = slope * z + sum, sum = sum * z + *n;
+    const double value = sum.real(), steepness = kTwoPi * std::abs((slope * z).imag());
+    lowest = std::min(lowest, value);
+    if (value - steepness * r - 0.5 * curvature * r * r > 0.0 || r < kFinest) continue;
+    for (const double side : {-0.5, 0.5}) open.push_back({middle + side * r, 0.5 * r});
+  }
+  return lowest;
 }
 
 CurvePoint MeshStiffness::at(double phase) const {
@@ -77,14 +118,17 @@ void MeshStiffness::check(ParameterCheck& check, const std::string& parameter) c
   } else if (const auto* series = std::get_if<Fourier>(&law_)) {
     check.positive(parameter + ".mean", series->mean, "N/m");
     check_harmonics(check, parameter + ".harmonics", series->harmonics, "N/m", true);
-    // A series has no closed-form minimum: sample it well above its highest order.
-    double highest = 1.0;
-    for (const Harmonic& h : series->harmonics) highest = std::max(highest, h.order);
-    const int samples = static_cast<int>(std::min(32.0 * highest, 4096.0));
-    double lowest = series->mean;
-    for (int i = 0; i < samples; ++i) lowest = std::min(lowest, at(double(i) / samples).value);
-    if (series->mean > 0.0 && lowest <= 0.0)
-      check.fail(parameter, to_text(lowest), "N/m", "is the lowest over the mesh period; it must stay > 0");
+    const bool in_range =
+        std::all_of(series->harmonics.begin(), series->harmonics.end(), [](const Harmonic& h) {
+          return h.order >= 1.0 && h.order <= kMostOrder && h.order == std::floor(h.order);
+        });
+    for (std::size_t i = 0; i < series->harmonics.size(); ++i)
+      if (series->harmonics[i].order > kMostOrder)
+        check.fail(parameter + ".harmonics[" + std::to_string(i) + "].order",
+                   to_text(series->harmonics[i].order), "", "must be at most " + to_text(kMostOrder));
+    const double low = in_range && series->mean > 0.0 ? low_value_of(*series) : 1.0;
+    if (low <= 0.0)
+      check.fail(parameter, to_text(low), "N/m", "is a value in the mesh period; it must stay > 0");
   } else {
     const auto& table = std::get<PeriodicTable>(law_);
     table.check(check, parameter, "mesh periods", "N/m");

@@ -29,7 +29,8 @@ class MeshStiffness {
   MeshStiffness(double stiffness) : law_(stiffness) {}  // NOLINT: implicit by intent
   /// k_single, k_double [N/m] > 0; contact ratio 1 < eps < 2.
   static MeshStiffness step(double single, double both, double contact_ratio);
-  /// mean [N/m]; harmonics per mesh period: whole orders, amplitude [N/m], phase [rad].
+  /// mean [N/m]; harmonics per mesh period: whole orders from 1 to kMostOrder, amplitude [N/m], phase [rad]. The
+  /// sum must stay > 0.
   static MeshStiffness fourier(double mean, std::vector<Harmonic> harmonics);
   /// Fourier series of the step with the first `harmonics` orders.
   static MeshStiffness fourier_of_step(double single, double both, double contact_ratio, int harmonics);
@@ -53,8 +54,10 @@ class MeshStiffness {
   };
   using Law = std::variant<double, Step, Fourier, PeriodicTable>;
   const Law& law() const { return law_; }
+  static constexpr double kMostOrder = 10000.0;  ///< of a Fourier series, per mesh period
 
  private:
+  static double low_value_of(const Fourier& series);
   explicit MeshStiffness(Law law) : law_(std::move(law)) {}
 
   Law law_;

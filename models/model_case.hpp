@@ -23,6 +23,8 @@ struct ModelCase {
   double static_turn = 0.0;
   /// Channels recorded unless others are asked for.
   std::vector<std::string> channels = {};
+  /// Files that it was read from; none of a model made by a program. Results are not written over them.
+  std::vector<std::string> files = {};
 };
 
 struct ModelEntry {

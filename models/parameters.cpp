@@ -19,7 +19,7 @@ std::string Parameter::range() const {
   switch (kind) {
     case Kind::number:
     case Kind::integer:
-      if (low == -kNoLimit && high == kNoLimit) return "any number";
+      if (low == -kNoLimit && high == kNoLimit) return "any finite number";
       if (low == -kNoLimit) return "<= " + to_text(high);
       if (high == kNoLimit) return ">= " + to_text(low);
       return to_text(low) + " to " + to_text(high);

@@ -1,6 +1,7 @@
 #include "app/base/interrupt.hpp"
 
 #include <csignal>
+#include <unistd.h>
 
 namespace drev::app {
 
@@ -8,7 +9,20 @@ namespace {
 
 volatile std::sig_atomic_t caught = 0;
 
-void remember(int /*signal*/) { caught = 1; }
+constexpr unsigned kPatience = 10;  // s
+
+void remember(int /*signal*/) {
+  caught = 1;
+  ::alarm(kPatience);
+}
+
+/// No one has asked for so long: what goes on does not, and must not go on for ever.
+void give_up(int /*signal*/) {
+  constexpr char kText[] = "drev: interrupted in the midst of a computation that cannot be ended in order\n";
+  const ssize_t ignored = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+  static_cast<void>(ignored);
+  ::_exit(130);
+}
 
 }  // namespace
 
@@ -19,9 +33,14 @@ void watch_signals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = give_up;
+  sigaction(SIGALRM, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-bool interrupted() { return caught != 0; }
+bool interrupted() {
+  if (caught != 0) ::alarm(kPatience);
+  return caught != 0;
+}
 
 }  // namespace drev::app

@@ -23,23 +23,30 @@ std::string message(const std::string& path, const std::string& reason) {
   throw OutputError(message(path, std::strerror(error)));
 }
 
-/// Two processes must not write one file, nor may one change what the other has just given its name. Closes
-/// the file and throws OutputError if another process writes it. Devices, which many may write, are not locked.
-void lock(int descriptor, const std::string& path) {
+/// Opens a regular file to write it, one process at a time; -1 where there is none and `flags` do not create it.
+/// What stands there may be someone else's doing: a link is not followed, a pipe or device not written.
+int open_to_write(const std::string& path, int flags) {
+  const int descriptor =
+      ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | flags, 0666);
+  if (descriptor < 0 && errno == ENOENT && (flags & O_CREAT) == 0) return -1;
+  const auto refuse = [&](const std::string& reason) {
+    if (descriptor >= 0) ::close(descriptor);
+    throw OutputError(message(path, reason));
+  };
+  if (descriptor < 0 && errno == ELOOP) refuse("it is a symbolic link, which is not followed; remove it");
+  if (descriptor < 0 && errno != ENXIO) fail(path, errno);
   struct stat opened {
   }, named{};
-  const bool known = ::fstat(descriptor, &opened) == 0;
-  if (known && !S_ISREG(opened.st_mode)) return;
-  if (known && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::stat(path.c_str(), &named) == 0 &&
-      opened.st_ino == named.st_ino)
-    return;
-  ::close(descriptor);
-  throw OutputError(message(path, "another process is writing it"));
+  if (descriptor < 0 || ::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode))
+    refuse("it is no regular file; remove it");
+  // Nor may another change what this one has just given its name.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 || ::lstat(path.c_str(), &named) != 0 ||
+      opened.st_ino != named.st_ino)
+    refuse("another process is writing it");
+  return descriptor;
 }
 
 void empty(int descriptor, const std::string& path) {
-  struct stat opened {};
-  if (::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode)) return;
   if (::ftruncate(descriptor, 0) == 0) return;
   const int error = errno;
   ::close(descriptor);
@@ -76,6 +83,11 @@ std::string folder_of(const std::string& path) {
   return file.has_parent_path() ? file.parent_path().string() : ".";
 }
 
+std::string partial_path(const std::string& path) {
+  const std::filesystem::path file(path);
+  return (file.parent_path() / (file.stem().string() + ".partial" + file.extension().string())).string();
+}
+
 void write_file(const std::string& directory, const std::string& name, const std::string& extension,
                 const std::string& text) {
   OutputFile file(directory, name, extension);
@@ -84,11 +96,8 @@ void write_file(const std::string& directory, const std::string& name, const std
 }
 
 OutputFile::OutputFile(const std::string& directory, const std::string& name, const std::string& extension)
-    : path_(directory + "/" + name + "." + extension),
-      partial_(directory + "/" + name + ".partial." + extension) {
-  descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(partial_, errno);
-  lock(descriptor_, partial_);
+    : path_(directory + "/" + name + "." + extension), partial_(drev::app::partial_path(path_)) {
+  descriptor_ = open_to_write(partial_, O_CREAT);
   empty(descriptor_, partial_);
 }
 
@@ -124,11 +133,9 @@ void OutputFile::commit() {
 ReplacedFile::ReplacedFile(const std::string& directory, const std::string& name,
                            const std::string& extension)
     : path_(directory + "/" + name + "." + extension),
-      partial_(directory + "/" + name + ".partial." + extension),
+      partial_(drev::app::partial_path(path_)),
       next_(partial_ + ".next") {
-  descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor_ < 0 && errno != ENOENT) fail(partial_, errno);
-  if (descriptor_ >= 0) lock(descriptor_, partial_);
+  descriptor_ = open_to_write(partial_, 0);
 }
 
 ReplacedFile::~ReplacedFile() {
@@ -136,9 +143,7 @@ ReplacedFile::~ReplacedFile() {
 }
 
 void ReplacedFile::replace(const std::string& text) {
-  const int next = ::open(next_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (next < 0) fail(next_, errno);
-  lock(next, next_);
+  const int next = open_to_write(next_, O_CREAT);
   empty(next, next_);
   int error = write_all(next, text);
   if (error == 0) error = sync(next);

@@ -1,6 +1,7 @@
 #pragma once
 /// Files that are never half written under their own name: DIR/NAME.partial.EXT becomes DIR/NAME.EXT when it
-/// is complete. Every write is checked, and a file has one writer.
+/// is complete. Every write is checked, and a file has one writer. What stands at DIR/NAME.partial.EXT is written
+/// only if it is a regular file: links are not followed.
 #include <stdexcept>
 #include <string>
 #include <sys/types.h>
@@ -17,6 +18,8 @@ class OutputError : public std::runtime_error {
 void create_directory(const std::string& directory);
 /// The directory of a file; "." where its path names none.
 std::string folder_of(const std::string& path);
+/// DIR/NAME.partial.EXT of DIR/NAME.EXT.
+std::string partial_path(const std::string& path);
 /// A file as a whole: DIR/NAME.EXT. Throws OutputError.
 void write_file(const std::string& directory, const std::string& name, const std::string& extension,
                 const std::string& text);

@@ -54,6 +54,10 @@ ChartResult compute_chart(const ChartRequest& request) {
   if (method.exact()) method.tolerance = kGrowthTolerance;
   const ErrorGrowth growth = measure_error_growth(
       system, {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
+  if (interrupted()) {
+    result.data.interrupted = true;
+    return result;
+  }
   if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
     horizon = comparable;
     result.horizon_reason =

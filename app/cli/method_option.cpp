@@ -44,9 +44,11 @@ void check_step_scheme(const char* option, const std::string& text, std::vector<
     step_scheme(text);
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
-      if (finding.value == kExact)
-        finding.range = "must stand alone; its tolerance is given by --tolerance";
-      else if (finding.parameter == "name")
+      if (finding.value == kExact) {
+        finding.value = text;
+        finding.range =
+            std::string(kExact) + " takes no number behind it; its tolerance is given by --tolerance";
+      } else if (finding.parameter == "name")
         finding.range = is_no_method(finding.value, methods());
       finding.place = kCommandLine;
       finding.parameter = option + (" " + finding.parameter);

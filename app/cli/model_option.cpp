@@ -3,8 +3,10 @@
 #include <drev/app/model_file/model_file.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
+#include "app/base/output_file.hpp"
 #include "app/base/text_layout.hpp"
 
 namespace drev::app {
@@ -88,6 +90,18 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
     take_findings(error, findings);
     return {};
   }
+}
+
+void check_output(const char* option, const std::string& file, const std::vector<std::string>& read,
+                  std::vector<Finding>& findings) {
+  for (const std::string& path : {file, partial_path(file)})
+    for (const std::string& input : read) {
+      std::error_code none;  // where one of them does not exist, they are not the same
+      if (!std::filesystem::equivalent(path, input, none)) continue;
+      findings.push_back({kCommandLine, option, file, "",
+                          "would be written over " + input + ", which is read; give another name"});
+      return;
+    }
 }
 
 ModelRequest request_model(const CommandLine& line) {

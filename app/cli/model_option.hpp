@@ -15,6 +15,9 @@ bool is_built_in(const std::string& model);
 
 /// The model as far as it can be built; nothing if it cannot. What is wrong goes to findings.
 std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings);
+/// A finding if the file, or the partial one that becomes it, is one of those that are read.
+void check_output(const char* option, const std::string& file, const std::vector<std::string>& read,
+                  std::vector<Finding>& findings);
 /// The model of a command that needs nothing else. Throws ModelError with everything wrong with the line.
 ModelRequest request_model(const CommandLine& line);
 

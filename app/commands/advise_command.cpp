@@ -25,7 +25,9 @@ AdviseRequest request_advise(const CommandLine& line) {
   AdviseOptions options;
   options.figure = line.option("--for").value_or(options.figure);
   if (const std::optional<std::string> text = line.option("--within"))
-    options.within = read_part("--within", *text, AdviseOptions::kWithin, "", findings);
+    if (const double within = read_part("--within", *text, AdviseOptions::kWithin, "", findings);
+        AdviseOptions::kWithin.holds(within))
+      options.within = within;  // else it is blamed already, and the default stands in
   if (model) try {
       figure_options(model->model_case, model->system, options);
     } catch (const ModelError& error) {

@@ -1,5 +1,7 @@
 #include <drev/solvers/exact/exact_propagation.hpp>
 
+#include <cstdio>
+
 #include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
 #include "app/chart/chart_computation.hpp"
@@ -43,6 +45,8 @@ ChartRequest request_chart(const CommandLine& line) {
   }
   double limit = 1.0;
   if (line.option("--limit")) limit = read_time("--limit", *line.option("--limit"), kLimit, "", findings);
+  if (const auto out = line.option("--out"); out && model)
+    check_output("--out", *out + "/chart.csv", model->model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   std::vector<std::string> methods = line.list("--methods").value_or(chart_methods(model->system));
   return {std::move(*model), std::move(methods), limit, line.option("--out")};
@@ -55,7 +59,10 @@ int chart_command(const CommandLine& line) {
   if (request.out) create_directory(*request.out);
   watch_signals();
   const ChartResult result = compute_chart(request);
-  if (result.data.interrupted) return kInterrupted;
+  if (result.data.interrupted) {
+    std::fprintf(stderr, "drev: interrupted; nothing is written, for a chart needs all of its runs\n");
+    return kInterrupted;
+  }
   if (request.out) {
     write_file(*request.out, "chart", "csv", chart_as_csv(result));
     write_file(*request.out, "error_over_time", "svg", chart_as_svg(request, result, ChartAxis::time));

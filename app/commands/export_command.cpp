@@ -22,6 +22,9 @@ int export_command(const CommandLine& line) {
   const std::string folder = folder_of(*out);
   if (!path.has_filename() || path.extension() != ".toml")
     throw ModelError({{kCommandLine, "--out", *out, "", "must be the name of a file that ends in .toml"}});
+  std::vector<Finding> findings;
+  check_output("--out", *out, model.model_case.files, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
   create_directory(folder);
   write_file(folder, path.stem().string(), "toml", text);
   return kSuccess;

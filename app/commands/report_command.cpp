@@ -6,6 +6,7 @@
 #include "app/base/json_values.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/report/report_file.hpp"
@@ -15,9 +16,12 @@ namespace drev::app {
 
 namespace {
 
-std::string text_of(const std::string& path) {
+/// Empty where it cannot be read.
+std::string text_of(const std::string& path) try {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+} catch (const std::ios_base::failure&) {
+  return {};
 }
 
 /// A sentence on a run in the directory that did not come to its end; empty: there is none.
@@ -29,25 +33,29 @@ std::string partial_run(const std::string& directory) {
   return "the last run there did not come to its end (" + status + ": " + path + ")";
 }
 
-/// The data block of one run; empty, and a finding, if there is none.
-std::string block_of(std::string run, std::vector<Finding>& findings) {
-  std::string partial;
-  if (std::filesystem::is_directory(run)) {
-    partial = partial_run(run);
-    run += "/report.html";
-  }
+/// The report that a RUN means.
+std::string run_page(const std::string& run) {
+  return std::filesystem::is_directory(run) ? run + "/report.html" : run;
+}
+
+/// The data block of one run, written anew; empty, and a finding, if there is none.
+std::string block_of(const std::string& named, std::vector<Finding>& findings) {
+  const std::string run = run_page(named), partial = run != named ? partial_run(named) : "";
   const bool readable = std::filesystem::is_regular_file(run) && std::ifstream(run).good();
   const std::vector<std::string> blocks = readable ? blocks_of(text_of(run)) : std::vector<std::string>{};
-  if (blocks.size() == 1) {
+  const Json data = blocks.size() == 1 ? read_block(blocks.front()) : Json();
+  if (data.is_object()) {
     if (!partial.empty())
       std::fprintf(stderr, "drev: %s is of an older run; %s\n", run.c_str(), partial.c_str());
-    return blocks.front();
+    return block_text(data);
   }
   findings.push_back({kCommandLine, "RUN", run, "",
                       !readable && !partial.empty() ? "does not exist: " + partial
                       : !readable                   ? "is no file that can be read"
                       : blocks.size() > 1           ? "compares two runs already; give each run's own report"
-                                                    : "is no report of drev run"});
+                      : blocks.size() == 1 ? "is damaged: the data of its run are cut off or changed; write "
+                                             "the report anew with drev run"
+                                           : "is no report of drev run"});
   return {};
 }
 
@@ -62,6 +70,7 @@ int report_command(const CommandLine& line) {
   std::vector<std::string> blocks;
   for (const std::string& run : runs) blocks.push_back(block_of(run, findings));
   const std::string out = line.option("--out").value_or("");
+  for (const std::string& run : runs) check_output("--out", out, {run_page(run)}, findings);
   if (const auto why = why_no_report(out)) findings.push_back({kCommandLine, "--out", out, "", *why});
   if (!findings.empty()) throw ModelError(std::move(findings));
 

@@ -152,7 +152,8 @@ void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
 }
 
 /// What is wrong with where results go, and in which form.
-void check_outputs(const CommandLine& line, std::vector<Finding>& findings) {
+void check_outputs(const CommandLine& line, const std::vector<std::string>& read,
+                   std::vector<Finding>& findings) {
   for (const char* option : {"--record", "--every", "--format"})
     if (!line.option("--out") && !line.option("--report") && line.list(option))
       findings.push_back(
@@ -161,7 +162,11 @@ void check_outputs(const CommandLine& line, std::vector<Finding>& findings) {
     findings.push_back({kCommandLine, "--jobs", *jobs, "", "is for several runs"});
   if (line.option("--format") && line.option("--report") && !line.option("--out"))
     findings.push_back({kCommandLine, "--format", "", "", "needs --out DIR"});
+  if (const auto out = line.option("--out"))
+    for (const char* name : {"/history.csv", "/history.h5", "/summary.json", "/report.html"})
+      check_output("--out", *out + name, read, findings);
   if (const auto report = line.option("--report")) {
+    check_output("--report", *report, read, findings);
     namespace fs = std::filesystem;
     const auto out = line.option("--out");
     if (const auto why = why_no_report(*report))
@@ -196,7 +201,7 @@ RunRequest request_run(const CommandLine& given) {
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);
-  check_outputs(line, findings);
+  check_outputs(line, model ? model->model_case.files : std::vector<std::string>{}, findings);
   if (model) check_channels(*model, line, parameters_right, findings);
   blame_file(line, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));

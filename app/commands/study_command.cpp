@@ -83,7 +83,10 @@ int study_command(const CommandLine& line) {
       progress.update((done += entry.work + kLeastWork) / work);
     });
   } catch (const SolverError&) {
-    if (interrupted()) return kInterrupted;
+    if (interrupted()) {
+      std::fprintf(stderr, "drev: interrupted; nothing is written, for the study needs all of its runs\n");
+      return kInterrupted;
+    }
     throw;
   }
   if (out) {

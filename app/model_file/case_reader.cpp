@@ -260,6 +260,10 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
   const RunSection section(document, run, context);
   result.options = section.options();
   if (!options_only) result.model_case = CaseReader(document, context).read(section);
+  if (result.model_case) {
+    for (const Value& root : document.roots) result.model_case->files.push_back(*root.at.file);
+    for (const auto& [path, table] : context.csv) result.model_case->files.push_back(path);
+  }
   limit_findings(context.findings, document.at);
   if (!context.findings.empty()) result.model_case.reset();
   result.findings = std::move(context.findings);

@@ -90,10 +90,18 @@ class ColumnReader {
       return true;
     };
     if (dimension == Dimension::none && take(wanted.value_or(quantity), 1.0)) return;
+    std::vector<std::string> fitting;
     for (const Unit& unit : units_of(dimension)) {
       if (wanted && unit_suffix(*wanted) != unit.suffix) continue;
-      if (take(wanted.value_or(quantity + "_" + unit.suffix), unit.factor)) return;
+      const std::string header = wanted.value_or(quantity + "_" + unit.suffix);
+      if (take(header, unit.factor)) fitting.push_back(header);
     }
+    if (fitting.size() > 1)
+      context_.findings.push_back(fault_at(file.at, where_,
+                                           name + " has several columns that fit, " + list_of(fitting) +
+                                               "; say which is meant: " + quantity + " = \"" +
+                                               fitting.front() + "\""));
+    if (!fitting.empty()) return;
     if (!wanted && column.need == Need::optional) return;
     const std::string right = spellings(quantity, dimension);
     const bool there = wanted && std::count(table.names.begin(), table.names.end(), *wanted) > 0;

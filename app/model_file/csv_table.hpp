@@ -1,6 +1,7 @@
 #pragma once
-/// A table of numbers in a CSV file: a header of column names, then rows. Lines that are empty or begin with
-/// '#' are passed over.
+/// A table of numbers in a CSV file (RFC 4180, with or without a byte-order mark): a header of column names, then
+/// rows. Lines that are empty or begin with '#' are passed over. A name that begins with = + - @ may have a ' before
+/// it, which is not part of it.
 #include <string>
 #include <vector>
 

@@ -59,6 +59,9 @@ class DocumentReader {
     if (format == nullptr)
       refuse(table.at, "format",
              "is missing; write format = " + std::to_string(kFormat) + " in the first line (" + known + ")");
+    else if (!format->value.is(Value::Kind::whole) && format->value.numeric())
+      refuse(format->value.at, "format",
+             "must be a whole number, written without a point: format = " + std::to_string(kFormat));
     else if (!format->value.is(Value::Kind::whole) || format->value.whole != kFormat)
       refuse(format->value.at, "format", "is " + kind_name(format->value) + "; " + known);
   }

@@ -111,6 +111,26 @@ class DepthScan {
   int line_ = 1;
 };
 
+constexpr std::size_t kMostFindings = 20;
+
+/// Names are printed, on terminals too: what steers one is refused. A text may have line ends and tabs.
+void check_characters(const Value& value, const std::string& where, std::vector<Finding>& findings) {
+  const auto check = [&](const Position& at, const std::string& text, bool lines) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (control_bytes(text, i) == 0 || (lines && (text[i] == '\n' || text[i] == '\t'))) continue;
+      if (findings.size() < kMostFindings)
+        findings.push_back(fault_at(at, where, "has a control character, which is not allowed: " + text));
+      return;
+    }
+  };
+  if (value.is(Value::Kind::text)) check(value.at, value.text, true);
+  for (const Value& item : value.items) check_characters(item, where, findings);
+  for (const Entry& entry : value.entries) {
+    check(entry.at, entry.key, false);
+    check_characters(entry.value, (where.empty() ? "" : where + ".") + entry.key, findings);
+  }
+}
+
 }  // namespace
 
 Value parse_toml(const std::string& text, const std::string& name) {
@@ -124,7 +144,11 @@ Value parse_toml(const std::string& text, const std::string& name) {
         {fault_at(deep, "", "keys may be nested " + std::to_string(kDeepest) + " deep at most")});
   try {
     const toml::table table = toml::parse(std::string_view(text), std::string_view(name));
-    return convert(table, file);
+    Value root = convert(table, file);
+    std::vector<Finding> findings;
+    check_characters(root, "", findings);
+    if (!findings.empty()) throw ModelError(std::move(findings));
+    return root;
   } catch (const toml::parse_error& error) {
     throw ModelError(
         {fault_at(place(error.source(), file), "", "is no TOML: " + std::string(error.description()))});

@@ -51,10 +51,14 @@ std::string read_text(const std::string& path, const Position* at) {
   if (!std::filesystem::is_regular_file(status)) refuse("is no regular file");
   if (std::filesystem::file_size(path, error) > kLargestFile)
     refuse("is larger than " + std::to_string(kLargestFile >> 20) + " MiB");
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) refuse("cannot be read");
-  return text;
+  try {
+    std::ifstream file(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file) return text;
+  } catch (const std::ios_base::failure&) {  // the library's own, where reading itself fails
+  }
+  refuse("cannot be read");
+  return {};
 }
 
 }  // namespace drev::app

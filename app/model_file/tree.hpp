@@ -40,7 +40,8 @@ std::string kind_name(const Value& value);
 /// What is wrong at a place of a file. `where` says what stands there, e.g. "elements.shaft".
 Finding fault_at(const Position& at, const std::string& where, const std::string& sentence);
 
-/// Reads TOML. Throws ModelError with one finding (the language's faults come one at a time); also for a text
+/// Reads TOML. Throws ModelError with one finding (the language's faults come one at a time), or with those of
+/// control characters in names and texts; also for a text
 /// above kLargestFile bytes, and for tables nested deeper than kDeepest.
 Value parse_toml(const std::string& text, const std::string& name);
 

@@ -1,8 +1,6 @@
 #include "app/report/report_file.hpp"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include "app/report/report_pdf.hpp"
@@ -19,29 +17,17 @@ std::optional<std::string> why_no_report(const std::string& path) {
 
 ReportFile::ReportFile(const std::string& path)
     : path_(path),
-      stem_(std::filesystem::path(path).stem().string()),
-      pdf_(path.ends_with(".pdf")),
-      page_(folder_of(path), pdf_ ? stem_ + ".pdf-page" : stem_, "html") {}
+      file_(folder_of(path), std::filesystem::path(path).stem().string(),
+            std::filesystem::path(path).extension().string().substr(1)) {}
 
 ReportFile::~ReportFile() {
-  if (complete_) return;
-  std::remove(page_.partial_path().c_str());
-  if (pdf_) std::remove(partial_pdf().c_str());
+  if (!complete_) std::remove(file_.partial_path().c_str());
 }
 
-std::string ReportFile::partial_pdf() const { return folder_of(path_) + "/" + stem_ + ".partial.pdf"; }
-
 void ReportFile::commit(const std::string& page) {
-  page_.write(page);
-  if (!pdf_) {
-    page_.commit();
-    complete_ = true;
-    return;
-  }
-  page_.flush();
-  print_as_pdf(page_.partial_path(), partial_pdf());
-  if (std::rename(partial_pdf().c_str(), path_.c_str()) != 0)
-    throw OutputError("cannot write " + path_ + ": " + std::strerror(errno));
+  file_.write(path_.ends_with(".pdf") ? print_as_pdf(page, folder_of(path_)) : page);
+  file_.commit();
+  complete_ = true;
 }
 
 }  // namespace drev::app

@@ -12,7 +12,7 @@ std::optional<std::string> why_no_report(const std::string& path);
 
 class ReportFile {
  public:
-  /// path: of an .html or a .pdf file. Opens its page. Throws OutputError.
+  /// path: of an .html or a .pdf file. Opens it. Throws OutputError.
   explicit ReportFile(const std::string& path);
   /// What was not committed is removed.
   ~ReportFile();
@@ -24,12 +24,9 @@ class ReportFile {
   const std::string& path() const { return path_; }
 
  private:
-  std::string partial_pdf() const;
-
-  std::string path_, stem_;
-  bool pdf_;
-  OutputFile page_;
-  bool complete_ = false;  ///< the page is the report, under its name
+  std::string path_;
+  OutputFile file_;
+  bool complete_ = false;  ///< the report has its name
 };
 
 }  // namespace drev::app

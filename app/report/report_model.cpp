@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/element_parts.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -22,12 +24,6 @@ std::vector<int> nodes_of(const ElementInstance& placement, const System& system
   return nodes;
 }
 
-Terms terms_of(const ElementInstance& placement, int nodes) {
-  Terms terms(nodes);
-  placement.element->describe(nodes, terms);
-  return terms;
-}
-
 /// Writes one element into the drawing.
 class Drawing {
  public:
@@ -35,9 +31,18 @@ class Drawing {
 
   void add(const ElementInstance& placement, const std::vector<int>& nodes) {
     placement_ = &placement;
+    parts_.for_each(*placement.element, nodes, [this](const Terms& terms, const std::vector<int>& of_part) {
+      add_part(terms, of_part);
+    });
+  }
+
+  double inertia(int node) const { return inertia_[static_cast<std::size_t>(node)]; }
+  Json joints = Json::array(), loads = Json::array();
+
+ private:
+  void add_part(const Terms& terms, const std::vector<int>& nodes) {
     nodes_ = &nodes;
     const int n = static_cast<int>(nodes.size());
-    const Terms terms = terms_of(placement, n);
     for (int i = 0; i < n; ++i) inertia_[place(i)] += terms.mass.row(i).sum();
     add_matrix(terms.stiffness, "shaft", "stiffness");
     if (terms.stiffness.isZero(0.0)) add_matrix(terms.damping, "damper", "damping");
@@ -46,13 +51,8 @@ class Drawing {
     for (const GeneralForce* general : terms.generals)
       if (general != nullptr) add_other();
     for (const LoadSpec& load : terms.loads)
-      loads.push_back({{"name", placement.name}, {"type", type()}, {"node", node(load.node)}});
+      loads.push_back({{"name", placement_->name}, {"type", type()}, {"node", node(load.node)}});
   }
-
-  double inertia(int node) const { return inertia_[static_cast<std::size_t>(node)]; }
-  Json joints = Json::array(), loads = Json::array();
-
- private:
   std::string type() const { return std::string(placement_->element->type()); }
   int node(int local) const { return (*nodes_)[static_cast<std::size_t>(local)]; }
   std::size_t place(int local) const { return static_cast<std::size_t>(node(local)); }
@@ -106,10 +106,12 @@ class Drawing {
   const ElementInstance* placement_ = nullptr;
   const std::vector<int>* nodes_ = nullptr;
   std::vector<double> inertia_;
+  ElementParts parts_;
 };
 
-/// q'Kq of one element, its laws closed, at the shape of a mode.
-double potential(const Terms& terms, const Eigen::VectorXd& q) {
+/// q'Kq of a part of an element, its laws closed, at the shape of a mode over all nodes.
+double potential(const Terms& terms, const std::vector<int>& nodes, const Eigen::VectorXd& shape) {
+  const Eigen::VectorXd q = shape(nodes);
   double energy = q.dot(terms.stiffness * q);
   for (const ScalarSpec& spec : terms.scalars)
     energy += spec.force->closed_stiffness() * std::pow(spec.b.dot(q), 2);
@@ -142,15 +144,17 @@ Json modes_object(const System& system, const ModeSet& modes) {
   for (const ElementInstance& placement : system.element_instances())
     nodes.push_back(nodes_of(placement, system));
   Json list = Json::array();
+  ElementParts parts;
   for (int m = 0; m < modes.count(); ++m) {
     const Eigen::VectorXd shape = modes.shapes.col(m);
     std::vector<std::pair<double, std::string>> shares;
     double sum = 0.0;
     for (std::size_t e = 0; e < nodes.size(); ++e) {
       const ElementInstance& placement = system.element_instances()[e];
-      Eigen::VectorXd q(static_cast<Eigen::Index>(nodes[e].size()));
-      for (std::size_t i = 0; i < nodes[e].size(); ++i) q[static_cast<Eigen::Index>(i)] = shape[nodes[e][i]];
-      const double energy = potential(terms_of(placement, static_cast<int>(nodes[e].size())), q);
+      double energy = 0.0;
+      parts.for_each(*placement.element, nodes[e], [&](const Terms& terms, const std::vector<int>& of_part) {
+        energy += potential(terms, of_part, shape);
+      });
       sum += energy;
       shares.emplace_back(energy, placement.name);
     }

@@ -1,6 +1,11 @@
 #include "app/report/report_page.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <random>
 #include <string_view>
+
+#include "app/report/report_spectra.hpp"
 
 namespace drev::data {
 extern const std::string_view report_html, report_css, dygraph_css, dygraph_js, report_js_data,
@@ -13,12 +18,52 @@ namespace drev::app {
 namespace {
 
 constexpr std::string_view kBlockBegin = "<script type=\"application/json\" class=\"run\">";
+constexpr std::size_t kMostGroups = std::size_t{1} << 28;  // of a history: more than a page can hold
 constexpr std::string_view kEnd = "</script>";
 
-/// Replaces the marker {{name}} of the page's text.
+/// Replaces the first marker {{name}} of the page's text.
 void fill(std::string& page, const std::string& name, const std::string& text) {
   const std::string marker = "{{" + name + "}}";
   page.replace(page.find(marker), marker.size(), text);
+}
+
+/// A word that no one could have written into a model before its report was made.
+std::string new_nonce() {
+  std::random_device random;
+  std::vector<std::uint32_t> words(4);
+  for (std::uint32_t& word : words) word = random();
+  return base64(words);
+}
+
+/// What the browser may do: run the page's own two programs, which bear the nonce, and nothing else. Whatever a
+/// text of a run contains, it is neither run nor fetched.
+std::string policy(const std::string& nonce) {
+  return "default-src 'none'; script-src 'nonce-" + nonce +
+         "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+}
+
+/// Whether this is the base64 text of so many bytes.
+bool is_base64(const Json& text, std::size_t bytes) {
+  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  if (!text.is_string()) return false;
+  const std::string& letters = text.get_ref<const std::string&>();
+  const std::size_t end = letters.find_first_not_of(kLetters);
+  return letters.size() == (bytes + 2) / 3 * 4 &&
+         letters.find_first_not_of('=', std::min(end, letters.size())) == letters.npos &&
+         letters.size() - std::min(end, letters.size()) == (3 - bytes % 3) % 3;
+}
+
+/// Whether every series of a history has its values.
+bool is_history(const Json& history) {
+  if (!history.is_object() || !history.contains("series") || !history.at("series").is_array()) return false;
+  const Json groups = history.value("groups", Json());
+  if (!groups.is_number_unsigned() || groups > kMostGroups) return false;
+  const std::size_t bytes = groups.get<std::size_t>() * sizeof(float);
+  for (const Json& series : history.at("series")) {
+    if (!series.is_object() || !is_base64(series.value("low", Json()), bytes)) return false;
+    if (series.contains("high") && !is_base64(series.at("high"), bytes)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -31,11 +76,28 @@ std::string report_page(const std::vector<std::string>& blocks) {
                                       data::report_js_time, data::report_js_spectra, data::report_js_main})
     program += part;
   for (const std::string& block : blocks) runs += std::string(kBlockBegin) + block + std::string(kEnd) + "\n";
+  const std::string nonce = new_nonce();
+  fill(page, "policy", policy(nonce));
+  for (int program_number = 0; program_number < 2; ++program_number) fill(page, "nonce", nonce);
   fill(page, "style", style);
   fill(page, "library", std::string(data::dygraph_js));
   fill(page, "program", program);
   fill(page, "runs", runs);
   return page;
+}
+
+Json read_block(const std::string& text) {
+  const Json data = Json::parse(text, nullptr, false);
+  const auto has = [&](const char* key, bool (Json::*is)() const noexcept) {
+    return data.contains(key) && (data.at(key).*is)();
+  };
+  const bool whole = data.is_object() && has("result", &Json::is_object) && has("model", &Json::is_object) &&
+                     data.contains("history") && is_history(data.at("history")) &&
+                     has("inputs", &Json::is_array) && has("modes", &Json::is_array) &&
+                     data.contains("campbell") && data.contains("spectra") &&
+                     has("command", &Json::is_string) && has("about", &Json::is_string) &&
+                     has("version", &Json::is_string) && has("made", &Json::is_string);
+  return whole ? data : Json();
 }
 
 std::string block_text(const Json& data) {

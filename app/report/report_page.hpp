@@ -14,6 +14,9 @@ std::string report_page(const std::vector<std::string>& blocks);
 /// A data block as text that may stand in a page.
 std::string block_text(const Json& data);
 
+/// The data of a block's text; null if it is damaged: no JSON, or without what a block has.
+Json read_block(const std::string& text);
+
 /// The blocks of a page that report_page() made; none if it is no such page.
 std::vector<std::string> blocks_of(const std::string& page);
 

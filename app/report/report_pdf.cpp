@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <spawn.h>
 #include <sstream>
 #include <sys/wait.h>
@@ -21,24 +22,35 @@ namespace drev::app {
 
 namespace {
 
-/// A directory for the browser's profile, removed with all that is in it.
-class ProfileFolder {
+/// A new folder, of this user alone, removed with all that is in it.
+class NewFolder {
  public:
-  ProfileFolder() : path_((std::filesystem::temp_directory_path() / "drev_print_XXXXXX").string()) {
+  explicit NewFolder(const std::string& parent) : path_(parent + "/drev_print_XXXXXX") {
     if (::mkdtemp(path_.data()) == nullptr)
-      throw OutputError("cannot create " + path_ + ": " + std::strerror(errno));
+      throw OutputError("cannot create a folder in " + parent + ": " + std::strerror(errno));
   }
-  ~ProfileFolder() {
+  ~NewFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  ProfileFolder(const ProfileFolder&) = delete;
-  ProfileFolder& operator=(const ProfileFolder&) = delete;
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
 };
+
+/// Where temporary files go.
+std::string temporary_folder() {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::temp_directory_path(error);
+  if (!error) return path.string();
+  const char* named = std::getenv("TMPDIR");
+  throw OutputError("cannot print a PDF: the folder for temporary files" +
+                    (named != nullptr ? ", TMPDIR = " + std::string(named) + "," : std::string()) +
+                    " is not there; set TMPDIR to a folder that is");
+}
 
 /// Runs a program without input or output, and waits. Returns what waitpid() says, -1: not started.
 int run_silently(std::vector<std::string> words) {
@@ -70,15 +82,13 @@ std::string file_url(const std::string& path) {
   return url;
 }
 
-/// A PDF says at its end that it is complete.
-bool is_complete_pdf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
-  if (size < 64) return false;
-  std::string tail(64, '\0');
-  file.seekg(size - 64);
-  file.read(tail.data(), 64);
-  return file && tail.find("%%EOF") != tail.npos;
+/// A file as text; empty if it is no PDF in full, which says so at its end.
+std::string complete_pdf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t kTail = 64;
+  if (text.size() < kTail || text.find("%%EOF", text.size() - kTail) == text.npos) text.clear();
+  return text;
 }
 
 }  // namespace
@@ -95,10 +105,13 @@ std::string find_browser() {
   return {};
 }
 
-void print_as_pdf(const std::string& html, const std::string& pdf) {
+std::string print_as_pdf(const std::string& page, const std::string& folder) {
   const std::string browser = find_browser();
-  if (browser.empty()) throw OutputError("cannot write " + pdf + ": it " + kNoBrowser);
-  const ProfileFolder profile;
+  if (browser.empty()) throw OutputError("cannot print a PDF: it " + std::string(kNoBrowser));
+  // The page and its print lie in a folder of their own, where no one else has put anything.
+  const NewFolder profile(temporary_folder()), work(folder);
+  write_file(work.path(), "page", "html", page);
+  const std::string pdf = work.path() + "/page.pdf";
   std::vector<std::string> words{browser,
                                  "--headless",
                                  "--disable-gpu",
@@ -107,12 +120,16 @@ void print_as_pdf(const std::string& html, const std::string& pdf) {
                                  "--no-pdf-header-footer",
                                  "--virtual-time-budget=20000",
                                  "--print-to-pdf=" + pdf};
-  if (::geteuid() == 0) words.push_back("--no-sandbox");  // it refuses to run as root otherwise
-  words.push_back(file_url(html));
+  // It refuses to run as root with its sandbox. The page's own policy holds all the same: nothing but its own
+  // program runs, and nothing is fetched.
+  if (::geteuid() == 0) words.push_back("--no-sandbox");
+  words.push_back(file_url(work.path() + "/page.html"));
   const int status = run_silently(std::move(words));
-  if (status != 0 || !is_complete_pdf(pdf))
-    throw OutputError("cannot write " + pdf + ": " + browser +
+  std::string text = status == 0 ? complete_pdf(pdf) : "";
+  if (text.empty())
+    throw OutputError("cannot print a PDF in " + folder + ": " + browser +
                       " could not print the page (disk full?); --report FILE.html needs no browser");
+  return text;
 }
 
 }  // namespace drev::app

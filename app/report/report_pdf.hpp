@@ -12,7 +12,8 @@ inline constexpr const char* kNoBrowser =
 /// Path of chromium, chromium-browser, google-chrome; empty: none is installed.
 std::string find_browser();
 
-/// html: path of a page of report_page(). Throws OutputError if no complete PDF came of it.
-void print_as_pdf(const std::string& html, const std::string& pdf);
+/// The PDF of a page of report_page(), printed in a folder of its own inside `folder`, which is removed. Throws
+/// OutputError if no complete PDF came of it.
+std::string print_as_pdf(const std::string& page, const std::string& folder);
 
 }  // namespace drev::app

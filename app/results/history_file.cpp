@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "app/base/csv_cell.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -17,7 +19,7 @@ void append(std::string& line, double value) {
 HistoryFile::HistoryFile(const std::string& directory, const std::vector<std::string>& channels, double every)
     : file_(directory, "history", "csv"), every_(every) {
   line_ = "time_s";
-  for (const std::string& channel : channels) line_ += "," + channel;
+  for (const std::string& channel : channels) line_ += "," + csv_cell(channel);
   line_ += "\n";
   file_.write(line_);
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// history.csv: time_s and the recorded channels, one row each at k * every, k = 0, 1, 2, ...; 17
-/// significant digits, with which every double reads back as it was.
+/// significant digits, with which every double reads back as it was. Names as csv_cell() has them.
 #include <chrono>
 #include <string>
 #include <vector>

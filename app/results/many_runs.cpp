@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/base/csv_cell.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
 
@@ -24,14 +25,6 @@ std::string shown(const OneOfMany& run, const std::vector<std::pair<const char*,
   for (const auto& [key, unit] : keys)
     if (const Json value = figure(run, key); value.is_number()) return digits(value, 5) + " " + unit;
   return {};
-}
-
-/// In quotes where it has commas (a name of several parameters), quotes or line ends (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
 }
 
 Json varied_object(const OneOfMany& run) {
@@ -73,12 +66,12 @@ std::string many_as_json(const ManyRuns& many) {
 
 std::string many_as_csv(const ManyRuns& many) {
   std::string text = "name,status";
-  for (const auto& [name, value] : many.runs.front().varied) text += "," + name;
+  for (const auto& [name, value] : many.runs.front().varied) text += "," + csv_cell(name);
   for (const char* key : kFigures) text += std::string(",") + key;
   text += "\n";
   for (const OneOfMany& run : many.runs) {
-    text += csv_field(run.model.name) + "," + run.status;
-    for (const auto& [name, value] : run.varied) text += "," + csv_field(value);
+    text += csv_cell(run.model.name) + "," + run.status;
+    for (const auto& [name, value] : run.varied) text += "," + csv_cell(value);
     for (const char* key : kFigures) {
       const Json value = figure(run, key);
       text += "," + (value.is_null() ? "" : value.dump());

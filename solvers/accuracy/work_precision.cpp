@@ -125,20 +125,23 @@ class Measurement {
   }
 
   void find_reference() {
-    Samples check;
+    Samples check;  // where a run was interrupted, there is nothing to compare
     if (!why_not_exact(system_)) {
       const Method exact{.name = kExact, .tolerance = kReferenceTolerance};
       reference_ = sample(exact);
       result_.reference = to_text(exact);
-      if (!reference_.summary.ok() && !result_.interrupted)
+      if (result_.interrupted) return;
+      if (!reference_.summary.ok())
         throw SolverError(system_.name() + ": no reference: " + reference_.summary.reason);
       check = tightest("dormand_prince", "average_acceleration", result_.check);
     } else {
       reference_ = tightest("dormand_prince", "average_acceleration", result_.reference);
+      if (result_.interrupted) return;
       check = tightest("sdirk4", "generalized_alpha:0.8", result_.check);
     }
+    if (result_.interrupted) return;
     result_.peak = largest(reference_.rows);
-    if (!(result_.peak > 0.0) && !result_.interrupted)
+    if (!(result_.peak > 0.0))
       throw SolverError(system_.name() +
                         ": nothing moves in the channels, so that no error is relative to them");
     result_.agreement = difference(reference_, check) / result_.peak;
@@ -173,6 +176,7 @@ class Measurement {
 
   WorkPoint point(const Method& method) {
     const Samples s = sample(method);
+    if (result_.interrupted) return {};
     WorkPoint p{.method = method, .ok = s.summary.ok(), .reason = s.summary.reason};
     p.seconds = s.seconds;
     if (!p.ok) return p;

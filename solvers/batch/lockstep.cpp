@@ -144,9 +144,7 @@ void Lockstep::prepare(double h) {
   for (int lane = 0; lane < kLanes; ++lane)
     if (alive(lane) && !factor_.ok(lane)) {
       alive_[lane] = 0;
-      results_[idx(lane)].error = systems_[idx(lane)]->name() + ": the step matrix of " + scheme_.name +
-                                  " at h = " + to_text(h) +
-                                  " s is not positive definite; is a stiffness negative?";
+      results_[idx(lane)].error = why_no_factor(*systems_[idx(lane)], scheme_.name, h, weights);
     }
   const LaneArray zero(idx(matrices_.n));
   LaneArray column(zero.size());

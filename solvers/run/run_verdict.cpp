@@ -8,6 +8,35 @@
 
 namespace drev {
 
+namespace {
+
+constexpr const char* kTooLarge =
+    "the energy is more than a number can hold; check the largest stiffness, inertia and load";
+constexpr double kLost = 0x1p-52;  // part of a sum of which rounding leaves nothing
+
+/// Entry (i, i) of the matrix with these values.
+double diagonal(const System& system, const Vector& values, int i) {
+  return values[system.diagonal_slots()[idx(i)]];
+}
+
+}  // namespace
+
+std::string why_no_factor(const System& system, const std::string& scheme, double h, const Weights& weights) {
+  const std::string what =
+      system.name() + ": the step matrix of " + scheme + " at h = " + to_text(h) + " s is not ";
+  for (int i = 0; i < system.size(); ++i) {
+    const double mass = weights.m * diagonal(system, system.mass_values(), i);
+    const double rest = weights.c * diagonal(system, system.damping_values(), i) +
+                        weights.k * diagonal(system, system.stiffness_values(), i);
+    if (!std::isfinite(mass + rest)) return what + "finite; check the largest inertia, damping and stiffness";
+    if (mass > 0.0 && mass < kLost * rest)
+      return what +
+             "positive definite: so long a step, or so stiff a part, leaves nothing of the inertia of " +
+             system.unknown_name(i) + "; take a shorter step";
+  }
+  return what + "positive definite; is a stiffness negative?";
+}
+
 std::string at_time(const std::string& system, double t) {
   std::ostringstream text;
   text.precision(12);
@@ -48,7 +77,7 @@ void end_not_finite(RunSummary& summary, const Assembler& assembler, const Evalu
                     const EvaluatedState& to) {
   const std::string what = what_is_not_finite(assembler, from, to);
   end_run(summary, assembler.system().name(), from.state.t, RunStatus::not_finite,
-          (what.empty() ? "the energy" : what) + " is not finite");
+          what.empty() ? kTooLarge : what + " is not finite");
 }
 
 void check_start(RunSummary& summary, const System& system, const State& state) {
@@ -67,6 +96,11 @@ void judge_energy(RunSummary& summary, double tolerance) {
   if (!summary.ok()) return;
   const double error = b.relative_error();
   if (std::abs(error) <= tolerance) return;
+  if (!std::isfinite(error)) {
+    summary.status = RunStatus::not_finite;
+    summary.reason = kTooLarge;
+    return;
+  }
   std::ostringstream text;
   text << "the energy balance is off by " << 100.0 * error << " % ("
        << (error > 0 ? "gained from nothing" : "lost by the method") << ", worst at t = " << b.worst_time

@@ -1,6 +1,7 @@
 #pragma once
 /// How runs end: what goes into RunSummary's status and reason. Shared by stepping, exact propagation and
 /// lockstep: the same fault has the same message in each.
+#include <drev/core/weights.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
@@ -10,6 +11,10 @@ namespace drev {
 
 /// "<system>: at t = <t> s: ", where every message about a run begins.
 std::string at_time(const std::string& system, double t);
+
+/// Why the matrix of a step of length h [s] could not be factored: which of mass, damping and stiffness, summed
+/// with these weights, spoils it. A whole sentence.
+std::string why_no_factor(const System& system, const std::string& scheme, double h, const Weights& weights);
 
 /// Ends a run, unless it ended before.
 void end_run(RunSummary& summary, const std::string& system, double t, RunStatus status,

@@ -7,6 +7,7 @@
 
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/vector_kernels.hpp"
+#include "solvers/run/run_verdict.hpp"
 
 namespace drev {
 
@@ -52,8 +53,7 @@ StepEquation::Factor& StepEquation::find_factor(double h) {
   assembler_.linear_values(weights, values_);
   ++factorizations_;
   if (f->cholesky.factorize(system_.pattern(), values_) != FactorStatus::success)
-    throw SolverError(system_.name() + ": the step matrix of " + scheme_.name + " at h = " + to_text(h) +
-                      " s is not positive definite; is a stiffness negative?");
+    throw SolverError(why_no_factor(system_, scheme_.name, h, weights));
   const auto m = static_cast<Eigen::Index>(system_.scalars().size());
   f->w.resize(system_.size(), m);
   Eigen::MatrixXd compliance(m, m);

@@ -136,13 +136,16 @@ class Run final : public StepMotion {
       StepControl& control_;
     } coarse(*control_);
     State state = now_->state;
-    const RunSummary run = simulate(system_,
-                                    {.scheme = bathe(),
-                                     .step = duration() / kCoarseSteps,
-                                     .t_start = options_.t_start,
-                                     .t_end = options_.t_end,
-                                     .newton = options_.newton},
-                                    state, {&coarse});
+    const RunSummary run =
+        simulate(system_,
+                 {.scheme = bathe(),
+                  .step = duration() / kCoarseSteps,
+                  .t_start = options_.t_start,
+                  .t_end = options_.t_end,
+                  .newton = options_.newton,
+                  .progress = [this](double) { return !options_.progress || options_.progress(0.0); }},
+                 state, {&coarse});
+    if (run.status == RunStatus::interrupted) end_interrupted(summary_, system_.name(), now_->state.t);
     coarse_solves_ = run.solves;
     energy_floor_ = StepControl::kExpected * run.energy.scale;
     summary_.factorizations = run.factorizations;
@@ -150,7 +153,12 @@ class Run final : public StepMotion {
 
   void run_to(const Stop& stop) {
     if (control_ || locates_)
-      while (running() && now_->state.t < stop.t) free_step(stop);
+      while (running() && now_->state.t < stop.t) {
+        free_step(stop);
+        // Steps that are rejected do not count as steps, and may be many.
+        if (!progress_.goes_on(++tries_, now_->state.t))
+          end_interrupted(summary_, system_.name(), now_->state.t);
+      }
     else
       constant_steps(stop);
     if (stop.at_break && running() && now_->state.t < options_.t_end) {
@@ -325,6 +333,7 @@ class Run final : public StepMotion {
   EvaluatedState *now_ = &points_[0], *next_ = &points_[1];
   Vector e_z_, e_v_;
   Progress progress_;
+  long tries_ = 0;  // steps made freely, accepted or not
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   bool locates_ = false;

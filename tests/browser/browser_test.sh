@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# browser_test.sh DREV [--break]: opens reports in Chromium, without a window, and does there what a reader
+# browser_test.sh DREV [--break|--hostile|--hostile-break]: opens reports in Chromium, without a window, and does there what a reader
 # does (probe.html). --break: with a page that loses peaks and has an error, which must be found.
+# --hostile: with 200 names that are attacks (hostile_model.sh, hostile_probe.html), with the page's policy and
+# without it, alone and compared, and printed. --hostile-break: with a page that takes them for markup.
 #
 # Checked: no error, no request, all charts with the right number of points, none of which loses a peak, zoom
 # by mouse, wheel, keys and buttons, choice of a mode, themes, paper; sizes below 5 MB; a comparison; a PDF.
@@ -29,15 +31,17 @@ fail() {
 headless() {
   local root=()
   [ "$(id -u)" != 0 ] || root=(--no-sandbox)
-  timeout 120 "$browser" --headless --disable-gpu --no-first-run "${root[@]}" --enable-logging=stderr \
+  timeout 280 "$browser" --headless --disable-gpu --no-first-run "${root[@]}" --enable-logging=stderr \
     --user-data-dir="$folder/profile" "$@"
 }
 
-# probe <page> <name>: runs the probe in the page and shows what it found.
+# probe <page> <name> [<probe>]: runs the probe in the page, which the page's policy must let run, and shows what
+# it found.
 probe() {
-  local page=$folder/probed.html found=$folder/found.txt log=$folder/log.txt
+  local page=$folder/probed.html found=$folder/found.txt log=$folder/log.txt nonce
+  nonce=$(grep -om1 "'nonce-[^']*'" "$1" | sed "s/'nonce-//; s/'//" || true)
   sed "/<meta charset/r $here/collect.html" "$1" >"$page"
-  cat "$here/probe.html" >>"$page"
+  sed "s|^<script>|<script nonce=\"$nonce\">|" "$here/${3:-probe.html}" >>"$page"
   headless --window-size=1280,1000 --virtual-time-budget=60000 --dump-dom "file://$page" \
     >"$folder/dom.html" 2>"$log" || {
     fail "$2: the browser ended with an error"
@@ -59,6 +63,25 @@ below_5_MB() {
 }
 
 cd "$folder"
+if [[ ${2:-} = --hostile* ]]; then
+  "$here/hostile_model.sh" hostile.toml
+  "$drev" run hostile.toml --report hostile.html --quiet
+  sed '/http-equiv="Content-Security-Policy"/d' hostile.html >open.html
+  if [ "$2" = --hostile-break ]; then
+    sed -i 's/^const asMarkup = .*/const asMarkup = String;/' open.html
+    probe open.html broken hostile_probe.html
+    exit $failed
+  fi
+  probe hostile.html hostile hostile_probe.html
+  probe open.html "without a policy" hostile_probe.html
+  "$drev" run hostile.toml --set torque_Nm=10 --report other.html --quiet
+  "$drev" report hostile.html other.html --out both.html --quiet
+  probe both.html compared hostile_probe.html
+  "$drev" report hostile.html --out hostile.pdf --quiet
+  [ "$(head -c 5 hostile.pdf)" = "%PDF-" ] || fail "hostile.pdf is no PDF"
+  [ -z "$(ls | grep -E "partial|print" || true)" ] || fail "files of printing are left: $(ls)"
+  exit $failed
+fi
 "$drev" run camshaft --every 5e-6 --report main.html --quiet  # a million samples
 if [ "${2:-}" = --break ]; then
   sed -i -e 's/if (series.high\[i\] > high) high = series.high\[i\];/if (series.low[i] > high) high = series.low[i];/' \

@@ -141,6 +141,10 @@ function toolbar(group, ...more) {
   );
 }
 
+/// Names of curves for dygraphs, which finds curves by them and takes some words (__proto__) for its own: a blank
+/// of no width makes each a word of no meaning. It shows them as texts; titles of axes it reads as HTML.
+const curveName = (label) => `\u200b${label}`;
+
 /// One chart. options: {group, title, caption, labels, rows(from, to, columns) -> {rows, sparse}, xName, xLabel; and
 /// where they are not the usual: yLabel, valueRange, log, tall, colors(), series(label, i), underlay}.
 class Chart {
@@ -174,7 +178,7 @@ class Chart {
     const o = this.options;
     const strokes = Object.fromEntries(
       o.labels.map((label, i) => [
-        label,
+        curveName(label),
         {
           strokeWidth: sparse ? 1.6 : 1,
           strokePattern: sparse ? DASHES[i % DASHES.length] : null,
@@ -199,12 +203,12 @@ class Chart {
       return;
     }
     this.graph = new Dygraph(this.element, rows, {
-      labels: [o.xName, ...o.labels],
+      labels: [o.xName, ...o.labels.map(curveName)],
       dateWindow: window,
       ...this.looks(sparse),
       logscale: !!o.log,
-      xlabel: o.xLabel,
-      ...(o.yLabel ? { ylabel: o.yLabel } : {}),
+      xlabel: asMarkup(o.xLabel),
+      ...(o.yLabel ? { ylabel: asMarkup(o.yLabel) } : {}),
       xLabelHeight: 17,
       yLabelWidth: 16,
       axisLabelFontSize: 11,

@@ -85,6 +85,9 @@ function fill(element, attributes, children) {
   return element;
 }
 
+/// A text for what reads its text as HTML, which is the chart library: shown as it is.
+const asMarkup = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
+
 const byId = (id) => document.getElementById(id);
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 

@@ -37,7 +37,7 @@ function showSpectra() {
         drawAll();
         for (const chart of group.charts)
           chart.graph.updateOptions({
-            xlabel: named,
+            xlabel: asMarkup(named),
             axes: {
               x: {
                 axisLabelFormatter: (x) => tidy(x / unit),

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <signal.h>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
@@ -43,11 +44,18 @@ struct Outcome {
   std::string out, err;
 };
 
+/// What a drev may use; all there is unless said.
+struct Limits {
+  rlim_t file = RLIM_INFINITY;    ///< bytes of each file that it writes: a full disk's stand-in
+  rlim_t memory = RLIM_INFINITY;  ///< bytes of its addresses
+};
+
 /// A running drev.
 class Process {
  public:
   /// Its standard output goes to out_path, if one is given, and is not read back.
-  explicit Process(const std::vector<std::string>& arguments, const std::string& out_path = {})
+  explicit Process(const std::vector<std::string>& arguments, const std::string& out_path = {},
+                   const Limits& limits = {})
       : kept_(out_path.empty()),
         out_(kept_ ? (folder_ / "out").string() : out_path),
         err_((folder_ / "err").string()) {
@@ -62,11 +70,19 @@ class Process {
     const int err = ::open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::dup2(out, STDOUT_FILENO);
     ::dup2(err, STDERR_FILENO);
+    const rlimit file{limits.file, limits.file}, memory{limits.memory, limits.memory};
+    ::setrlimit(RLIMIT_FSIZE, &file);
+    ::setrlimit(RLIMIT_AS, &memory);
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }
 
   void send(int signal) const { ::kill(id_, signal); }
+  /// From now on, what it writes fits into files of so many bytes.
+  void limit_files(rlim_t bytes) const {
+    const rlimit file{bytes, bytes};
+    ::prlimit(id_, RLIMIT_FSIZE, &file, nullptr);
+  }
 
   Outcome wait() const {
     int status = 0;
@@ -82,7 +98,9 @@ class Process {
   pid_t id_ = -1;
 };
 
-inline Outcome drev_command(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
+inline Outcome drev_command(const std::vector<std::string>& arguments, const Limits& limits = {}) {
+  return Process(arguments, {}, limits).wait();
+}
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

@@ -19,6 +19,17 @@ TEST_CASE("A finding names place, parameter, value, unit and range") {
   CHECK(Finding{"camshaft", "", "", "", "is empty"}.text() == "camshaft: is empty");
 }
 
+TEST_CASE("What would steer a terminal is shown, not printed") {
+  const std::string nul("a\0b", 3);
+  CHECK(Finding{"m\x1b[2J", nul, "\r\n\t", "\x7f", "C1 \xc2\x9b[31m"}.text() ==
+        "m\\x1b[2J: a\\x00b = \\x0d\\x0a\\x09 \\x7f, C1 \\xc2\\x9b[31m");
+  const std::string harmless =
+      "Z\xc3\xbcge \xc2\xa0 \xe2\x80\xa8 \xc2";  // an umlaut, blanks, and a cut letter
+  CHECK(Finding{harmless, "", "", "", ""}.text() == harmless);
+  CHECK_FALSE(has_control_characters(harmless));
+  CHECK(has_control_characters(nul));
+}
+
 TEST_CASE("A ModelError lists its findings, one a line") {
   const ModelError error({{"a", "x", "1", "m", "low"}, {"b", "y", "2", "s", "high"}});
   CHECK(std::string(error.what()) == "a: x = 1 m, low\nb: y = 2 s, high");

@@ -90,7 +90,7 @@ TEST_CASE("Names") {
     CHECK(only_fault(m, {"element name = shaft", "is used twice"}));
   }
   SECTION("what channel names and tables cannot hold") {
-    for (const char* bad : {"", "a.b", "a,b", "a\nb", "a\"b"}) {
+    for (const char* bad : {"", "a.b", "a,b", "a\nb", "a\"b", "a\tb", "\x1b[31m", "a\x7f", "a\xc2\x9b"}) {
       Model m = sound();
       m.add_node(bad);
       m.add<Inertia>("disc", {bad}, {.inertia = 1.0});
@@ -100,6 +100,16 @@ TEST_CASE("Names") {
       n.add<Inertia>(bad, {"motor"}, {.inertia = 1.0});
       CHECK(only_fault(n, {"element name"}));
     }
+  }
+  SECTION("what would end or steer what is printed") {
+    Model m = sound();
+    m.add_node(std::string("a\0b", 3));
+    m.add<Inertia>("disc", {NodeId{2}}, {.inertia = 1.0});
+    CHECK(only_fault(m, {"node name = a\\x00b", "control characters"}));
+    Model named("a\x1b[2Jb");
+    named.add_node("n");
+    named.add<Inertia>("disc", {"n"}, {.inertia = 1.0});
+    CHECK(only_fault(named, {"name = a\\x1b[2Jb, must be without control characters"}));
   }
   SECTION("an element's internal nodes meet the user's") {
     Model m = sound();

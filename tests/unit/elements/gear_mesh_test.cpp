@@ -208,6 +208,20 @@ TEST_CASE("gear mesh: faults") {
   CHECK(contains(findings(GearMesh(p)), "contact_ratio = 2, must be greater than 1"));
   p.stiffness = MeshStiffness::fourier(1e8, {{1, 2e8, 0.0}});
   CHECK(contains(findings(GearMesh(p)), "must stay > 0"));
+  // However narrow: 4096 samples over the period would all see the crests of the second one.
+  p.stiffness = MeshStiffness::fourier(1e8, {{4096, 1.5e8, 0.0}});
+  CHECK(contains(findings(GearMesh(p)), "it must stay > 0"));
+  p.stiffness = MeshStiffness::fourier(1e8, {{4000, 0.6e8, 0.3}, {4096, 0.5e8, 0.0}});
+  CHECK(contains(findings(GearMesh(p)), "it must stay > 0"));
+  // cos x + cos(2 x)/2 is -0.75 at the least.
+  p.stiffness = MeshStiffness::fourier(0.7501e8, {{512, 1e8, 0.1}, {1024, 0.5e8, 0.2}});
+  CHECK(findings(GearMesh(p)).find("stay > 0") == std::string::npos);
+  p.stiffness = MeshStiffness::fourier(0.7499e8, {{512, 1e8, 0.1}, {1024, 0.5e8, 0.2}});
+  CHECK(contains(findings(GearMesh(p)), "it must stay > 0"));
+  p.stiffness = MeshStiffness::fourier_of_step(6.582e8, 1.102e9, 1.6, 2000);
+  CHECK(findings(GearMesh(p)).find("stay > 0") == std::string::npos);
+  p.stiffness = MeshStiffness::fourier(1e8, {{10001, 1e7, 0.0}});
+  CHECK(contains(findings(GearMesh(p)), "harmonics[0].order = 10001, must be at most 10000"));
   p.stiffness = MeshStiffness::fourier(1e8, {{1.5, 2e7, 0.0}});
   CHECK(contains(findings(GearMesh(p)), "harmonics[0].order = 1.5, must be a whole number"));
   p.stiffness = MeshStiffness::table({0, 1}, {1e8, 1e8});

@@ -99,6 +99,32 @@ TEST_CASE("distributed shaft") {
     CHECK(f.tail(3).cwiseAbs().maxCoeff() < 1e-9 * torque);
     for (const OutputSpec& o : t.outputs) CHECK(o.stiffness.dot(q) == Approx(torque).epsilon(1e-9));
   }
+  SECTION("part by part it is what it is as a whole") {
+    auto p = massless;
+    p.density = 7850;
+    for (const SegmentMass mass : {SegmentMass::lumped, SegmentMass::consistent, SegmentMass::averaged})
+      for (const int n : {1, 2, 5}) {
+        p.mass = mass, p.segments = n;
+        const DistributedShaft shaft(p);
+        const Terms whole = described(shaft, 2);
+        Terms sum(n + 1);
+        REQUIRE(shaft.part_count() == n);
+        for (int part = 0; part < n; ++part) {
+          const std::vector<int> nodes = shaft.part_nodes(part);
+          Terms own(2);
+          shaft.describe_part(part, own);
+          sum.mass(nodes, nodes) += own.mass;
+          sum.stiffness(nodes, nodes) += own.stiffness;
+          REQUIRE(own.outputs.size() == 1);
+          CHECK(own.outputs[0].suffix == whole.outputs[idx(part)].suffix);
+          CHECK(whole.outputs[idx(part)].stiffness(nodes) == own.outputs[0].stiffness);
+          CHECK(own.rayleigh);
+        }
+        CHECK(sum.mass == whole.mass);
+        CHECK(sum.stiffness == whole.stiffness);
+        CHECK(check_element(shaft, 2).text() == "");
+      }
+  }
   SECTION("faults") {
     auto p = massless;
     p.segments = 3;

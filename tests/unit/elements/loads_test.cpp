@@ -76,5 +76,7 @@ TEST_CASE("loads: faults") {
                  "phase = NaN rad"));
   CHECK(contains(findings(EngineOrderTorque({.harmonics = {{0.0, 1.0, 0.0}}})),
                  "harmonics[0].order = 0, must be > 0"));
+  CHECK(contains(findings(AppliedTorque({.harmonics = {{-40.0, 1.0, 0.0}}})),
+                 "harmonics[0].frequency = -40 Hz, must be > 0"));
   CHECK(contains(findings(EngineOrderTorque({.mean = INFINITY})), "mean = infinity N m"));
 }

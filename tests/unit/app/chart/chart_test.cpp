@@ -1,6 +1,9 @@
 // The command chart: what it measures, writes and concludes.
+#include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -9,6 +12,20 @@ using drev::test::contains;
 using drev::test::drev_command;
 using drev::test::read_file;
 using Json = nlohmann::json;
+
+TEST_CASE("A chart that is interrupted says so, whenever that is") {
+  const int after_ms = GENERATE(50, 400, 1500, 3000);
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const drev::test::Process process({"chart", "camshaft"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+  process.send(signal);
+  const auto run = process.wait();
+  CAPTURE(after_ms, signal, run.err);
+  CHECK(
+      (run.exit_code == 130 || (run.exit_code == -1 && after_ms == 50)));  // before it listens: by the signal
+  if (run.exit_code == 130) CHECK(contains(run.err, "drev: interrupted"));
+  CHECK(run.out.empty());
+}
 
 TEST_CASE("A chart: reference checked, errors fall with the step, files written") {
   const drev::test::TemporaryFolder folder;

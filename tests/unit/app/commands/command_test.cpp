@@ -382,3 +382,80 @@ TEST_CASE("The default step follows the fastest thing in a model") {
   for (const char* count : {"front_contacts", "back_contacts"})
     CHECK(stepped["results"][count] == truth["results"][count]);
 }
+
+namespace {
+
+/// The file of a shaft of so many segments between two discs.
+std::string shaft_file(const drev::test::TemporaryFolder& folder, int segments) {
+  std::ofstream(folder / "shaft.toml") << R"(format = 1
+[nodes]
+a = {}
+b = {}
+[elements]
+Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }
+Jb = { type = "inertia", node = "b", inertia_kg_m2 = 1 }
+s = { type = "distributed_shaft", nodes = ["a", "b"], outer_diameter_mm = 100, length_m = 1, density_kg_per_m3 = 7850, shear_modulus_GPa = 80, segments = )"
+                                       << segments << " }\n";
+  return (folder / "shaft.toml").string();
+}
+
+}  // namespace
+
+TEST_CASE("The most segments that a shaft may have take memory that grows with their number alone") {
+  // A matrix over 10,001 nodes is 800 MB.
+  const drev::test::TemporaryFolder folder;
+  const std::string file = shaft_file(folder, 10000);
+  const auto check = drev_command({"check", file}, {.memory = 400'000'000});
+  CAPTURE(check.err);
+  CHECK(check.exit_code == 0);
+  CHECK(contains(check.out, "10001 nodes"));
+  const auto list = drev_command({"list", file}, {.memory = 400'000'000});
+  CHECK(list.exit_code == 0);
+  CHECK(contains(list.out, "s_10000"));
+}
+
+TEST_CASE("Too little memory is said, with what helps") {
+  const drev::test::TemporaryFolder folder;
+  const auto check = drev_command({"check", shaft_file(folder, 10000)}, {.memory = 60'000'000});
+  CAPTURE(check.err);
+  CHECK(check.exit_code == 1);
+  CHECK(contains(check.err, "there is not enough memory: take a model with fewer nodes or segments"));
+}
+
+TEST_CASE("A number that is too large is blamed, and not something else") {
+  const drev::test::TemporaryFolder folder;
+  const auto run =
+      [&](const std::string& stiffness, const std::string& amplitude, const std::string& duration,
+          std::vector<std::string> words) {
+        std::ofstream(folder / "m.toml")
+            << "format = 1\n[nodes]\na = {}\nb = {}\n[elements]\n"
+            << "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+            << "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+            << "s = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = " << stiffness
+            << " }\nload = { type = \"applied_torque\", node = \"a\", "
+            << "harmonics = { frequency_Hz = [40], amplitude_Nm = [" << amplitude
+            << "] } }\n[run]\nduration_s = " << duration << "\n";
+        words.insert(words.begin(), {"run", (folder / "m.toml").string()});
+        return drev_command(words);
+      };
+  const auto long_step = run("1e4", "10", "1e9", {"--step", "1e9"});
+  CHECK(long_step.exit_code == 1);
+  CHECK(contains(
+      long_step.err,
+      "so long a step, or so stiff a part, leaves nothing of the inertia of a; take a shorter step"));
+  CHECK_FALSE(contains(long_step.err, "negative"));
+  for (const char* method : {"exact", "average_acceleration", "sdirk4"}) {
+    CAPTURE(method);
+    const auto stiff = run("1e300", "10", "0.1", {"--method", method});
+    CAPTURE(stiff.err);
+    CHECK(stiff.exit_code == 1);
+    CHECK_FALSE(contains(stiff.err, "load not finite"));
+    CHECK_FALSE(contains(stiff.err, "negative"));
+    CHECK((contains(stiff.err, "stiff")));
+    for (const char* amplitude : {"1e300", "1e156", "1e150"}) {
+      const auto large = run("1e4", amplitude, "0.1", {"--method", method});
+      CAPTURE(large.err);
+      CHECK_FALSE(contains(large.err, "nan"));
+    }
+  }
+}

@@ -54,6 +54,8 @@ const std::vector<OptionFault>& faults() {
       {{"run", "camshaft", "--method", "euler"}, {"euler", "average_acceleration", "hht"}},
       {{"run", "camshaft", "--method", "hhtt:0.1"}, {"hhtt", "did you mean 'hht'?"}},
       {{"run", "camshaft", "--method", "hht:0.5"}, {"alpha = 0.5", "between 0 and 0.333"}},
+      {{"run", "two_inertia", "--method", "exact:3"},
+       {"--method name = exact:3", "exact takes no number behind it; its tolerance is given by --tolerance"}},
       {{"run", "camshaft", "--method", "hht:"}, {"hht:", "hht[:ALPHA]"}},
       {{"run", "camshaft", "--method", "generalized_alpha:1.1"}, {"rho_inf = 1.1", "0 and 1"}},
       {{"run", "camshaft", "--method", "newmark:0.25"}, {"newmark", "2"}},
@@ -139,4 +141,12 @@ TEST_CASE("All faults of one command line are listed at once") {
        {"--stp", "--step = 1ms", "--every = -1 s", "alpha = 2", "cylinders = 5", "drve", "backlash_mm = x",
         "end.angle", "mesh_9.force_N", "--every, needs", "--record, needs"})
     CHECK(contains(run.err, part));
+}
+
+TEST_CASE("Only the option that is wrong is blamed") {
+  const auto within = drev_command({"advise", "two_inertia", "--within", "0"});
+  INFO(within.err);
+  CHECK(within.exit_code == 2);
+  CHECK_FALSE(contains(within.err, "--for"));
+  CHECK_FALSE(contains(within.err, "2 faults"));
 }

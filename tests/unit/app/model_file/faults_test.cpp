@@ -36,9 +36,16 @@ const std::vector<Fault>& faults() {
       // the head
       {"format = 1\n", "@", "format, is missing; write format = 1"},
       {"format = 1", "format = @2", "is the number 2; this drev reads format 1"},
+      {"format = 1", "format = @1.0", "must be a whole number, written without a point: format = 1"},
       {"format = 1", "format = @\"1\"", "is the text \"1\"; this drev reads format 1"},
       {"[lists]", "[@list]", "did you mean 'lists'?"},
       {"name = \"drive\"", "name = @7", "must be a text in quotes, not the number 7"},
+      {"name = \"drive\"", "name = @\"a\\u001b[31m\"",
+       "name, has a control character, which is not allowed: a\\x1b[31m"},
+      {"name = \"drive\"", "name = @\"a\\u0000b\"", "a\\x00b"},
+      {"name = \"drive\"", "name = @\"a\\u009bb\"", "a\\xc2\\x9bb"},
+      {"gear = {}", "gear = {}\n@\"a\\tb\" = {}",
+       "nodes, has a control character, which is not allowed: a\\x09b"},
       {"name = \"drive\"", "name = \"drive\"\ninclude = @\"nowhere.toml\"", "there is no such file"},
       {"name = \"drive\"", "name = \"drive\"\ninclude = [@3]", "must be the name of a file"},
       {"name = \"drive\"", "name = \"drive\"\ninclude = @\"drive.toml\"", "includes itself"},
@@ -259,9 +266,40 @@ TEST_CASE("Faults of files that are included or read are named in those") {
   CHECK(contains(run.err, "gears.toml:2:1: name, can stand in the main file only"));
   CHECK(contains(run.err, "gears.toml:6:5: elements.J, lacks inertia_kg_m2"));
   CHECK(contains(run.err, "broken.toml:1:"));
-  CHECK(contains(run.err, "lift.csv:3:4: torque_Nm, 'x' is no finite number"));
+  CHECK(contains(run.err, "lift.csv:3:4: row, the cell of column 2 is no finite number"));
   CHECK(contains(run.err, "lift.csv:4:1: row, has 1 cells, the header 2"));
   CHECK(contains(run.err, "5 faults"));
+}
+
+TEST_CASE("Nothing of a file that is no table is printed") {
+  const test::TemporaryFolder folder;
+  const auto check_with =
+      [&](const std::string& table) {
+        std::ofstream(folder / "secret") << table;
+        std::ofstream(folder / "m.toml")
+            << "format = 1\n[nodes]\na = {}\n[elements]\n"
+               "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+               "T = { type = \"applied_torque\", node = \"a\", table = { csv = \"secret\" } }\n";
+        return test::drev_command({"check", (folder / "m.toml").string()});
+      };
+  for (const char* table :
+       {"root:hidden:19000:0:99999\ndaemon:hidden:19000\n", "hidden", "hidden,hidden\n1,2\n",
+        "hidden\nhidden,1\n", "time_s,torque_Nm\n0,hidden\n", "\"hidden\n1\n", "\"hidden\"x\n"}) {
+    const auto run = check_with(table);
+    CAPTURE(table, run.err);
+    CHECK(run.exit_code == 2);
+    CHECK_FALSE(contains(run.err, "hidden"));
+    CHECK(contains(run.err, "secret:"));
+  }
+  // A table of numbers under other names is a table: its names help.
+  const auto other = check_with("t_s,torque_Nm\n0,1\n1,2\n");
+  CHECK(contains(other.err, "secret has no column time_s"));
+  CHECK(contains(other.err, "it has t_s, torque_Nm"));
+  const auto two = check_with("time_s,torque_Nm,time_ms\n0,1,2\n1,2,3\n");
+  CAPTURE(two.err);
+  CHECK(two.exit_code == 2);
+  CHECK(contains(two.err, "secret has several columns that fit, time_s"));
+  CHECK(contains(two.err, "say which is meant: time = \"time_s\""));
 }
 
 TEST_CASE("Faults of a file's run options are named in the file") {

@@ -74,7 +74,7 @@ TEST_CASE("Parameters are parameters that --set changes, with their range") {
   CHECK(s.name == "J_kg_m2");
   CHECK(s.unit == "kg_m2");
   CHECK(s.meaning == "of the disc");
-  CHECK(file.entry().parameters.at(1).range() == "any number");
+  CHECK(file.entry().parameters.at(1).range() == "any finite number");
 }
 
 TEST_CASE("A repeat makes numbered nodes and elements") {
@@ -141,6 +141,29 @@ TEST_CASE("Includes and tables are relative to the file that names them") {
   const auto& table = params<CamTorque>(model_case, "cam").angle_table;
   CHECK(table.arguments() == std::vector<double>{0.0, deg(90)});
   CHECK(table.values() == std::vector<double>{2000.0, 4500.0});
+}
+
+TEST_CASE("Tables are read as spreadsheets write them") {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder / "m.toml").string();
+  std::ofstream(path) << "format = 1\n[nodes]\na = {}\n[elements]\n"
+                         "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+                         "T = { type = \"applied_torque\", node = \"a\", table = { csv = \"t.csv\", torque = "
+                         "\"=a,b_kNm\" } }\n";
+  // A byte-order mark, cells in quotes with commas, doubled quotes and line ends, the mark before a formula.
+  for (const char* text :
+       {"\xef\xbb\xbftime_s,\"'=a,b_kNm\",\"x \"\"y\"\"\"\r\n\"0\",1,\"2\"\r\n \"1\" , \"3.5\",4\r\n",
+        "# made by hand\n\"time_s\",\"=a,b_kNm\",\"x\ny\"\n0,\"1\",0\n\n1,3.5,0",
+        "\xef\xbb\xbf# made by hand\ntime_s,\"=a,b_kNm\"\n0,1\n1,3.5\n"}) {
+    std::ofstream(folder / "t.csv") << text;
+    CAPTURE(text);
+    const app::ModelFile file(path, "");
+    const ModelCase model_case = file.entry().build(Parameters("m", file.entry().parameters));
+    const auto& table = params<AppliedTorque>(model_case, "T").table;
+    REQUIRE(table);
+    CHECK(table->at(0.0).value == 1000.0);
+    CHECK(table->at(1.0).value == 3500.0);
+  }
 }
 
 TEST_CASE("Nodes are held, driven, given a motion and a start") {

@@ -1,7 +1,10 @@
 // Elements of plugins in everything that takes a model file, and what is wrong with a plugin. The plugins are
 // in tests/plugins and tests/install_consumer/plugin.
+#include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -226,4 +229,26 @@ TEST_CASE("What is wrong with a plugin is said of each, and nothing is run") {
   CHECK(twice.exit_code == 2);
   CHECK(contains(drev_command({"check", kDisc, "--plugin", kHardening + "," + kHardening}).err,
                  "is named twice"));
+}
+
+TEST_CASE("The first interrupt ends a run that cannot ask for it") {
+  const TemporaryFolder folder;
+  const std::string model = written(
+      folder / "m.toml",
+      "format = 1\n[nodes]\na = {}\n[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+      "T = { type = \"endless\", node = \"a\" }\n[run]\nduration_s = 1\n");
+  const drev::test::Process process({"run", model, "--plugin", plugin("endless"), "--method",
+                                     "average_acceleration", "--step", "1e-3", "--out",
+                                     (folder / "r").string()});
+  for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const auto begin = std::chrono::steady_clock::now();
+  process.send(SIGINT);
+  const Outcome run = process.wait();
+  CAPTURE(run.err);
+  CHECK(run.exit_code == 130);
+  CHECK(contains(run.err, "drev: interrupted in the midst of a computation"));
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+  CHECK(Json::parse(drev::test::read_file(folder / "r/summary.partial.json")).at("status") == "running");
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/stat.h>
 #include <thread>
 
 #include "tests/catch.hpp"
@@ -116,21 +117,20 @@ TEST_CASE("A file that cannot be written is refused before the run") {
 }
 
 TEST_CASE("A full disk is an error, and the old result stays") {
-  if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "r");
-  std::filesystem::create_symlink("/dev/full", folder / "r/history.partial.csv");
   std::ofstream(folder / "r/history.csv") << "old\n";
   SECTION("at the end") {
-    const auto run = drev_command({"run", "two_inertia", "--out", (folder / "r").string()});
+    const auto run = drev_command({"run", "two_inertia", "--out", (folder / "r").string()}, {.file = 20000});
     CHECK(run.exit_code == 3);
-    CHECK(contains(run.err, "history.partial.csv: No space left on device"));
+    CHECK(contains(run.err, "history.partial.csv: File too large"));
   }
   SECTION("on the way: the run is given up") {
     const auto run = drev_command({"run", "camshaft", "--set", "duration_s=1000", "--every", "1e-5", "--out",
-                                   (folder / "r").string(), "--json"});
+                                   (folder / "r").string(), "--json"},
+                                  {.file = 20000});
     CHECK(run.exit_code == 3);
-    CHECK(contains(run.err, "No space left on device"));
+    CHECK(contains(run.err, "File too large"));
     CHECK(Json::parse(run.out).at("status") == "output_error");
   }
   CHECK(read_file(folder / "r/history.csv") == "old\n");
@@ -138,17 +138,68 @@ TEST_CASE("A full disk is an error, and the old result stays") {
 }
 
 TEST_CASE("A history.h5 that does not fit on the disk leaves the rest") {
-  if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryFolder folder;
-  std::filesystem::create_directory(folder / "r");
-  std::filesystem::create_symlink("/dev/full", folder / "r/history.partial.h5");
-  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=0.1", "--out",
-                                 (folder / "r").string(), "--format", "hdf5"});
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=0.1", "--every", "0.02",
+                                 "--out", (folder / "r").string(), "--format", "hdf5"},
+                                {.file = 20000});
   CHECK(run.exit_code == 3);
   CHECK(contains(run.err, "history.partial.h5"));
   CHECK(std::filesystem::exists(folder / "r/history.csv"));
   CHECK(std::filesystem::exists(folder / "r/summary.json"));
   CHECK_FALSE(std::filesystem::exists(folder / "r/history.h5"));
+}
+
+TEST_CASE("What someone else has put in the way of a file is neither followed nor written") {
+  const std::string name = GENERATE("history.partial.csv", "summary.partial.json",
+                                    "summary.partial.json.next", "report.partial.html", "history.partial.h5");
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "r");
+  const std::string place = (folder / ("r/" + name)).string(), target = (folder / "precious").string();
+  std::string reason = "no regular file";
+  SECTION("a symbolic link") {
+    std::ofstream(target) << "precious\n";
+    std::filesystem::create_symlink(target, place);
+    reason = "symbolic link, which is not followed";
+  }
+  SECTION("a link to nothing") {
+    std::filesystem::create_symlink(target, place);
+    reason = "symbolic link, which is not followed";
+  }
+  SECTION("a pipe that no one reads") { REQUIRE(::mkfifo(place.c_str(), 0600) == 0); }
+  const bool kept = std::filesystem::exists(target);
+  const auto run = drev_command({"run", "two_mass_backlash", "--set", "duration_s=0.1", "--out",
+                                 (folder / "r").string(), "--format", "hdf5"});
+  CAPTURE(name, run.err);
+  CHECK(run.exit_code == 3);
+  CHECK(contains(run.err, name + ": it is "));
+  CHECK(contains(run.err, reason));
+  CHECK(std::filesystem::exists(target) == kept);
+  if (kept) CHECK(read_file(target) == "precious\n");
+}
+
+TEST_CASE("A name that a spreadsheet would take for a formula is marked in history.csv") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "m.toml") << R"toml(format = 1
+[nodes]
+"=HYPERLINK(1)" = { initial_speed_rpm = 1 }
+"+1" = {}
+"'-2" = {}
+"@x" = {}
+"a=b" = {}
+[elements]
+J1 = { type = "inertia", node = "=HYPERLINK(1)", inertia_kg_m2 = 1 }
+J2 = { type = "inertia", node = "+1", inertia_kg_m2 = 1 }
+J3 = { type = "inertia", node = "'-2", inertia_kg_m2 = 1 }
+J4 = { type = "inertia", node = "@x", inertia_kg_m2 = 1 }
+J5 = { type = "inertia", node = "a=b", inertia_kg_m2 = 1 }
+[run]
+duration_s = 0.1
+)toml";
+  const auto run = drev_command({"run", (folder / "m.toml").string(), "--out", (folder / "r").string()});
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(read_table(folder / "r/history.csv").header ==
+        "time_s,'=HYPERLINK(1).angle_rad,'+1.angle_rad,''-2.angle_rad,'@x.angle_rad,a=b.angle_rad");
 }
 
 TEST_CASE("Standard output on a full disk is an error") {
@@ -237,16 +288,19 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
 }
 
 TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
-  if (!std::filesystem::exists("/dev/full")) return;
   const TemporaryFolder folder;
-  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  // A summary has more bytes than there is room for, the history few.
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "5000", "--record",
+                         "end.angle_rad", "--out", (folder / "r").string()},
+                        "/dev/null");
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  std::filesystem::create_symlink("/dev/full", folder / "r/summary.partial.json.next");
+  process.limit_files(1000);
   process.send(SIGTERM);
   const auto run = process.wait();
+  CAPTURE(run.err);
   CHECK(run.exit_code == 130);
-  CHECK(contains(run.err, "summary.partial.json: No space left on device"));
+  CHECK(contains(run.err, "summary.partial.json: File too large"));
   CHECK(Json::parse(read_file(folder / "r/summary.partial.json")).at("status") == "running");
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
+#include "tests/problems/general_elements.hpp"
 #include "tests/problems/unit_oscillator.hpp"
 
 using namespace drev;
@@ -18,6 +19,31 @@ System oscillator() {
 }
 
 }  // namespace
+
+TEST_CASE("Work and precision: stopped at any moment, it says so and compares nothing") {
+  const System smooth = oscillator();
+  Model other = unit_oscillator();
+  other.add<problems::Maxwell>("own", {"m"}, {});  // exact propagation refuses it
+  other.set_initial("m", 1.0, 0.0);
+  const System stepped = other.build();
+  for (const System* system : {&smooth, &stepped}) {
+    long calls = 0, all = 0;
+    const auto stopped_after = [&](long last) {
+      calls = 0;
+      return work_precision(*system, {.sample_interval = 1.0 / 32.0,
+                                      .samples = 64,
+                                      .methods = {"average_acceleration", "sdirk4@tolerance"},
+                                      .most_seconds = 1e-3,
+                                      .progress = [&](double) { return ++calls < last; }});
+    };
+    REQUIRE_FALSE(stopped_after(1L << 60).interrupted);
+    all = calls;
+    for (long last = 1; last < all / 2; last += std::max(1L, last / 4)) {
+      CAPTURE(last, all);
+      CHECK(stopped_after(last).interrupted);
+    }
+  }
+}
 
 TEST_CASE(
     "Work and precision: the error of average acceleration on an oscillator is that of its "
