@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kStrip = 2048;      // rows whose matrix entries stay in the cache for all vectors
 constexpr int kShortStrip = 512;  // of which all vectors do
-constexpr double kRoundings =
-    8.0;  // times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves
-constexpr double kOfResidual = 4.0;  // rounding stands in the distances and in r itself
+// Times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves.
+constexpr double kRoundings = 16.0;
+constexpr double kOfResidual = 4.0;  // rounding stands in the distances and in r itself, and couples neighbours
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector stiffness_values(const Assembler& assembler, Contact contact) {
@@ -358,7 +358,7 @@ double ModalProblem::check_residuals(ModalPairs& pairs, int first, int count) co
     if (i > 0) apart = pairs.lambda[i] - pairs.lambda[i - 1];
     if (i + 1 < pairs.count()) apart = std::min(apart, pairs.lambda[i + 1] - pairs.lambda[i]);
     const double r = std::sqrt(square[idx(j)]);
-    pairs.error[i] += std::min(r, kOfResidual * r * (r / apart));
+    pairs.error[i] += kOfResidual * std::min(r, r * (r / apart));
   }
   return worst;
 }
