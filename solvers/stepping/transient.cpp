@@ -295,7 +295,9 @@ class Run {
     std::swap(now_, next_);
     const double t = now_->state.t;
     if (!progress_.goes_on(summary_.steps, t)) end_interrupted(summary_, system_.name(), t);
-    check_growth(summary_, system_.name(), t, energy_->balance(), options_.energy_growth_limit);
+    const bool grows = grew(energy_->balance(), options_.energy_growth_limit);
+    if (grows && grows_) end_growing_run(summary_, system_.name(), t, options_.energy_growth_limit);
+    grows_ = grows;
     return running();
   }
 
@@ -313,7 +315,7 @@ class Run {
   Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
-  bool locates_ = false;
+  bool locates_ = false, grows_ = false;
   long coarse_solves_ = 0;
   double energy_floor_ = 0.0;  // J
   int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;
