@@ -11,6 +11,7 @@
 #include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/run/stops.hpp"
+#include "solvers/stepping/coarse_steps.hpp"
 #include "solvers/stepping/halved_step.hpp"
 #include "solvers/stepping/located_step.hpp"
 #include "solvers/stepping/stability_limit.hpp"
@@ -40,7 +41,8 @@ class Run {
         stepper_(make_stepper(system, options.scheme, step_options(options))),
         equation_(stepper_->equation()),
         located_(system, *stepper_),
-        progress_(options.progress, options.t_start, options.t_end) {
+        progress_(options.progress, options.t_start, options.t_end),
+        coarse_(system) {
     now_->state = std::move(state);
     now_->state.t = options.t_start;
     for (EvaluatedState& point : points_) make_room(point, system.size());
@@ -79,6 +81,7 @@ class Run {
                          {"observers", clock.seconds(RunSection::observers)}};
     }
     judge_energy(summary_, options_.energy_tolerance);
+    if (!control_) coarse_.warn(summary_, options_.step);
     return summary_;
   }
 
@@ -291,6 +294,7 @@ class Run {
       end_not_finite(summary_, equation_.assembler(), *now_, *next_);
       return false;
     }
+    if (!control_) coarse_.look(equation_.assembler(), *now_, *next_, h);
     observe(h, t_evaluate);
     std::swap(now_, next_);
     const double t = now_->state.t;
@@ -313,6 +317,7 @@ class Run {
   EvaluatedState *now_ = &points_[0], *next_ = &points_[1];
   Vector e_z_, e_v_;
   Progress progress_;
+  CoarseSteps coarse_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   bool locates_ = false, grows_ = false;
