@@ -5,6 +5,8 @@
 
 #include <sstream>
 
+#include "solvers/run/stiff_twists.hpp"
+
 namespace drev {
 
 const std::vector<MethodRow>& methods() {
@@ -28,8 +30,10 @@ std::string to_text(const Method& method) {
   return text.str();
 }
 
-RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& o, State& state,
-                      const std::vector<Observer*>& observers) {
+namespace {
+
+RunSummary run_watched(const System& system, const Method& method, const MethodRunOptions& o, State& state,
+                       const std::vector<Observer*>& observers) {
   if (method.exact()) {
     ExactOptions options{
         .tolerance = method.tolerance, .t_start = o.t_start, .t_end = o.t_end, .progress = o.progress};
@@ -44,6 +48,19 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
                            .progress = o.progress};
   if (o.energy_tolerance > 0.0) options.energy_tolerance = o.energy_tolerance;
   return simulate(system, options, state, observers);
+}
+
+}  // namespace
+
+RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
+                      State& state, const std::vector<Observer*>& observers) {
+  StiffTwists stiff(system);
+  if (!stiff.any()) return run_watched(system, method, options, state, observers);
+  std::vector<Observer*> all = observers;
+  all.push_back(&stiff);
+  RunSummary summary = run_watched(system, method, options, state, all);
+  stiff.warn(summary);
+  return summary;
 }
 
 RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,

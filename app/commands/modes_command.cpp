@@ -1,5 +1,8 @@
 #include <drev/solvers/modes/modes.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/base/json_values.hpp"
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
@@ -32,6 +35,14 @@ ModesRequest request_modes(const CommandLine& line) {
   return {std::move(*model), options};
 }
 
+/// Seven digits, or those that rounding leaves and its error.
+std::string frequency_text(double frequency, double error) {
+  constexpr int kDigits = 7;
+  const double known = error > 0.0 ? std::floor(std::log10(frequency / error)) : kDigits;
+  if (known >= kDigits) return pad_left(digits(frequency, kDigits), 17);
+  return pad_left(digits(frequency, std::max(1, static_cast<int>(known))), 17) + " +- " + digits(error, 1);
+}
+
 std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::string& contact) {
   const std::string& name = model.entry->name;
   std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
@@ -40,7 +51,8 @@ std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::
   if (modes.frequency_Hz.empty()) return text + "no elastic mode\n";
   text += "mode   frequency [Hz]\n";
   for (std::size_t i = 0; i < modes.frequency_Hz.size(); ++i)
-    text += pad_left(std::to_string(i + 1), 4) + pad_left(digits(modes.frequency_Hz[i], 7), 17) + "\n";
+    text +=
+        pad_left(std::to_string(i + 1), 4) + frequency_text(modes.frequency_Hz[i], modes.error_Hz[i]) + "\n";
   if (!model.model_case.note.empty()) text += "\n" + wrap(model.model_case.note, 0);
   return text;
 }
@@ -56,6 +68,7 @@ int modes_command(const CommandLine& line) {
     object["model"] = request.model.entry->name;
     object["parameters"] = parameters_object(request.model.parameters);
     object["frequencies_Hz"] = modes.frequency_Hz;
+    object["errors_Hz"] = modes.error_Hz;
     object["rigid_modes"] = modes.rigid_modes;
     object["contact"] = contact;
     object["note"] = text_or_null(request.model.model_case.note);

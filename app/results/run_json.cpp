@@ -172,6 +172,7 @@ Json run_object(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const bool exact = r.method.exact(), controlled = r.method.controlled();
   Json object = head_object(request, s.scheme, r.method, r.status, r.reason);
+  object["warnings"] = s.warnings;
   object["method_reason"] = r.method_reason;
   object["reduction"] = reduction_object(request.reduce, r.reduction);
   object["results"] = results_object(r);

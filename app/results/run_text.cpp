@@ -211,6 +211,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const Model& model = request.model.model_case.model;
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
+  for (const std::string& warning : s.warnings) text += "*** WARNING: " + warning + "\n\n";
   text += request.model.entry->name + ": " +
           wrap(parameters_text(request.model.parameters), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);

@@ -235,14 +235,17 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
   std::swap(now_, next_);
   t_ = t_new;
   ++steps_;
+  // As grew() in run_verdict.hpp.
   const Lanes limit = options_.energy_growth_limit * energy_.given.v;
-  if (any(alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0)))
+  const LaneMask grow = alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0);
+  if (any(grow & grow_))
     for (int lane = 0; lane < kLanes; ++lane) {
-      if (!alive(lane)) continue;
-      RunSummary& s = results_[idx(lane)].summary;
-      check_growth(s, systems_[idx(lane)]->name(), t_, energy_.get(lane), options_.energy_growth_limit);
-      if (!s.ok()) finish_lane(lane, t_);
+      if (!alive(lane) || !grow[lane] || !grow_[lane]) continue;
+      end_growing_run(results_[idx(lane)].summary, systems_[idx(lane)]->name(), t_,
+                      options_.energy_growth_limit);
+      finish_lane(lane, t_);
     }
+  grow_ = grow;
 }
 
 void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {

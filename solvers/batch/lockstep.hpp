@@ -59,7 +59,7 @@ class Lockstep {
   LaneArray known_, a_, p_before_, lambda_, values_;
   LaneForces by_;
   LaneRow force_scale_, iterations_, passes_;
-  LaneMask alive_{};
+  LaneMask alive_{}, grow_{};
   std::array<EvaluatedState, 2> points_alone_;
   EvaluatedState *from_alone_ = &points_alone_[0], *to_alone_ = &points_alone_[1];
   double t_ = 0.0, h_ = 0.0;

@@ -20,6 +20,10 @@ namespace {
 
 constexpr int kStrip = 2048;      // rows whose matrix entries stay in the cache for all vectors
 constexpr int kShortStrip = 512;  // of which all vectors do
+// Times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves.
+constexpr double kRoundings = 16.0;
+constexpr double kOfResidual = 4.0;  // rounding stands in the distances and in r itself, and couples neighbours
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector stiffness_values(const Assembler& assembler, Contact contact) {
   if (!assembler.system().symmetric_tangent())
@@ -103,6 +107,10 @@ ModalProblem::ModalProblem(const System& system, Contact contact, ModesSummary& 
       summary_(summary),
       shifted_(system.pattern()),
       sturm_(system.pattern(), stiffness_, mass_, shifted_.low_fill()) {
+  if (!std::isfinite(lambda_max_))
+    throw SolverError("modes of " + system.name() +
+                      ": a stiffness over an inertia is beyond the range of numbers: an inertia is too small "
+                      "beside the stiffness of what it turns with, or a stiffness is not finite");
   const auto low_fill = shifted_.low_fill();
   if (!low_fill || !system.mass_is_diagonal()) return;
   weight_.resize(system.size());
@@ -221,7 +229,7 @@ ModalPairs ModalProblem::lanczos(int count, int round) {
     if (system_.size() <= kDenseRescue) return lowest(count, round, true);
     throw SolverError("modes of " + system_.name() + ": ARPACK: " + result.reason);
   }
-  ModalPairs pairs{std::move(result.lambda), std::move(result.vectors), {}};
+  ModalPairs pairs{std::move(result.lambda), std::move(result.vectors), {}, {}};
   refine(pairs);
   return pairs;
 }
@@ -271,8 +279,10 @@ ModalPairs ModalProblem::lowest(int count, int round, bool prefer_dense) {
 }
 
 void ModalProblem::refine(ModalPairs& pairs) const {
-  constexpr double kRounding = 1e-13, kNormalised = 1e-13;
+  constexpr double kRounding = 1e-13, kNormalised = 1e-13, kNothing = 1e-8;
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   const int n = pairs.count();
+  pairs.error.resize(n);
   const SparseMatrix& p = system_.pattern();
   const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
   struct Sums {
@@ -302,23 +312,27 @@ void ModalProblem::refine(ModalPairs& pairs) const {
   for (int j = 0; j < n; ++j) {
     const auto& [xmx, xkx, size] = sums[idx(j)];
     if (!(std::abs(xmx - 1.0) < kNormalised)) pairs.vectors.col(j) /= std::sqrt(xmx);
-    pairs.rigid[idx(j)] = std::abs(xkx) <= kRounding * size;
     const double distance = pairs.lambda[j] - summary_.shift;
-    if (distance * distance > -summary_.shift * lambda_max_) pairs.lambda[j] = xkx / xmx;
+    const double of_shift = distance * distance / -summary_.shift;
+    if (of_shift > lambda_max_) pairs.lambda[j] = xkx / xmx;
+    pairs.error[j] = kRoundings * kEpsilon * (size / xmx + std::min(of_shift, lambda_max_));
+    pairs.rigid[idx(j)] =
+        std::abs(xkx) <= kRounding * size || std::abs(pairs.lambda[j]) <= kNothing * -summary_.shift;
   }
   // The two estimates may swap what rounding makes equal.
   for (int j = 1; j < n; ++j)
     for (int i = j; i > 0 && pairs.lambda[i] < pairs.lambda[i - 1]; --i) {
       std::swap(pairs.lambda[i], pairs.lambda[i - 1]);
+      std::swap(pairs.error[i], pairs.error[i - 1]);
       pairs.vectors.col(i).swap(pairs.vectors.col(i - 1));
       pairs.rigid.swap(pairs.rigid[idx(i)], pairs.rigid[idx(i - 1)]);
     }
 }
 
-double ModalProblem::largest_residual(const ModalPairs& pairs, int first, int count) const {
+double ModalProblem::check_residuals(ModalPairs& pairs, int first, int count) const {
   const SparseMatrix& p = system_.pattern();
   const int *outer = p.outerIndexPtr(), *inner = p.innerIndexPtr();
-  std::vector<double> largest(idx(count), 0.0), scale(idx(count), 0.0);
+  std::vector<double> largest(idx(count), 0.0), scale(idx(count), 0.0), square(idx(count), 0.0);
   for (int start = 0; start < p.rows(); start += kStrip) {
     const int end = std::min(start + kStrip, static_cast<int>(p.rows()));
     for (int j = 0; j < count; ++j) {
@@ -332,11 +346,20 @@ double ModalProblem::largest_residual(const ModalPairs& pairs, int first, int co
         }
         largest[idx(j)] = std::max(largest[idx(j)], std::abs(sum));
         scale[idx(j)] = std::max(scale[idx(j)], size);
+        square[idx(j)] += sum * sum / mass_[system_.diagonal_slots()[idx(row)]];
       }
     }
   }
   double worst = 0.0;
-  for (int j = 0; j < count; ++j) worst = std::max(worst, largest[idx(j)] / scale[idx(j)]);
+  for (int j = 0; j < count; ++j) {
+    worst = std::max(worst, largest[idx(j)] / scale[idx(j)]);
+    const int i = first + j;
+    double apart = kInfinite;
+    if (i > 0) apart = pairs.lambda[i] - pairs.lambda[i - 1];
+    if (i + 1 < pairs.count()) apart = std::min(apart, pairs.lambda[i + 1] - pairs.lambda[i]);
+    const double r = std::sqrt(square[idx(j)]);
+    pairs.error[i] += kOfResidual * std::min(r, r * (r / apart));
+  }
   return worst;
 }
 

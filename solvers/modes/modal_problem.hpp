@@ -18,14 +18,16 @@ namespace drev {
 struct ModalPairs {
   Vector lambda;            ///< ascending [(rad/s)^2]
   Eigen::MatrixXd vectors;  ///< columns x, x' M x = 1
-  /// The mode stores no elastic energy within rounding: |x' K x| <= 1e-13 |x|' |K| |x|.
+  Vector error;             ///< >= 0, of lambda: what rounding of K and of the solver leave [(rad/s)^2]
+  /// The mode may store no elastic energy: |x' K x| <= 1e-13 |x|' |K| |x|, or |lambda| is nothing beside the
+  /// shift, which is of the size of the first elastic lambda (a part alone has no |K| to compare with).
   std::vector<bool> rigid;
   int count() const { return static_cast<int>(lambda.size()); }
 };
 
 class ModalProblem {
  public:
-  /// summary receives shift, solves and factorisations.
+  /// summary receives shift, solves and factorisations. Throws SolverError where K/M overflows.
   ModalProblem(const System& system, Contact contact, ModesSummary& summary);
 
   /// Chooses sigma about -lambda of the first elastic mode: starts at -lambda_max / n^2, the scale
@@ -41,9 +43,14 @@ class ModalProblem {
   ModalPairs lowest(int count, int round, bool prefer_dense);
   static constexpr int kDenseRescue = 3000;
 
+  /// lambda below which rounding of the stiffest parts may hide a mode's [(rad/s)^2].
+  double hidden() const { return 1e-14 * lambda_max_; }
   InertiaCounter& sturm() { return sturm_; }
   /// Largest |K x - lambda M x| / (|K| |x| + lambda |M| |x|), each in the maximum norm, of `count` pairs.
-  double largest_residual(const ModalPairs& pairs, int first, int count) const;
+  /// Adds what these residuals r say to the errors: r^2 over the distance to the next lambda (T. Kato, J. Phys.
+  /// Soc. Japan 4, 1949, doi:10.1143/JPSJ.4.334) or, where that is less, r itself, in the norm of M^-1, M
+  /// taken by its diagonal.
+  double check_residuals(ModalPairs& pairs, int first, int count) const;
   /// Name of the node that moves most.
   const std::string& largest_entry(const Vector& x) const;
 
@@ -70,7 +77,7 @@ class ModalProblem {
   // M = I: 1 / sqrt(M_ii) in that order, else empty.
   Vector weight_;
   std::vector<int> place_;   // of each unknown in that order
-  double lambda_max_ = 0.0;  // scale, from row sums
+  double lambda_max_ = 0.0;  // scale, from row sums; finite
   ModesSummary& summary_;
   SparseCholesky shifted_;
   std::unique_ptr<ShiftInvertLanczos> lanczos_;  // begun with the shift, which it is to go on with

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSameFrequency = 1e-8;  // relative, of lambda: copies of one mode
 constexpr double kClusterEnd = 1e-5;     // the same: a count behind it meets no tiny pivots
+constexpr double kLargestError = 0.1;    // of a frequency: beyond, modes may be missing or of another number
 
 int modes_wanted(const System& system, const ModesOptions& options, int elastic) {
   const std::string place = system.name() + "/modes";
@@ -32,20 +33,31 @@ int modes_wanted(const System& system, const ModesOptions& options, int elastic)
   return count;
 }
 
+[[noreturn]] void refuse_spread(const System& system, const std::string& what, double lambda, double error) {
+  throw SolverError("modes of " + system.name() + ": " + what + " omega^2 = " + to_text(lambda) +
+                    " (rad/s)^2, where rounding of the stiffest parts leaves an error of up to " +
+                    to_text(error) +
+                    ": stiffnesses over inertias spread too widely; tie the stiffest parts together ideally");
+}
+
 void check_rigid(const System& system, Contact contact, const ModalProblem& problem,
                  const ModalPairs& pairs) {
   const std::vector<std::string> parts = system.floating_parts(contact);
   const int expected = static_cast<int>(parts.size());
-  int found = 0;
+  int found = 0, lost = 0;  // may store no energy; so little that rounding hides it
   for (int j = 0; j < pairs.count(); ++j) {
+    lost += std::abs(pairs.lambda[j]) <= pairs.error[j];
     if (pairs.rigid[idx(j)])
       ++found;
-    else if (pairs.lambda[j] < 0.0)
+    else if (pairs.lambda[j] < -pairs.error[j])
       throw SolverError("modes of " + system.name() + ": omega^2 = " + to_text(pairs.lambda[j]) +
                         " (rad/s)^2 < 0 at " + problem.largest_entry(pairs.vectors.col(j)) +
                         ": statically unstable, an element has negative stiffness there");
   }
-  if (found == expected) return;
+  if (found >= expected && lost <= expected) return;
+  if (found > expected) found = lost;
+  if (found < expected && pairs.lambda[expected - 1] <= problem.hidden())
+    refuse_spread(system, "a part free to turn seems to have", pairs.lambda[expected - 1], problem.hidden());
   std::string names;
   for (const std::string& part : parts) names += (names.empty() ? "" : ", ") + part;
   throw SolverError(
@@ -84,7 +96,7 @@ std::optional<int> sturm_surplus(ModalProblem& problem, const Vector& lambda, in
 
 void fill(const System& system, const ModalProblem& problem, ModalPairs& pairs, int first, int count,
           ModeSet& modes) {
-  modes.summary.largest_residual = problem.largest_residual(pairs, first, count);
+  modes.summary.largest_residual = problem.check_residuals(pairs, first, count);
   modes.rigid_vectors = pairs.vectors.leftCols(first);
   modes.vectors = std::move(pairs.vectors);
   for (int j = 0; first > 0 && j < count; ++j) modes.vectors.col(j) = modes.vectors.col(first + j);
@@ -106,7 +118,12 @@ void fill(const System& system, const ModalProblem& problem, ModalPairs& pairs, 
     Eigen::Index decides = 0;
     while (!(std::abs(shape[decides]) > largest * (1.0 - 1e-6))) ++decides;
     if (shape[decides] < 0.0) shape *= -1.0, vector *= -1.0;
-    modes.frequency_Hz.push_back(to_hz(std::sqrt(pairs.lambda[first + j])));
+    const double lambda = pairs.lambda[first + j];
+    if (!(pairs.error[first + j] <= 2.0 * kLargestError * lambda))
+      refuse_spread(system, "mode " + std::to_string(j + 1) + " has", lambda, pairs.error[first + j]);
+    modes.frequency_Hz.push_back(to_hz(std::sqrt(lambda)));
+    modes.error_Hz.push_back(
+        to_hz(std::sqrt(lambda) - std::sqrt(std::max(0.0, lambda - pairs.error[first + j]))));
   }
 }
 

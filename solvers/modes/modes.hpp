@@ -7,15 +7,14 @@
 /// damped_modes.hpp).
 ///
 /// Rigid-body modes (omega = 0) are expected from the model's graph: parts tied neither to ground
-/// nor to a prescribed node. As many eigenvectors must store no energy within rounding, |x' K x| <=
-/// 1e-13 |x|' |K| |x|, whatever the units; anything else is an error. No mode is lost either: a
+/// nor to a prescribed node. As many eigenvectors must store no energy within rounding, |x' K x| <= 1e-13 |x|' |K| |x|
+/// or omega^2 nothing beside that of the first elastic mode, whatever the units; anything else is an error. No mode is lost either: a
 /// Sturm count just above the last mode must agree with the number found, and the search is widened
 /// until it does. Shift below zero: K - sigma M is positive definite although K is not.
 ///
-/// Accuracy: the stiffness matrix itself carries rounding of eps lambda_max, and no method on it
-/// knows omega better than eps lambda_max / (2 lambda), relative: 3e-5 at 1 N m/rad beside 1e12 N
-/// m/rad. Apart from that the error is about eps sqrt(lambda_max / lambda_1), of which the worst
-/// measured is 5e-12 (10 modes of a free chain of 2000 inertias).
+/// Accuracy: the stiffness matrix itself carries rounding, which changes lambda by about eps |x|' |K| |x|,
+/// and so omega by up to eps lambda_max / (2 lambda), relative: 3e-5 at 1 N m/rad beside 1e12 N m/rad where
+/// both take part. ModeSet::error_Hz has that, and what the mode's residual adds to it.
 #include <drev/core/system.hpp>
 
 #include <optional>
@@ -60,6 +59,7 @@ struct ModeSet {
   Contact contact = Contact::closed;
   int rigid_modes = 0;               ///< modes with f = 0, not among those below
   std::vector<double> frequency_Hz;  ///< elastic modes, ascending
+  std::vector<double> error_Hz;      ///< of each, >= 0: what rounding leaves, at most a tenth of it
   /// Column j: mode j over all nodes, with those that ideal gears eliminate and zero where
   /// prescribed. The entry of largest magnitude is positive.
   Eigen::MatrixXd shapes;
@@ -72,8 +72,8 @@ struct ModeSet {
 };
 
 /// Throws ModelError for options out of range; SolverError if the number of rigid modes is not what
-/// the graph says, if K has a negative eigenvalue (static instability) or is unsymmetric, or if no
-/// agreement with the Sturm count is reached.
+/// the graph says, if K has a negative eigenvalue (static instability) or is unsymmetric, if no
+/// agreement with the Sturm count is reached, or if rounding leaves an error of more than a tenth of a frequency.
 ModeSet solve_modes(const System& system, const ModesOptions& options = {});
 
 }  // namespace drev

@@ -309,15 +309,20 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
   if (!correction(z, samples, error)) return {.reason = singular()};
   for (double left = size(error);; ++outcome.iterations) {
     const double largest = size(z);
+    const bool linear = slopes_.empty() && feedback_.empty();
     outcome.residual = left > 0.0 ? left / largest : 0.0;
-    if (left <= tolerance * largest) return outcome;
-    if (outcome.iterations == kMaxNewton) break;
-    if (slopes_.empty() && feedback_.empty()) {
+    if (left == 0.0 || (linear && left <= tolerance * largest)) return outcome;
+    if (linear) {
       d = error;
     } else {
       find_slopes(z, samples);
       if (!direction(error, samples, d)) return {.reason = singular()};
     }
+    // S^-1 R is the error only where the slopes are the closed ones; Newton's own step is it everywhere.
+    const double step = size(d);
+    outcome.residual = step / largest;
+    if (step <= tolerance * largest) return outcome;
+    if (outcome.iterations == kMaxNewton) break;
     double part = 1.0, then = 0.0;
     for (; part >= kShortest; part /= 2) {
       trial = z + part * d;

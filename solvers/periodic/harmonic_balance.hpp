@@ -34,7 +34,7 @@ class HarmonicBalance {
   struct Outcome {
     std::string reason;     ///< why not; empty: converged
     int iterations = 0;     ///< of Newton's method
-    double residual = 0.0;  ///< size of the last S^-1 R beside that of Z
+    double residual = 0.0;  ///< size of the step that is left to Newton's method beside that of Z
   };
   /// The start: every contact closed on the flank that the mean load asks for, loads where nothing deviates.
   Outcome start(int harmonics, int samples, Harmonics& z);

@@ -34,8 +34,8 @@ struct PeriodicResponse {
   std::vector<std::vector<std::complex<double>>> amplitudes;
   int harmonics = 0;   ///< H
   int iterations = 0;  ///< of Newton's method, in all
-  /// Largest difference of a channel from that with half the harmonics, over its largest value, plus the last
-  /// residual: what is left is smaller, with sampled kinks by 3.
+  /// Estimated, relative to a channel's largest value: 10 times the sum of its largest difference from that with
+  /// half the harmonics and of the step that is left to Newton's method.
   double error = 0.0;
   bool contact_closed = true;  ///< where found: no law with a gap leaves its flank
 };

@@ -40,6 +40,7 @@ std::string RunSummary::brief_report() const {
     text << ", " << contact_changes << " contact changes, ";
   text << "energy error " << energy.relative_error();
   if (!reason.empty()) text << "; " << reason;
+  for (const std::string& warning : warnings) text << "; warning: " << warning;
   return text.str();
 }
 

@@ -21,6 +21,9 @@ const char* to_text(RunStatus status);
 struct RunSummary {
   RunStatus status = RunStatus::success;
   std::string reason;  ///< a sentence: what went wrong, when and where; empty on success
+  /// Sentences without full stop on what a figure may be wrong by although the run came to its end; to be shown
+  /// before any figure.
+  std::vector<std::string> warnings;
   std::string scheme;
   double step = 0.0;       ///< s, as asked for; 0: the method's own
   double tolerance = 0.0;  ///< as asked for; 0: constant steps

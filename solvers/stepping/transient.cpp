@@ -11,6 +11,7 @@
 #include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/run/stops.hpp"
+#include "solvers/stepping/coarse_steps.hpp"
 #include "solvers/stepping/halved_step.hpp"
 #include "solvers/stepping/located_step.hpp"
 #include "solvers/stepping/stability_limit.hpp"
@@ -41,7 +42,8 @@ class Run final : public StepMotion {
         equation_(stepper_->equation()),
         look_assembler_(system),
         located_(system, *stepper_),
-        progress_(options.progress, options.t_start, options.t_end) {
+        progress_(options.progress, options.t_start, options.t_end),
+        coarse_(system) {
     now_->state = std::move(state);
     now_->state.t = options.t_start;
     for (EvaluatedState& point : points_) make_room(point, system.size());
@@ -81,6 +83,7 @@ class Run final : public StepMotion {
                          {"observers", clock.seconds(RunSection::observers)}};
     }
     judge_energy(summary_, options_.energy_tolerance);
+    if (!control_) coarse_.warn(summary_, options_.step);
     return summary_;
   }
 
@@ -311,11 +314,14 @@ class Run final : public StepMotion {
       end_not_finite(summary_, equation_.assembler(), *now_, *next_);
       return false;
     }
+    if (!control_) coarse_.look(equation_.assembler(), *now_, *next_, h);
     observe(h, t_evaluate);
     std::swap(now_, next_);
     const double t = now_->state.t;
     if (!progress_.goes_on(summary_.steps, t)) end_interrupted(summary_, system_.name(), t);
-    check_growth(summary_, system_.name(), t, energy_->balance(), options_.energy_growth_limit);
+    const bool grows = grew(energy_->balance(), options_.energy_growth_limit);
+    if (grows && grows_) end_growing_run(summary_, system_.name(), t, options_.energy_growth_limit);
+    grows_ = grows;
     return running();
   }
 
@@ -334,9 +340,10 @@ class Run final : public StepMotion {
   Vector e_z_, e_v_;
   Progress progress_;
   long tries_ = 0;  // steps made freely, accepted or not
+  CoarseSteps coarse_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
-  bool locates_ = false;
+  bool locates_ = false, grows_ = false;
   long coarse_solves_ = 0;
   double energy_floor_ = 0.0;  // J
   int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;

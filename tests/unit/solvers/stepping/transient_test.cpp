@@ -2,8 +2,10 @@
 // Covers solvers/run/energy_monitor.hpp, energy_balance.hpp, run_summary.hpp, run_verdict.hpp and
 // run_checks.hpp, and solvers/stepping/step_options.hpp, through simulate().
 #include <drev/core/assembler.hpp>
+#include <drev/core/law_element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
@@ -308,4 +310,61 @@ TEST_CASE("Bad options are refused together") {
   for (const char* bad : {"hht:0.5", "newmark:-1,0.5", "newmark:0.25", "generalized_alpha:1.5",
                           "averageacceleration", "hht:x", "hht:", "newmark:0.25,0.5,", ""})
     CHECK_THROWS_AS(step_scheme(bad), ModelError);
+}
+
+TEST_CASE("Explicit steps from rest: a load that sets in is no energy from nothing, one run and in lockstep",
+          "[verdict]") {
+  // The first step moves nothing (no load yet at its start), so that the load's work in it is nothing too.
+  for (const double sets_in : {0.0, 0.1}) {
+    Model m("two inertias");
+    for (const char* node : {"motor", "load"}) m.add_node(node);
+    m.add<Inertia>("J_motor", {"motor"}, {.inertia = 0.012});
+    m.add<Inertia>("J_load", {"load"}, {.inertia = 0.035});
+    m.add<ShaftSpring>("shaft", {"motor", "load"}, {.stiffness = 8500.0, .damping = 0.5});
+    m.add<AppliedTorque>(
+        "drive", {"motor"},
+        {.torque = [=](double t) { return t < sets_in ? 0.0 : 20.0 * std::sin(250.0 * (t - sets_in)); },
+         .breakpoints = {sets_in}});
+    const System system = m.build();
+    for (const StepScheme& scheme :
+         {step_scheme("central_difference"), newmark(0.0, 0.5), average_acceleration()}) {
+      const TransientOptions options{.scheme = scheme, .step = 1e-5, .t_end = 0.3};
+      State state = State::initial(system);
+      const RunSummary run = simulate(system, options, state);
+      INFO(scheme.name << ": " << run.reason);
+      CHECK(run.ok());
+      const ManyResult many = simulate_many(1, [&](std::size_t) { return system; }, options, {.threads = 1});
+      CHECK(many.variants[0].summary.ok());
+      CHECK(many.variants[0].state.z[0] == Approx(state.z[0]).epsilon(1e-9));
+    }
+  }
+}
+
+namespace {
+
+/// Far stiffer at large deflections than the stability limit, which looks at small ones, knows.
+struct Hardening {
+  ScalarResponse operator()(const ScalarInput& in) const {
+    const double x2 = in.x * in.x;
+    return {.y = (1.0 + 1e4 * x2) * in.x, .dy_dx = 1.0 + 3e4 * x2, .stored_energy = (0.5 + 2.5e3 * x2) * x2};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Explicit steps that are too long for a law that hardens end as unstable, not as success",
+          "[verdict]") {
+  Model m = unit_oscillator();
+  m.add<LawElement<Hardening>>("stop", {"m"}, {});
+  m.set_initial("m", 0.0, 10.0);
+  const System system = m.build();
+  for (const double step : {0.02, 0.05, 0.1}) {
+    const TransientOptions options{.scheme = newmark(0.0, 0.5), .step = step, .t_end = 10.0};
+    State state = State::initial(system);
+    const RunSummary run = simulate(system, options, state);
+    CHECK((run.status == RunStatus::unstable || run.status == RunStatus::not_finite ||
+           run.status == RunStatus::no_convergence || run.status == RunStatus::energy_error));
+    const ManyResult many = simulate_many(1, [&](std::size_t) { return system; }, options, {.threads = 1});
+    CHECK(many.variants[0].summary.status == run.status);
+  }
 }
