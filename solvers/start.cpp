@@ -1,6 +1,8 @@
+#include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
+#include <drev/solvers/modes/settling.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/start.hpp>
 #include <drev/solvers/statics.hpp>
@@ -15,6 +17,9 @@ namespace {
 
 constexpr double kSameFrequency = 1e-9;  // relative
 constexpr double kMostMultiple = 1000;   // of the shared frequency
+constexpr int kTimesOfCycle = 97;        // at which loads are compared
+constexpr double kSameLoad = 1e-8;       // relative
+constexpr double kMostCycles = 1e5;      // of a run that settles
 
 /// The largest frequency that divides all frequencies of loads [Hz]; 0: there is none, or it is too low.
 double shared_frequency(const System& system) {
@@ -74,10 +79,65 @@ FoundStart start_static(const System& system, const StartOptions& options) {
           cycle};
 }
 
+/// Whether all that acts where nothing deviates repeats after the cycle.
+bool repeats(const System& system, double cycle) {
+  Assembler assembler(system);
+  const Vector zero = Vector::Zero(system.size());
+  Vector now = zero, later = zero;
+  double largest = 0.0, change = 0.0;
+  for (int i = 0; i < kTimesOfCycle; ++i) {
+    const double t = cycle * (i + 0.5) / kTimesOfCycle;
+    assembler.set_time(t);
+    assembler.external(zero, zero, now);
+    assembler.set_time(t + cycle);
+    assembler.external(zero, zero, later);
+    largest = std::max(largest, now.cwiseAbs().maxCoeff());
+    change = std::max(change, (later - now).cwiseAbs().maxCoeff());
+  }
+  return change <= kSameLoad * largest;
+}
+
+double change_of(const Vector& before, const Vector& after) {
+  const double largest = std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
+  return largest > 0.0 ? (after - before).cwiseAbs().maxCoeff() / largest : 0.0;
+}
+
+/// The state after whole cycles of a run that lasts as long as the model takes to settle.
+FoundStart settle(const System& system, double cycle, const std::string& why, const StartOptions& options) {
+  const std::string none = system.name() + ": no periodic steady state to start from: " + why;
+  const Settling settling = settling_time(system);
+  const double cycles = std::ceil(settling.time / cycle) + 1.0;
+  if (!(cycles <= kMostCycles))
+    throw SolverError(none + "; nor does a run settle on one: " + settling.reason);
+  StartOptions first = options;
+  first.cycle = cycle;
+  const FoundStart begin = start_static(system, first);
+  State before = State::initial(begin.system);
+  const MethodRunOptions until{.t_end = (cycles - 1.0) * cycle, .progress = options.progress};
+  RunSummary run = run_method(system, options.method, until, before);
+  State after = before;
+  if (run.ok())
+    run = run_method(system, options.method,
+                     {.t_start = until.t_end, .t_end = cycles * cycle, .progress = options.progress}, after);
+  if (!run.ok()) throw SolverError(none + "; nor does a run settle on one: " + run.reason);
+  const double error = std::max(change_of(before.z, after.z), change_of(before.v, after.v));
+  std::ostringstream how;
+  how.precision(6);
+  how << "in the motion on which a run of " << cycles << " cycles of " << cycle
+      << " s settled (it changes by ";
+  how.precision(2);
+  how << 100.0 * error << " % from cycle to cycle; " << why << ")";
+  return {system.with_initial(after.z, after.v), how.str(), cycle, error};
+}
+
 FoundStart start_periodic(const System& system, const StartOptions& options) {
-  const std::vector<double> cycles = cycles_of(system, options);
+  std::vector<double> cycles = cycles_of(system, options);
   std::string reason =
-      "no reference shaft turns and no load has harmonics in time, so that the period is not known";
+      cycles.empty()
+          ? "no reference shaft turns and no load has harmonics in time, so that the period is not known"
+          : "what acts on the model repeats neither after the cycle of the model nor after 1, 2 or 4 "
+            "turns of the reference shaft";
+  std::erase_if(cycles, [&](double cycle) { return !repeats(system, cycle); });
   for (const double cycle : cycles) {
     const PeriodicResponse found = solve_periodic(system, {.period = cycle, .tolerance = options.tolerance});
     if (found.found) {
@@ -91,7 +151,10 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
     }
     reason = found.reason;
   }
-  throw SolverError(system.name() + ": no periodic steady state to start from: " + reason);
+  // A history is no part of the initial conditions.
+  if (cycles.empty() || !system.floating_parts(Contact::closed).empty() || system.history_size() > 0)
+    throw SolverError(system.name() + ": no periodic steady state to start from: " + reason);
+  return settle(system, cycles.front(), reason, options);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace drev {
 namespace {
 constexpr double kPointsOfPeriod = 16.0;  // of the highest order
 constexpr double kSameTime = 1e-6;        // of an interval
-}
+}  // namespace
 
 OrderTracking::OrderTracking(const System& system, const std::vector<std::string>& channels,
                              std::vector<double> orders, double turns, bool own_times)

@@ -88,6 +88,35 @@ TEST_CASE("The period of torques in time is the one that their harmonics share")
   CHECK(std::abs(find_start(m.build(), Start::periodic, {.duration = 1.0}).cycle - 0.2) < 1e-12);
 }
 
+TEST_CASE("Where harmonic balance finds none, a run settles on the periodic motion, and says how well") {
+  // A loose gear that a wheel of changing speed throws from flank to flank.
+  Model m("rattle");
+  const NodeId motor = m.add_node("motor"), wheel = m.add_node("wheel"), loose = m.add_node("loose");
+  m.constant_speed(motor, kSpeed);
+  m.add<Inertia>("J", {wheel}, {.inertia = 0.5});
+  m.add<ShaftSpring>("shaft", {motor, wheel}, {.stiffness = 5000.0, .damping = 10.0});
+  m.add<Inertia>("J_loose", {loose}, {.inertia = 0.002});
+  m.add<Dashpot>("drag", {loose}, {.damping = 0.002});
+  m.add<GearMesh>("mesh", {wheel, loose},
+                  {.base_radius_1 = 0.05,
+                   .base_radius_2 = 0.05,
+                   .stiffness = 5e7,
+                   .normal_backlash = 2e-4,
+                   .damping = 4000.0});
+  m.add<EngineOrderTorque>("load", {wheel}, {.harmonics = {{.order = 2.0, .amplitude = 150.0}}});
+  const System system = m.build();
+  const Method method{.name = kExact, .tolerance = 1e-9};
+  const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0, .method = method});
+  INFO(start.how);
+  CHECK(start.how.find("settled (it changes by") != std::string::npos);
+  Recorder recorder(start.system, {"wheel.angle_rad"}, start.cycle);
+  REQUIRE(run_method(start.system, method, {.t_end = 1.5 * start.cycle}, {&recorder}).ok());
+  const std::vector<double>& x = recorder.samples(0);
+  REQUIRE(x.size() == 2);
+  // What is stated is the largest change of all, beside the largest deviation.
+  CHECK(std::abs(x[1] - x[0]) < 2.0 * std::max(start.error, 1e-6) * 0.1);
+}
+
 TEST_CASE("Where there is no such state to start from, the reason is said") {
   const auto why = [](const Model& model, Start start) {
     try {
