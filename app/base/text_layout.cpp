@@ -29,6 +29,12 @@ std::string short_digits(double value, int significant) {
   return text;
 }
 
+int earned_digits(double value, double error) {
+  if (!std::isfinite(error)) return 3;
+  if (!(error > 0.0) || value == 0.0) return 12;
+  return std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(value) / error))) + 1, 2, 15);
+}
+
 std::string pad_right(const std::string& text, std::size_t width) {
   return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
 }

@@ -9,7 +9,8 @@ function showHead() {
   );
   byId("subtitle").append(compared ? `A: ${runs[0].command}  ·  B: ${runs[1].command}` : runs[0].about);
   for (const run of runs)
-    if (run.warning) byId("warnings").append(make("p", { class: "warning" }, prefixed(run, run.warning)));
+    for (const text of [run.warning, ...(run.notes ?? []).map((note) => `Note: ${note}.`)])
+      if (text) byId("warnings").append(make("p", { class: "warning" }, prefixed(run, text)));
   byId("contents").append(
     ...[...document.querySelectorAll("main section")].map((section) =>
       make("a", { href: `#${section.id}` }, section.querySelector("h2").textContent),
