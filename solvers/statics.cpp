@@ -44,7 +44,7 @@ StaticSolver::StaticSolver(const System& system)
 
 StaticSolver::~StaticSolver() = default;
 
-Vector StaticSolver::beside_mean(double t, double length) {
+Vector StaticSolver::mean_loads(double t, double length) {
   Vector mean = zero_, p(zero_.size());
   for (int i = 0; i < kMeanSamples; ++i) {
     assembler_->set_time(t + length * i / kMeanSamples);
@@ -52,15 +52,14 @@ Vector StaticSolver::beside_mean(double t, double length) {
     mean += p / kMeanSamples;
   }
   assembler_->set_time(t);
-  assembler_->external(zero_, zero_, p);
-  return p - mean;
+  return mean;
 }
 
 StaticResult StaticSolver::solve(const StaticOptions& options) {
   const bool moving = options.mean_over > 0.0;
-  Vector beside_mean;
+  Vector mean;
   if (moving) {
-    beside_mean = this->beside_mean(options.t, options.mean_over);
+    mean = mean_loads(options.t, options.mean_over);
   } else {
     assembler_->set_time(options.t);
     assembler_->stand_at_angle(options.nominal_angle);
@@ -75,8 +74,9 @@ StaticResult StaticSolver::solve(const StaticOptions& options) {
                                     .kappa_v = 0.0,
                                     .z_0 = &zero_,
                                     .v_0 = &zero_,
-                                    .r_0 = moving ? &beside_mean : nullptr,
+                                    .r_0 = nullptr,
                                     .history = &history,
+                                    .loads = moving ? &mean : nullptr,
                                     .shift = shift_};
   const NewtonResult newton =
       newton_->solve(*assembler_, problem, options.newton, start_, result.state.history);

@@ -45,8 +45,8 @@ class StaticSolver {
   const System& system_;
   std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<SparseNewton> newton_;
-  /// p(t) less its mean over [t, t + length], where nothing deviates; the assembler is left at t.
-  Vector beside_mean(double t, double length);
+  /// Mean of p over [t, t + length], where nothing deviates; the assembler is left at t.
+  Vector mean_loads(double t, double length);
 
   Vector start_, zero_;
   double shift_ = 0.0;

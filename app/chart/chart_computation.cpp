@@ -1,6 +1,8 @@
 #include "app/chart/chart_computation.hpp"
 
+#include <drev/core/scalar_force.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +15,28 @@ namespace drev::app {
 
 namespace {
 
+constexpr double kPeriods = 20.0;       // of the lowest elastic mode
 constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
 constexpr double kGrowthTolerance = 1e-13;
+
+/// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
+double periods_of(const ModelRequest& model, std::string& reason) {
+  const double duration = model.model_case.duration;
+  for (const ScalarTerm& term : model.system.scalars())
+    if (term.force->gap()) return duration;
+  try {
+    const ModeSet modes = solve_modes(model.system, {});
+    if (modes.frequency_Hz.empty()) return duration;
+    const double wanted = kPeriods / modes.frequency_Hz.front();
+    if (wanted >= duration) return duration;
+    reason = short_digits(kPeriods, 3) + " periods of the lowest mode, " +
+             digits(modes.frequency_Hz.front(), 4) + " Hz";
+    return wanted;
+  } catch (const SolverError&) {
+    return duration;  // no modes to go by
+  }
+}
 
 }  // namespace
 
@@ -23,7 +44,7 @@ ChartResult compute_chart(const ChartRequest& request) {
   const System& system = request.model.system;
   const ModelCase& model_case = request.model.model_case;
   ChartResult result;
-  double horizon = model_case.duration;
+  double horizon = periods_of(request.model, result.horizon_reason);
   Progress shown;
   const auto progress = [&](double part) {
     shown.update(part);

@@ -1,8 +1,8 @@
 #pragma once
 /// `drev chart`: error against run time and work of the methods on one model.
 ///
-/// The runs last the model's duration, for which the advice is meant, but not past the time at which a small
-/// difference of the state has grown by a factor of 1000:
+/// The runs last the model's duration, but without gaps not more than 20 periods of its lowest elastic mode,
+/// and not past the time at which a small difference of the state has grown by a factor of 1000:
 /// beyond, every error is mostly growth, and the methods cannot be told apart.
 #include <drev/solvers/accuracy/work_precision.hpp>
 

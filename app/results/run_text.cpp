@@ -20,8 +20,8 @@ std::string value_text(const Largest& l) {
   const double factor = angle ? to_deg(1.0) : 1.0;
   const std::string unit = angle ? " deg" : " " + l.unit;
   if (!l.error) return digits(factor * l.value, angle ? 4 : 5) + unit;
-  return digits(factor * l.value, earned_digits(l.value, *l.error)) + " +- " +
-         short_digits(factor * *l.error, 2) + unit;
+  return earned_digits(factor * l.value, factor * *l.error) + " +- " + short_digits(factor * *l.error, 2) +
+         unit;
 }
 
 std::string rpm_text(double rad_per_s) { return digits(to_rpm(rad_per_s), 5) + " rpm"; }
@@ -221,7 +221,7 @@ std::string effort_text(const RunResult& r) {
 /// A value with the digits that its error leaves, and the error.
 std::string figure_text(const Figure& f) {
   const bool known = std::isfinite(f.error);
-  return digits(f.value, earned_digits(f.value, f.error)) + " +- " +
+  return earned_digits(f.value, f.error) + " +- " +
          (known ? short_digits(f.error, 2) : std::string("unknown")) + (f.unit.empty() ? "" : " " + f.unit);
 }
 

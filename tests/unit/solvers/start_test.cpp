@@ -63,10 +63,12 @@ TEST_CASE("With loads that follow the twist, too, a periodic start repeats after
 }
 
 TEST_CASE("A static start is the equilibrium under the mean of the loads, moving with the nominal speed") {
-  const System system = disc_on_shaft();
-  const FoundStart start = find_start(system, Start::static_equilibrium, {.duration = 1.0});
-  CHECK(std::abs(start.system.initial_deviation()[0] - 50.0 / kStiffness) < 1e-12);
-  CHECK(start.system.initial_rate()[0] == 0.0);
+  for (const bool feedback : {false, true}) {  // loads that follow the twist have the same mean
+    const System system = disc_on_shaft(kDamping, feedback);
+    const FoundStart start = find_start(system, Start::static_equilibrium, {.duration = 1.0});
+    CHECK(std::abs(start.system.initial_deviation()[0] - 50.0 / kStiffness) < 1e-12);
+    CHECK(start.system.initial_rate()[0] == 0.0);
+  }
 
   // Drag of the nominal speed is part of it.
   Model m("dragged");
