@@ -29,6 +29,8 @@ class Load {
   virtual LoadResponse evaluate(const LoadInput& in) const = 0;
   /// False: the load is a function of time (through t or the nominal angle) alone.
   virtual bool depends_on_motion() const { return true; }
+  /// Frequencies [Hz] of a load that is a sum of harmonics in time; empty: it is none, or they are not known.
+  virtual std::vector<double> frequencies() const { return {}; }
   /// Times at which the load jumps or kinks [s]: integration stops there and starts anew.
   virtual std::vector<double> breakpoints() const { return {}; }
   /// The load as a table over the actual angle, or the nominal one of a load that does not depend on motion;

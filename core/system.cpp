@@ -19,6 +19,18 @@ int System::node(const std::string& name) const {
 
 double System::reference_speed() const { return reference_ ? std::abs(reference_->at(0.0).rate) : 0.0; }
 
+System System::with_initial(Vector deviation, Vector rate) const {
+  for (const Vector* x : {&deviation, &rate})
+    if (x->size() != size() || !x->allFinite())
+      throw ModelError(
+          {{name_, x == &rate ? "initial rate" : "initial deviation", std::to_string(x->size()) + " values",
+            "", "must be " + std::to_string(size()) + " finite values, one an unknown"}});
+  System other = *this;
+  other.initial_z_ = std::move(deviation);
+  other.initial_v_ = std::move(rate);
+  return other;
+}
+
 std::vector<Entry> System::row_of(int node) const {
   const NodeMap& map = node_map(node);
   std::vector<Entry> row;

@@ -174,6 +174,9 @@ class System {
   const std::vector<double>& breakpoints() const { return breakpoints_; }
   const Vector& initial_deviation() const { return initial_z_; }
   const Vector& initial_rate() const { return initial_v_; }
+  /// The same system with other initial conditions, over the unknowns. Throws ModelError where a size is
+  /// not size() or a value is not finite.
+  System with_initial(Vector deviation, Vector rate) const;
   /// z' while the reference shaft turns at 1 rad/s more and everything with it at its ratio.
   const Vector& nominal_direction() const { return nominal_direction_; }
 

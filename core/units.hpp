@@ -18,6 +18,7 @@ constexpr double rpm(double revolutions_per_minute) { return revolutions_per_min
 constexpr double hz(double hertz) { return hertz * kTwoPi; }
 /// Frequency: rad/s to Hz.
 constexpr double to_hz(double rad_per_s) { return rad_per_s / kTwoPi; }
+constexpr double to_rpm(double rad_per_s) { return 60.0 * to_hz(rad_per_s); }
 /// Length: mm to m.
 constexpr double mm(double millimetres) { return millimetres * 1e-3; }
 

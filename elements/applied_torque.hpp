@@ -48,6 +48,11 @@ class AppliedTorque final : public Element, public Load {
     return {.torque = params_.torque ? params_.torque(in.t) : sum_at(params_.harmonics, kTwoPi * in.t).value};
   }
   bool depends_on_motion() const override { return false; }
+  std::vector<double> frequencies() const override {
+    std::vector<double> all;
+    for (const Harmonic& h : params_.harmonics) all.push_back(h.order);
+    return all;
+  }
   std::optional<LoadStretch> stretch(double t, double /*angle*/, double /*direction*/) const override {
     if (!params_.table) return std::nullopt;
     const CurvePoint p = params_.table->at(t);

@@ -14,6 +14,7 @@ namespace {
 /// Of the largest K_ii / M_ii: keeps the tangent definite while a contact is open. It only shapes Newton's
 /// direction; the residual and so the answer do not contain it.
 constexpr double kShift = 1e-10;
+constexpr int kMeanSamples = 720;  // of loads over the time that they are averaged over
 
 }  // namespace
 
@@ -43,9 +44,26 @@ StaticSolver::StaticSolver(const System& system)
 
 StaticSolver::~StaticSolver() = default;
 
+Vector StaticSolver::mean_loads(double t, double length) {
+  Vector mean = zero_, p(zero_.size());
+  for (int i = 0; i < kMeanSamples; ++i) {
+    assembler_->set_time(t + length * i / kMeanSamples);
+    assembler_->external(zero_, zero_, p);
+    mean += p / kMeanSamples;
+  }
+  assembler_->set_time(t);
+  return mean;
+}
+
 StaticResult StaticSolver::solve(const StaticOptions& options) {
-  assembler_->set_time(options.t);
-  assembler_->stand_at_angle(options.nominal_angle);
+  const bool moving = options.mean_over > 0.0;
+  Vector mean;
+  if (moving) {
+    mean = mean_loads(options.t, options.mean_over);
+  } else {
+    assembler_->set_time(options.t);
+    assembler_->stand_at_angle(options.nominal_angle);
+  }
   StaticResult result;
   result.state = State::initial(system_, options.t);
   result.state.v.setZero();
@@ -58,13 +76,16 @@ StaticResult StaticSolver::solve(const StaticOptions& options) {
                                     .v_0 = &zero_,
                                     .r_0 = nullptr,
                                     .history = &history,
+                                    .loads = moving ? &mean : nullptr,
                                     .shift = shift_};
   const NewtonResult newton =
       newton_->solve(*assembler_, problem, options.newton, start_, result.state.history);
   if (newton.status != NewtonStatus::converged) {
     start_ = zero_;
-    throw SolverError(system_.name() + ": no static equilibrium found at the nominal angle " +
-                      to_text(options.nominal_angle) + " rad: " + to_text(newton.status));
+    throw SolverError(system_.name() + ": no static equilibrium found " +
+                      (moving ? "under the mean loads"
+                              : "at the nominal angle " + to_text(options.nominal_angle) + " rad") +
+                      ": " + to_text(newton.status));
   }
   result.state.z = start_;
   result.iterations = newton.iterations;

@@ -1,5 +1,6 @@
 #pragma once
-/// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle.
+/// Static equilibrium with contact:  K z + sum_j b_j y_j(x_j, 0) = p(q)  at a given nominal angle, or under the
+/// mean of p over a time.
 #include <drev/core/state.hpp>
 #include <drev/solvers/contact/newton_options.hpp>
 #include <drev/solvers/run/peak.hpp>
@@ -16,6 +17,9 @@ class SparseNewton;
 struct StaticOptions {
   double nominal_angle = 0.0;  ///< rad, of the reference shaft
   double t = 0.0;              ///< s, for loads and known motions that depend on time
+  /// > 0: moving with the nominal motion from t on, under the mean over this time [s] of what acts where
+  /// nothing deviates, drag of the nominal speed among it; nominal_angle has no meaning then.
+  double mean_over = 0.0;
   SparseNewtonOptions newton = {};
 };
 
@@ -41,6 +45,9 @@ class StaticSolver {
   const System& system_;
   std::unique_ptr<Assembler> assembler_;
   std::unique_ptr<SparseNewton> newton_;
+  /// Mean of p over [t, t + length], where nothing deviates; the assembler is left at t.
+  Vector mean_loads(double t, double length);
+
   Vector start_, zero_;
   double shift_ = 0.0;
 };

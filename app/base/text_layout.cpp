@@ -29,6 +29,13 @@ std::string short_digits(double value, int significant) {
   return text;
 }
 
+std::string earned_digits(double value, double error) {
+  if (!std::isfinite(error)) return digits(value, 3);
+  if (!(error > 0.0) || value == 0.0) return short_digits(value, 12);
+  const double places = std::ceil(std::log10(std::abs(value) / error)) + 1.0;
+  return digits(value, static_cast<int>(std::clamp(places, 2.0, 15.0)));
+}
+
 std::string pad_right(const std::string& text, std::size_t width) {
   return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
 }

@@ -10,6 +10,10 @@ std::string digits(double value, int significant);
 /// With at most so many: 5, 0.001, 3.221e-05.
 std::string short_digits(double value, int significant);
 
+/// The value with the digits that its error supports, down to the error's second; three where it is not known, at
+/// most twelve where it is zero.
+std::string earned_digits(double value, double error);
+
 /// Text padded with blanks to the width, on the right or on the left.
 std::string pad_right(const std::string& text, std::size_t width);
 std::string pad_left(const std::string& text, std::size_t width);

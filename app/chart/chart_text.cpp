@@ -86,7 +86,7 @@ std::string chart_as_text(const ChartRequest& request, const ChartResult& r) {
     }
     text += source_step_text(curve) + "\n";
   }
-  text += "\nWhich method should I use?\n";
+  text += "\nWhich method should I use? From 0 to " + short_digits(data.t_end, 4) + " s:\n";
   for (const double accuracy : kAccuracies)
     text += labelled("  for " + short_digits(accuracy, 2), conclusion(data, accuracy));
   return text;

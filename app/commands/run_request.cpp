@@ -83,6 +83,38 @@ std::optional<double> read_reduce(const CommandLine& line, const Method& method,
   return read_part("--reduce", *text, kReductionErrors, "off, or ", findings);
 }
 
+Start read_start(const CommandLine& line, std::vector<Finding>& findings) {
+  const auto text = line.option("--start");
+  if (!text) return Start::rest;
+  std::vector<std::string> names;
+  for (const Start start : {Start::rest, Start::static_equilibrium, Start::periodic}) {
+    names.emplace_back(to_text(start));
+    if (*text == names.back()) return start;
+  }
+  findings.push_back(
+      {kCommandLine, "--start", *text, "", "must be rest, static or periodic" + did_you_mean(*text, names)});
+  return Start::rest;
+}
+
+std::optional<Settle> read_settle(const CommandLine& line, double duration, const std::string& limit,
+                                  std::vector<Finding>& findings) {
+  const auto text = line.option("--settle");
+  if (!text) return {};
+  if (line.option("--accuracy"))
+    findings.push_back(
+        {kCommandLine, "--settle", *text, "",
+         "cannot be given with --accuracy, whose figures are of the whole run; --start periodic "
+         "can"});
+  if (*text == "auto") return Settle{};
+  double value = 0.0;
+  if (!read_number(*text, value) || !(value >= 0.0 && value < duration))
+    findings.push_back({kCommandLine, "--settle", *text, "s",
+                        "must be auto, or a time from 0 s to less than " +
+                            (std::isfinite(duration) ? to_text(duration) + " s " : std::string("the ")) +
+                            limit});
+  return Settle{value};
+}
+
 /// A stepping method: with a tolerance, steps controlled by it; else constant ones. With --accuracy, methods
 /// of an order above 2, which constant steps over contact changes would take from them, are controlled.
 Method stepping(const std::string& name, const CommandLine& line, double step,
@@ -137,7 +169,7 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   };
   if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
     for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
-  take("--out");
+  for (const char* option : {"--start", "--settle", "--out"}) take(option);
   if (given("--out") || given("--report")) take("--every");
 }
 
@@ -198,6 +230,8 @@ RunRequest request_run(const CommandLine& given) {
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
   const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
+  const Start start = read_start(line, findings);
+  const std::optional<Settle> settle = read_settle(line, high, limit, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);
@@ -220,7 +254,9 @@ RunRequest request_run(const CommandLine& given) {
           hdf5,
           line.option("--report"),
           line.option("--every") ? std::optional(every) : std::nullopt,
-          line.model + (line.option("--run") ? " --run " + *line.option("--run") : "")};
+          line.model + (line.option("--run") ? " --run " + *line.option("--run") : ""),
+          start,
+          settle};
 }
 
 }  // namespace drev::app

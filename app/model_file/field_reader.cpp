@@ -26,7 +26,9 @@ class FieldReader final : public Fields {
 
   void number(const Quantity& quantity, double& value, Need need) override {
     const std::string name = quantity.name(kind);
-    if (const Found* found = keys_.find(name)) {
+    const Found* found = keys_.find(name);
+    // Without its unit the key is a word of the same name.
+    if (found != nullptr && (quantity.dimension(kind) == Dimension::none || !found->unit.empty())) {
       const std::optional<double> read =
           read_number(found->entry->value, found->unit, place(*found), context_);
       if (read) value = *read * found->factor;
@@ -53,7 +55,7 @@ class FieldReader final : public Fields {
   }
   void text(const std::string& name, std::string& value) override {
     const Found* found = keys_.find(name);
-    if (found == nullptr) return;
+    if (found == nullptr || !found->unit.empty()) return;
     if (const auto read = read_text(found->entry->value, place(*found), context_)) value = *read;
   }
   void texts(const std::string& name, std::vector<std::string>& values) override {

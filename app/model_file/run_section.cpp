@@ -67,7 +67,8 @@ std::vector<std::string> node_motions(const System& system) {
 
 }  // namespace
 
-RunSection::Params::Params() : every(kNotGiven), tolerance(kNotGiven), accuracy(kNotGiven) {}
+RunSection::Params::Params()
+    : every(kNotGiven), tolerance(kNotGiven), accuracy(kNotGiven), settle_time(kNotGiven) {}
 
 void RunSection::list(Fields& f, Params& p) {
   f.number({"duration", D::time}, p.duration);
@@ -75,6 +76,9 @@ void RunSection::list(Fields& f, Params& p) {
   f.text("method", p.method);
   f.number({"tolerance", D::none}, p.tolerance);
   f.number({"accuracy", D::none}, p.accuracy);
+  f.text("start", p.start);
+  f.number({"settle", D::time}, p.settle_time);
+  f.text("settle", p.settle);
   f.text("deflection", p.deflection);
   f.texts("torques", p.torques);
   f.number({"static_turn", D::angle}, p.static_turn);
@@ -121,6 +125,9 @@ RunOptions RunSection::options() const {
   add("method", params_.method);
   add("tolerance", number(params_.tolerance));
   add("accuracy", number(params_.accuracy));
+  add("start", params_.start);
+  const Entry* settle = entry("settle");
+  add("settle", settle != nullptr && settle->key == "settle" ? params_.settle : number(params_.settle_time));
   add("every", number(params_.every));
   add("out", params_.out);
   return options;

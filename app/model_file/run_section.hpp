@@ -19,8 +19,8 @@ class RunSection {
  private:
   struct Params {
     double duration = 1.0, step = 1e-4, static_turn = 0.0;
-    double every, tolerance, accuracy;
-    std::string method, out, deflection;
+    double every, tolerance, accuracy, settle_time;
+    std::string method, out, deflection, start, settle;
     std::vector<std::string> torques, record;
     Params();
   };

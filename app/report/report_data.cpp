@@ -42,6 +42,8 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
     if (parameters.values()[i] != parameters.known()[i].default_text)
       text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
   for (const std::string& plugin : loaded_plugins()) text += " --plugin " + plugin;
+  if (request.start != Start::rest) text += std::string(" --start ") + to_text(request.start);
+  if (request.settle) text += " --settle " + (request.settle->time ? to_text(*request.settle->time) : "auto");
   text += " --method " + method.name;
   if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
   if (method.step > 0.0) text += " --step " + to_text(method.step);
@@ -124,6 +126,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   data["command"] = command_of(request, result);
   data["about"] = m.entry->summary;
   data["warning"] = warning_of(result);
+  data["notes"] = notes_of(result);
   data["inputs"] = inputs_array(m.parameters);
   data["result"] = run_object(request, result);
   data["model"] = model_object(m.model_case.model, m.system);
@@ -137,7 +140,11 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   }
   highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
   data["history"] = history_object(history);
-  data["spectra"] = spectra_object(history, cycle_of(m), highest > 0.0 ? highest : HUGE_VAL);
+  // A run-up has its orders over the speed instead (result.run_up).
+  data["spectra"] = result.run_up
+                        ? Json()
+                        : spectra_object(history, result.span.from, cycle_of(m), m.system.reference_speed(),
+                                         highest > 0.0 ? highest : HUGE_VAL);
   return data;
 }
 

@@ -1,5 +1,7 @@
 #include "app/report/report_history.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,6 +30,11 @@ ReportHistory::ReportHistory(const System& system, const std::vector<std::string
   for (const char* name : {"kinetic", "stored"}) series_.push_back({name, "J", {}, {}, {}});
   places_ = even(std::clamp<std::size_t>(kPlaces / series_.size(), 512, kMostPlaces));
   tail_places_ = std::clamp<std::size_t>(kTail / series_.size(), 1024, kMostTail);
+  for (const std::string& name : system.floating_parts(Contact::closed))
+    if (const int node = system.node(name); drifting_ < 0 && system.ratio(node) != 0.0) {
+      drifting_ = node;
+      drifting_ratio_ = system.ratio(node);
+    }
   for (std::size_t j = 0; j < system.scalars().size(); ++j)
     if (const auto gap = system.scalars()[j].force->gap()) {
       terms_.push_back(j);
@@ -64,9 +71,12 @@ void ReportHistory::sample(const Assembler& assembler, const EvaluatedState& poi
   const std::size_t place = full ? oldest_ : tail_times_.size();
   if (!full) {
     tail_times_.push_back(0.0);
+    angle_.push_back(0.0);
     for (Series& series : series_) series.tail.push_back(0.0);
   }
   tail_times_[place] = state.t;
+  angle_[place] = assembler.nominal().value;
+  if (drifting_ >= 0) angle_[place] += assembler.node_motion(drifting_, state).value / drifting_ratio_;
   for (std::size_t s = 0; s < series_.size(); ++s) {
     double value = 0.0;
     if (s < channels_.size()) {
@@ -88,6 +98,19 @@ void ReportHistory::sample(const Assembler& assembler, const EvaluatedState& poi
   end_ = state.t;
   ++samples_;
   if (++in_group_ == group_) in_group_ = 0;
+}
+
+double ReportHistory::mean_speed(double from) const {
+  double turned = 0.0, time = 0.0;
+  const double length = end_ - from;
+  for (std::size_t i = 1; i < tail_size(); ++i) {
+    const double t0 = tail_time(i - 1), t1 = tail_time(i);
+    if (t0 < from) continue;
+    const double weight = std::pow(std::sin(0.5 * kTwoPi * (0.5 * (t0 + t1) - from) / length), 2);
+    turned += weight * (angle_[tail_place(i)] - angle_[tail_place(i - 1)]);
+    time += weight * (t1 - t0);
+  }
+  return time > 0.0 ? std::abs(turned / time) : 0.0;
 }
 
 void ReportHistory::open_group(double t) {

@@ -55,6 +55,9 @@ class ReportHistory final : public Observer {
   /// Sample i of the tail, the oldest first.
   double tail_time(std::size_t i) const { return tail_times_[tail_place(i)]; }
   double tail_value(std::size_t series, std::size_t i) const { return series_[series].tail[tail_place(i)]; }
+  /// Mean of nominal speed and drift over the tail from t = `from` on, of the reference shaft [rad/s], without
+  /// sign; 0 where none turns.
+  double mean_speed(double from) const;
 
  private:
   std::size_t tail_place(std::size_t i) const { return (oldest_ + i) % tail_times_.size(); }
@@ -65,6 +68,9 @@ class ReportHistory final : public Observer {
   std::vector<Channel> channels_;
   double every_ = 0.0, start_ = 0.0, end_ = 0.0;
   std::size_t places_, tail_places_, oldest_ = 0;
+  int drifting_ = -1;  // node of a part that may drift from its nominal speed
+  double drifting_ratio_ = 1.0;
+  std::vector<double> angle_;  // of the reference shaft, with the drift; as the tail [rad]
   long samples_ = 0, group_ = 1, in_group_ = 0;
   std::vector<double> times_, tail_times_;
   std::vector<Series> series_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/run/run_result.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -71,11 +73,15 @@ std::string base64(const void* data, std::size_t bytes) {
   return text;
 }
 
-Json spectra_object(const ReportHistory& history, double cycle, double highest) {
+Json spectra_object(const ReportHistory& history, double begin, double cycle, double nominal,
+                    double highest) {
   const std::size_t n = history.tail_size();
   if (n < kFewest) return nullptr;
   const double end = history.tail_time(n - 1);
-  double span = end - std::max(history.tail_time(0), 0.5 * end);
+  begin = std::max({begin, history.tail_time(0), 0.5 * end});
+  const double speed = history.mean_speed(begin);
+  if (speed > 0.0 && std::abs(speed - nominal) > kSpeedOff * nominal) cycle *= nominal / speed;
+  double span = end - begin;
   const double step = (end - history.tail_time(0)) / static_cast<double>(n - 1);
   std::size_t count = fast_size(static_cast<std::size_t>(span / step));
   if (const double cycles = cycle > 0.0 ? std::floor(span / cycle * (1.0 + 1e-9)) : 0.0; cycles >= 1.0) {
@@ -102,6 +108,7 @@ Json spectra_object(const ReportHistory& history, double cycle, double highest) 
                         {"peaks", std::move(peaks)}});
   }
   return {{"from", end - span},
+          {"speed", speed},
           {"to", end},
           {"samples", count},
           {"resolution_Hz", line},

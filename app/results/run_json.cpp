@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "app/base/json_values.hpp"
+#include "app/results/run_text.hpp"
 
 namespace drev::app {
 
@@ -71,7 +72,7 @@ void add_contacts(Json& results, const RunResult& r) {
     front += c.record.front_impacts;
     back += c.record.back_impacts;
     separated += c.record.time_separated;
-    list.push_back(contact_object(c, r.summary.t_end));
+    list.push_back(contact_object(c, r.span_length()));
   }
   results["front_contacts"] = front;
   results["back_contacts"] = back;
@@ -79,19 +80,71 @@ void add_contacts(Json& results, const RunResult& r) {
   results["contacts"] = std::move(list);
 }
 
+/// Error of a largest value; null: unchecked.
+Json error_of(const std::optional<Largest>& largest) {
+  if (!largest || !largest->error) return nullptr;
+  return number((largest->unit == "rad" ? to_deg(1.0) : 1.0) * *largest->error);
+}
+
+Json span_object(const RunResult& r) {
+  return {{"from_s", number(r.span.from)},
+          {"to_s", number(r.summary.t_end)},
+          {"start", text_or_null(r.span.start)},
+          {"settled", r.span.settled},
+          {"reason", text_or_null(r.span.reason)}};
+}
+
+Json speed_object(const RunResult& r) {
+  if (r.speeds.empty()) return nullptr;
+  const PartSpeed& part = r.off_speed() != nullptr ? *r.off_speed() : r.speeds.front();
+  return {{"node", part.node},
+          {"nominal_rpm", number(to_rpm(part.nominal))},
+          {"actual_rpm", number(to_rpm(part.actual))}};
+}
+
+Json run_up_object(const SpeedsPassed& up) {
+  Json criticals = Json::array(), channels = Json::array(), speeds = Json::array();
+  for (const Crossing& c : up.criticals)
+    criticals.push_back({{"mode", c.mode + 1},
+                         {"frequency_Hz", number(up.frequency_Hz[static_cast<std::size_t>(c.mode)])},
+                         {"order", c.order},
+                         {"speed_rpm", number(to_rpm(c.speed))},
+                         {"static", number(c.answer)}});
+  for (const double speed : up.orders.speed) speeds.push_back(number(to_rpm(speed)));
+  for (std::size_t c = 0; c < up.orders.channels.size(); ++c)
+    channels.push_back({{"name", up.orders.channels[c]},
+                        {"unit", up.orders.units[c]},
+                        {"amplitude", up.orders.amplitude[c]}});
+  return {{"slowest_rpm", number(to_rpm(up.range.slowest))},
+          {"fastest_rpm", number(to_rpm(up.range.fastest))},
+          {"criticals", std::move(criticals)},
+          {"turns", up.turns},
+          {"orders", up.orders.orders},
+          {"time_s", up.orders.time},
+          {"speed_rpm", std::move(speeds)},
+          {"channels", std::move(channels)}};
+}
+
 Json results_object(const RunResult& r) {
   Json results;
+  results["of"] = span_object(r);
+  results["checked"] = r.force || r.deflection
+                           ? (!r.force || r.force->error) && (!r.deflection || r.deflection->error)
+                           : false;
   results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
   results["deflection_m"] = in_unit(r.deflection, "m");
   results["deflection_of"] = r.deflection ? Json(r.deflection->place()) : Json();
+  results["deflection_error"] = error_of(r.deflection);
   results["max_torque_Nm"] = in_unit(r.force, "N m");
   results["max_torque_at"] = place_of(r.force, "N m");
   results["max_force_N"] = in_unit(r.force, "N");
   results["max_force_at"] = place_of(r.force, "N");
   results["max_at_time_s"] = r.force ? number(r.force->at) : Json();
+  results["max_error"] = error_of(r.force);
   results["static_torque_Nm"] = in_unit(r.static_force, "N m");
   results["static_force_N"] = in_unit(r.static_force, "N");
   results["static_at"] = r.static_force ? Json(r.static_force->place()) : Json();
+  results["static_reason"] = text_or_null(r.static_reason);
   results["dynamic_amplification"] = number(r.amplification());
   add_contacts(results, r);
   results["frequencies_Hz"] = Json();
@@ -175,7 +228,10 @@ Json run_object(const RunRequest& request, const RunResult& r) {
   object["warnings"] = s.warnings;
   object["method_reason"] = r.method_reason;
   object["reduction"] = reduction_object(request.reduce, r.reduction);
+  object["notes"] = notes_of(r);
+  object["speed"] = speed_object(r);
   object["results"] = results_object(r);
+  object["run_up"] = r.run_up ? run_up_object(*r.run_up) : Json();
   object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
   object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());
   object["energy"] = energy_object(s.energy);

@@ -14,10 +14,17 @@ namespace {
 
 constexpr std::size_t kModesShown = 6;
 
+/// With the digits that its error leaves, and the error; unchecked, with the usual ones.
 std::string value_text(const Largest& l) {
-  if (l.unit == "rad") return digits(to_deg(l.value), 4) + " deg";
-  return digits(l.value, 5) + " " + l.unit;
+  const bool angle = l.unit == "rad";
+  const double factor = angle ? to_deg(1.0) : 1.0;
+  const std::string unit = angle ? " deg" : " " + l.unit;
+  if (!l.error) return digits(factor * l.value, angle ? 4 : 5) + unit;
+  return earned_digits(factor * l.value, factor * *l.error) + " +- " + short_digits(factor * *l.error, 2) +
+         unit;
 }
+
+std::string rpm_text(double rad_per_s) { return digits(to_rpm(rad_per_s), 5) + " rpm"; }
 
 /// The element, and between which nodes it is.
 std::string place_text(const Model& model, const Largest& l) {
@@ -62,14 +69,56 @@ std::string force_rows(const ModelCase& model_case, const RunResult& r) {
   if (r.force)
     text += labelled("Largest " + name, value_text(*r.force) + " in " + place_text(model, *r.force) + " at " +
                                             short_digits(r.force->at, 4) + " s");
+  if (!r.static_force && model_case.static_turn == 0.0) return text;
   if (!r.static_force)
     return text + labelled("Static " + name, "none, and so no dynamic amplification: " + r.static_reason);
-  text += labelled("Static " + name, value_text(*r.static_force) + " in " +
-                                         place_text(model, *r.static_force) + " (largest " + name +
-                                         " in static equilibrium, over all sections and one turn)");
   if (const auto amplification = r.amplification())
     text += labelled("Dynamic amplification",
-                     digits(*amplification, 3) + " (largest " + name + " / static " + name + ")");
+                     digits(*amplification, 3) + ": the largest " + name + " over the largest in static " +
+                         "equilibrium over one turn, " + value_text(*r.static_force) + " in " +
+                         place_text(model, *r.static_force));
+  return text;
+}
+
+/// What the figures are of, and what speaks for them.
+std::string span_row(const RunResult& r) {
+  std::string text = r.span.from > 0.0 ? "of the run from " + short_digits(r.span.from, 6) + " s to " +
+                                             short_digits(r.summary.t_end, 6) + " s"
+                                       : "of the whole run, " + short_digits(r.summary.t_end, 6) + " s";
+  text += ", which starts " + r.span.start;
+  if (!r.span.reason.empty()) text += "; " + r.span.reason;
+  if (!r.accuracy) text += "; unchecked: --accuracy gives their errors";
+  return labelled("Figures", text);
+}
+
+/// Criticals passed, and where orders are largest.
+std::string run_up_rows(const SpeedsPassed& up) {
+  constexpr std::size_t kCriticalsShown = 5;
+  std::string text = rpm_text(up.range.first) + " to " + rpm_text(up.range.last);
+  if (up.range.slowest < std::min(up.range.first, up.range.last) ||
+      up.range.fastest > std::max(up.range.first, up.range.last))
+    text += ", between " + rpm_text(up.range.slowest) + " and " + rpm_text(up.range.fastest);
+  text = labelled("Run-up", text);
+  std::vector<std::string> criticals;
+  for (const Crossing& c : up.criticals)
+    if (criticals.size() < kCriticalsShown)
+      criticals.push_back(rpm_text(c.speed) + " (order " + short_digits(c.order, 4) + ", " +
+                          digits(up.frequency_Hz[static_cast<std::size_t>(c.mode)], 4) + " Hz)");
+  text += labelled("Criticals passed", (criticals.empty() ? "none" : join(criticals)) +
+                                           "; the most excited first, contacts closed");
+  for (std::size_t c = 0; c < up.orders.channels.size(); ++c) {
+    const std::vector<std::vector<double>>& amplitude = up.orders.amplitude[c];
+    double largest = 0.0;
+    std::size_t order = 0, window = 0;
+    for (std::size_t k = 0; k < amplitude.size(); ++k)
+      for (std::size_t w = 0; w < amplitude[k].size(); ++w)
+        if (amplitude[k][w] > largest) largest = amplitude[k][w], order = k, window = w;
+    if (largest > 0.0)
+      text += "  " + wrap(up.orders.channels[c] + ": order " + short_digits(up.orders.orders[order], 4) +
+                              " largest at " + rpm_text(up.orders.speed[window]) + ", " + digits(largest, 4) +
+                              " " + up.orders.units[c],
+                          4);
+  }
   return text;
 }
 
@@ -111,7 +160,7 @@ std::string contact_rows(const RunResult& r) {
   std::string text = pad_right("Contacts", kLabel) + pad_left("front", 8) + pad_left("back", 8) +
                      pad_left("separated [s]", 15) + pad_left("[%]", 10) + pad_left("largest force", 18) +
                      "\n";
-  const double duration = r.summary.t_end > 0.0 ? r.summary.t_end : 1.0;
+  const double duration = r.span_length() > 0.0 ? r.span_length() : 1.0;
   long front = 0, back = 0;
   double separated = 0.0;
   const Contacts* hardest = &r.contacts.front();
@@ -171,11 +220,8 @@ std::string effort_text(const RunResult& r) {
 
 /// A value with the digits that its error leaves, and the error.
 std::string figure_text(const Figure& f) {
-  int places = 12;
-  if (f.error > 0.0 && f.value != 0.0)
-    places = std::clamp(static_cast<int>(std::ceil(std::log10(std::abs(f.value) / f.error))) + 1, 2, 15);
   const bool known = std::isfinite(f.error);
-  return short_digits(f.value, known ? places : 3) + " +- " +
+  return earned_digits(f.value, f.error) + " +- " +
          (known ? short_digits(f.error, 2) : std::string("unknown")) + (f.unit.empty() ? "" : " " + f.unit);
 }
 
@@ -206,22 +252,36 @@ std::string warning_of(const RunResult& r) {
   return head + ": " + r.reason;
 }
 
+std::vector<std::string> notes_of(const RunResult& r) {
+  std::vector<std::string> notes;
+  if (const PartSpeed* part = r.off_speed())
+    notes.push_back("the model turns at " + rpm_text(part->actual) + " on the mean, not at the nominal " +
+                    rpm_text(part->nominal) + " (" + digits(100.0 * part->deviation(), 3) +
+                    " %): only a balance of torques holds the speed of the part with " + part->node +
+                    "; orders are per turn at the actual speed");
+  return notes;
+}
+
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.model_case.model;
   std::string text;
   if (!r.ok()) text += "*** " + warning_of(r) + "\n\n";
   for (const std::string& warning : s.warnings) text += "*** WARNING: " + warning + "\n\n";
+  for (const std::string& note : notes_of(r)) text += "*** " + wrap("NOTE: " + note, 4) + "\n";
   text += request.model.entry->name + ": " +
           wrap(parameters_text(request.model.parameters), request.model.entry->name.size() + 2);
   text += "\n" + modes_row(r);
+  if (r.deflection || r.force || !r.contacts.empty() || r.mesh_force) text += span_row(r);
   if (r.deflection)
     text += labelled("Largest deflection", value_text(*r.deflection) + " " +
                                                deflection_place(model, *r.deflection) + " at " +
                                                short_digits(r.deflection->at, 4) + " s");
   if (!r.force && !r.ok())
     text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
-  text += force_rows(request.model.model_case, r) + contact_rows(r) + energy_row(s.energy);
+  text += force_rows(request.model.model_case, r) + contact_rows(r);
+  if (r.run_up) text += run_up_rows(*r.run_up);
+  text += energy_row(s.energy);
   text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
   text += labelled("Why this method", r.method_reason);
   text += labelled("Reduction", r.reduction.reason);

@@ -1,9 +1,11 @@
 #include "app/run/run_computation.hpp"
 
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/modes/settling.hpp>
 #include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/run/after_time.hpp>
+#include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peaks.hpp>
-#include <drev/solvers/statics.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +13,7 @@
 
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
+#include "app/run/static_force.hpp"
 
 namespace drev::app {
 
@@ -26,17 +29,6 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::optional<Largest> largest_of(const std::vector<Channel>& channels, const std::vector<Peak>& peaks) {
-  std::optional<Largest> largest;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const double value = peaks[c].amplitude();
-    if (!std::isfinite(value)) return {};
-    if (!largest || value > largest->value)
-      largest = Largest{value, channels[c].name(), channels[c].unit(), peaks[c].time()};
-  }
-  return largest;
-}
-
 void add_modes(const System& system, RunResult& result) {
   const Timer timer;
   try {
@@ -47,23 +39,12 @@ void add_modes(const System& system, RunResult& result) {
   result.modes_time = timer.seconds();
 }
 
-void add_static_force(const ModelRequest& model, const std::vector<Channel>& torques, RunResult& result) {
-  if (model.model_case.static_turn == 0.0 || torques.empty()) {
-    result.static_reason = "this model has no turn over which it would be sought";
-    return;
-  }
-  if (!model.system.floating_parts(Contact::closed).empty()) {
-    result.static_reason = "the model is free to turn, so there is no equilibrium";
-    return;
-  }
+void add_static_force(const ModelCase& model_case, const System& system, RunResult& result) {
   const Timer timer;
-  try {
-    result.static_force = largest_of(
-        torques, static_sweep(model.system, torques, 0.0, model.model_case.static_turn, kStaticAngles));
-    if (!result.static_force) result.static_reason = "it is not finite";
-  } catch (const SolverError& error) {
-    result.static_reason = error.what();
-  }
+  StaticForce found = find_static_force(system, find_channels(system, model_case.torques),
+                                        model_case.static_turn, model_case.duration);
+  result.static_force = std::move(found.largest);
+  result.static_reason = std::move(found.reason);
   result.static_time = timer.seconds();
 }
 
@@ -80,21 +61,21 @@ std::vector<Contacts> contacts_of(const System& system, const ContactStatistics&
 }
 
 /// Figures with their errors; false: the run failed, as the result says.
-bool find_accuracy(const RunRequest& request, RunResult& result) {
+bool find_accuracy(const RunRequest& request, const System& system, RunResult& result) {
   const ModelCase& model_case = request.model.model_case;
   Progress shown;
   const Timer timer;
   try {
-    result.accuracy = run_to_accuracy(request.model.system, {.accuracy = *request.accuracy,
-                                                             .t_end = model_case.duration,
-                                                             .deflection = model_case.deflection,
-                                                             .torques = model_case.torques,
-                                                             .cycle = cycle_of(request.model),
-                                                             .method = request.method,
-                                                             .progress = [&](double part) {
-                                                               shown.update(part);
-                                                               return !interrupted();
-                                                             }});
+    result.accuracy = run_to_accuracy(system, {.accuracy = *request.accuracy,
+                                               .t_end = model_case.duration,
+                                               .deflection = model_case.deflection,
+                                               .torques = model_case.torques,
+                                               .cycle = cycle_of(request.model),
+                                               .method = request.method,
+                                               .progress = [&](double part) {
+                                                 shown.update(part);
+                                                 return !interrupted();
+                                               }});
     result.method = result.accuracy->fine;
     result.summary = result.accuracy->summary;
     result.status = to_text(result.summary.status);
@@ -105,6 +86,41 @@ bool find_accuracy(const RunRequest& request, RunResult& result) {
   }
   result.accuracy_time = timer.seconds();
   return result.ok();
+}
+
+/// The figure that the accuracy found, in place of that of the run; a statistic of several runs is another
+/// quantity.
+void take_figure(const AccuracyResult& accuracy, const std::string& name, std::optional<Largest>& largest) {
+  const Figure* figure = accuracy.find(name);
+  if (!largest || figure == nullptr || figure->name != name || figure->kind != Figure::Kind::estimate) return;
+  largest->value = figure->value;
+  largest->error = figure->error;
+}
+
+/// Where the run starts; false: there is no such state, as the plan says.
+bool find_plan_start(const RunRequest& request, RunPlan& plan) {
+  if (request.start == Start::rest) return true;
+  try {
+    plan.start = find_start(request.model.system, request.start,
+                            {.cycle = cycle_of(request.model),
+                             .duration = request.model.model_case.duration,
+                             .method = request.method,
+                             .progress = [](double) { return !interrupted(); }});
+  } catch (const SolverError& error) {
+    plan.no_start = error.what();
+  }
+  return plan.no_start.empty();
+}
+
+/// Channels whose orders are tracked over a run-up: those recorded, and the deflection.
+std::vector<std::string> tracked_channels(const RunRequest& request) {
+  constexpr std::size_t kMostTracked = 24;
+  std::vector<std::string> names = request.record;
+  const std::string& deflection = request.model.model_case.deflection;
+  if (!deflection.empty() && std::count(names.begin(), names.end(), deflection) == 0)
+    names.insert(names.begin(), deflection);
+  if (names.size() > kMostTracked) names.resize(kMostTracked);
+  return names;
 }
 
 /// What is shown of the run: a reduction keeps the error of each of them.
@@ -122,9 +138,13 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
 }  // namespace
 
 RunPlan plan_run(const RunRequest& request) {
-  const System& system = request.model.system;
   RunPlan plan{.method = request.method, .method_reason = request.method_reason};
-  plan.note.of = plan.note.coordinates = system.size();
+  plan.note.of = plan.note.coordinates = request.model.system.size();
+  if (!find_plan_start(request, plan)) {
+    plan.note.reason = "not reduced: the run has no start";
+    return plan;
+  }
+  const System& system = started_system(request, plan);
   if (!request.reduce) {
     plan.note.reason = "not reduced: no error was allowed for it, see --reduce";
     return plan;
@@ -177,15 +197,27 @@ double cycle_of(const ModelRequest& model) {
 
 RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vector<Observer*> observers,
                       const std::function<std::string()>& output_fault) {
-  const System &full = request.model.system, &system = system_of(request, plan);
+  const System &full = started_system(request, plan), &system = system_of(request, plan);
   const ModelCase& model_case = request.model.model_case;
   RunResult result;
   result.method = plan.method;
   result.method_reason = plan.method_reason;
   result.reduction = plan.note;
   result.reduction_time = plan.time;
+  if (!plan.no_start.empty()) {
+    result.status = interrupted() ? "interrupted" : "failed";
+    result.reason = plan.no_start;
+    result.modes_reason = result.static_reason = "the run has no start";
+    result.summary.scheme = result.method.name;
+    result.summary.step = result.method.step;
+    return result;
+  }
+  const double duration = model_case.duration;
+  const bool steady = request.start == Start::periodic && plan.start->error <= kSettledPart;
+  result.span = figure_span(request.settle, full, steady, duration, cycle_of(request.model));
+  result.span.start = plan.start ? plan.start->how : "from the model's initial conditions";
   add_modes(full, result);
-  add_static_force(request.model, find_channels(full, model_case.torques), result);
+  add_static_force(model_case, full, result);
 
   const std::vector<Channel> torques = find_channels(system, model_case.torques);
 
@@ -193,8 +225,16 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   if (!model_case.deflection.empty()) deflections = find_channels(system, {model_case.deflection});
   Peaks torque_peaks(torques), deflection_peaks(deflections), mesh_peaks(mesh_channels(system));
   ContactStatistics contacts(system);
-  observers.insert(observers.begin(), {&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts});
-  if (request.accuracy && !find_accuracy(request, result)) return result;
+  MeanSpeed speeds(system, result.span.from, duration);
+  AfterTime figures(result.span.from, {&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts, &speeds});
+  std::optional<RunUpWatch> run_up;
+  if (speed_range(full, duration).changes()) {
+    run_up.emplace(full, result.modes ? &*result.modes : nullptr, system, duration, tracked_channels(request),
+                   plan.method.tolerance > 0.0);
+    observers.insert(observers.begin(), run_up->observer());
+  }
+  observers.insert(observers.begin(), &figures);
+  if (request.accuracy && !find_accuracy(request, full, result)) return result;
   const Timer timer;
   try {
     Progress shown;
@@ -202,8 +242,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
       shown.update(part);
       return !interrupted() && output_fault().empty();
     };
-    result.summary =
-        run_method(system, result.method, {.t_end = model_case.duration, .progress = progress}, observers);
+    result.summary = run_method(system, result.method, {.t_end = duration, .progress = progress}, observers);
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {
@@ -218,12 +257,19 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     result.reason = fault + "; the run was given up at t = " + to_text(result.summary.t_end) + " s";
   }
   // What failed numerically has no figures.
+  if (!figures.started()) return result;
   if (result.ok() || result.status == "energy_error" || result.status == "interrupted" ||
       result.status == "output_error") {
     result.force = largest_of(torques, torque_peaks.peaks());
     result.deflection = largest_of(deflections, deflection_peaks.peaks());
     result.mesh_force = largest_of(mesh_peaks.channels(), mesh_peaks.peaks());
     result.contacts = contacts_of(system, contacts);
+    result.speeds = speeds.parts();
+    if (run_up) result.run_up = run_up->result();
+    if (result.accuracy) {
+      take_figure(*result.accuracy, "peak torque", result.force);
+      take_figure(*result.accuracy, "peak deflection", result.deflection);
+    }
   }
   return result;
 }

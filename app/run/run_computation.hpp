@@ -1,9 +1,6 @@
 #pragma once
-/// The computation of `drev run`: modes, static torque over one turn, and the run itself.
-///
-/// Static torque: largest |torque| over all sections in static equilibrium while the shaft turns once, at
-/// kStaticAngles angles (every 0.25 degrees of the shaft); dynamic amplification: largest torque / static
-/// torque.
+/// The computation of `drev run`: its start, modes, static torque over one turn, and the run itself. Dynamic
+/// amplification: largest torque of the figures' span over the static torque (static_force.hpp).
 #include <drev/core/channel.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
 #include <drev/solvers/run/observer.hpp>
@@ -16,10 +13,10 @@
 
 namespace drev::app {
 
-inline constexpr int kStaticAngles = 1440;
-
-/// What is run: the model, or a reduction of it.
+/// What is run: the model from where it starts, or a reduction of it.
 struct RunPlan {
+  std::optional<FoundStart> start = {};  ///< none: the model's initial conditions
+  std::string no_start = {};             ///< why what was asked for is not there; empty: it is
   std::optional<Reduction> reduction = {};
   Method method = {};
   std::string method_reason = {};
@@ -27,8 +24,12 @@ struct RunPlan {
   double time = 0.0;  ///< s, to find it
 };
 RunPlan plan_run(const RunRequest& request);
+/// The whole model, from where it starts.
+inline const System& started_system(const RunRequest& request, const RunPlan& plan) {
+  return plan.start ? plan.start->system : request.model.system;
+}
 inline const System& system_of(const RunRequest& request, const RunPlan& plan) {
-  return plan.reduction ? plan.reduction->system : request.model.system;
+  return plan.reduction ? plan.reduction->system : started_system(request, plan);
 }
 
 /// observers: what else watches the run of system_of(request, plan). output_fault: asked now and then; what

@@ -1,6 +1,7 @@
 #pragma once
 /// What `drev run` is asked for, checked: the run is computed from it, and its results name it.
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/start.hpp>
 
 #include <optional>
 #include <string>
@@ -9,6 +10,11 @@
 #include "app/run/model_request.hpp"
 
 namespace drev::app {
+
+/// From when on figures are taken.
+struct Settle {
+  std::optional<double> time;  ///< s; none: found from the damped modes
+};
 
 struct RunRequest {
   ModelRequest model;
@@ -24,6 +30,8 @@ struct RunRequest {
   std::optional<std::string> report = {};   ///< file, .html or .pdf
   std::optional<double> report_every = {};  ///< s, asked for
   std::string words = {};                   ///< MODEL, and --run of a file
+  Start start = Start::rest;
+  std::optional<Settle> settle = {};  ///< none: figures are of the whole run
 };
 
 }  // namespace drev::app

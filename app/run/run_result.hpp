@@ -4,13 +4,17 @@
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/run/figure_span.hpp"
 #include "app/run/run_request.hpp"
+#include "app/run/run_up.hpp"
 
 namespace drev::app {
 
@@ -18,7 +22,8 @@ namespace drev::app {
 struct Largest {
   double value = 0.0;  ///< unit below
   std::string channel, unit;
-  double at = 0.0;  ///< s; angle of the reference shaft [rad] of a static value
+  double at = 0.0;                   ///< s; angle of the reference shaft [rad] of a static value
+  std::optional<double> error = {};  ///< of the value; none: unchecked
   /// The part of the channel's name before its quantity: element, node or NODE-NODE.
   std::string place() const { return channel.substr(0, channel.rfind('.')); }
 };
@@ -39,6 +44,8 @@ struct ReductionNote {
   std::string reason = {};  ///< a sentence without full stop
 };
 
+inline constexpr double kSpeedOff = 1e-3;  ///< of the nominal speed: beyond it the run says so
+
 struct RunResult {
   /// success, energy_error, unstable, no_convergence, not_finite, interrupted; failed: ended by an error;
   /// output_error: ended because an output could not be written.
@@ -46,6 +53,9 @@ struct RunResult {
   std::string reason;
   Method method;  ///< with the step or tolerance that an accuracy asked for led to
   std::string method_reason;
+  FigureSpan span;                     ///< what the figures are of
+  std::optional<SpeedsPassed> run_up;  ///< where the nominal speed changes
+  std::vector<PartSpeed> speeds;       ///< over the span, of parts that nothing holds at the nominal speed
   ReductionNote reduction;
   RunSummary summary;
   std::optional<AccuracyResult> accuracy;
@@ -59,11 +69,21 @@ struct RunResult {
          run_time = 0.0;  ///< s of wall time
 
   bool ok() const { return status == "success"; }
+  /// s, that figures are of; 0 where the run did not come so far.
+  double span_length() const { return summary.t_end > span.from ? summary.t_end - span.from : 0.0; }
+  /// The first part whose mean speed is off the nominal one by more than kSpeedOff; null: none.
+  const PartSpeed* off_speed() const;
   /// Largest force over largest static force.
   std::optional<double> amplification() const {
     if (!force || !static_force || !(static_force->value > 0.0)) return {};
     return force->value / static_force->value;
   }
 };
+
+inline const PartSpeed* RunResult::off_speed() const {
+  for (const PartSpeed& part : speeds)
+    if (!(std::abs(part.actual - part.nominal) <= kSpeedOff * std::abs(part.nominal))) return &part;
+  return nullptr;
+}
 
 }  // namespace drev::app

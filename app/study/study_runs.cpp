@@ -14,6 +14,7 @@
 #include "app/base/interrupt.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/run/run_computation.hpp"
+#include "app/run/static_force.hpp"
 #include "models/camshaft/published.hpp"
 #include "solvers/run/for_all.hpp"
 

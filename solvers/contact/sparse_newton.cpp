@@ -64,7 +64,10 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
   assembler.add_general_forces(z_, v_, *p.history, part_, history_new);
   note(part_);
   r_ += part_;
-  assembler.external(z_, v_, part_);
+  if (p.loads)
+    part_ = *p.loads;
+  else
+    assembler.external(z_, v_, part_);
   note(part_);
   r_ -= part_;
   r_ *= p.phi;
@@ -114,7 +117,7 @@ NewtonStatus SparseNewton::direction(const Assembler& assembler, const SparseNew
           for (const Entry& col : term.z) values_[term.slots[s++]] += slopes_[j] * row.coeff * col.coeff;
       }
     } else {
-      assembler.tangent_values(weights, z_, v_, history, with_loads, values_);
+      assembler.tangent_values(weights, z_, v_, history, with_loads && !p.loads, values_);
     }
     if (p.shift != 0.0) values_ += p.shift * system_.mass_values();
     ++factorizations_;

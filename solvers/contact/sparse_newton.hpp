@@ -25,6 +25,7 @@ struct SparseNewtonProblem {
   const Vector* v_0 = nullptr;
   const Vector* r_0 = nullptr;      ///< may be null: 0
   const Vector* history = nullptr;  ///< of the last accepted state
+  const Vector* loads = nullptr;    ///< in place of p(z, v), the same for every motion; null: p
   double shift = 0.0;               ///< added as shift * M to the tangent alone (static solves)
 };
 

@@ -166,7 +166,10 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
   if (!response.found)
     response.reason = "the error is " + to_text(response.error) + " with " + std::to_string(harmonics) +
                       " harmonics, not the tolerance " + to_text(options.tolerance);
-  if (!response.found || channels.empty()) return response;
+  if (!response.found) return response;
+  response.z = balance.motion(z, 0, 4 * harmonics).col(0);
+  response.v = balance.motion(z, 1, 4 * harmonics).col(0);
+  if (channels.empty()) return response;
   const Harmonics amplitudes = balance.to_harmonics(level.values, harmonics);
   const Eigen::MatrixXd rates = balance.motion(amplitudes, 1, 4 * harmonics);
   for (Eigen::Index c = 0; c < amplitudes.rows(); ++c) {

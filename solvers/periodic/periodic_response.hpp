@@ -38,6 +38,7 @@ struct PeriodicResponse {
   /// half the harmonics and of the step that is left to Newton's method.
   double error = 0.0;
   bool contact_closed = true;  ///< where found: no law with a gap leaves its flank
+  Vector z, v;                 ///< where found: unknowns and rates at t = 0, to start a run from
 };
 
 /// Not found, with the reason: parts that float, loads or known motions that do not have the period, an

@@ -68,6 +68,20 @@ with open("long.toml", "w") as file:
                ' harmonics = { frequency_Hz = [10], amplitude_Nm = [2000], phase_deg = [-90] } }\n'
                '[run]\nduration_s = 0.2\n')
 
+with open("turning.toml", "w") as file:
+    file.write('format = 1\n[nodes]\na = { nominal_speed_rpm = 900 }\nb = {}\n[elements]\n'
+               'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n'
+               'Jb = { type = "inertia", node = "b", inertia_kg_m2 = 1 }\n'
+               's = { type = "shaft_spring", nodes = ["a", "b"], stiffness_Nm_per_rad = 9000, '
+               'damping_Nms_per_rad = 20 }\n'
+               'drag = { type = "dashpot", node = "b", damping_Nms_per_rad = 3 }\n'
+               'pulse = { type = "engine_order_torque", node = "a", mean_Nm = 200, '
+               'harmonics = { order = [2], amplitude_Nm = [50] } }\n'
+               '[run]\nduration_s = 3\nsettle = "auto"\n')
+with open("turning.toml") as file, open("run_up.toml", "w") as copied:
+    copied.write(file.read().replace("nominal_speed_rpm = 900",
+                                     "hold = true, run_up = { speed_0_rpm = 300, speed_1_rpm = 1500, time_1_s = 3 }"))
+
 results = {
     "exact": printed("run", "camshaft", "--set", short),
     "held": printed("run", "camshaft", "--set", "drive=held", short),
@@ -77,6 +91,8 @@ results = {
     "accuracy": printed("run", "two_mass_backlash", "--accuracy", "1e-4"),
     "statistics": printed("run", "gear_drive", "--accuracy", "1e-2"),
     "reduced": printed("run", "long.toml", "--reduce", "5%"),
+    "turning": printed("run", "turning.toml"),
+    "run_up": printed("run", "run_up.toml"),
     "file": printed("run", "trains/at_rest.toml"),
     "modes": printed("modes", "camshaft"),
     "open": printed("modes", "gear_drive", "--contact", "open"),

@@ -11,7 +11,7 @@ set(room_table
   "solvers/periodic:core solvers/linear solvers/run"
   "solvers/stepping:core solvers/linear solvers/contact solvers/run"
   "solvers/exact:core solvers/linear solvers/contact solvers/run"
-  "solvers:core solvers/linear solvers/contact solvers/run solvers/stepping solvers/exact"
+  "solvers:core solvers/linear solvers/contact solvers/run solvers/modes solvers/periodic solvers/stepping solvers/exact"
   "solvers/batch:core solvers/linear solvers/run solvers/stepping solvers/exact"
   "solvers/accuracy:core solvers/run solvers/periodic solvers/stepping solvers/exact solvers"
   "solvers/reduction:core solvers/linear solvers/run solvers/modes solvers/exact solvers solvers/accuracy"

@@ -122,7 +122,8 @@ function showCampbell() {
       continue;
     }
     const rpm = 60 / (2 * Math.PI),
-      runSpeed = Math.max(...c.speed) * rpm,
+      slowest = c.speed[0] * rpm,
+      runSpeed = c.speed[1] * rpm,
       fastest = 1.6 * runSpeed;
     const frequencies = run.modes.map((m) => m.frequency_Hz);
     const high = 1.12 * (frequencies[Math.min(CAMPBELL_MODES, frequencies.length) - 1] ?? fastest / 6);
@@ -212,15 +213,33 @@ function showCampbell() {
         });
       },
     });
+    const passed = c.speed[0] !== c.speed[1];
     const near = [...c.crossings]
-      .filter((x) => x.speed * rpm > 0.5 * runSpeed && x.speed * rpm < 2 * runSpeed)
+      .filter((x) =>
+        passed
+          ? x.speed >= c.speed[0] && x.speed <= c.speed[1]
+          : x.speed * rpm > 0.5 * runSpeed && x.speed * rpm < 2 * runSpeed,
+      )
       .sort((a, b) => b.static - a.static)
       .slice(0, 12);
     if (!near.length) continue;
     section.append(
-      make("h3", {}, "Resonances between half and twice the speed of the run, most excited first"),
+      make(
+        "h3",
+        {},
+        passed
+          ? `Criticals passed between ${sig(slowest)} and ${sig(runSpeed)} rpm, most excited first`
+          : "Resonances between half and twice the speed of the run, most excited first",
+      ),
       table(
-        ["mode", "frequency [Hz]", "order", "speed [rpm]", "from this run", "static response"],
+        [
+          "mode",
+          "frequency [Hz]",
+          "order",
+          "speed [rpm]",
+          passed ? "from the top speed" : "from this run",
+          "static response",
+        ],
         near.map((x) => [
           x.mode + 1,
           sig(frequencies[x.mode], 5),

@@ -2,13 +2,15 @@
 
 function showSpectra() {
   const section = byId("spectra");
+  for (const run of runs) if (run.result.run_up) showOrders(section, run);
   const withSpectra = runs.filter((run) => run.spectra);
   if (!withSpectra.length) {
-    section.append(make("p", {}, "The run is too short for spectra."));
+    if (!runs.some((run) => run.result.run_up))
+      section.append(make("p", {}, "The run is too short for spectra."));
     return;
   }
   const shafts = withSpectra[0].campbell ? withSpectra[0].campbell.shafts : [];
-  const base = withSpectra[0].campbell ? Math.max(...withSpectra[0].campbell.speed) / (2 * Math.PI) : 0;
+  const base = (withSpectra[0].spectra.speed ?? 0) / (2 * Math.PI); // turns a second, as the shaft really turned
   const s0 = withSpectra[0].spectra;
   const full = Math.max(
     ...withSpectra.map(({ spectra: s }) => s.line_Hz * (s.channels[0]?.amplitude.length ?? 1)),
@@ -185,4 +187,69 @@ function highest(amplitude, step, from, to, columns) {
     y.push(amplitude[best]);
   }
   return { x, y };
+}
+
+/// Amplitudes of orders over the speed of a run-up.
+function showOrders(section, run) {
+  const up = run.result.run_up;
+  if (up.speed_rpm.length < 2 || !up.orders.length) {
+    section.append(make("p", {}, prefixed(run, "The run-up is too short to track orders.")));
+    return;
+  }
+  const group = new Group([Math.min(...up.speed_rpm), Math.max(...up.speed_rpm)], ([from, to]) => {
+    group.output.textContent = `${sig(from)} to ${sig(to)} rpm`;
+  });
+  section.append(
+    make("h3", {}, headed(run, "Orders over the speed")),
+    make(
+      "p",
+      { class: "note" },
+      `Amplitude of each order, in windows of ${integer(up.turns)} turns of the reference shaft (Hann window ` +
+        "over the angle), at the mean speed of the window. Dotted: criticals passed, contacts closed.",
+    ),
+    toolbar(group),
+  );
+  const grid = make("div", { class: "spectra" });
+  section.append(grid);
+  // A run-up and a run-down pass a speed twice: by time, not joined backwards.
+  const places = up.speed_rpm.map((_, i) => i).sort((a, b) => up.speed_rpm[a] - up.speed_rpm[b]);
+  const tint = (i) => style(["--c0", "--c1", "--c2", "--c4", "--ink"][i % 5]);
+  for (const channel of up.channels) {
+    const most = Math.max(...channel.amplitude.flat()),
+      readable = readableUnit(channel.unit, most),
+      name = channelName(channel.name);
+    const chart = new Chart(grid, {
+      group,
+      title: `Orders of ${channel.name}`,
+      xName: "rpm",
+      xLabel: "speed of the reference shaft [rpm]",
+      labels: up.orders.map((order) => `order ${orderText(order)}`),
+      colors: () => up.orders.map((_, i) => tint(i)),
+      series: (_, i) => ({ strokePattern: DASHES[Math.floor(i / 5) % DASHES.length] }),
+      caption: make(
+        "span",
+        {},
+        make("b", {}, name.place),
+        make("span", { class: "unit" }, ` ${name.quantity} [${readable.unit}]`),
+      ),
+      rows: () => ({
+        sparse: true,
+        rows: places.map((w) => [
+          up.speed_rpm[w],
+          ...channel.amplitude.map((amplitude) => amplitude[w] * readable.factor),
+        ]),
+      }),
+      underlay: (context, area, g) => {
+        const text = new Labels(context, area);
+        for (const c of up.criticals.slice(0, 6)) {
+          const x = g.toDomXCoord(c.speed_rpm);
+          if (x < area.x || x > area.x + area.w) continue;
+          line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
+          text.put(orderText(c.order), x + 3, area.y + 12, style("--ink"));
+        }
+      },
+    });
+    chart.channel = channel.name;
+  }
+  group.describe(group.window);
 }

@@ -1,13 +1,14 @@
 // What is said in words and numbers.
 
+/// Name, unit, key of the place, key of the error.
 const RESULT_NAMES = {
-  deflection_deg: ["Largest deflection", "°", "deflection_of"],
-  deflection_m: ["Largest deflection", "m", "deflection_of"],
-  max_torque_Nm: ["Largest torque", "N m", "max_torque_at"],
-  max_force_N: ["Largest force", "N", "max_force_at"],
+  deflection_deg: ["Largest deflection", "°", "deflection_of", "deflection_error"],
+  deflection_m: ["Largest deflection", "m", "deflection_of", "deflection_error"],
+  max_torque_Nm: ["Largest torque", "N m", "max_torque_at", "max_error"],
+  max_force_N: ["Largest force", "N", "max_force_at", "max_error"],
   static_torque_Nm: ["Static torque", "N m", "static_at"],
   static_force_N: ["Static force", "N", "static_at"],
-  dynamic_amplification: ["Dynamic amplification", "", null],
+  dynamic_amplification: ["Dynamic amplification, largest over static", "", null],
   max_mesh_force_N: ["Largest mesh force", "N", "max_mesh_force_at"],
   front_contacts: ["Impacts on front flanks", "", null],
   back_contacts: ["Impacts on back flanks", "", null],
@@ -35,15 +36,41 @@ const unitOf = (key) => {
   return found ? [key.slice(0, -found.length), endings[found]] : [key, ""];
 };
 
-const valueText = (x, unit) =>
-  unit === "°" ? `${sig(x)}°` : Number.isInteger(x) && !unit ? integer(x) : quantity(x, unit);
+/// The digits that an error leaves, two of its own among them; as in the table of drev run.
+const earnedDigits = (x, error) =>
+  error > 0 ? Math.min(15, Math.max(2, Math.ceil(Math.log10(Math.abs(x) / error)) + 1)) : 12;
+
+/// With its error where that is known: the digits are then those of the table of drev run, in the same unit.
+const valueText = (x, unit, error) => {
+  if (error !== null && error !== undefined)
+    return `${sig(x, earnedDigits(x, error))} ± ${sig(error, 2)}${unit === "°" ? "°" : "\u00a0" + unitText(unit)}`;
+  return unit === "°" ? `${sig(x)}°` : Number.isInteger(x) && !unit ? integer(x) : quantity(x, unit);
+};
+
+/// What the figures are of, and what speaks for them.
+function spanText(run) {
+  const r = run.result.results,
+    of = r.of;
+  const part = of.from_s > 0 ? `of the run from ${sig(of.from_s)} s to ${sig(of.to_s)} s` : "of the whole run";
+  return (
+    `Figures are ${part}, which starts ${of.start}${of.reason ? `; ${of.reason}` : ""}.` +
+    (run.result.accuracy ? "" : " Unchecked: --accuracy gives their errors.") +
+    (r.static_reason ? ` No static torque or amplification: ${r.static_reason}.` : "")
+  );
+}
 
 function figuresOf(run) {
   const r = run.result.results,
     list = [];
-  for (const [key, [name, unit, place]] of Object.entries(RESULT_NAMES))
+  for (const [key, [name, unit, place, error]] of Object.entries(RESULT_NAMES))
     if (r[key] !== null && r[key] !== undefined)
-      list.push({ name, unit, value: r[key], where: place && r[place] ? r[place] : "" });
+      list.push({
+        name,
+        unit,
+        value: r[key],
+        error: error && r[error],
+        where: place && r[place] ? r[place] : "",
+      });
   if (r.frequencies_Hz && r.frequencies_Hz.length)
     list.push({
       name: "First natural frequency",
@@ -62,7 +89,7 @@ const figureText = (figure) =>
     ? Math.abs(figure.value) < 1e-10
       ? "rounding"
       : percent(figure.value / 100, 2)
-    : valueText(figure.value, figure.unit);
+    : valueText(figure.value, figure.unit, figure.error);
 
 const difference = (a, b) => {
   if (!Number.isFinite(a) || !Number.isFinite(b)) return "–";
@@ -107,6 +134,9 @@ function showFigures() {
       ),
     );
   }
+  for (const run of runs)
+    if (run.result.results.of?.start)
+      section.append(make("p", { class: "note" }, prefixed(run, spanText(run))));
   for (const run of runs)
     if (run.result.note) section.append(make("p", { class: "note" }, prefixed(run, run.result.note)));
 }
@@ -268,9 +298,7 @@ function showAccuracy() {
             ? integer(f.value)
             : sig(
                 f.value,
-                f.error > 0
-                  ? Math.min(12, Math.max(2, Math.ceil(Math.log10(Math.abs(f.value) / f.error)) + 1))
-                  : 8,
+                f.error === null ? 3 : earnedDigits(f.value, f.error),
               ),
           sig(f.error, 2),
           unitText(f.unit),

@@ -233,7 +233,7 @@ TEST_CASE("The table has its units, and says what the data are") {
   CHECK(run.err.empty());  // no progress where there is no terminal
   for (const char* part :
        {" deg between fuel_1 and inlet_9", " N m in shaft_", " Hz", "mesh_1", "mesh_2", "front", "back",
-        "separated [s]", "rattle index", "[%]", "Static torque", "Dynamic amplification", "Energy balance",
+        "separated [s]", "rattle index", "[%]", "equilibrium", "Dynamic amplification", "Energy balance",
         "average_acceleration", "step 1e-05 s", "halved", "iterations", "reconstruction"})
     CHECK(contains(run.out, part));
 }

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <fcntl.h>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -334,4 +336,50 @@ TEST_CASE("A damaged report is refused") {
   CHECK(refused(with(series - 8, 1, "")));     // no JSON
   CHECK(refused(with(page.find("\"history\":"), 9, "\"hostory\"")));
   CHECK(refused(with(page.find("\"groups\":"), 9, "\"groups\":1e9,\"g\"")));
+}
+
+TEST_CASE(
+    "The report of a run-up has its criticals from the slowest speed on, and no spectrum of the whole") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "up.toml").string();
+  std::ofstream(path)
+      << "format = 1\n[nodes]\nend = { hold = true, run_up = { speed_0_rpm = 300, speed_1_rpm = 1800, "
+         "time_1_s = 10 } }\n"
+         "disc = {}\n[elements]\nJ = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"end\", \"disc\"], stiffness_Nm_per_rad = 12279, "
+         "damping_Nms_per_rad = 8 }\nload = { type = \"engine_order_torque\", node = \"disc\", harmonics = { "
+         "order = "
+         "[2], amplitude_Nm = [10] } }\n[run]\nduration_s = 10\n";
+  const Json data = block_of_run({path});
+  CHECK(data.at("spectra").is_null());
+  CHECK(!data.at("result").at("run_up").is_null());
+  const Json& campbell = data.at("campbell");
+  const double rpm = 2.0 * 3.14159265358979323846 / 60.0;
+  CHECK(campbell.at("speed")[0].get<double>() == Approx(300.0 * rpm));
+  CHECK(campbell.at("speed")[1].get<double>() == Approx(1800.0 * rpm));
+  // Order 2 meets the only mode at 529 rpm, below half of the top speed, and is drawn.
+  CHECK(campbell.at("orders")[0].at("order") == 2.0);
+  CHECK(campbell.at("crossings")[0].at("speed").get<double>() == Approx(std::sqrt(12279.0) / 2.0));
+}
+
+TEST_CASE("Orders of the report are of the speed at which the shaft really turned") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "off.toml").string();
+  std::ofstream(path)
+      << "format = 1\n[nodes]\na = { nominal_speed_rad_per_s = 120 }\nb = {}\n[elements]\n"
+         "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 0.01 }\n"
+         "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 0.01 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 4000, "
+         "damping_Nms_per_rad = 0.5 }\n"
+         "drag = { type = \"dashpot\", node = \"b\", damping_Nms_per_rad = 0.1 }\n"
+         "drive = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 10, harmonics = { order "
+         "= [2], amplitude_Nm = [3] } }\n[run]\nduration_s = 8\nsettle_s = 2\n"
+         "record = [\"shaft.torque_Nm\"]\n";
+  const Json data = block_of_run({path});
+  CHECK(data.at("notes").size() == 1);
+  const Json& spectra = data.at("spectra");
+  const double turns = spectra.at("speed").get<double>() / (2.0 * 3.14159265358979323846);
+  CHECK(std::abs(turns * 2.0 * 3.14159265358979323846 / 100.0 - 1.0) < 1e-3);
+  const Json& peak = spectra.at("channels")[0].at("peaks")[0];
+  CHECK(std::abs(peak.at("frequency_Hz").get<double>() / turns - 2.0) < 2e-3);
 }

@@ -1,0 +1,42 @@
+#pragma once
+/// Which orders of the loads excite which modes, and at which speeds they resonate: what the Campbell diagram,
+/// the list of criticals and the tracking of orders are made from. Natural frequencies do not depend on
+/// speed in drev.
+///
+/// The orders of a load are those of its torque over two turns of its node. How much order o excites mode m
+/// is the static response of the mode to the phase sum over all loads,
+///
+///   q_om = |sum_l x_l A_lo exp(i phase_lo)| / omega_m^2,   x_m' M x_m = 1,
+///
+/// times the shape's largest entry [rad or m]. At resonance it is 1 / (2 zeta_m) times as large.
+#include <drev/core/system.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
+#include <vector>
+
+namespace drev::app {
+
+/// Where an order meets a natural frequency.
+struct Crossing {
+  int mode = 0;
+  double order = 0.0;   ///< per turn of the reference shaft
+  double speed = 0.0;   ///< rad/s, of the reference shaft
+  double answer = 0.0;  ///< q_om times the shape's largest entry [rad or m]
+};
+
+/// Of all orders and modes, the most excited first. rate: speed that loads are evaluated at [rad/s].
+std::vector<Crossing> find_crossings(const System& system, const ModeSet& modes, double rate);
+
+/// Of the reference shaft over the run [rad/s], without sign; zeros where none turns.
+struct SpeedRange {
+  double slowest = 0.0, fastest = 0.0;
+  double first = 0.0, last = 0.0;
+  bool changes() const { return fastest > slowest * (1.0 + 1e-9); }
+};
+SpeedRange speed_range(const System& system, double duration);
+
+/// The orders worth showing: of each of the lowest modes those that excite it most, resonant in the run's speeds or
+/// not far from them; then those that excite most wherever they are resonant, until there are a few. Ascending.
+std::vector<double> chief_orders(const std::vector<Crossing>& crossings, const SpeedRange& range);
+
+}  // namespace drev::app

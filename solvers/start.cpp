@@ -1,0 +1,172 @@
+#include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
+#include <drev/core/load.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/settling.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
+#include <drev/solvers/start.hpp>
+#include <drev/solvers/statics.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace drev {
+
+namespace {
+
+constexpr double kSameFrequency = 1e-9;  // relative
+constexpr double kMostMultiple = 1000;   // of the shared frequency
+constexpr int kTimesOfCycle = 97;        // at which loads are compared
+constexpr double kSameLoad = 1e-8;       // relative
+constexpr double kMostCycles = 1e5;      // of a run that settles
+
+/// The largest frequency that divides all frequencies of loads [Hz]; 0: there is none, or it is too low.
+double shared_frequency(const System& system) {
+  double shared = 0.0, highest = 0.0;
+  for (const LoadTerm& term : system.loads())
+    for (const double frequency : term.load->frequencies()) {
+      highest = std::max(highest, frequency);
+      double a = std::max(frequency, shared), b = std::min(frequency, shared);
+      while (b > kSameFrequency * highest * kMostMultiple) {
+        const double rest = std::remainder(a, b);
+        a = b;
+        b = std::abs(rest);
+      }
+      shared = a;
+    }
+  return shared * kMostMultiple > highest ? shared : 0.0;
+}
+
+/// Speed of the reference shaft where it is constant over the run [rad/s]; 0: it stands, or there is none.
+double constant_speed_of(const System& system, double duration) {
+  const auto& reference = system.reference();
+  if (!reference || !reference->at) return 0.0;
+  const double speed = reference->at(0.0).rate;
+  for (int i = 1; i <= 8; ++i)
+    if (const double later = reference->at(duration * i / 8).rate;
+        std::abs(later - speed) > 1e-12 * std::abs(speed))
+      throw SolverError(system.name() + ": the nominal speed changes over the run, from " +
+                        to_text(to_rpm(speed)) + " rpm to " + to_text(to_rpm(later)) + " rpm at " +
+                        to_text(duration * i / 8) +
+                        " s: a run-up has no periodic steady state to start from");
+  return std::abs(speed);
+}
+
+/// Cycles to try [s].
+std::vector<double> cycles_of(const System& system, const StartOptions& options) {
+  const double speed = constant_speed_of(system, options.duration);
+  std::vector<double> cycles;
+  if (options.cycle > 0.0) cycles.push_back(options.cycle);
+  if (speed > 0.0)
+    for (const double turns : {1.0, 2.0, 4.0}) cycles.push_back(turns * kTwoPi / speed);
+  if (const double frequency = shared_frequency(system); frequency > 0.0) cycles.push_back(1.0 / frequency);
+  return cycles;
+}
+
+FoundStart start_static(const System& system, const StartOptions& options) {
+  double cycle = options.cycle;
+  if (const auto& reference = system.reference(); cycle == 0.0 && reference && reference->at) {
+    const double speed = std::abs(reference->at(0.0).rate);
+    if (speed > 0.0) cycle = 2.0 * kTwoPi / speed;
+  }
+  if (cycle == 0.0)
+    if (const double frequency = shared_frequency(system); frequency > 0.0) cycle = 1.0 / frequency;
+  const StaticResult found = solve_static(system, {.mean_over = cycle});
+  return {system.with_initial(found.state.z, found.state.v),
+          "in static equilibrium under " +
+              (cycle > 0.0 ? "the mean of the loads over " + to_text(cycle) + " s" : "the loads at t = 0"),
+          cycle};
+}
+
+/// Whether all that acts where nothing deviates repeats after the cycle.
+bool repeats(const System& system, double cycle) {
+  Assembler assembler(system);
+  const Vector zero = Vector::Zero(system.size());
+  Vector now = zero, later = zero;
+  double largest = 0.0, change = 0.0;
+  for (int i = 0; i < kTimesOfCycle; ++i) {
+    const double t = cycle * (i + 0.5) / kTimesOfCycle;
+    assembler.set_time(t);
+    assembler.external(zero, zero, now);
+    assembler.set_time(t + cycle);
+    assembler.external(zero, zero, later);
+    largest = std::max(largest, now.cwiseAbs().maxCoeff());
+    change = std::max(change, (later - now).cwiseAbs().maxCoeff());
+  }
+  return change <= kSameLoad * largest;
+}
+
+double change_of(const Vector& before, const Vector& after) {
+  const double largest = std::max(before.cwiseAbs().maxCoeff(), after.cwiseAbs().maxCoeff());
+  return largest > 0.0 ? (after - before).cwiseAbs().maxCoeff() / largest : 0.0;
+}
+
+/// The state after whole cycles of a run that lasts as long as the model takes to settle.
+FoundStart settle(const System& system, double cycle, const std::string& why, const StartOptions& options) {
+  const std::string none = system.name() + ": no periodic steady state to start from: " + why;
+  const Settling settling = settling_time(system);
+  const double cycles = std::ceil(settling.time / cycle) + 1.0;
+  if (!(cycles <= kMostCycles))
+    throw SolverError(none + "; nor does a run settle on one: " + settling.reason);
+  StartOptions first = options;
+  first.cycle = cycle;
+  const FoundStart begin = start_static(system, first);
+  State before = State::initial(begin.system);
+  const MethodRunOptions until{.t_end = (cycles - 1.0) * cycle, .progress = options.progress};
+  RunSummary run = run_method(system, options.method, until, before);
+  State after = before;
+  if (run.ok())
+    run = run_method(system, options.method,
+                     {.t_start = until.t_end, .t_end = cycles * cycle, .progress = options.progress}, after);
+  if (!run.ok()) throw SolverError(none + "; nor does a run settle on one: " + run.reason);
+  const double error = std::max(change_of(before.z, after.z), change_of(before.v, after.v));
+  std::ostringstream how;
+  how.precision(6);
+  how << "in the motion on which a run of " << cycles << " cycles of " << cycle
+      << " s settled (it changes by ";
+  how.precision(2);
+  how << 100.0 * error << " % from cycle to cycle; " << why << ")";
+  return {system.with_initial(after.z, after.v), how.str(), cycle, error};
+}
+
+FoundStart start_periodic(const System& system, const StartOptions& options) {
+  std::vector<double> cycles = cycles_of(system, options);
+  std::string reason =
+      cycles.empty()
+          ? "no reference shaft turns and no load has harmonics in time, so that the period is not known"
+          : "what acts on the model repeats neither after the cycle of the model nor after 1, 2 or 4 "
+            "turns of the reference shaft";
+  std::erase_if(cycles, [&](double cycle) { return !repeats(system, cycle); });
+  for (const double cycle : cycles) {
+    const PeriodicResponse found = solve_periodic(system, {.period = cycle, .tolerance = options.tolerance});
+    if (found.found) {
+      std::ostringstream how;
+      how.precision(6);
+      how << "in the periodic motion of " << cycle << " s (harmonic balance with " << found.harmonics
+          << " harmonics";
+      how.precision(2);
+      how << ", error " << found.error << " of the motion)";
+      return {system.with_initial(found.z, found.v), how.str(), cycle, found.error};
+    }
+    reason = found.reason;
+  }
+  // A history is no part of the initial conditions.
+  if (cycles.empty() || !system.floating_parts(Contact::closed).empty() || system.history_size() > 0)
+    throw SolverError(system.name() + ": no periodic steady state to start from: " + reason);
+  return settle(system, cycles.front(), reason, options);
+}
+
+}  // namespace
+
+const char* to_text(Start start) {
+  return start == Start::periodic ? "periodic" : start == Start::static_equilibrium ? "static" : "rest";
+}
+
+FoundStart find_start(const System& system, Start start, const StartOptions& options) {
+  if (start == Start::periodic) return start_periodic(system, options);
+  if (start == Start::static_equilibrium) return start_static(system, options);
+  return {system, "from the model's initial conditions"};
+}
+
+}  // namespace drev

@@ -1,0 +1,230 @@
+// Figures of a run: which part of it they are of, at which speed, against what, and with which digits.
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A disc on a shaft from a node at constant speed, 100 rad/s; order 0.5 and a mean torque.
+std::string disc(const std::string& damping, const std::string& run) {
+  return "format = 1\n[nodes]\nmotor = { constant_speed_rad_per_s = 100 }\ndisc = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 2 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"motor\", \"disc\"], stiffness_Nm_per_rad = 20000, "
+         "damping_Nms_per_rad = " +
+         damping +
+         " }\nload = { type = \"engine_order_torque\", node = \"disc\", mean_Nm = 50, twist_feedback = "
+         "false, harmonics = { order = "
+         "[0.5], "
+         "amplitude_Nm = [20] } }\n[run]\nduration_s = 5\n" +
+         run;
+}
+
+/// Largest torque of its steady state (damping 8): order 0.5 at 50 rad/s.
+double steady() {
+  return 50.0 + 20.0 * std::hypot(20000.0, 400.0) / std::hypot(20000.0 - 2.0 * 2500.0, 400.0);
+}
+
+/// Every run of blanks and line ends as one blank: what is wrapped reads as it was written.
+std::string unwrapped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (c != '\n' && c != ' ')
+      out += c;
+    else if (!out.empty() && out.back() != ' ')
+      out += ' ';
+  return out;
+}
+
+struct Ran {
+  int exit_code = 0;
+  Json json;
+  std::string text, err;
+};
+Ran run_of(const std::string& model, std::vector<std::string> words = {}) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "m.toml").string();
+  std::ofstream(path) << model;
+  words.insert(words.begin(), {"run", path});
+  const auto text = drev_command(words);
+  words.emplace_back("--json");
+  const auto json = drev_command(words);
+  return {text.exit_code, Json::parse(json.out, nullptr, false), unwrapped(text.out), text.err};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "Figures from rest hold the start; from the periodic state, or settled, they are the closed form's") {
+  const Ran rest = run_of(disc("8", ""));
+  REQUIRE(rest.exit_code == 0);
+  const double from_rest = rest.json["results"]["max_torque_Nm"];
+  CHECK(from_rest > 1.02 * steady());
+  CHECK(rest.json["results"]["of"]["from_s"] == 0.0);
+  CHECK(rest.json["results"]["of"]["settled"] == false);
+  CHECK(contains(rest.text, "of the whole run, 5 s, which starts from the model's initial conditions"));
+  for (const auto& words : std::vector<std::vector<std::string>>{{"--start", "periodic"},
+                                                                 {"--settle", "auto"},
+                                                                 {"--settle", "4"},
+                                                                 {"--start", "static", "--settle", "4"}}) {
+    INFO(words[0] << words[1]);
+    const Ran run = run_of(disc("8", ""), words);
+    REQUIRE(run.exit_code == 0);
+    CHECK(std::abs(run.json["results"]["max_torque_Nm"].get<double>() / steady() - 1.0) < 2e-3);
+    CHECK(run.json["results"]["max_at_time_s"] >= run.json["results"]["of"]["from_s"]);
+  }
+  // The same from the file, and the command line has the last word.
+  const Ran file = run_of(disc("8", "settle = \"auto\"\n"));
+  CHECK(file.json["results"]["of"]["settled"] == true);
+  CHECK(std::abs(file.json["results"]["of"]["from_s"].get<double>() - std::log(1e3) / 2.0) < 1e-6);
+  CHECK(contains(file.text, "of the run from 3.45388 s to 5 s"));
+  CHECK(contains(file.text, "decayed to 0.1 %"));
+  CHECK(run_of(disc("8", "settle_s = 1.5\n")).json["results"]["of"]["from_s"] == 1.5);
+  CHECK(run_of(disc("8", "settle_s = 1.5\n"), {"--settle", "2"}).json["results"]["of"]["from_s"] == 2.0);
+  const Ran periodic = run_of(disc("8", "start = \"periodic\"\n"));
+  CHECK(periodic.json["results"]["of"]["settled"] == true);
+  CHECK(contains(periodic.text, "which starts in the periodic motion of 0.125664 s (harmonic balance"));
+}
+
+TEST_CASE("A run that does not settle says so, and has its figures of the whole run") {
+  for (const char* damping : {"0", "0.5"}) {
+    const Ran run = run_of(disc(damping, "settle = \"auto\"\n"));
+    REQUIRE(run.exit_code == 0);
+    CHECK(run.json["results"]["of"]["settled"] == false);
+    CHECK(run.json["results"]["of"]["from_s"] == 0.0);
+    CHECK(contains(run.json["results"]["of"]["reason"].get<std::string>(), "the run of 5 s does not settle"));
+  }
+}
+
+TEST_CASE("What cannot be a start or a settling time is a fault of its place, all at once") {
+  const Ran wrong = run_of(disc("8", "start = \"periodc\"\nsettle = \"often\"\n"));
+  CHECK(wrong.exit_code == 2);
+  for (const char* part :
+       {"m.toml:11", "start", "did you mean 'periodic'", "m.toml:12", "must be auto, or a time"})
+    CHECK(contains(wrong.err, part));
+  CHECK(
+      contains(run_of(disc("8", "settle_s = 6\n")).err, "must be auto, or a time from 0 s to less than 5 s"));
+  CHECK(contains(run_of(disc("8", "settle = \"auto\"\nsettle_s = 1\n")).err, "is there already"));
+  CHECK(run_of(disc("8", ""), {"--settle", "auto", "--accuracy", "1e-4"}).exit_code == 2);
+  // No steady state: the run fails, and says why.
+  const std::string free_drive =
+      "format = 1\n[nodes]\nshaft = { nominal_speed_rad_per_s = 100 }\n[elements]\n"
+      "J = { type = \"inertia\", node = \"shaft\", inertia_kg_m2 = 1 }\n[run]\nstart = \"periodic\"\n";
+  const Ran none = run_of(free_drive);
+  CHECK(none.exit_code == 1);
+  CHECK(none.json["status"] == "failed");
+  CHECK(contains(none.json["reason"].get<std::string>(), "floats freely (with shaft)"));
+}
+
+TEST_CASE("A model that does not turn at its nominal speed says so before its figures") {
+  // 10 N m against 0.1 N m s/rad: 100 rad/s, 20 % below the nominal 120.
+  const auto drive = [](const char* torque) {
+    return std::string(
+               "format = 1\n[nodes]\nshaft = { nominal_speed_rad_per_s = 120 }\n[elements]\n"
+               "J = { type = \"inertia\", node = \"shaft\", inertia_kg_m2 = 0.01 }\n"
+               "drag = { type = \"dashpot\", node = \"shaft\", damping_Nms_per_rad = 0.1 }\n"
+               "drive = { type = \"engine_order_torque\", node = \"shaft\", mean_Nm = ") +
+           torque +
+           ", harmonics = { order = [2], amplitude_Nm = [1] } }\n[run]\nduration_s = 3\nsettle_s = 1\n";
+  };
+  const Ran off = run_of(drive("10"));
+  REQUIRE(off.exit_code == 0);
+  CHECK(std::abs(off.json["speed"]["nominal_rpm"].get<double>() - 120.0 * 30.0 / kPi) < 1e-6);
+  CHECK(std::abs(off.json["speed"]["actual_rpm"].get<double>() - 100.0 * 30.0 / kPi) < 0.5);
+  REQUIRE(off.json["notes"].size() == 1);
+  CHECK(off.text.starts_with("*** NOTE: the model turns at 954.9"));
+  CHECK(contains(off.text, "not at the nominal 1145.9 rpm (-16.7 %)"));
+  const Ran right = run_of(drive("12"));
+  CHECK(right.json["notes"].empty());
+  CHECK(!contains(right.text, "***"));
+}
+
+TEST_CASE("A run-up lists the criticals that it passes and tracks the orders over its speed") {
+  const Ran run = run_of(
+      "format = 1\n[nodes]\nend = { hold = true, run_up = { speed_0_rpm = 300, speed_1_rpm = 1800, time_1_s "
+      "= 10 } }\n"
+      "disc = {}\n[elements]\nJ = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+      "shaft = { type = \"shaft_spring\", nodes = [\"end\", \"disc\"], stiffness_Nm_per_rad = 12279, "
+      "damping_Nms_per_rad = 8 }\nload = { type = \"engine_order_torque\", node = \"disc\", harmonics = { "
+      "order = "
+      "[2], amplitude_Nm = [10] } }\n[run]\nduration_s = 10\nrecord = [\"shaft.torque_Nm\"]\n");
+  REQUIRE(run.exit_code == 0);
+  const double critical = std::sqrt(12279.0) / 2.0 * 30.0 / kPi;  // 529 rpm, below half of the top speed
+  const Json& up = run.json["run_up"];
+  CHECK(up["slowest_rpm"].get<double>() == Approx(300.0));
+  CHECK(up["fastest_rpm"].get<double>() == Approx(1800.0));
+  REQUIRE(up["criticals"].size() == 1);
+  CHECK(up["criticals"][0]["order"] == 2.0);
+  CHECK(up["criticals"][0]["speed_rpm"].get<double>() == Approx(critical).epsilon(1e-6));
+  REQUIRE(up["orders"] == Json::array({2.0}));
+  const auto amplitude = up["channels"][0]["amplitude"][0].get<std::vector<double>>();
+  const auto top = std::max_element(amplitude.begin(), amplitude.end()) - amplitude.begin();
+  CHECK(std::abs(up["speed_rpm"][static_cast<std::size_t>(top)].get<double>() - critical) < 25.0);
+  CHECK(contains(run.text, "300.00 rpm to 1800.0 rpm"));
+  CHECK(contains(run.text, "529.0"));
+  CHECK(run_of(disc("8", "")).json["run_up"].is_null());
+}
+
+TEST_CASE(
+    "A static torque is stated where turning slowly would give it, and the amplification says against what") {
+  // A cam on a shaft; the shaft's other end on a grid at constant speed, stiffly or by something soft.
+  const auto cam = [](const char* stiffness, const char* more) {
+    return std::string(
+               "format = 1\n[nodes]\ncam = {}\ngrid = { constant_speed_rpm = 60 }\n[elements]\n"
+               "J = { type = \"inertia\", node = \"cam\", inertia_kg_m2 = 0.1 }\n"
+               "shaft = { type = \"shaft_spring\", nodes = [\"grid\", \"cam\"], stiffness_Nm_per_rad = ") +
+           stiffness +
+           ", damping_Nms_per_rad = 3 }\nload = { type = \"engine_order_torque\", node = \"cam\", mean_Nm = "
+           "20, "
+           "harmonics = { order = [1], amplitude_Nm = [100] } }\n" +
+           more + "[run]\nduration_s = 3\nstatic_turn_deg = 360\n";
+  };
+  const Ran stiff = run_of(cam("1e5", ""));
+  REQUIRE(stiff.exit_code == 0);
+  CHECK(stiff.json["results"]["static_torque_Nm"].get<double>() == Approx(120.0).epsilon(1e-3));
+  CHECK(stiff.json["results"]["dynamic_amplification"].is_number());
+  CHECK(contains(stiff.text, "the largest torque over the largest in static equilibrium over one turn, 12"));
+  const Ran soft = run_of(cam("300", ""));
+  CHECK(soft.json["results"]["static_torque_Nm"].is_null());
+  CHECK(soft.json["results"]["dynamic_amplification"].is_null());
+  CHECK(contains(soft.json["results"]["static_reason"].get<std::string>(),
+                 "something soft such as a spring to ground"));
+  const Ran timed =
+      run_of(cam("1e5",
+                 "pulse = { type = \"applied_torque\", node = \"cam\", harmonics = { frequency_Hz = "
+                 "[3], amplitude_Nm = [5] } }\n"));
+  CHECK(timed.json["results"]["static_torque_Nm"].is_null());
+  CHECK(contains(timed.json["results"]["static_reason"].get<std::string>(), "pulse follows the time"));
+}
+
+TEST_CASE(
+    "Unchecked figures say so; with an accuracy, text and JSON have the accurate ones with their digits") {
+  const Ran plain = run_of(disc("8", ""));
+  CHECK(plain.json["results"]["checked"] == false);
+  CHECK(plain.json["results"]["max_error"].is_null());
+  CHECK(contains(plain.text, "unchecked: --accuracy gives"));
+  const Ran run = run_of(disc("8", ""), {"--accuracy", "1e-6"});
+  REQUIRE(run.exit_code == 0);
+  CHECK(!contains(run.text, "unchecked"));
+  CHECK(run.json["results"]["checked"] == true);
+  for (const Json& figure : run.json["accuracy"]["figures"])
+    if (figure["name"] == "peak torque") {
+      CHECK(run.json["results"]["max_torque_Nm"] == figure["value"]);
+      CHECK(run.json["results"]["max_error"] == figure["error"]);
+    }
+  // The same digits in the line of the largest torque and in the list of figures.
+  const std::size_t line = run.text.find("Largest torque"), list = run.text.find("peak torque: ");
+  REQUIRE(line != std::string::npos);
+  REQUIRE(list != std::string::npos);
+  const std::string value = run.text.substr(line + 15, run.text.find(" +-", line) - line - 15);
+  CHECK(value == run.text.substr(list + 13, run.text.find(" +-", list) - list - 13));
+}

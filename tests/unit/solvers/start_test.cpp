@@ -1,0 +1,166 @@
+// Where a run starts, and how long it takes to settle.
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/method.hpp>
+#include <drev/solvers/modes/settling.hpp>
+#include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/start.hpp>
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+constexpr double kInertia = 2.0, kStiffness = 20000.0, kDamping = 8.0, kSpeed = 100.0;
+
+/// A disc on a shaft from a node at constant speed, under a mean torque and order 0.5.
+System disc_on_shaft(double damping = kDamping, bool feedback = false) {
+  Model m("disc");
+  const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
+  m.constant_speed(motor, kSpeed);
+  m.add<Inertia>("J", {disc}, {.inertia = kInertia});
+  m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = kStiffness, .damping = damping});
+  m.add<EngineOrderTorque>(
+      "load", {disc},
+      {.harmonics = {{.order = 0.5, .amplitude = 20.0}}, .mean = 50.0, .twist_feedback = feedback});
+  return m.build();
+}
+
+double largest(const System& system, double from_rest_to) {
+  Peaks peaks(find_channels(system, {"shaft.torque_Nm"}), true);
+  REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-12}, {.t_end = from_rest_to}, {&peaks}).ok());
+  return peaks.peaks()[0].amplitude();
+}
+
+}  // namespace
+
+TEST_CASE("A run from the periodic steady state has the closed form's peak from its start on") {
+  const System system = disc_on_shaft();
+  const double w = 0.5 * kSpeed;
+  const double response =
+      20.0 / std::hypot(kStiffness - kInertia * w * w, kDamping * w) * std::hypot(kStiffness, kDamping * w);
+  const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});
+  CHECK(std::abs(start.cycle - 2.0 * kTwoPi / kSpeed) < 1e-12);  // order 0.5 takes two turns
+  CHECK(start.error < 1e-6);
+  CHECK(std::abs(largest(start.system, 1.0) - (50.0 + response)) < 1e-5 * response);
+  CHECK(largest(system, 1.0) > 1.2 * (50.0 + response));  // the start from rest
+}
+
+TEST_CASE("With loads that follow the twist, too, a periodic start repeats after its cycle") {
+  const System system = disc_on_shaft(kDamping, true);
+  const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});
+  Recorder recorder(start.system, {"disc.angle_rad", "disc.speed_rad_per_s"}, start.cycle);
+  REQUIRE(run_method(start.system, {.name = kExact, .tolerance = 1e-12}, {.t_end = 5.0 * start.cycle},
+                     {&recorder})
+              .ok());
+  for (const std::size_t c : {0UL, 1UL})
+    for (const double x : recorder.samples(c)) CHECK(std::abs(x - recorder.samples(c)[0]) < 1e-6);
+}
+
+TEST_CASE("A static start is the equilibrium under the mean of the loads, moving with the nominal speed") {
+  for (const bool feedback : {false, true}) {  // loads that follow the twist have the same mean
+    const System system = disc_on_shaft(kDamping, feedback);
+    const FoundStart start = find_start(system, Start::static_equilibrium, {.duration = 1.0});
+    CHECK(std::abs(start.system.initial_deviation()[0] - 50.0 / kStiffness) < 1e-12);
+    CHECK(start.system.initial_rate()[0] == 0.0);
+  }
+
+  // Drag of the nominal speed is part of it.
+  Model m("dragged");
+  const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
+  m.constant_speed(motor, kSpeed);
+  m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = 1000.0});
+  m.add<Dashpot>("drag", {disc}, {.damping = 0.2});
+  const FoundStart dragged = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
+  CHECK(std::abs(dragged.system.initial_deviation()[0] + 0.2 * kSpeed / 1000.0) < 1e-12);
+}
+
+TEST_CASE("The period of torques in time is the one that their harmonics share") {
+  Model m("timed");
+  const NodeId disc = m.add_node("disc");
+  m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  m.add<GroundSpring>("spring", {disc}, {.stiffness = 1e4, .damping = 5.0});
+  m.add<AppliedTorque>("load", {disc}, {.harmonics = {{15.0, 3.0, 0.1}, {25.0, 2.0, 0.0}}});
+  CHECK(std::abs(find_start(m.build(), Start::periodic, {.duration = 1.0}).cycle - 0.2) < 1e-12);
+}
+
+TEST_CASE("Where harmonic balance finds none, a run settles on the periodic motion, and says how well") {
+  // A loose gear that a wheel of changing speed throws from flank to flank.
+  Model m("rattle");
+  const NodeId motor = m.add_node("motor"), wheel = m.add_node("wheel"), loose = m.add_node("loose");
+  m.constant_speed(motor, kSpeed);
+  m.add<Inertia>("J", {wheel}, {.inertia = 0.5});
+  m.add<ShaftSpring>("shaft", {motor, wheel}, {.stiffness = 5000.0, .damping = 10.0});
+  m.add<Inertia>("J_loose", {loose}, {.inertia = 0.002});
+  m.add<Dashpot>("drag", {loose}, {.damping = 0.002});
+  m.add<GearMesh>("mesh", {wheel, loose},
+                  {.base_radius_1 = 0.05,
+                   .base_radius_2 = 0.05,
+                   .stiffness = 5e7,
+                   .normal_backlash = 2e-4,
+                   .damping = 4000.0});
+  m.add<EngineOrderTorque>("load", {wheel}, {.harmonics = {{.order = 2.0, .amplitude = 150.0}}});
+  const System system = m.build();
+  const Method method{.name = kExact, .tolerance = 1e-9};
+  const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0, .method = method});
+  INFO(start.how);
+  CHECK(start.how.find("settled (it changes by") != std::string::npos);
+  Recorder recorder(start.system, {"wheel.angle_rad"}, start.cycle);
+  REQUIRE(run_method(start.system, method, {.t_end = 1.5 * start.cycle}, {&recorder}).ok());
+  const std::vector<double>& x = recorder.samples(0);
+  REQUIRE(x.size() == 2);
+  // What is stated is the largest change of all, beside the largest deviation.
+  CHECK(std::abs(x[1] - x[0]) < 2.0 * std::max(start.error, 1e-6) * 0.1);
+}
+
+TEST_CASE("Where there is no such state to start from, the reason is said") {
+  const auto why = [](const Model& model, Start start) {
+    try {
+      find_start(model.build(), start, {.duration = 1.0});
+    } catch (const SolverError& error) {
+      return std::string(error.what());
+    }
+    return std::string("found");
+  };
+  Model free("free");
+  const NodeId shaft = free.add_node("shaft");
+  free.add<Inertia>("J", {shaft}, {.inertia = 1.0});
+  free.add<EngineOrderTorque>("drive", {shaft}, {.harmonics = {{1.0, 1.0, 0.0}}, .mean = 1.0});
+  free.set_reference(shaft, constant_speed(100.0));
+  CHECK(why(free, Start::periodic).find("floats freely (with shaft)") != std::string::npos);
+  CHECK(why(free, Start::static_equilibrium).find("no static equilibrium") != std::string::npos);
+
+  Model up("up");
+  const NodeId end = up.add_node("end"), disc = up.add_node("disc");
+  up.set_reference(end, run_up(10.0, 100.0, 0.0, 1.0));
+  up.hold(end);
+  up.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  up.add<ShaftSpring>("shaft", {end, disc}, {.stiffness = 10.0});
+  CHECK(why(up, Start::periodic).find("a run-up has no periodic steady state") != std::string::npos);
+}
+
+TEST_CASE("The settling time is that of the slowest decay, and infinite without damping") {
+  const Settling damped = settling_time(disc_on_shaft());
+  const double decay = kDamping / (2.0 * kInertia);
+  CHECK(std::abs(damped.time - std::log(1e3) / decay) < 1e-6);
+  CHECK(damped.reason.find("15.9") != std::string::npos);  // Hz
+  const Settling never = settling_time(disc_on_shaft(0.0));
+  CHECK(std::isinf(never.time));
+  CHECK(never.reason.find("is not damped") != std::string::npos);
+
+  // A free drive: its own rotation against the drag is the slowest, 4 s.
+  Model m("free");
+  const NodeId a = m.add_node("a"), b = m.add_node("b");
+  m.add<Inertia>("Ja", {a}, {.inertia = 1.0});
+  m.add<Inertia>("Jb", {b}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {a, b}, {.stiffness = 1e4, .damping = 10.0});
+  CHECK(settling_time(m.build()).time < 1.0);
+  m.add<Dashpot>("drag", {b}, {.damping = 0.5});
+  CHECK(std::abs(settling_time(m.build()).time / (4.0 * std::log(1e3)) - 1.0) < 1e-3);
+}
