@@ -22,7 +22,8 @@ constexpr int kStrip = 2048;      // rows whose matrix entries stay in the cache
 constexpr int kShortStrip = 512;  // of which all vectors do
 // Times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves.
 constexpr double kRoundings = 16.0;
-constexpr double kOfResidual = 4.0;  // rounding stands in the distances and in r itself, and couples neighbours
+constexpr double kOfResidual =
+    4.0;  // rounding stands in the distances and in r itself, and couples neighbours
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Vector stiffness_values(const Assembler& assembler, Contact contact) {

@@ -1,6 +1,7 @@
 /// Modes against closed forms: free and held chains, repeated frequencies, bad scaling, contact
 /// states.
 #include <drev/core/assembler.hpp>
+#include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/ground_spring.hpp>
@@ -265,4 +266,14 @@ TEST_CASE("Rigid modes must be those of the graph, and K must not be unstable", 
     CHECK_THROWS_AS(solve_modes(with_spring(30, {0.5, false}), options), SolverError);
     CHECK_THROWS_AS(solve_modes(with_spring(30, {-0.5, true}), options), SolverError);
   }
+}
+
+TEST_CASE("An inertia too small for its stiffness over it to be a number is refused, not searched for ever",
+          "[modes]") {
+  Model m("tiny");
+  for (const char* node : {"motor", "load"}) m.add_node(node);
+  m.add<Inertia>("J_motor", {"motor"}, {.inertia = 1e-308});
+  m.add<Inertia>("J_load", {"load"}, {.inertia = 0.035});
+  m.add<ShaftSpring>("shaft", {"motor", "load"}, {.stiffness = 8500.0});
+  CHECK_THROWS_AS(solve_modes(m.build()), SolverError);
 }
