@@ -16,22 +16,22 @@ using namespace drev;
 
 namespace {
 
-constexpr double kInertia = 2.0, kStiffness = 20000.0, kDamping = 8.0, kSpeed = 100.0;
+constexpr double kDiscInertia = 2.0, kShaftStiffness = 20000.0, kShaftDamping = 8.0, kMotorSpeed = 100.0;
 
 /// A disc on a shaft from a node at constant speed, under a mean torque and order 0.5.
-System disc_on_shaft(double damping = kDamping, bool feedback = false) {
+System disc_on_shaft(double damping = kShaftDamping, bool feedback = false) {
   Model m("disc");
   const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
-  m.constant_speed(motor, kSpeed);
-  m.add<Inertia>("J", {disc}, {.inertia = kInertia});
-  m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = kStiffness, .damping = damping});
+  m.constant_speed(motor, kMotorSpeed);
+  m.add<Inertia>("J", {disc}, {.inertia = kDiscInertia});
+  m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = kShaftStiffness, .damping = damping});
   m.add<EngineOrderTorque>(
       "load", {disc},
       {.harmonics = {{.order = 0.5, .amplitude = 20.0}}, .mean = 50.0, .twist_feedback = feedback});
   return m.build();
 }
 
-double largest(const System& system, double from_rest_to) {
+double largest_torque_of(const System& system, double from_rest_to) {
   Peaks peaks(find_channels(system, {"shaft.torque_Nm"}), true);
   REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-12}, {.t_end = from_rest_to}, {&peaks}).ok());
   return peaks.peaks()[0].amplitude();
@@ -41,18 +41,18 @@ double largest(const System& system, double from_rest_to) {
 
 TEST_CASE("A run from the periodic steady state has the closed form's peak from its start on") {
   const System system = disc_on_shaft();
-  const double w = 0.5 * kSpeed;
-  const double response =
-      20.0 / std::hypot(kStiffness - kInertia * w * w, kDamping * w) * std::hypot(kStiffness, kDamping * w);
+  const double w = 0.5 * kMotorSpeed;
+  const double response = 20.0 / std::hypot(kShaftStiffness - kDiscInertia * w * w, kShaftDamping * w) *
+                          std::hypot(kShaftStiffness, kShaftDamping * w);
   const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});
-  CHECK(std::abs(start.cycle - 2.0 * kTwoPi / kSpeed) < 1e-12);  // order 0.5 takes two turns
+  CHECK(std::abs(start.cycle - 2.0 * kTwoPi / kMotorSpeed) < 1e-12);  // order 0.5 takes two turns
   CHECK(start.error < 1e-6);
-  CHECK(std::abs(largest(start.system, 1.0) - (50.0 + response)) < 1e-5 * response);
-  CHECK(largest(system, 1.0) > 1.2 * (50.0 + response));  // the start from rest
+  CHECK(std::abs(largest_torque_of(start.system, 1.0) - (50.0 + response)) < 1e-5 * response);
+  CHECK(largest_torque_of(system, 1.0) > 1.2 * (50.0 + response));  // the start from rest
 }
 
 TEST_CASE("With loads that follow the twist, too, a periodic start repeats after its cycle") {
-  const System system = disc_on_shaft(kDamping, true);
+  const System system = disc_on_shaft(kShaftDamping, true);
   const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});
   Recorder recorder(start.system, {"disc.angle_rad", "disc.speed_rad_per_s"}, start.cycle);
   REQUIRE(run_method(start.system, {.name = kExact, .tolerance = 1e-12}, {.t_end = 5.0 * start.cycle},
@@ -64,21 +64,21 @@ TEST_CASE("With loads that follow the twist, too, a periodic start repeats after
 
 TEST_CASE("A static start is the equilibrium under the mean of the loads, moving with the nominal speed") {
   for (const bool feedback : {false, true}) {  // loads that follow the twist have the same mean
-    const System system = disc_on_shaft(kDamping, feedback);
+    const System system = disc_on_shaft(kShaftDamping, feedback);
     const FoundStart start = find_start(system, Start::static_equilibrium, {.duration = 1.0});
-    CHECK(std::abs(start.system.initial_deviation()[0] - 50.0 / kStiffness) < 1e-12);
+    CHECK(std::abs(start.system.initial_deviation()[0] - 50.0 / kShaftStiffness) < 1e-12);
     CHECK(start.system.initial_rate()[0] == 0.0);
   }
 
   // Drag of the nominal speed is part of it.
   Model m("dragged");
   const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
-  m.constant_speed(motor, kSpeed);
+  m.constant_speed(motor, kMotorSpeed);
   m.add<Inertia>("J", {disc}, {.inertia = 1.0});
   m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = 1000.0});
   m.add<Dashpot>("drag", {disc}, {.damping = 0.2});
   const FoundStart dragged = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
-  CHECK(std::abs(dragged.system.initial_deviation()[0] + 0.2 * kSpeed / 1000.0) < 1e-12);
+  CHECK(std::abs(dragged.system.initial_deviation()[0] + 0.2 * kMotorSpeed / 1000.0) < 1e-12);
 }
 
 TEST_CASE("The period of torques in time is the one that their harmonics share") {
@@ -94,7 +94,7 @@ TEST_CASE("Where harmonic balance finds none, a run settles on the periodic moti
   // A loose gear that a wheel of changing speed throws from flank to flank.
   Model m("rattle");
   const NodeId motor = m.add_node("motor"), wheel = m.add_node("wheel"), loose = m.add_node("loose");
-  m.constant_speed(motor, kSpeed);
+  m.constant_speed(motor, kMotorSpeed);
   m.add<Inertia>("J", {wheel}, {.inertia = 0.5});
   m.add<ShaftSpring>("shaft", {motor, wheel}, {.stiffness = 5000.0, .damping = 10.0});
   m.add<Inertia>("J_loose", {loose}, {.inertia = 0.002});
@@ -147,7 +147,7 @@ TEST_CASE("Where there is no such state to start from, the reason is said") {
 
 TEST_CASE("The settling time is that of the slowest decay, and infinite without damping") {
   const Settling damped = settling_time(disc_on_shaft());
-  const double decay = kDamping / (2.0 * kInertia);
+  const double decay = kShaftDamping / (2.0 * kDiscInertia);
   CHECK(std::abs(damped.time - std::log(1e3) / decay) < 1e-6);
   CHECK(damped.reason.find("15.9") != std::string::npos);  // Hz
   const Settling never = settling_time(disc_on_shaft(0.0));

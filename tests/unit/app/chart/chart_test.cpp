@@ -68,7 +68,8 @@ TEST_CASE("A chart as text says which method to use") {
   const auto run = drev_command({"chart", "two_inertia", "--set", "duration_s=0.02", "--limit", "0.005"});
   INFO(run.err);
   CHECK(run.exit_code == 0);
-  for (const char* part : {"Which method should I use? From 0 to ", "for 0.01", "error at 1 ms", "Reference", "agrees"})
+  for (const char* part :
+       {"Which method should I use? From 0 to ", "for 0.01", "error at 1 ms", "Reference", "agrees"})
     CHECK(contains(run.out, part));
 }
 

@@ -17,7 +17,7 @@ using namespace drev;
 namespace {
 
 /// Let go at 1 rad: q = exp(-t) (cos(w t) + sin(w t) / w), w^2 = 100 - 1.
-System decaying() {
+System let_go_disc() {
   Model model("decaying");
   const NodeId disc = model.add_node("disc");
   model.add<Inertia>("J", {disc}, {.inertia = 1.0});
@@ -38,7 +38,7 @@ double largest_after(const System& system, const Method& method, double begin) {
 }  // namespace
 
 TEST_CASE("Figures from a time on are those of the motion there, by every kind of method") {
-  const System system = decaying();
+  const System system = let_go_disc();
   const double w = std::sqrt(99.0), begin = 1.2345;
   const auto q = [&](double t) { return std::exp(-t) * (std::cos(w * t) + std::sin(w * t) / w); };
   double expected = 0.0;  // extremes of q lie at whole half periods
@@ -51,7 +51,7 @@ TEST_CASE("Figures from a time on are those of the motion there, by every kind o
 }
 
 TEST_CASE("Observers that start later see that time exactly, and ask for their times from there") {
-  const System system = decaying();
+  const System system = let_go_disc();
   for (const Method& method : {Method{.name = kExact, .tolerance = 1e-10}, Method{.step = 1e-3}}) {
     Recorder recorder(system, {"disc.angle_rad"}, 0.1);
     AfterTime after(0.77, {&recorder});
