@@ -1,6 +1,7 @@
 #include <drev/advice/figure_estimate.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
+#include <drev/solvers/run/after_time.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,33 +28,6 @@ constexpr double kWorthAsking = 5e-3;    // s of exact propagation beyond which 
 constexpr double kSensitive = 0.01;      // relative difference of the last states: another trajectory
 constexpr int kEnsemble = 8;
 
-/// The peak over the part of the run that counts.
-class FigureWatch final : public Observer {
- public:
-  FigureWatch(const System& system, const FigureOptions& o)
-      : peak_(find_channels(system, o.channels)), from_(o.from) {}
-  void look_through(StepMotion& motion) override { peak_.look_through(motion); }
-  bool watches_loads() const override { return peak_.watches_loads(); }
-  void start(const Assembler& assembler, const EvaluatedState& point) override {
-    begun_ = point.state.t >= from_;
-    if (begun_) peak_.start(assembler, point);
-  }
-  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
-    if (begun_) return peak_.step(assembler, from, to);
-    begun_ = to.state.t >= from_;
-    if (begun_) peak_.start(assembler, to);
-  }
-  double next_stop(double t) const override {
-    return t < from_ ? from_ : std::numeric_limits<double>::infinity();
-  }
-  PeakWatch& peak() { return peak_; }
-
- private:
-  PeakWatch peak_;
-  double from_;
-  bool begun_ = false;
-};
-
 struct Run {
   double value = 0.0;
   State end;
@@ -70,7 +44,8 @@ std::string rounded(double seconds) {
 
 Run run_once(const System& system, const Method& method, const FigureOptions& o, State state,
              double most_seconds = std::numeric_limits<double>::infinity()) {
-  FigureWatch figure(system, o);
+  PeakWatch peak(find_channels(system, o.channels));
+  AfterTime figure(o.from, {&peak});  // the part of the run that counts
   Peaks watched(find_channels(system, o.watch));
   std::vector<Observer*> observers{&figure};
   if (!o.watch.empty()) observers.push_back(&watched);
@@ -87,7 +62,7 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
   if (!summary.ok()) run.failure = summary.reason;
   if (summary.status == RunStatus::interrupted)
     run.failure = "a run takes longer than the time allowed for it, " + rounded(most_seconds) + " s";
-  run.value = figure.peak().value();
+  run.value = peak.value();
   run.end = std::move(state);
   run.watched = watched.peaks();
   return run;

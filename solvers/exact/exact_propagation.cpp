@@ -132,7 +132,7 @@ class ExactRun final : public StepMotion {
     series_.evaluate(s, to.z, to.v);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     evaluate(assembler_, next_, ahead_of_break ? stop.evaluation_time() : t_new);
-    const ProjectedLaws::Work smooth = smooth_.work(series_, s);
+    const ProjectedLaws::Work smooth = smooth_.work(series_, s, next_);
     if (!energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
                        series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated))
       return end_not_finite(summary_, assembler_, now_, next_);

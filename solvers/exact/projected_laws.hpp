@@ -44,7 +44,8 @@ class ProjectedLaws {
   struct Work {
     double input = 0.0, dissipated = 0.0;
   };
-  Work work(const TaylorSeries& series, double s);
+  /// end: what was evaluated at s.
+  Work work(const TaylorSeries& series, double s, const EvaluatedState& end);
 
  private:
   struct Law {

@@ -5,8 +5,7 @@
 ///
 ///   error = epsilon (k |q_a| + k |q_b|) sqrt(steps)
 ///
-/// measured 1/6 to 1/2 of that by exact propagation at 1e13 and 1e14 N m/rad; more than is left by methods that
-/// damp.
+/// An estimate, no bound; methods that damp leave less.
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/run_summary.hpp>
