@@ -2,10 +2,35 @@
 
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
 
 namespace drev::app {
 
-Progress::Progress() : terminal_(::isatty(STDERR_FILENO) != 0), start_(Clock::now()), drawn_(start_) {}
+namespace {
+
+constexpr double kAnnounced = 120.0;                         // s left: said before
+constexpr auto kMeasured = std::chrono::milliseconds(2000);  // after which what is left is estimated
+
+/// "40 s", "3 min", "2.5 h", "more than 1000 h"
+std::string time_text(double seconds) {
+  if (!(seconds < 3.6e6)) return "more than 1000 h";
+  char text[32];
+  if (seconds < 90.0)
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  else if (seconds < 5400.0)
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60.0);
+  else
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
+  return text;
+}
+
+}  // namespace
+
+Progress::Progress(std::function<std::string()> why_long)
+    : terminal_(::isatty(STDERR_FILENO) != 0),
+      why_long_(std::move(why_long)),
+      start_(Clock::now()),
+      drawn_(start_) {}
 
 Progress::~Progress() { clear(); }
 
@@ -30,17 +55,21 @@ void Progress::draw(const std::string& text) {
 }
 
 void Progress::update(double part) {
-  if (!due() || !(part > 0.0)) return;
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const double left = elapsed * (1.0 - part) / part;
-  char text[64];
-  if (left < 90.0)
-    std::snprintf(text, sizeof text, "%5.1f %%, %.0f s left", 100.0 * part, left);
-  else if (left < 5400.0)
-    std::snprintf(text, sizeof text, "%5.1f %%, %.0f min left", 100.0 * part, left / 60.0);
-  else
-    std::snprintf(text, sizeof text, "%5.1f %%, %.1f h left", 100.0 * part, left / 3600.0);
-  draw(text);
+  if (why_long_ && Clock::now() - start_ >= kMeasured) announce(left);
+  if (!due() || !(part > 0.0)) return;
+  char text[32];
+  std::snprintf(text, sizeof text, "%5.1f %%, ", 100.0 * part);
+  draw(text + time_text(left) + " left");
+}
+
+/// Once: whether the computation will take long, and why.
+void Progress::announce(double left) {
+  const std::function<std::string()> why_long = std::exchange(why_long_, nullptr);
+  if (left < kAnnounced) return;
+  clear();
+  std::fprintf(stderr, "drev: this will take %s more: %s\n", time_text(left).c_str(), why_long().c_str());
 }
 
 void Progress::show(const std::string& text) {

@@ -1,14 +1,16 @@
 #pragma once
 /// How far a computation is and how long it will take, on stderr, if that is a terminal and the
-/// computation takes more than a second.
+/// computation takes more than a second. One that will take long says so once, on any stderr.
 #include <chrono>
+#include <functional>
 #include <string>
 
 namespace drev::app {
 
 class Progress {
  public:
-  Progress();
+  /// why_long: what makes a computation take long, a sentence without full stop; asked at most once.
+  explicit Progress(std::function<std::string()> why_long = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -22,9 +24,11 @@ class Progress {
  private:
   bool due() const;
   void draw(const std::string& text);
+  void announce(double left);
 
   using Clock = std::chrono::steady_clock;
   bool terminal_, shown_ = false;
+  std::function<std::string()> why_long_;
   Clock::time_point start_, drawn_;
 };
 

@@ -1,5 +1,7 @@
 #include "app/run/run_computation.hpp"
 
+#include <drev/core/units.hpp>
+#include <drev/solvers/method_choice.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/modes/settling.hpp>
 #include <drev/solvers/reduction/reduction_trial.hpp>
@@ -13,6 +15,7 @@
 
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
+#include "app/base/text_layout.hpp"
 #include "app/run/static_force.hpp"
 
 namespace drev::app {
@@ -60,10 +63,23 @@ std::vector<Contacts> contacts_of(const System& system, const ContactStatistics&
   return contacts;
 }
 
+/// What makes a run take long: its steps follow its fastest mode, or are as short as was asked for.
+std::string why_long(const System& system, const Method& method, double duration) {
+  const std::string text =
+      std::to_string(system.size()) + " unknowns over " + short_digits(duration, 4) + " s";
+  if (method.step > 0.0 && !method.controlled())
+    return text + " in steps of " + short_digits(method.step, 4) +
+           " s; take longer ones, or a shorter duration";
+  return text + ", with a fastest mode of " + short_digits(to_hz(fastest_rate(system)), 3) +
+         " Hz, and loads whose changes are followed; leave out or condense the stiffest part (drev advise), "
+         "or take "
+         "a shorter duration";
+}
+
 /// Figures with their errors; false: the run failed, as the result says.
 bool find_accuracy(const RunRequest& request, const System& system, RunResult& result) {
   const ModelCase& model_case = request.model.model_case;
-  Progress shown;
+  Progress shown([&] { return why_long(system, request.method, model_case.duration); });
   const Timer timer;
   try {
     result.accuracy = run_to_accuracy(system, {.accuracy = *request.accuracy,
@@ -237,7 +253,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   if (request.accuracy && !find_accuracy(request, full, result)) return result;
   const Timer timer;
   try {
-    Progress shown;
+    Progress shown([&] { return why_long(system, result.method, duration); });
     const auto progress = [&](double part) {
       shown.update(part);
       return !interrupted() && output_fault().empty();
