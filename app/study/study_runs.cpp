@@ -75,8 +75,8 @@ CamshaftFigures make_run(const ParameterValues& parameters, const Method& method
   if (nudge != 0.0) model_case.model.set_initial("end", nudge, 0.0);
   const System system = model_case.model.build();
   const bool inside = method.exact();
-  Peaks deflection(find_channels(system, {model_case.deflection}));
-  Peaks torque(find_channels(system, model_case.torques));
+  Peaks deflection(find_channels(system, {model_case.deflection}), false);
+  Peaks torque(find_channels(system, model_case.torques), false);
   const double revolution = model_case.static_turn / system.reference_speed();
   WindowPeaks settled_deflection(find_channels(system, {model_case.deflection}), inside, kSettled,
                                  revolution);

@@ -162,7 +162,8 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
     before = std::move(level);
   }
   response.contact_closed = level.closed;
-  response.found = given || response.error <= options.tolerance;
+  response.found =
+      given || response.error <= kUneven * options.tolerance;  // the estimate without its allowance
   if (!response.found)
     response.reason = "the error is " + to_text(response.error) + " with " + std::to_string(harmonics) +
                       " harmonics, not the tolerance " + to_text(options.tolerance);

@@ -1,6 +1,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
 #include <cmath>
 
@@ -60,7 +61,8 @@ static std::vector<Channel> gap_forces(const System& system) {
 }
 
 ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
-    : inside_steps_(inside_steps), forces_(inside_steps ? gap_forces(system) : std::vector<Channel>()) {
+    : inside_steps_(inside_steps),
+      forces_(inside_steps ? std::make_unique<Peaks>(gap_forces(system)) : nullptr) {
   const std::vector<double> masses = equivalent_masses(system);
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
@@ -74,8 +76,14 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
   intervals_.resize(terms_.size());
 }
 
+ContactStatistics::~ContactStatistics() = default;
+
+void ContactStatistics::look_through(StepMotion& motion) {
+  if (forces_) forces_->look_through(motion);
+}
+
 void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& point) {
-  forces_.start(assembler, point);
+  if (forces_) forces_->start(assembler, point);
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
     records_[i].largest_force_time = point.state.t;
@@ -84,7 +92,7 @@ void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& 
 
 void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& from,
                              const EvaluatedState& to) {
-  forces_.step(assembler, from, to);
+  if (forces_) forces_->step(assembler, from, to);
   const double h = to.state.t - from.state.t;
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const std::size_t j = terms_[i];
@@ -97,8 +105,8 @@ void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& f
         note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
     if (note_time_separated(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
       note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
-    if (!inside_steps_) continue;
-    const Peak& peak = forces_.peaks()[i];
+    if (!forces_) continue;
+    const Peak& peak = forces_->peaks()[i];
     records_[i].largest_force = peak.amplitude();
     records_[i].largest_force_time = peak.time();
   }

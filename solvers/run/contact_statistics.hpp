@@ -4,14 +4,15 @@
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/contact_record.hpp>
 #include <drev/solvers/run/observer.hpp>
-#include <drev/solvers/run/peaks.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace drev {
 
 class Assembler;
+class Peaks;
 struct EvaluatedState;
 
 /// m_eq of every law that is not linear [kg or kg m^2], in System::scalars(); 0 for the others.
@@ -64,16 +65,17 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
 class ContactStatistics final : public Observer {
  public:
   bool needs_acceleration() const override { return inside_steps_; }
-  void look_through(StepMotion& motion) override { forces_.look_through(motion); }
+  void look_through(StepMotion& motion) override;
   /// inside_steps: as in Peaks, for the largest forces.
   explicit ContactStatistics(const System& system, bool inside_steps = true);
+  ~ContactStatistics() override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
   bool inside_steps_ = true;
-  Peaks forces_;  // of each law, where they are looked for inside steps
+  std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
   std::vector<std::size_t> terms_;
   std::vector<Gap> gaps_;
   std::vector<double> masses_;

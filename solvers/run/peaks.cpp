@@ -29,11 +29,8 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
 }
 
 double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const {
-  const Channel& channel = channels_[c];
-  if (watched_[c].two_entries) return watched_[c].sum(point.state.z);
-  if (const int law = channel.force_of(); law >= 0) return point.responses[idx(law)].y;
-  if (const int law = channel.deflection_of(); law >= 0) return point.inputs[idx(law)].x;
-  return channel.evaluate(assembler, point.state);
+  return watched_[c].two_entries ? watched_[c].sum(point.state.z)
+                                 : channels_[c].evaluate(assembler, point.state);
 }
 
 std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,

@@ -24,8 +24,8 @@ TEST_CASE("Held camshaft, transient: all 36 targets of a separate program to 0.2
     parameters.set("loads", "source");
     const ModelCase model_case = camshaft_entry().build(parameters);
     const System system = model_case.model.build();
-    Peaks deflection(find_channels(system, {model_case.deflection}));
-    Peaks torque(find_channels(system, model_case.torques));
+    Peaks deflection(find_channels(system, {model_case.deflection}), false);
+    Peaks torque(find_channels(system, model_case.torques), false);
     const RunSummary run =
         simulate(system, {.step = std::stod(row[2]), .t_end = model_case.duration}, {&deflection, &torque});
     INFO(row[0] << " cylinders, " << row[1] << ", h = " << row[2]);

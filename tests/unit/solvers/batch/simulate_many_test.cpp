@@ -40,8 +40,8 @@ ManyResult check_same(const VariantBuilder& build, TransientOptions options, dou
     const VariantResult& v = many.variants[i];
     REQUIRE(v.error == "");
     const System system = build(i);
-    Peaks peaks(find_channels(system, channels));
-    ContactStatistics contacts(system);
+    Peaks peaks(find_channels(system, channels), false);
+    ContactStatistics contacts(system, false);
     State state = State::initial(system);
     const RunSummary single = simulate(system, options, state, {&peaks, &contacts});
     CHECK(v.in_lockstep);

@@ -93,7 +93,7 @@ TEST_CASE("A cam of five points at the nominal angle: the motion inside steps an
   const System system = cam_on_a_shaft().build();
   const ClosedForm truth(kEnd);
   const double peak = kShaft * truth.peak(kEnd);
-  CHECK(peak == Approx(1032.837164206).epsilon(1e-12));
+  CHECK(peak == Approx(1032.837164206).epsilon(1e-11));
   for (const double tolerance : {1e-8, 1e-12}) {
     Recorder history(system, {"disc.angle_rad", "disc.speed_rad_per_s"}, 1.7e-4);
     Peaks peaks(find_channels(system, {"shaft.torque_Nm", "disc.acceleration_rad_per_s2"}));
@@ -102,8 +102,9 @@ TEST_CASE("A cam of five points at the nominal angle: the motion inside steps an
     for (std::size_t i = 0; i < history.times().size(); ++i) {
       const double t = history.times()[i];
       INFO(t);
-      CHECK(std::abs(history.samples(0)[i] - truth.at(t).q(t)) <= tolerance * peak / kShaft);
-      CHECK(std::abs(history.samples(1)[i] - truth.at(t).v(t)) <= tolerance * ClosedForm::w * peak / kShaft);
+      CHECK(std::abs(history.samples(0)[i] - truth.at(t).q(t)) <= 4 * tolerance * peak / kShaft);
+      CHECK(std::abs(history.samples(1)[i] - truth.at(t).v(t)) <=
+            4 * tolerance * ClosedForm::w * peak / kShaft);
     }
   }
 }

@@ -108,7 +108,8 @@ TEST_CASE("Same fault, same message: an energy beyond all numbers") {
   Model m = unit_oscillator();
   m.set_initial("m", 1e300, 0.0);
   check_all(run_all(m.build(), {.step = 1e-3, .t_end = 1.0}), RunStatus::not_finite,
-            "oscillator: at t = 0 s: the energy is not finite");
+            "oscillator: at t = 0 s: the energy is more than a number can hold; check the largest stiffness, "
+            "inertia and load");
 }
 
 TEST_CASE("Same fault, same message: stopped by the caller after the same number of steps") {
