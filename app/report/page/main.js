@@ -8,10 +8,11 @@ function showHead() {
     compared ? ": two runs compared" : "",
   );
   byId("subtitle").append(compared ? `A: ${runs[0].command}  ·  B: ${runs[1].command}` : runs[0].about);
-  for (const run of runs)
+  for (const run of runs) {
     const notes = (run.notes ?? []).map((note) => `Note: ${note}.`);
     for (const text of [run.warning, ...(run.result.warnings ?? []), ...notes])
       if (text) byId("warnings").append(make("p", { class: "warning" }, prefixed(run, text)));
+  }
   byId("contents").append(
     ...[...document.querySelectorAll("main section")].map((section) =>
       make("a", { href: `#${section.id}` }, section.querySelector("h2").textContent),
