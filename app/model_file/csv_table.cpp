@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostFindings = 20;
 
 struct Cell {
-  std::string text;
+  std::string text{};
   int line = 1, column = 1;  ///< where it begins
 };
 
