@@ -39,6 +39,7 @@ class ClosedFlank final : public Element, public ScalarForce {
   bool varies() const override { return closed_->varies(); }
   Offset offset(double nominal_angle) const override { return closed_->offset(nominal_angle); }
   std::span<const LawPiece> pieces() const override { return pieces_; }
+  double pieces_scale(double angle) const override { return closed_->pieces_scale(angle); }
   std::optional<double> next_knot(double angle, double direction) const override {
     return closed_->next_knot(angle, direction);
   }

@@ -88,14 +88,17 @@ void inside_piece(const LawPiece& piece, std::span<const double> x_parts, std::s
   }
 }
 
-/// The pieces of a law against its call.
+/// The pieces of a law that states any, as they are at an angle.
+std::vector<LawPiece> pieces_at(const ScalarForce& law, double angle) {
+  const std::span<const LawPiece> pieces = law.pieces();
+  return PiecewiseLaw({pieces.begin(), pieces.end()}).scaled(law.pieces_scale(angle));
+}
+
+/// The pieces of a law at an angle against its call.
 class PieceComparison {
  public:
-  PieceComparison(const ScalarForce& law, std::vector<Contradiction>& found)
-      : law_(law),
-        pieces_(law.pieces()),
-        derived_(std::vector<LawPiece>(pieces_.begin(), pieces_.end())),
-        found_(found) {}
+  PieceComparison(const ScalarForce& law, double angle, std::vector<Contradiction>& found)
+      : law_(law), pieces_(pieces_at(law, angle)), derived_(pieces_), found_(found) {}
 
   void at(const ScalarInput& in) {
     const auto holding = std::count_if(pieces_.begin(), pieces_.end(),
@@ -137,7 +140,7 @@ class PieceComparison {
   }
 
   const ScalarForce& law_;
-  std::span<const LawPiece> pieces_;
+  std::vector<LawPiece> pieces_;
   PiecewiseLaw derived_;
   std::vector<Contradiction>& found_;
   std::optional<double> energy_constant_;
@@ -175,7 +178,7 @@ void PieceComparison::gap() {
 void PieceComparison::closed_slopes() {
   const auto check = [&](const char* name, double told, double LawPiece::*of) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const LawPiece& p : pieces_) {
+    for (const LawPiece& p : law_.pieces()) {
       if (p.product != 0.0 && of == &LawPiece::c) continue;
       low = std::min(low, p.*of);
       high = std::max(high, p.*of);
@@ -279,8 +282,8 @@ void compare_load(const Load& load, std::span<const LoadInput> at, std::vector<C
 }  // namespace
 
 std::optional<Contradiction> first_contradiction(const ScalarForce& law) {
-  const std::span<const LawPiece> pieces = law.pieces();
-  if (pieces.empty()) return std::nullopt;
+  if (law.pieces().empty()) return std::nullopt;
+  const std::vector<LawPiece> pieces = pieces_at(law, 0.0);
   std::optional<Contradiction> found = wrong_next(pieces);
   constexpr double x_part[] = {0.4}, rate_part[] = {0.8};
   for (std::size_t i = 0; i < pieces.size() && !found; ++i)
@@ -305,10 +308,10 @@ std::vector<Contradiction> contradictions(const ScalarForce& law, std::span<cons
   const std::span<const LawPiece> pieces = law.pieces();
   if (pieces.empty()) return found;
   if (auto wrong = wrong_next(pieces)) return {*wrong};
-  PieceComparison comparison(law, found);
-  for (const LawPiece& p : pieces)
+  PieceComparison comparison(law, 0.0, found);
+  for (const LawPiece& p : pieces_at(law, 0.0))
     inside_piece(p, kParts, kParts, [&](const ScalarInput& in) { comparison.at(in); });
-  for (const ScalarInput& in : at) comparison.at(in);
+  for (const ScalarInput& in : at) PieceComparison(law, in.angle, found).at(in);
   comparison.kinks();
   comparison.gap();
   comparison.closed_slopes();

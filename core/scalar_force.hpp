@@ -64,15 +64,20 @@ class ScalarForce {
   virtual std::optional<double> next_offset_knot(double /*nominal_angle*/, double /*direction*/) const {
     return std::nullopt;
   }
-  /// The law as pieces; empty: it has none in x and x_dot alone, but is smooth between its kinks() and knots.
-  /// A law that states pieces should state nothing else (PiecewiseForce, piecewise_law.hpp).
+  /// The law as pieces; empty: it has none, but is smooth between its kinks() and knots. A law that states
+  /// pieces should state nothing else (PiecewiseForce, piecewise_law.hpp).
   virtual std::span<const LawPiece> pieces() const { return {}; }
+  /// s > 0: at this angle the law is s Y(x, x_dot/s), where Y is what the pieces say (a mesh stiffness that
+  /// follows the phase). Smooth between next_knot()s.
+  virtual double pieces_scale(double /*angle*/) const { return 1.0; }
 };
 
-/// The pieces of a law where all of them are linear in x and x_dot, for methods that take no product; else
-/// none.
-inline std::span<const LawPiece> linear_pieces(const ScalarForce& force) {
-  const std::span<const LawPiece> pieces = force.pieces();
+/// The pieces of a term's law where nothing in it follows an angle and all of them are linear in x and x_dot,
+/// for methods that take no product; else none. Term: ScalarSpec or ScalarTerm.
+template <class Term>
+std::span<const LawPiece> linear_pieces(const Term& term) {
+  if (term.phase_node >= 0) return {};
+  const std::span<const LawPiece> pieces = term.force->pieces();
   return is_linear(pieces) ? pieces : std::span<const LawPiece>();
 }
 

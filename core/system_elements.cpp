@@ -100,8 +100,8 @@ namespace {
 
 /// The piece k x + c x' of a law that is nothing else; null for other laws.
 const LawPiece* straight_line(const ScalarSpec& s) {
-  const std::span<const LawPiece> pieces = linear_pieces(*s.force);
-  if (s.phase_node >= 0 || pieces.size() != 1) return nullptr;
+  const std::span<const LawPiece> pieces = linear_pieces(s);
+  if (pieces.size() != 1) return nullptr;
   const LawPiece& p = pieces.front();
   const bool straight = p.bounds.empty() && p.y_0 == 0.0 && p.elastic_0 == 0.0 && p.elastic_k == p.k;
   return straight ? &p : nullptr;

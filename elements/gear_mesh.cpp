@@ -29,8 +29,11 @@ GearMesh::GearMesh(Params params)
       radius_1_(radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
       radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
       teeth_per_radian_(params_.teeth_1 / kTwoPi) {
-  if (!params_.stiffness.varies() && !params_.transmission_error.varies())
-    pieces_ = law_.pieces(params_.stiffness.mean());
+  pieces_ = law_.pieces(params_.stiffness.mean());
+}
+
+double GearMesh::pieces_scale(double angle) const {
+  return params_.stiffness.at(phase(angle)).value / params_.stiffness.mean();
 }
 
 std::optional<double> GearMesh::angle_of(std::optional<double> knot, double angle) const {

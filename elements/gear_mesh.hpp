@@ -65,8 +65,9 @@ class GearMesh final : public Element, public ScalarForce {
   std::optional<Gap> gap() const override { return law_.gap(); }
   bool varies() const override { return params_.stiffness.varies(); }
   Offset offset(double nominal_angle) const override;
-  /// At constant stiffness, without transmission error.
+  /// At the mean stiffness.
   std::span<const LawPiece> pieces() const override { return pieces_; }
+  double pieces_scale(double angle) const override;
   std::optional<double> next_knot(double angle, double direction) const override;
   std::optional<double> next_offset_knot(double nominal_angle, double direction) const override;
 

@@ -40,8 +40,8 @@ double largest_of(const Assembler& assembler, SparseCholesky& mass, const Vector
 const char* kind_of(const System& system) {
   bool linear = !system.loads_depend_on_motion(), pieces = true;
   for (const ScalarTerm& s : system.scalars()) {
-    linear &= linear_pieces(*s.force).size() == 1;
-    pieces &= !linear_pieces(*s.force).empty();
+    linear &= linear_pieces(s).size() == 1;
+    pieces &= !linear_pieces(s).empty();
   }
   return linear ? "linear" : pieces ? "piecewise linear" : "smooth between contact changes";
 }

@@ -13,6 +13,14 @@ std::vector<LawPiece> stretches_between_kinks(const ScalarForce& force) {
   return pieces;
 }
 
+std::vector<LawPiece> bounds_alone(const ScalarForce& force) {
+  const std::span<const LawPiece> own = force.pieces();
+  if (own.empty()) return stretches_between_kinks(force);
+  std::vector<LawPiece> pieces(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) pieces[i].bounds = own[i].bounds;
+  return pieces;
+}
+
 std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term, std::span<const LawPiece> own) {
   if (own.empty() || term.phase_node >= 0) return stretches_between_kinks(*term.force);
   return {own.begin(), own.end()};

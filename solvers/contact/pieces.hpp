@@ -8,6 +8,9 @@
 
 namespace drev {
 
+/// The bounds of a law's pieces; where it has none, the stretches of x between its kinks: pieces without forces
+/// of their own.
+std::vector<LawPiece> bounds_alone(const ScalarForce& force);
 /// The stretches of x between a law's kinks, as pieces without forces of their own.
 std::vector<LawPiece> stretches_between_kinks(const ScalarForce& force);
 /// The `own` pieces of a term's law; where it has none, or where its stiffness follows the phase of a node,

@@ -23,7 +23,7 @@ constexpr double kGrowth = 1.5;  // of the step after one that had to be shorten
 constexpr int kMaxCuts = 20;
 constexpr double kShortest = 1e-6;    // of the largest step
 constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
-constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-8;  // of the step
+constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-13; // of the step
 constexpr double kRetreat = 1.0 / 16.0;                             // of the step where the series overflowed
 constexpr double kSameTime = 1e-14;                                 // relative to the run's times
 constexpr double kNoProgress = 1e-12;                               // relative to the largest step

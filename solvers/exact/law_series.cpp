@@ -31,6 +31,14 @@ double work_of(const std::vector<double>& a, const std::vector<double>& b, doubl
   return sum;
 }
 
+/// g *= scale, as series.
+void multiply(const std::vector<double>& scale, std::vector<double>& g) {
+  std::vector<double> product(scale.size() + g.size() - 1, 0.0);
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    for (std::size_t k = 0; k < g.size(); ++k) product[i + k] += scale[i] * g[k];
+  g = std::move(product);
+}
+
 /// b is the other side of a's line.
 bool opposite(const LawBound& a, const LawBound& b) {
   const double size_a = std::max({std::abs(a.a), std::abs(a.b_x), std::abs(a.b_v)});
@@ -44,13 +52,20 @@ bool opposite(const LawBound& a, const LawBound& b) {
 LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scalars().size()) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    laws_[j].pieces = pieces_or_stretches(term, linear_pieces(*term.force));
+    Law& law = laws_[j];
+    const std::span<const LawPiece> own = linear_pieces(term);
+    law.pieces = own.empty() ? bounds_alone(*term.force) : std::vector<LawPiece>(own.begin(), own.end());
+    if (!term.force->varies() || term.phase_node < 0) continue;
+    for (const LawPiece& p : law.pieces)
+      for (const LawBound& b : p.bounds) law.scaled |= b.b_v != 0.0;
   }
 }
 
 void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
-    laws_[j].piece = piece_at(laws_[j].pieces, inputs[j].x, inputs[j].x_dot);
+    const ScalarInput& in = inputs[j];
+    const double r = laws_[j].scaled ? system_.scalars()[j].force->pieces_scale(in.angle) : 1.0;
+    laws_[j].piece = piece_at(laws_[j].pieces, in.x, in.x_dot / r);
     laws_[j].root = -1;
   }
 }
@@ -98,14 +113,15 @@ void LawSeries::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, const ProjectedLaws& smooth) {
+void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, ProjectedLaws& smooth) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     Law& law = laws_[j];
-    law.x.assign(terms, 0.0);
-    law.x_size.assign(terms, 0.0);
+    const std::vector<double>& offset = smooth.offset(static_cast<int>(j));
+    law.x.assign(std::max(terms, offset.size()), 0.0);
+    law.x_size.assign(law.x.size(), 0.0);
     law.known.assign(3, 0.0);
     for (const Entry& e : term.z)
       for (std::size_t k = 0; k < terms; ++k) {
@@ -120,39 +136,49 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
         law.x[k] += part;
         law.x_size[k] += std::abs(part);
       }
-    const std::vector<double>& offset = smooth.offset(static_cast<int>(j));
-    for (std::size_t k = 0; k < std::min(terms, offset.size()); ++k) {
+    for (std::size_t k = 0; k < offset.size(); ++k) {
       law.x[k] += offset[k];
       law.x_size[k] += std::abs(offset[k]);
     }
+    if (law.scaled) smooth.expand_scale(static_cast<int>(j), series, law.scale);
   }
 }
 
 void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
   const std::size_t terms = law.x.size();
   g.resize(terms);
-  for (std::size_t k = 0; k < terms; ++k) {
-    g[k] = b.b_x * law.x[k];
-    if (b.b_v != 0.0 && k + 1 < terms) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
-  }
+  for (std::size_t k = 0; k < terms; ++k) g[k] = b.b_x * law.x[k];
   g[0] += b.a;
+  if (b.b_v == 0.0) return;
+  if (law.scaled) multiply(law.scale, g);
+  for (std::size_t k = 0; k + 1 < terms; ++k) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
+}
+
+void LawSeries::bound_sizes(const Law& law, const LawBound& b, std::vector<double>& size) const {
+  const std::size_t terms = law.x_size.size();
+  size.resize(terms);
+  for (std::size_t k = 0; k < terms; ++k) size[k] = std::abs(b.b_x) * law.x_size[k];
+  if (b.b_v == 0.0) return;
+  if (law.scaled) {
+    size[0] += std::abs(b.a);
+    std::vector<double> scale(law.scale.size());
+    std::transform(law.scale.begin(), law.scale.end(), scale.begin(), [](double r) { return std::abs(r); });
+    multiply(scale, size);
+  }
+  for (std::size_t k = 0; k + 1 < terms; ++k)
+    size[k] += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * law.x_size[k + 1];
 }
 
 bool LawSeries::falls_at_once(Law& law, const LawBound& b, int index) {
   std::vector<double>& g = law.bounds[idx(index)];
   bound_series(law, b, g);
   if (index != law.root && g[0] > 0.0) return false;
-  const auto size = [&](std::size_t k) {
-    double sum = std::abs(b.b_x) * law.x_size[k];
-    if (b.b_v != 0.0 && k + 1 < law.x.size())
-      sum += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * law.x_size[k + 1];
-    return sum;
-  };
-  const double whole = std::abs(b.a) + size(0);
+  bound_sizes(law, b, sizes_);
+  const double whole = std::abs(b.a) + sizes_[0];
   if (index != law.root && g[0] < -kZero * whole) return true;
   g[0] = 0.0;
   for (std::size_t k = 1; k < g.size(); ++k) {
-    if (std::abs(g[k]) > std::max(kZero * size(k), kFloor * whole)) return g[k] < 0.0;
+    if (std::abs(g[k]) > std::max(kZero * sizes_[k], kFloor * whole)) return g[k] < 0.0;
     g[k] = 0.0;
   }
   return false;

@@ -5,8 +5,9 @@
 /// the right side. Each bound g = a + b_x x + b_v x' is a polynomial of s over the step; its first
 /// fall below zero is the change (roots.hpp). Behind a change the crossed bound of the new
 /// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
-/// not zero says whether the piece holds or changes back at once. Laws without linear pieces
-/// (projected_laws.hpp) take part with the stretches between their kinks.
+/// not zero says whether the piece holds or changes back at once. Laws that are projected
+/// (projected_laws.hpp) take part with the bounds of their pieces, or with the stretches between their kinks.
+/// Where the pieces are scaled by an angle, y = r(s) Y(x, x'/r), a bound with b_v is r (a + b_x x) + b_v x'.
 #include <functional>
 #include <optional>
 
@@ -35,7 +36,7 @@ class LawSeries {
   void add_stiffest(TaylorSeries& series) const;
 
   /// The deflections' series along the step.
-  void expand(const TaylorSeries& series, const LoadSeries& known, const ProjectedLaws& smooth);
+  void expand(const TaylorSeries& series, const LoadSeries& known, ProjectedLaws& smooth);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
   /// The first change in (0, end].
@@ -57,20 +58,25 @@ class LawSeries {
 
  private:
   struct Law {
-    std::vector<LawPiece> pieces;  // the law's own, or the stretches between its kinks
+    std::vector<LawPiece> pieces;  // the law's own; of a projected one its bounds, without forces
+    bool scaled = false;           // by its angle, where that matters to a bound
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part
     std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
+    std::vector<double> scale;                // series of r, where it is scaled
     std::vector<std::vector<double>> bounds;  // series of the piece's bounds
   };
   const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   bool falls_at_once(Law& law, const LawBound& bound, int index);
   void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;
+  /// The sizes of the terms that its coefficients are summed from.
+  void bound_sizes(const Law& law, const LawBound& bound, std::vector<double>& size) const;
 
   const System& system_;
   std::vector<Law> laws_;
+  std::vector<double> sizes_;
   double h_ = 0.0;
 };
 

@@ -149,7 +149,7 @@ const GaussRule& gauss_rule() {
   return rule;
 }
 
-NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values) {
+NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values, double rounding) {
   constexpr int n = GaussRule::kNodes;
   static const PowersOf<n> powers = legendre_powers<n>();
   const GaussRule& rule = gauss_rule();
@@ -167,7 +167,8 @@ NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values
   }
   NodePolynomial result{.tail = std::abs(a[n - 1]) + std::abs(a[n - 2])};
   for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t k = 0; k <= j; ++k) result.power[k] += a[j] * powers[j][k];
+    if (j < 2 || std::abs(a[j]) > rounding)
+      for (std::size_t k = 0; k <= j; ++k) result.power[k] += a[j] * powers[j][k];
   return result;
 }
 

@@ -30,7 +30,8 @@ struct NodePolynomial {
   std::array<double, GaussRule::kNodes> power{};
   double tail = 0.0;  ///< size of its last two Legendre coefficients: what a smooth function's rest is below
 };
-NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values);
+/// rounding: of the values; what bends by no more is left out, since powers of s would carry it far.
+NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values, double rounding);
 
 /// Coefficients a_j of one force a row, and their conversion to powers of s.
 class LegendreProjection {

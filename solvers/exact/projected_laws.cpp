@@ -16,7 +16,7 @@ ProjectedLaws::ProjectedLaws(const System& system)
     : system_(system), assembler_(system), offsets_(system.scalars().size()) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (!linear_pieces(*term.force).empty() && term.phase_node < 0) continue;
+    if (!linear_pieces(term).empty()) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
     if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
     for (const Entry& e : term.z) rows_.push_back(e.index);
@@ -79,12 +79,26 @@ double ProjectedLaws::expand_offset(const Law& law, const TaylorSeries& series) 
     rounding = std::max(rounding, std::abs(at_node.de_dangle * angle));
   }
   if (largest == 0.0) return 0.0;
-  const NodePolynomial polynomial = through_nodes(values);
+  const double known_to = kRounding * largest + kAngleRounding * rounding;
+  const NodePolynomial polynomial = through_nodes(values, known_to);
   offset.assign(polynomial.power.begin(), polynomial.power.end());
   double scale = largest;
   for (const Entry& e : term.z)
     scale = std::max(scale, std::abs(e.coeff) * series.z_scale()[idx(series.kind(e.index))]);
-  return std::max(0.0, polynomial.tail - kRounding * largest - kAngleRounding * rounding) / scale;
+  return std::max(0.0, polynomial.tail - known_to) / scale;
+}
+
+void ProjectedLaws::expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale) {
+  const ScalarTerm& term = system_.scalars()[idx(law)];
+  const GaussRule& rule = gauss_rule();
+  std::array<double, GaussRule::kNodes> values{};
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    series.evaluate(rule.s[q], z_, v_);
+    assembler_.set_time(t_ + h_ * rule.s[q]);
+    values[q] = term.force->pieces_scale(assembler_.input(term, z_, v_).angle);
+  }
+  const NodePolynomial polynomial = through_nodes(values, kRounding * std::abs(values[0]));
+  scale.assign(polynomial.power.begin(), polynomial.power.end());
 }
 
 std::optional<double> ProjectedLaws::next_break(double t, double end) const {

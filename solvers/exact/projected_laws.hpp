@@ -37,6 +37,9 @@ class ProjectedLaws {
   /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
   const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
 
+  /// Series of how the pieces of the law are scaled by its angle along the path (ScalarForce::pieces_scale).
+  void expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale);
+
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
 

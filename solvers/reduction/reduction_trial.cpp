@@ -58,7 +58,7 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
     for (const Figure& f : left_out.estimates())
       if (f.relative() >= *trial.error) trial.error = f.relative(), trial.channel = f.name;
     const bool pieces = std::any_of(system.scalars().begin(), system.scalars().end(),
-                                    [](const auto& s) { return linear_pieces(*s.force).size() != 1; });
+                                    [](const auto& s) { return linear_pieces(s).size() != 1; });
     double growth = 1.0;
     if (pieces && !(method.exact() && run.contact_changes == 0)) {
       const ErrorGrowth grown = measure_error_growth(

@@ -98,7 +98,7 @@ TruncationError::TruncationError(const System& full, const Reduction& reduction,
   }
   asked_ = watched_.size();
   for (int l = 0; l < static_cast<int>(full.scalars().size()); ++l)
-    if (linear_pieces(*full.scalars()[idx(l)].force).size() != 1)
+    if (linear_pieces(full.scalars()[idx(l)]).size() != 1)
       watched_.push_back({.law = l, .z = by_laws_.col(l), .v = by_laws_.col(l)});
   if (!findings.empty()) throw ModelError(findings);
   z_ = modes_.transpose() * assembler_.product(full.mass_values(), full.initial_deviation());

@@ -16,7 +16,7 @@ std::vector<double> equivalent_masses(const System& system) {
   Vector b, x;
   for (std::size_t j = 0; j < all.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (linear_pieces(*term.force).size() == 1) continue;
+    if (linear_pieces(term).size() == 1) continue;
     double flexibility = 0.0;
     if (system.mass_is_diagonal()) {
       for (const Entry& e : term.z)
