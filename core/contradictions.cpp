@@ -98,7 +98,12 @@ std::vector<LawPiece> pieces_at(const ScalarForce& law, double angle) {
 class PieceComparison {
  public:
   PieceComparison(const ScalarForce& law, double angle, std::vector<Contradiction>& found)
-      : law_(law), pieces_(pieces_at(law, angle)), derived_(pieces_), found_(found) {}
+      : law_(law),
+        pieces_(pieces_at(law, angle)),
+        derived_(pieces_),
+        found_(found),
+        energy_constant_(law.evaluate({.angle = angle}).stored_energy -
+                         derived_.evaluate(0.0, 0.0).stored_energy) {}
 
   void at(const ScalarInput& in) {
     const auto holding = std::count_if(pieces_.begin(), pieces_.end(),
@@ -130,9 +135,8 @@ class PieceComparison {
   /// The law's energy may differ from that of the pieces by a constant.
   void compare_energy(const ScalarResponse& called, int number, const ScalarInput& in) {
     const double own = derived_.evaluate(in.x, in.x_dot).stored_energy;
-    if (!energy_constant_) energy_constant_ = called.stored_energy - own;
-    const double expected = own + *energy_constant_,
-                 size = std::abs(own) + std::abs(*energy_constant_) + called.stored_energy;
+    const double expected = own + energy_constant_,
+                 size = std::abs(own) + std::abs(energy_constant_) + called.stored_energy;
     if (!agree(called.stored_energy, expected, size))
       found_.push_back({"pieces", "piece " + std::to_string(number) +
                                       " gives stored_energy = " + to_text(expected) + ", the call " +
@@ -143,7 +147,7 @@ class PieceComparison {
   std::vector<LawPiece> pieces_;
   PiecewiseLaw derived_;
   std::vector<Contradiction>& found_;
-  std::optional<double> energy_constant_;
+  double energy_constant_ = 0.0;
 };
 
 bool has(std::span<const double> kinks, double kink) {

@@ -14,6 +14,7 @@ constexpr double kRounding = 4e-16;   // of the largest value
 constexpr double kSettled = 1e-13;    // of the range: the last parabola's gain
 constexpr double kCubicError = 0.25;  // of the rise that a cubic shows, and
 constexpr double kRangeError = 1e-6;  // of the range: what the cubic may be off by
+constexpr double kCloser = 0.125;     // to an end, in which nothing shows yet
 constexpr double kSwing = 0.5;        // of the ends' difference, and
 constexpr double kRangeSwing = 0.02;  // of the range: the most that an extremum rises above them
 
@@ -41,6 +42,7 @@ void search_by_rates(PeakSample a, PeakSample b, const Look& look, double range,
 void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, const Look& look, double range,
                       Peak& peak) {
   double last = b.t - a.t;
+  std::optional<double> slope;  // from the better end inwards, by the parabola before
   for (int i = 0; i < kMostLooks; ++i) {
     // The vertex of the parabola through the three.
     const double d_1 = m.t - a.t, d_2 = b.t - m.t;
@@ -54,7 +56,22 @@ void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, con
     const double best = sign > 0.0 ? std::max({a.y, m.y, b.y}) : std::min({a.y, m.y, b.y});
     if (i == 0 && beyond(peak, vertex, sign) + sign * (vertex - best) + kRangeError * range < 0.0) return;
     const bool middle_best = sign * m.y >= sign * a.y && sign * m.y >= sign * b.y;
-    if (!inside && !middle_best) return;  // the extremum is at an end
+    if (!inside && !middle_best) {
+      // The extremum is at the better end, or so close to it that the parabola does not show it.
+      const bool at_a = sign * a.y >= sign * b.y;
+      const double inwards = sign * (at_a ? s_1 - bend * d_1 : -s_2 - bend * d_2);
+      if (slope && -inwards > std::abs(inwards - *slope)) return;
+      slope = inwards;
+      const PeakSample& end = at_a ? a : b;
+      const double closer = end.t + kCloser * (m.t - end.t);
+      if (closer == end.t || closer == m.t) return;
+      const PeakSample v = look(closer);
+      peak.note(v.y, v.t);
+      (at_a ? b : a) = m;
+      m = v;
+      last = b.t - a.t;
+      continue;
+    }
     const bool slow = b.t - a.t > 0.5 * last && i > 1;
     if (!inside || t == m.t || slow) t = d_1 > d_2 ? m.t - 0.5 * d_1 : m.t + 0.5 * d_2;
     last = b.t - a.t;
@@ -82,7 +99,8 @@ void search_peak(const PeakSample& a, const PeakSample& b, const Look& look, dou
   const double swing = std::max(kSwing * std::abs(b.y - a.y), kRangeSwing * range);
   std::optional<PeakSample> middle;
   for (const double sign : {1.0, -1.0}) {
-    const double best = sign > 0.0 ? std::max(a.y, b.y) : std::min(a.y, b.y);
+    double best = sign > 0.0 ? std::max(a.y, b.y) : std::min(a.y, b.y);
+    if (middle) best = sign > 0.0 ? std::max(best, middle->y) : std::min(best, middle->y);
     if (beyond(peak, best, sign) + swing < 0.0) continue;
     const double t = 0.5 * (a.t + b.t);
     if (!(t > a.t && t < b.t)) return;

@@ -65,8 +65,8 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
     w.last = y;
     if (higher <= w.high && lower >= w.low) continue;
     Peak& p = peaks_[c];
-    const double near = kNear * (p.max - p.min);
     p.note(y, to.state.t);
+    const double near = kNear * (p.max - p.min);
     if (inside_steps_ && length > kShort * longest_ && (higher > p.max - near || lower < p.min + near))
       look_inside(c, assembler, from, to, before, y);
     set_bounds(c);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kTimes = 20;
 constexpr double kMoved = 1e-9;    // relative, of the perturbed run
-constexpr double kBeside = 1e-15;  // relative, of a time: its two sides
+constexpr double kBeside = 1e-13;  // relative, of a time: its two sides
 
 /// Values of channels at given times.
 class Watch final : public drev::Observer {

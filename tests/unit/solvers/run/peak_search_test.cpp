@@ -48,3 +48,19 @@ TEST_CASE("Peak search: a kink between two samples of one height, without a rate
   const auto none = [](double) { return 0.0; };
   CHECK(searched(y, none, false, 10).first.max == Approx(1.0).epsilon(1e-9));
 }
+
+TEST_CASE("Peak search: a maximum just inside an end of an interval, or of the first one") {
+  // Skewed, so that the parabola through three points puts its vertex outside.
+  for (const double end : {0.0, 0.5})
+    for (const double skew : {-0.9, 0.9})
+      for (const double ahead : {1e-2, 1e-3, 1e-4, 1e-5, -1e-3, -1e-5}) {
+        const double top = end + ahead;
+        if (top < 0.0) continue;
+        const auto y = [&](double t) { return 2.0 - (t - top) * (t - top) * (1.0 + skew * (t - top)); };
+        const auto rate = [&](double t) { return -(t - top) * (2.0 + 3.0 * skew * (t - top)); };
+        for (const bool with_rate : {true, false}) {
+          INFO("maximum at " << top << ", skew " << skew << (with_rate ? ", with rate" : ", without"));
+          CHECK(searched(y, rate, with_rate, 2).first.max == Approx(2.0).epsilon(1e-15));
+        }
+      }
+}
