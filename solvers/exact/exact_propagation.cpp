@@ -23,10 +23,11 @@ constexpr double kGrowth = 1.5;  // of the step after one that had to be shorten
 constexpr int kMaxCuts = 20;
 constexpr double kShortest = 1e-6;    // of the largest step
 constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
-constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-13; // of the step
-constexpr double kRetreat = 1.0 / 16.0;                             // of the step where the series overflowed
-constexpr double kSameTime = 1e-14;                                 // relative to the run's times
-constexpr double kNoProgress = 1e-12;                               // relative to the largest step
+constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the step
+constexpr double kRetreat = 1.0 / 16.0;  // of the step where the series overflowed
+constexpr double kTimeRounding = 4e-16;  // of the time
+constexpr double kSameTime = 1e-14;      // relative to the run's times
+constexpr double kNoProgress = 1e-12;    // relative to the largest step
 
 class ExactRun final : public StepMotion {
  public:
@@ -177,7 +178,8 @@ class ExactRun final : public StepMotion {
       if (const auto knot = known_.first_knot(series_, end.s)) end = {*knot, {}, true};
       if (const auto knot = smooth_.first_knot(series_, end.s)) end = {*knot, {}, false};
       // So close to the start the motion has had no time to differ.
-      if (!known_.projected() || cuts > kMaxCuts || end.s < kAtStart) return end;
+      const bool at_start = end.s < kAtStart || end.s * h < kTimeRounding * std::abs(now_.state.t);
+      if (!known_.projected() || cuts > kMaxCuts || at_start) return end;
       double beyond = end.s - 1.0;
       if (end.s == 1.0) {
         if (!cut) return end;
