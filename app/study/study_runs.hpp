@@ -36,6 +36,9 @@ class WindowPeaks final : public Observer {
   WindowPeaks(std::vector<Channel> channels, bool inside_steps, double start, double length);
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    peaks_.restart(assembler, point);
+  }
   double next_stop(double /*t*/) const override { return edge(window_ + 1); }
   bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
   void look_through(StepMotion& motion) override { peaks_.look_through(motion); }

@@ -24,6 +24,9 @@ class PeakWatch final : public Observer {
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
     peaks_.step(assembler, from, to);
   }
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    peaks_.restart(assembler, point);
+  }
 
   bool empty() const { return peaks_.channels().empty(); }
   double value() const { return empty() ? 0.0 : peaks_.peaks()[peaks_.largest()].amplitude(); }

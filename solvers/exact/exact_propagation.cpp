@@ -107,6 +107,7 @@ class ExactRun final : public StepMotion {
     evaluate(assembler_, now_, now_.state.t);
     if (system_.any_prescribed_moves()) laws_.locate(now_.inputs);
     energy_->restart(next_, now_);
+    for (Observer* o : observers_) o->restart(assembler_, now_);
   }
 
   /// Where a step ends: s of the series, at a change or knot if there is one.

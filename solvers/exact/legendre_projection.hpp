@@ -14,7 +14,7 @@
 
 namespace drev {
 
-inline constexpr int kProjectionDegree = 6;
+inline constexpr int kProjectionDegree = 8;
 inline constexpr int kProjectionTerms = kProjectionDegree + 1;
 
 /// Gauss-Legendre nodes and weights on [0, 1], with L_j at the nodes.

@@ -11,6 +11,10 @@ namespace drev {
 class AfterTime final : public Observer {
  public:
   AfterTime(double begin, std::vector<Observer*> observers);
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    if (!started_) return;
+    for (Observer* o : observers_) o->restart(assembler, point);
+  }
   void look_through(StepMotion& motion) override {
     for (Observer* o : observers_) o->look_through(motion);
   }

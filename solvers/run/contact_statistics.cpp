@@ -78,6 +78,10 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
 
 ContactStatistics::~ContactStatistics() = default;
 
+void ContactStatistics::restart(const Assembler& assembler, const EvaluatedState& point) {
+  if (forces_) forces_->restart(assembler, point);
+}
+
 void ContactStatistics::look_through(StepMotion& motion) {
   if (forces_) forces_->look_through(motion);
 }

@@ -66,6 +66,7 @@ class ContactStatistics final : public Observer {
  public:
   bool needs_acceleration() const override { return inside_steps_; }
   void look_through(StepMotion& motion) override;
+  void restart(const Assembler& assembler, const EvaluatedState& point) override;
   /// inside_steps: as in Peaks, for the largest forces.
   explicit ContactStatistics(const System& system, bool inside_steps = true);
   ~ContactStatistics() override;

@@ -31,6 +31,9 @@ class Observer {
   virtual void start(const Assembler& assembler, const EvaluatedState& point) = 0;
   /// After every accepted step, or part of one; the assembler stands at to's time.
   virtual void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) = 0;
+  /// Behind a jump of loads or known motions, at the time where the last step ended: the point with the forces
+  /// that hold from there on. The next step starts from it. An observer that holds others hands it on.
+  virtual void restart(const Assembler& /*assembler*/, const EvaluatedState& /*point*/) {}
   /// The next time after t that must be seen exactly [s]: constant steps end there, controlled ones are
   /// interpolated to the method's order.
   virtual double next_stop(double /*t*/) const { return std::numeric_limits<double>::infinity(); }

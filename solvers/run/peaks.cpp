@@ -55,6 +55,15 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   }
 }
 
+void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    if (watched_[c].two_entries) continue;  // angles do not jump
+    watched_[c].last = value(c, assembler, point);
+    peaks_[c].note(watched_[c].last, point.state.t);
+    set_bounds(c);
+  }
+}
+
 void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double length = to.state.t - from.state.t;
   longest_ = std::max(longest_, length);

@@ -21,6 +21,7 @@ class Peaks final : public Observer {
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
+  void restart(const Assembler& assembler, const EvaluatedState& point) override;
   bool needs_acceleration() const override;
   bool watches_loads() const override;
 

@@ -168,6 +168,7 @@ class Run final : public StepMotion {
       *next_ = *now_;
       stepper_->start(*now_);
       energy_->restart(*next_, *now_);
+      for (Observer* o : observers_) o->restart(equation_.assembler(), *now_);
     }
   }
 

@@ -10,8 +10,9 @@ struct Case {
   Spec spec;
   std::vector<double> times;  ///< of samples, ascending, inside the run
   ReferenceResult fine, check;
-  double growth = 1.0;  ///< of a small difference of the state over the run
-  bool usable = false;  ///< both references ended
+  double growth = 1.0;          ///< of a small difference of the state over the run
+  std::vector<double> growths;  ///< of the same in each channel, at least that
+  bool usable = false;          ///< both references ended
   std::string problem;
   double truth_error(std::size_t channel) const;  ///< of peaks
   static constexpr double kChaos = 1e6;
