@@ -80,6 +80,7 @@ class ExactRun final : public StepMotion {
     evaluate(inside_assembler_, look_, t);
     return {inside_assembler_, look_};
   }
+  std::optional<int> side(int law) const override { return laws_.side(law); }
 
  private:
   bool running() const { return summary_.status == RunStatus::success; }

@@ -70,6 +70,16 @@ void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
   }
 }
 
+std::optional<int> LawSeries::side(int law) const {
+  const std::optional<Gap> gap = system_.scalars()[idx(law)].force->gap();
+  if (!gap) return std::nullopt;
+  const Interval x = current(idx(law)).x_range();
+  if (x.low >= gap->high) return 1;
+  if (x.high <= gap->low) return -1;
+  if (x.low >= gap->low && x.high <= gap->high) return 0;
+  return std::nullopt;
+}
+
 void LawSeries::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
   std::size_t s = 0;
   for (const Entry& row : term.z)

@@ -29,6 +29,8 @@ class LawSeries {
   /// Every law on the piece that its input is on.
   void locate(const std::vector<ScalarInput>& inputs);
   int piece(int law) const { return laws_[idx(law)].piece; }
+  /// StepMotion::side() of the pieces that hold.
+  std::optional<int> side(int law) const;
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;

@@ -34,21 +34,28 @@ std::vector<double> equivalent_masses(const System& system) {
   return all;
 }
 
+/// The law goes from one side of its gap to another with a rate x' of this square.
+static void note_change(int before, int after, double square, double force, double equivalent_mass,
+                        ContactInterval& interval, ContactRecord& record) {
+  if (interval.met && before != 0)
+    (before > 0 ? record.front_force : record.back_force).add(interval.largest);
+  interval.met = after != 0;
+  interval.largest = force;
+  if (after == 0) return;
+  ++(after > 0 ? record.front_impacts : record.back_impacts);
+  (after > 0 ? record.front_speed : record.back_speed).add(std::sqrt(square));
+  record.impact_energy += 0.5 * equivalent_mass * square;
+}
+
 void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record) {
   const auto side = [&gap](double x) { return x > gap.high ? 1 : x < gap.low ? -1 : 0; };
   const int before = side(a.x), after = side(b.x);
   if (before == after) return;
-  if (interval.met && before != 0)
-    (before > 0 ? record.front_force : record.back_force).add(interval.largest);
-  interval = {after != 0, force};
-  if (after == 0) return;
   // x'^2 is linear in x under a constant acceleration.
   const double part = ((after > 0 ? gap.high : gap.low) - a.x) / (b.x - a.x);
   const double square = a.x_dot * a.x_dot + part * (b.x_dot * b.x_dot - a.x_dot * a.x_dot);
-  ++(after > 0 ? record.front_impacts : record.back_impacts);
-  (after > 0 ? record.front_speed : record.back_speed).add(std::sqrt(square));
-  record.impact_energy += 0.5 * equivalent_mass * square;
+  note_change(before, after, square, force, equivalent_mass, interval, record);
 }
 
 /// Force channels of the laws that have a gap, in the order of the laws.
@@ -83,6 +90,7 @@ void ContactStatistics::restart(const Assembler& assembler, const EvaluatedState
 }
 
 void ContactStatistics::look_through(StepMotion& motion) {
+  motion_ = &motion;
   if (forces_) forces_->look_through(motion);
 }
 
@@ -101,19 +109,37 @@ void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& f
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const std::size_t j = terms_[i];
     const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
-    const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
-    double& largest = intervals_[i].largest;
-    note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
-    if (inside_steps_)
-      if (const auto peak = cubic_peak(r0.y, r0.dy_dx * a.x_dot, r1.y, r1.dy_dx * b.x_dot, h))
-        note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
-    if (note_time_separated(records_[i], gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
-      note_crossings(gaps_[i], a, b, std::abs(r1.y), masses_[i], intervals_[i], records_[i]);
+    const double begin = std::abs(from.responses[j].y), end = std::abs(to.responses[j].y);
+    ContactInterval& interval = intervals_[i];
+    ContactRecord& record = records_[i];
+    if (const auto side = motion_ ? motion_->side(static_cast<int>(j)) : std::nullopt) {
+      if (interval.side && *interval.side != *side)
+        note_change(*interval.side, *side, a.x_dot * a.x_dot, begin, masses_[i], interval, record);
+      interval.side = side;
+      if (*side == 0) record.time_separated += h;
+      note_forces(i, from, to);
+    } else {
+      note_forces(i, from, to);
+      if (note_time_separated(record, gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
+        note_crossings(gaps_[i], a, b, end, masses_[i], interval, record);
+    }
     if (!forces_) continue;
     const Peak& peak = forces_->peaks()[i];
-    records_[i].largest_force = peak.amplitude();
-    records_[i].largest_force_time = peak.time();
+    record.largest_force = peak.amplitude();
+    record.largest_force_time = peak.time();
   }
+}
+
+void ContactStatistics::note_forces(std::size_t i, const EvaluatedState& from, const EvaluatedState& to) {
+  const std::size_t j = terms_[i];
+  const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
+  const double h = to.state.t - from.state.t;
+  double& largest = intervals_[i].largest;
+  note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
+  if (!inside_steps_) return;
+  if (const auto peak =
+          cubic_peak(r0.y, r0.dy_dx * from.inputs[j].x_dot, r1.y, r1.dy_dx * to.inputs[j].x_dot, h))
+    note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
 }
 
 }  // namespace drev

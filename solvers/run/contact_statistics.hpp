@@ -18,10 +18,12 @@ struct EvaluatedState;
 /// m_eq of every law that is not linear [kg or kg m^2], in System::scalars(); 0 for the others.
 std::vector<double> equivalent_masses(const System& system);
 
-/// The contact at hand: whether an impact began it, and its largest |y| so far.
+/// The contact at hand: whether an impact began it, its largest |y| so far, and where the law was in the last step
+/// that knew (StepMotion::side).
 struct ContactInterval {
   bool met = false;
   double largest = 0.0;
+  std::optional<int> side = {};
 };
 /// Enters a force of size |y| at time t in these lanes; largest: of the contact at hand. Value and Mask:
 /// double and bool, or Lanes and LaneMask.
@@ -59,9 +61,9 @@ template <class Number, class Value, class Mask>
 void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record);
 
-/// Every law that has a gap. Crossings inside a step are placed by linear interpolation of x, the speed there
-/// by that of x'^2 over x (exact propagation ends its steps at crossings and shows both sides of each: count,
-/// time and speed are exact); with constant steps a flank touched and left inside one step is not seen.
+/// Every law that has a gap. Exact propagation ends its steps at crossings and knows between which: count, time
+/// and speed are exact. Elsewhere crossings inside a step are placed by linear interpolation of x, the speed
+/// there by that of x'^2 over x, and a flank touched and left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
   bool needs_acceleration() const override { return inside_steps_; }
@@ -75,7 +77,9 @@ class ContactStatistics final : public Observer {
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
+  void note_forces(std::size_t i, const EvaluatedState& from, const EvaluatedState& to);
   bool inside_steps_ = true;
+  StepMotion* motion_ = nullptr;
   std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
   std::vector<std::size_t> terms_;
   std::vector<Gap> gaps_;

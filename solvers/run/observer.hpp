@@ -2,6 +2,7 @@
 /// What watches a run: recorder, peaks, contact statistics. An observer sees every accepted step and keeps
 /// no more than it needs, so that memory does not grow with the run.
 #include <limits>
+#include <optional>
 
 namespace drev {
 
@@ -19,6 +20,9 @@ class StepMotion {
   /// At a time [s] between the two points that step() was given; valid until the next call. To the accuracy
   /// of the step's end in exact propagation; elsewhere on the polynomial through both ends of the step.
   virtual Point at(double t) = 0;
+  /// Where a law (of System::scalars()) that has a gap is between the two points: 1 on the flank above it, 0 in
+  /// the gap, -1 below; none where the method does not end its steps at changes.
+  virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
 };
 
 class Observer {
