@@ -39,13 +39,17 @@ concept LawWithPieces = requires(const L& law) {
 template <class L>
 concept ScalarLaw = CalledLaw<L> || FormulaLaw<L> || LawWithPieces<L>;
 
+/// Gauss's rule of 8 points on [-1, 1]: those above zero, which stand below it too.
+inline constexpr std::array<double, 4> kGaussPoints{0.1834346424956498, 0.5255324099163290,
+                                                    0.7966664774136267, 0.9602898564975363};
+inline constexpr std::array<double, 4> kGaussWeights{0.3626837833783620, 0.3137066458778873,
+                                                     0.2223810344533745, 0.1012285362903763};
+
 /// int_a^b f dx by 8 Gauss points.
 template <class F>
 double gauss_integral(const F& f, double a, double b) {
-  constexpr std::array<double, 4> x{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                    0.9602898564975363};
-  constexpr std::array<double, 4> w{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                    0.1012285362903763};
+  constexpr const auto& x = kGaussPoints;
+  constexpr const auto& w = kGaussWeights;
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
   double sum = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i)

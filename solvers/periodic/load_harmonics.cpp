@@ -1,5 +1,6 @@
 #include "solvers/periodic/load_harmonics.hpp"
 
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 
@@ -11,14 +12,16 @@ namespace drev {
 
 namespace {
 
-constexpr int kMoments = 9;
+constexpr int kMoments = 12;
 constexpr int kMostStretches = 1000;  // in a cell
 constexpr int kBisections = 50;
-/// Gauss's rule of 5 points on [-1, 1].
-constexpr std::array<double, 5> kPoints{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
-                                        0.9061798459386640};
-constexpr std::array<double, 5> kWeights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
-                                         0.4786286704993665, 0.2369268850561891};
+/// Gauss's rule of 8 points on [-1, 1].
+constexpr std::array<double, 8> kPoints{-kGaussPoints[3], -kGaussPoints[2], -kGaussPoints[1],
+                                        -kGaussPoints[0], kGaussPoints[0],  kGaussPoints[1],
+                                        kGaussPoints[2],  kGaussPoints[3]};
+constexpr std::array<double, 8> kWeights{kGaussWeights[3], kGaussWeights[2], kGaussWeights[1],
+                                         kGaussWeights[0], kGaussWeights[0], kGaussWeights[1],
+                                         kGaussWeights[2], kGaussWeights[3]};
 
 /// Spherical Bessel function by its power series; 0 <= x < 1.
 double spherical_bessel(int m, double x) {

@@ -7,7 +7,7 @@
 ///
 /// mu_m(s): moments of f with the Legendre polynomials over cell s of N, split at the stretches' ends; by
 /// exp(-i x xi) = sum (2m+1) (-i)^m j_m(x) P_m(xi) (NIST Digital Library of Mathematical Functions, 10.60.7),
-/// cut where n <= N/4 leaves 1e-8.
+/// cut where n <= N/4 leaves 1e-12.
 #include <drev/core/system.hpp>
 
 #include <Eigen/Core>

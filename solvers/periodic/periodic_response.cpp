@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "solvers/periodic/harmonic_balance.hpp"
-#include "solvers/run/cubic_peak.hpp"
+#include "solvers/run/peak_search.hpp"
 
 namespace drev {
 
@@ -20,6 +20,7 @@ constexpr double kLargestSize = 2e7;  // unknowns x harmonics: 320 MB a motion
 constexpr double kFirstTail = 1e-3;
 constexpr double kPeriodicity = 1e-8;
 constexpr double kUneven = 10.0;  // kinks fall between the samples of each level differently: measured 7.5
+constexpr double kSwing = 0.02;   // of the range: how far an extremum may rise above the samples beside it
 constexpr double kNewtonTolerance = 1e-2;  // of the tolerance
 
 /// What a level of harmonics gives.
@@ -61,15 +62,49 @@ Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& 
   return level;
 }
 
-/// Largest and smallest value of a channel: at the samples, and of the cubic between them.
-Peak peak_of(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& rate, double h) {
+/// The motion at any time, by Horner's rule.
+class SeriesMotion {
+ public:
+  SeriesMotion(const System& system, const Harmonics& z, double w)
+      : assembler_(system), state_(State::initial(system)), z_(z), w_(w) {}
+
+  PeakSample look(const Channel& channel, double t) {
+    state_.t = t;
+    assembler_.set_time(t);
+    const std::complex<double> turn = std::polar(1.0, w_ * t);
+    Eigen::VectorXcd q = Eigen::VectorXcd::Zero(z_.rows()), v = q, a = q;
+    for (Eigen::Index n = z_.cols() - 1; n >= 0; --n) {
+      const std::complex<double> rate(0.0, w_ * static_cast<double>(n));
+      q = q * turn + z_.col(n);
+      v = v * turn + rate * z_.col(n);
+      a = a * turn + rate * rate * z_.col(n);
+    }
+    state_.z = q.real();
+    state_.v = v.real();
+    state_.a = a.real();
+    return {t, channel.evaluate(assembler_, state_), channel.rate(assembler_, state_)};
+  }
+
+ private:
+  Assembler assembler_;
+  State state_;
+  const Harmonics& z_;
+  double w_;
+};
+
+/// Largest and smallest value of a channel over the period: at even times `h` apart, and between those near
+/// them on the motion itself.
+Peak peak_of(const Channel& channel, const Eigen::RowVectorXd& y, double h, SeriesMotion& motion) {
   Peak p{{y[0], 0.0, y[0], 0.0}};
+  for (Eigen::Index s = 1; s < y.size(); ++s) p.note(y[s], h * static_cast<double>(s));
+  const double top = p.max, bottom = p.min;
   for (Eigen::Index s = 0; s < y.size(); ++s) {
-    const Eigen::Index next = (s + 1) % y.size();
+    const double here = y[s], next = y[(s + 1) % y.size()];
+    const double swing = std::max(std::abs(next - here), kSwing * (top - bottom));
+    if (std::max(here, next) < top - swing && std::min(here, next) > bottom + swing) continue;
+    const auto look = [&](double t) { return motion.look(channel, t); };
     const double t = h * static_cast<double>(s);
-    p.note(y[s], t);
-    if (const auto inside = cubic_peak(y[s], rate[s], y[next], rate[next], h))
-      p.note(inside->value, t + inside->s * h);
+    search_peak(look(t), look(t + h), look, p.max - p.min, p);
   }
   return p;
 }
@@ -172,9 +207,10 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
   response.v = balance.motion(z, 1, 4 * harmonics).col(0);
   if (channels.empty()) return response;
   const Harmonics amplitudes = balance.to_harmonics(level.values, harmonics);
-  const Eigen::MatrixXd rates = balance.motion(amplitudes, 1, 4 * harmonics);
+  SeriesMotion motion(system, z, kTwoPi / period);
   for (Eigen::Index c = 0; c < amplitudes.rows(); ++c) {
-    response.peaks.push_back(peak_of(level.values.row(c), rates.row(c), period / (4 * harmonics)));
+    response.peaks.push_back(peak_of(channels[static_cast<std::size_t>(c)], level.values.row(c),
+                                     period / (4 * harmonics), motion));
     const Eigen::VectorXcd row = amplitudes.row(c).transpose();
     response.amplitudes.emplace_back(row.begin(), row.end());
   }

@@ -26,11 +26,12 @@ struct Settled {
   bool found = false;
   std::vector<std::vector<Real>> samples;  ///< [channel][time]
   std::vector<ReferencePeak> peaks;
-  Real change = 0;  ///< of the state over the last period, relative
+  Real change = 0;  ///< of the state over the last period, and all that would follow it, relative
 };
 
 Settled settle(ReferenceModel model, const std::vector<ChannelId>& channels, Real period) {
   Settled s;
+  Real before_last = 0;
   const Real start = model.t;
   for (int i = 1; i <= kMostPeriods && !s.found; ++i) {
     std::vector<Real> before = model.z, rate = model.v;
@@ -42,10 +43,13 @@ Settled settle(ReferenceModel model, const std::vector<ChannelId>& channels, Rea
       scale_v = std::max(scale_v, std::abs(model.v[u]));
     }
     const Real last = s.change;
+    before_last = last;
     s.change = std::max(scale > 0 ? most / scale : 0, scale_v > 0 ? most_v / scale_v : 0);
     s.found = s.change < kSettled || (i > 1 && s.change < kRounding && s.change > last / 2);
   }
   if (!s.found) return s;
+  // What changes by a factor each period has so much left to go; a slow decay is not known better than this.
+  s.change *= s.change < before_last ? std::min<Real>(before_last / (before_last - s.change), 1e8L) : 1e8L;
   const Real begin = model.t;
   int next = 0;
   s.samples.resize(channels.size());
