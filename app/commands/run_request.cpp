@@ -100,11 +100,6 @@ std::optional<Settle> read_settle(const CommandLine& line, double duration, cons
                                   std::vector<Finding>& findings) {
   const auto text = line.option("--settle");
   if (!text) return {};
-  if (line.option("--accuracy"))
-    findings.push_back(
-        {kCommandLine, "--settle", *text, "",
-         "cannot be given with --accuracy, whose figures are of the whole run; --start periodic "
-         "can"});
   if (*text == "auto") return Settle{};
   double value = 0.0;
   if (!read_number(*text, value) || !(value >= 0.0 && value < duration))
