@@ -83,23 +83,19 @@ std::optional<double> read_reduce(const CommandLine& line, const Method& method,
   return read_part("--reduce", *text, kReductionErrors, "off, or ", findings);
 }
 
-Start read_start(const CommandLine& line, std::vector<Finding>& findings) {
+Start read_start(const CommandLine& line, Start model_start, std::vector<Finding>& findings) {
   const auto text = line.option("--start");
-  if (!text) return Start::rest;
-  std::vector<std::string> names;
-  for (const Start start : {Start::rest, Start::static_equilibrium, Start::periodic}) {
-    names.emplace_back(to_text(start));
-    if (*text == names.back()) return start;
-  }
-  findings.push_back(
-      {kCommandLine, "--start", *text, "", "must be rest, static or periodic" + did_you_mean(*text, names)});
+  if (!text) return model_start;
+  if (const auto start = start_of(*text)) return *start;
+  findings.push_back({kCommandLine, "--start", *text, "",
+                      "must be rest, static or periodic" + did_you_mean(*text, start_names())});
   return Start::rest;
 }
 
-std::optional<Settle> read_settle(const CommandLine& line, double duration, const std::string& limit,
-                                  std::vector<Finding>& findings) {
+std::optional<Settle> read_settle(const CommandLine& line, const std::optional<Settle>& model_settle,
+                                  double duration, const std::string& limit, std::vector<Finding>& findings) {
   const auto text = line.option("--settle");
-  if (!text) return {};
+  if (!text) return model_settle;
   if (*text == "auto") return Settle{};
   double value = 0.0;
   if (!read_number(*text, value) || !(value >= 0.0 && value < duration))
@@ -225,8 +221,9 @@ RunRequest request_run(const CommandLine& given) {
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
   const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
-  const Start start = read_start(line, findings);
-  const std::optional<Settle> settle = read_settle(line, high, limit, findings);
+  const Start start = read_start(line, model ? model->model_case.start : Start::rest, findings);
+  const std::optional<Settle> settle =
+      read_settle(line, model ? model->model_case.settle : std::nullopt, high, limit, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);

@@ -140,12 +140,22 @@ Json run_up_object(const SpeedsPassed& up) {
           {"channels", std::move(channels)}};
 }
 
+/// Whether every largest value and every figure of contacts has an error that is known.
+bool all_checked(const RunResult& r) {
+  bool any = !r.contacts.empty(), all = true;
+  for (const auto* largest : {&r.force, &r.deflection, &r.mesh_force}) {
+    any |= largest->has_value();
+    all &= !largest->has_value() || (*largest)->error.has_value();
+  }
+  for (const Contacts& c : r.contacts)
+    all &= c.known && std::isfinite(c.known->largest_force.error + c.known->time_separated.error);
+  return any && all;
+}
+
 Json results_object(const RunResult& r) {
   Json results;
   results["of"] = span_object(r);
-  results["checked"] = r.force || r.deflection
-                           ? (!r.force || r.force->error) && (!r.deflection || r.deflection->error)
-                           : false;
+  results["checked"] = all_checked(r);
   results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
   results["deflection_m"] = in_unit(r.deflection, "m");
   results["deflection_of"] = r.deflection ? Json(r.deflection->place()) : Json();
