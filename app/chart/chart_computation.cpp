@@ -58,7 +58,8 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.data.interrupted = true;
     return result;
   }
-  if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
+  const bool grows = growth.time_of(kMostGrowth) < horizon;
+  if (const double comparable = growth.time_of(kMostGrowth); grows) {
     horizon = comparable;
     result.horizon_reason =
         "later, a small difference has grown by more than a factor of " + short_digits(kMostGrowth, 3);
@@ -79,6 +80,7 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.quantity = model_case.deflection;
   }
   result.data = work_precision(system, options);
+  result.advice_for = grows ? result.data.t_end : std::max(result.data.t_end, model_case.duration);
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method_trial.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/base/interrupt.hpp"
 #include "app/cli/method_option.hpp"
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
@@ -135,7 +136,11 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (line.option("--step") && !line.option("--method"))
     return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
   if (!line.option("--method") && !line.option("--tolerance"))
-    return model ? choose_method(model->system, duration, step) : MethodChoice{};
+    return model && line.option("--accuracy") ? choose_method(model->system, duration, step)
+           : model ? try_methods(model->system, choose_method(model->system, duration, step), duration,
+                                 [] { return !interrupted(); })
+                         .choice
+                   : MethodChoice{};
   const std::string reason =
       line.option("--method") ? "asked for" : "the default where a tolerance is asked for";
   if (!line.option("--method") && model && why_not_exact(model->system))

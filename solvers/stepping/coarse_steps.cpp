@@ -23,7 +23,7 @@ CoarseSteps::CoarseSteps(const System& system) : mass_(system.size()) {
   for (int i = 0; i < system.size(); ++i) mass_[i] = system.mass_values()[system.diagonal_slots()[idx(i)]];
 }
 
-void CoarseSteps::take(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h) {
+void CoarseSteps::look(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h) {
   const double share = static_cast<double>(stride_) * h;
   if (++taken_ % kOfEach == 0) stride_ *= 2;
   change_ += share * (to.state.a - from.state.a).cwiseAbs2().dot(mass_);

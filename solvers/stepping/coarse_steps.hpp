@@ -18,18 +18,18 @@ namespace drev {
 class CoarseSteps {
  public:
   explicit CoarseSteps(const System& system);
-  /// An accepted step of length h [s], without kinks of known loads inside; moves the assembler's time.
-  void look(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h) {
+  /// Whether look() wants to see the accepted step at hand, of length h [s]: asked once of each.
+  bool due(double h) {
     if (h > longest_) longest_ = h;
-    if (h < kCutShort * longest_) return;
-    if (++steps_ % stride_ == 0) take(assembler, from, to, h);
+    return h >= kCutShort * longest_ && ++steps_ % stride_ == 0;
   }
+  /// The step, without kinks of known loads inside; moves the assembler's time.
+  void look(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h);
   /// Adds what was found to the summary's warnings. step: as asked for [s].
   void warn(RunSummary& summary, double step) const;
 
  private:
   static constexpr double kCutShort = 0.1;
-  void take(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h);
 
   Vector mass_;  // diagonal
   EvaluatedState inside_;
