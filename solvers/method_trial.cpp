@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <sstream>
 
@@ -16,6 +17,10 @@ namespace {
 
 constexpr int kCallEvery = 100;  // steps between calls of progress, of all methods
 constexpr int kFirstSteps = 1000, kOtherSteps = 4000;
+constexpr std::size_t kMostOfCalls = 5;      // times what a run is to have at least
+constexpr std::size_t kMostOfSamples = 400;  // calls
+constexpr double kSteady = 2.0;              // growth of the pace from one half to the next
+constexpr double kStart = 1e-6;              // of the duration: steps from rest may be tiny until then
 constexpr int kSamples = 32;
 constexpr std::size_t kMostChannels = 64;
 constexpr double kAgrees = 10.0 * kControlledTolerance;
@@ -65,14 +70,13 @@ class Trial {
   MethodTrial run() {
     MethodTrial trial{.choice = chosen_};
     if (!(chosen_.method.tolerance > 0.0)) return trial;  // constant steps: no other is fit for the system
-    const int most = within(kFirstTrial, kProductsOfStep, kFirstSteps);
-    const auto first = tried(chosen_.method, duration_, most);
+    const auto first = paced(chosen_.method, within(kFirstTrial, kProductsOfStep, kFirstSteps));
     if (!first || first->status != RunStatus::interrupted || stopped_) return trial;
     span_ = first->t_end;
-    if (!(span_ > 0.0)) return trial;
+    if (!(span_ > 0.0) || !(passed(half_, 0) > 0.0)) return trial;
     trial.chosen_ns = cost_to_end(chosen_.method, *first);
     if (trial.chosen_ns < kAffordable) return trial;
-    const std::vector<std::vector<double>> right = samples(chosen_.method, 2 * most);
+    const std::vector<std::vector<double>> right = samples(chosen_.method);
     if (right.empty()) return trial;
     std::optional<Method> best;
     for (const char* name : {"dormand_prince", "sdirk4"}) {
@@ -86,45 +90,60 @@ class Trial {
   }
 
  private:
-  /// As many steps as cost about this much [ns], in twice the steps between two calls.
-  int within(double ns, double products_of_step, int most) const {
+  /// As many calls of progress as cost about this much [ns], in two halves.
+  int within(double ns, double products_of_step, int most_steps) const {
     const double steps = ns / (products_of_step * product_cost(system_));
-    return 2 * kCallEvery *
-           static_cast<int>(std::clamp(std::ceil(0.5 * steps / kCallEvery), 1.0, 0.5 * most / kCallEvery));
+    return 2 * static_cast<int>(
+                   std::clamp(std::ceil(0.5 * steps / kCallEvery), 2.0, 0.5 * most_steps / kCallEvery));
   }
 
-  /// A run of at most so many steps; none: it failed.
-  std::optional<RunSummary> tried(const Method& method, double t_end, int most_steps,
-                                  const std::vector<Observer*>& observers = {}) {
-    const int calls = most_steps / kCallEvery;
-    int left = calls;
-    middle_ = 0.0;
-    const auto goes_on = [&](double part) {
+  /// A run of at most so many calls; none: it failed. goes_on: asked at each of them.
+  std::optional<RunSummary> tried(const Method& method, double t_end, const std::vector<Observer*>& observers,
+                                  const std::function<bool()>& goes_on) {
+    times_.clear();
+    const auto progress = [&](double part) {
       stopped_ = stopped_ || (progress_ && !progress_());
-      if (--left == calls / 2) middle_ = part * t_end;
-      return left > 0 && !stopped_;
+      times_.push_back(part * t_end);
+      return !stopped_ && goes_on();
     };
     try {
-      return run_method(system_, method, {.t_end = t_end, .energy_tolerance = 1e300, .progress = goes_on},
+      return run_method(system_, method, {.t_end = t_end, .energy_tolerance = 1e300, .progress = progress},
                         observers);
     } catch (const std::exception&) {  // of a user's function, too
       return std::nullopt;
     }
   }
 
-  /// What the run tried last would cost to the end [ns]: by the second half of its steps, when what the start
-  /// excited is dying away. It stopped after an even number of calls.
+  /// Time passed in so many calls, the last of which was `before` calls ago [s].
+  double passed(std::size_t calls, std::size_t before) const {
+    const std::size_t end = times_.size() - before;
+    return times_[end - 1] - (end > calls ? times_[end - 1 - calls] : 0.0);
+  }
+
+  /// A run of so many calls, or of more while its steps still grow: behind the last half of them they do not.
+  std::optional<RunSummary> paced(const Method& method, int calls) {
+    half_ = static_cast<std::size_t>(calls / 2);
+    return tried(method, duration_, {}, [&] {
+      if (times_.size() < 2 * half_) return true;
+      const bool starting =
+          times_.back() < kStart * duration_ || passed(half_, 0) > kSteady * passed(half_, half_);
+      return starting && times_.size() < kMostOfCalls * 2 * half_;
+    });
+  }
+
+  /// What the run paced last would cost to the end [ns], by the last half of its calls.
   double cost_to_end(const Method& method, const RunSummary& run) const {
     const double so_far = cost(system_, method, run);
     if (run.ok()) return so_far;
-    return so_far + 0.5 * so_far * (duration_ - run.t_end) / (run.t_end - middle_);
+    const double of_half = so_far * static_cast<double>(half_) / static_cast<double>(times_.size());
+    return so_far + of_half * (duration_ - run.t_end) / passed(half_, 0);
   }
 
   /// [channel][time] over the span; empty: the run did not get through it.
-  std::vector<std::vector<double>> samples(const Method& method, int most_steps) {
+  std::vector<std::vector<double>> samples(const Method& method) {
     const std::vector<std::string> channels = compared_channels(system_);
     Recorder recorder(system_, channels, span_ / kSamples);
-    const auto run = tried(method, span_, most_steps, {&recorder});
+    const auto run = tried(method, span_, {&recorder}, [&] { return times_.size() < kMostOfSamples; });
     std::vector<std::vector<double>> all;
     if (!run || !run->ok()) return all;
     for (std::size_t c = 0; c < channels.size(); ++c) all.push_back(recorder.samples(c));
@@ -133,12 +152,12 @@ class Trial {
 
   /// Of the whole run [ns]; 0: it fails, is off, or cannot be below `most`.
   double cost_of_other(const Method& method, double most, const std::vector<std::vector<double>>& right) {
-    const int most_steps = within(kOtherTrial, kProductsOfStages, kOtherSteps);
-    const auto run = tried(method, duration_, most_steps);
-    if (!run || (run->status != RunStatus::interrupted && !run->ok()) || !(run->t_end > 0.0)) return 0.0;
+    const auto run = paced(method, within(kOtherTrial, kProductsOfStages, kOtherSteps));
+    if (!run || (run->status != RunStatus::interrupted && !run->ok()) || stopped_) return 0.0;
+    if (!run->ok() && !(passed(half_, 0) > 0.0)) return 0.0;
     const double ns = cost_to_end(method, *run);
     if (ns > most) return 0.0;
-    const std::vector<std::vector<double>> found = samples(method, 2 * most_steps);
+    const std::vector<std::vector<double>> found = samples(method);
     if (found.size() != right.size()) return 0.0;
     for (std::size_t c = 0; c < right.size(); ++c) {
       double peak = 0.0, off = 0.0;
@@ -166,7 +185,9 @@ class Trial {
   const MethodChoice& chosen_;
   const double duration_;
   const std::function<bool()>& progress_;
-  double span_ = 0.0, middle_ = 0.0;  // s; middle_: after half of the steps tried last
+  double span_ = 0.0;          // s, of the chosen method's trial
+  std::vector<double> times_;  // s, at the calls of the run tried last
+  std::size_t half_ = 0;       // of the calls that one was to have at least
   bool stopped_ = false;
 };
 

@@ -1,11 +1,12 @@
 #pragma once
 /// Whether the method that suits a system is far dearer than another that keeps the accuracy: both are tried.
 ///
-///   1. The chosen method runs at most 1,000 steps, fewer where they are dear; what it would cost over the whole run follows from how far it
-///      came in the second half of them, behind what the start excited. Below two seconds it stays.
-///   2. The other controlled methods, at the tolerance 1e-4, run over the same span: every force and torque must
-///      agree with the first at 32 times, to 1e-3 of its peak. Then they run on, at most 4,000 steps, which says
-///      what they would cost.
+///   1. The chosen method runs 1,000 steps, fewer where they are dear, up to five times as many while its steps
+///      still grow behind the start. What it would cost over the whole run follows from the last half of them.
+///      Below two seconds it stays.
+///   2. The other controlled methods, at the tolerance 1e-4, run 4,000 steps or less in the same way. Where one
+///      would be cheap enough, every force and torque must agree with the first at 32 times of its trial, to
+///      1e-3 of its peak there.
 ///   3. One that costs less than a twentieth is taken.
 ///
 /// Costs are counts times weights in nanoseconds that were measured once, no clocks: the same system gives the

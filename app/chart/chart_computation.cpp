@@ -18,6 +18,7 @@ namespace {
 constexpr double kPeriods = 20.0;       // of the lowest elastic mode
 constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
+constexpr double kSameSpan = 1.01;  // whole samples may leave a little of the duration
 constexpr double kGrowthTolerance = 1e-13;
 
 /// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
@@ -80,7 +81,9 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.quantity = model_case.deflection;
   }
   result.data = work_precision(system, options);
-  result.advice_for = grows ? result.data.t_end : std::max(result.data.t_end, model_case.duration);
+  const double measured = result.data.t_end;
+  const bool whole = grows || model_case.duration < kSameSpan * measured;
+  result.advice_for = whole ? measured : model_case.duration;
   return result;
 }
 
