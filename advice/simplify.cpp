@@ -62,10 +62,10 @@ Model copy(const Model& model, const Place& place, const std::set<std::string>& 
 }
 
 /// Deviation and rate of each node at the start; empty where the model sets none.
-struct Start {
+struct NodeStart {
   double q = 0.0, v = 0.0;
 };
-using Starts = std::map<std::string, Start>;
+using Starts = std::map<std::string, NodeStart>;
 
 Starts starts_of(const Model& model) {
   if (model.initials().empty()) return {};
@@ -116,12 +116,12 @@ double turning(const System& system, int node) {
 }
 
 /// Turns a part as a rigid body, so that `node` starts at q, v.
-void turn_part(const System& system, const std::vector<int>& part, int node, Start to, Starts& starts) {
-  const Start from = starts.at(system.node_names()[idx(node)]);
+void turn_part(const System& system, const std::vector<int>& part, int node, NodeStart to, Starts& starts) {
+  const NodeStart from = starts.at(system.node_names()[idx(node)]);
   for (int i = 0; i < system.node_count(); ++i) {
     if (part[idx(i)] != part[idx(node)]) continue;
     const double n = turning(system, i) / turning(system, node);
-    Start& start = starts.at(system.node_names()[idx(i)]);
+    NodeStart& start = starts.at(system.node_names()[idx(i)]);
     start.q += n * (to.q - from.q), start.v += n * (to.v - from.v);
   }
 }
@@ -245,7 +245,7 @@ std::optional<Model> with_rigid_meshes(const Model& model) {
       double ratio = ratio_of(p);
       if (settled.contains(part[idx(a)]) == settled.contains(part[idx(b)])) continue;
       if (settled.contains(part[idx(b)])) std::swap(a, b), ratio = 1.0 / ratio;
-      const Start from = starts.at(system.node_names()[idx(a)]);
+      const NodeStart from = starts.at(system.node_names()[idx(a)]);
       turn_part(system, part, b, {ratio * from.q, ratio * from.v}, starts);
       settled.insert(part[idx(b)]);
       going_on = true;
@@ -356,8 +356,8 @@ std::optional<RenamedModel> with_coarser_shafts(const Model& model, int finest) 
       const double position = static_cast<double>(k) * n / fewer;
       const int low = static_cast<int>(position);
       const double part = position - low;
-      const Start &a = before.at(node_at(model, p, low, n)),
-                  &b = before.at(node_at(model, p, std::min(low + 1, n), n));
+      const NodeStart &a = before.at(node_at(model, p, low, n)),
+                      &b = before.at(node_at(model, p, std::min(low + 1, n), n));
       starts[p.name + "_" + std::to_string(k)] = {(1 - part) * a.q + part * b.q,
                                                   (1 - part) * a.v + part * b.v};
     }

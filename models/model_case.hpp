@@ -2,6 +2,7 @@
 /// ModelCase: an assembled model together with what is worth knowing to run it and to read its results.
 #include <drev/core/model.hpp>
 #include <drev/models/parameters.hpp>
+#include <drev/solvers/start.hpp>
 
 #include <functional>
 #include <optional>
@@ -10,6 +11,11 @@
 #include <vector>
 
 namespace drev {
+
+/// From when on figures are taken.
+struct Settle {
+  std::optional<double> time = {};  ///< s; none: found from the damped modes (solvers/modes/settling.hpp)
+};
 
 struct ModelCase {
   Model model;
@@ -25,6 +31,10 @@ struct ModelCase {
   std::vector<std::string> channels = {};
   /// Files that it was read from; none of a model made by a program. Results are not written over them.
   std::vector<std::string> files = {};
+  /// Where its runs start, and from when on their figures are taken (none: of the whole run), unless others are
+  /// asked for.
+  Start start = Start::rest;
+  std::optional<Settle> settle = {};
 };
 
 struct ModelEntry {

@@ -163,6 +163,22 @@ const char* to_text(Start start) {
   return start == Start::periodic ? "periodic" : start == Start::static_equilibrium ? "static" : "rest";
 }
 
+namespace {
+constexpr Start kStarts[] = {Start::rest, Start::static_equilibrium, Start::periodic};
+}
+
+std::optional<Start> start_of(const std::string& name) {
+  for (const Start start : kStarts)
+    if (name == to_text(start)) return start;
+  return std::nullopt;
+}
+
+std::vector<std::string> start_names() {
+  std::vector<std::string> names;
+  for (const Start start : kStarts) names.emplace_back(to_text(start));
+  return names;
+}
+
 FoundStart find_start(const System& system, Start start, const StartOptions& options) {
   if (start == Start::periodic) return start_periodic(system, options);
   if (start == Start::static_equilibrium) return start_static(system, options);

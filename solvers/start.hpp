@@ -17,7 +17,9 @@
 #include <drev/solvers/method.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace drev {
 
@@ -25,6 +27,10 @@ enum class Start { rest, static_equilibrium, periodic };
 
 /// "rest", "static", "periodic".
 const char* to_text(Start start);
+/// The start of that name; nullopt: there is none.
+std::optional<Start> start_of(const std::string& name);
+/// Every start's name.
+std::vector<std::string> start_names();
 
 struct StartOptions {
   double cycle = 0.0;       ///< s, to be tried first; 0: none

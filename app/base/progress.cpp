@@ -57,7 +57,7 @@ void Progress::draw(const std::string& text) {
 void Progress::update(double part) {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const double left = elapsed * (1.0 - part) / part;
-  if (why_long_ && Clock::now() - start_ >= kMeasured) announce(left);
+  if (why_long_ && part > 0.0 && Clock::now() - start_ >= kMeasured) announce(left);
   if (!due() || !(part > 0.0)) return;
   char text[32];
   std::snprintf(text, sizeof text, "%5.1f %%, ", 100.0 * part);

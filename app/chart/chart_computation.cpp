@@ -18,6 +18,7 @@ namespace {
 constexpr double kPeriods = 20.0;       // of the lowest elastic mode
 constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
+constexpr double kSameSpan = 1.01;  // whole samples may leave a little of the duration
 constexpr double kGrowthTolerance = 1e-13;
 
 /// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
@@ -58,7 +59,8 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.data.interrupted = true;
     return result;
   }
-  if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
+  const bool grows = growth.time_of(kMostGrowth) < horizon;
+  if (const double comparable = growth.time_of(kMostGrowth); grows) {
     horizon = comparable;
     result.horizon_reason =
         "later, a small difference has grown by more than a factor of " + short_digits(kMostGrowth, 3);
@@ -79,6 +81,9 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.quantity = model_case.deflection;
   }
   result.data = work_precision(system, options);
+  const double measured = result.data.t_end;
+  const bool whole = grows || model_case.duration < kSameSpan * measured;
+  result.advice_for = whole ? measured : model_case.duration;
   return result;
 }
 

@@ -4,6 +4,11 @@
 /// The runs last the model's duration, but without gaps not more than 20 periods of its lowest elastic mode,
 /// and not past the time at which a small difference of the state has grown by a factor of 1000:
 /// beyond, every error is mostly growth, and the methods cannot be told apart.
+///
+/// The advice is for the model's duration all the same, but where growth has ended the runs: where what was measured
+/// is a part 1/f of it, processor times are taken f times as large, and an error measured as f times as large, too
+/// (what steps are off in phase grows with the time; what is off at its start does not, so that this errs to the safe
+/// side).
 #include <drev/solvers/accuracy/work_precision.hpp>
 
 #include <optional>
@@ -24,6 +29,9 @@ struct ChartRequest {
 struct ChartResult {
   std::string quantity;        ///< what the error is of
   std::string horizon_reason;  ///< what ended the runs, "" where it is the duration
+  double advice_for = 0.0;     ///< s: the run that the advice is for
+  /// advice_for over what was measured: f above.
+  double factor() const { return advice_for / data.t_end; }
   WorkPrecision data;
 };
 

@@ -3,7 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method_trial.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/base/interrupt.hpp"
 #include "app/cli/method_option.hpp"
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
@@ -83,28 +84,19 @@ std::optional<double> read_reduce(const CommandLine& line, const Method& method,
   return read_part("--reduce", *text, kReductionErrors, "off, or ", findings);
 }
 
-Start read_start(const CommandLine& line, std::vector<Finding>& findings) {
+Start read_start(const CommandLine& line, Start model_start, std::vector<Finding>& findings) {
   const auto text = line.option("--start");
-  if (!text) return Start::rest;
-  std::vector<std::string> names;
-  for (const Start start : {Start::rest, Start::static_equilibrium, Start::periodic}) {
-    names.emplace_back(to_text(start));
-    if (*text == names.back()) return start;
-  }
-  findings.push_back(
-      {kCommandLine, "--start", *text, "", "must be rest, static or periodic" + did_you_mean(*text, names)});
+  if (!text) return model_start;
+  if (const auto start = start_of(*text)) return *start;
+  findings.push_back({kCommandLine, "--start", *text, "",
+                      "must be rest, static or periodic" + did_you_mean(*text, start_names())});
   return Start::rest;
 }
 
-std::optional<Settle> read_settle(const CommandLine& line, double duration, const std::string& limit,
-                                  std::vector<Finding>& findings) {
+std::optional<Settle> read_settle(const CommandLine& line, const std::optional<Settle>& model_settle,
+                                  double duration, const std::string& limit, std::vector<Finding>& findings) {
   const auto text = line.option("--settle");
-  if (!text) return {};
-  if (line.option("--accuracy"))
-    findings.push_back(
-        {kCommandLine, "--settle", *text, "",
-         "cannot be given with --accuracy, whose figures are of the whole run; --start periodic "
-         "can"});
+  if (!text) return model_settle;
   if (*text == "auto") return Settle{};
   double value = 0.0;
   if (!read_number(*text, value) || !(value >= 0.0 && value < duration))
@@ -144,7 +136,11 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (line.option("--step") && !line.option("--method"))
     return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
   if (!line.option("--method") && !line.option("--tolerance"))
-    return model ? choose_method(model->system, duration, step) : MethodChoice{};
+    return model && line.option("--accuracy") ? choose_method(model->system, duration, step)
+           : model ? try_methods(model->system, choose_method(model->system, duration, step), duration,
+                                 [] { return !interrupted(); })
+                         .choice
+                   : MethodChoice{};
   const std::string reason =
       line.option("--method") ? "asked for" : "the default where a tolerance is asked for";
   if (!line.option("--method") && model && why_not_exact(model->system))
@@ -230,8 +226,9 @@ RunRequest request_run(const CommandLine& given) {
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
   const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
-  const Start start = read_start(line, findings);
-  const std::optional<Settle> settle = read_settle(line, high, limit, findings);
+  const Start start = read_start(line, model ? model->model_case.start : Start::rest, findings);
+  const std::optional<Settle> settle =
+      read_settle(line, model ? model->model_case.settle : std::nullopt, high, limit, findings);
   double every = model ? round_number(duration / 1000) : 0.0;
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);

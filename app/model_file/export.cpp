@@ -144,6 +144,11 @@ class CaseWriter {
     if (!model_case_.deflection.empty()) add("deflection", toml_text(model_case_.deflection));
     add("torques", toml_texts(model_case_.torques));
     if (model_case_.static_turn != 0.0) add("static_turn_rad", toml_number(model_case_.static_turn));
+    if (model_case_.start != Start::rest) add("start", toml_text(to_text(model_case_.start)));
+    if (const auto& settle = model_case_.settle; settle && settle->time)
+      add("settle_s", toml_number(*settle->time));
+    else if (settle)
+      add("settle", toml_text("auto"));
     add("record", toml_texts(model_case_.channels));
     return text;
   }

@@ -168,8 +168,22 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
   return found;
 }
 
+/// Of a start or settling time that cannot be, the command that runs the file says so (run_request.cpp), with the
+/// other faults of the run.
+void RunSection::set_span(ModelCase& model_case) const {
+  if (const auto start = start_of(params_.start)) model_case.start = *start;
+  const Entry* settle = entry("settle");
+  if (settle == nullptr) return;
+  if (settle->key == "settle") {
+    if (params_.settle == "auto") model_case.settle = Settle{};
+  } else if (params_.settle_time >= 0.0 && params_.settle_time < params_.duration) {
+    model_case.settle = Settle{params_.settle_time};
+  }
+}
+
 void RunSection::complete(ModelCase& model_case, const System& system, ReadContext& context) const {
   model_case.duration = params_.duration;
+  set_span(model_case);
   model_case.default_step = params_.step;
   model_case.static_turn = params_.static_turn;
   if (!params_.deflection.empty()) {

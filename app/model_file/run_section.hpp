@@ -17,6 +17,7 @@ class RunSection {
   void complete(ModelCase& model_case, const System& system, ReadContext& context) const;
 
  private:
+  void set_span(ModelCase& model_case) const;
   struct Params {
     double duration = 1.0, step = 1e-4, static_turn = 0.0;
     double every, tolerance, accuracy, settle_time;

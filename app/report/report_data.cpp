@@ -120,7 +120,7 @@ double report_interval(const RunRequest& request, const Method& method) {
 Json report_data(const RunRequest& request, const RunResult& result, const ReportHistory& history) {
   const ModelRequest& m = request.model;
   Json data;
-  data["format"] = 1;
+  data["format"] = 2;
   data["version"] = DREV_VERSION;
   data["made"] = now();
   data["command"] = command_of(request, result);

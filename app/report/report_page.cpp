@@ -42,6 +42,32 @@ std::string policy(const std::string& nonce) {
          "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 }
 
+constexpr const char* kChecksum = "checksum";
+
+std::string dumped(const Json& data) { return data.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// FNV-1a, 64 bits, of the data written without their checksum, in hexadecimal digits (G. Fowler, L. C. Noll, K.-P.
+/// Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm). Against accidents: it proves no one's authorship.
+std::string checksum_of(const Json& data) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : dumped(data)) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3U;
+  }
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(hash >> shift) & 15U];
+  return text;
+}
+
+/// Whether the data are those that were written; those of a version without a checksum are taken as they are.
+bool is_sound(const Json& data) {
+  if (!data.contains(kChecksum)) return data.contains("format") && data.at("format") == 1;
+  Json bare = data;
+  bare.erase(kChecksum);
+  return data.at(kChecksum) == checksum_of(bare);
+}
+
 /// Whether this is the base64 text of so many bytes.
 bool is_base64(const Json& text, std::size_t bytes) {
   constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -97,11 +123,14 @@ Json read_block(const std::string& text) {
                      data.contains("campbell") && data.contains("spectra") &&
                      has("command", &Json::is_string) && has("about", &Json::is_string) &&
                      has("version", &Json::is_string) && has("made", &Json::is_string);
-  return whole ? data : Json();
+  return whole && is_sound(data) ? data : Json();
 }
 
 std::string block_text(const Json& data) {
-  const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json sealed = data;
+  sealed.erase(kChecksum);
+  sealed[kChecksum] = checksum_of(sealed);
+  const std::string text = dumped(sealed);
   std::string out;
   out.reserve(text.size());
   for (const char c : text) c == '<' ? out += "\\u003c" : out += c;  // "</script>" must not end the block

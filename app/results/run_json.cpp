@@ -39,8 +39,14 @@ Json flanks_object(const Distribution& front, const Distribution& back, const Di
           {"both", distribution_object(both)}};
 }
 
+/// Error of one figure of a contact; null: unchecked, or unknown.
+Json contact_error(const Contacts& c, Estimate ContactFigures::*figure) {
+  return c.known ? number(((*c.known).*figure).error) : Json();
+}
+
 Json contact_object(const Contacts& c, double duration) {
   const bool newton = c.force_unit == "N";
+  const Json force_error = contact_error(c, &ContactFigures::largest_force);
   return {{"element", c.record.element},
           {"front_contacts", c.record.front_impacts},
           {"back_contacts", c.record.back_impacts},
@@ -49,6 +55,11 @@ Json contact_object(const Contacts& c, double duration) {
           {"max_force_N", newton ? number(c.record.largest_force) : Json()},
           {"max_torque_Nm", newton ? Json() : number(c.record.largest_force)},
           {"max_at_time_s", number(c.record.largest_force_time)},
+          {"front_contacts_error", contact_error(c, &ContactFigures::front_impacts)},
+          {"back_contacts_error", contact_error(c, &ContactFigures::back_impacts)},
+          {"time_separated_error_s", contact_error(c, &ContactFigures::time_separated)},
+          {"max_force_error_N", newton ? force_error : Json()},
+          {"max_torque_error_Nm", newton ? Json() : force_error},
           {"impact_speed",
            flanks_object(c.record.front_speed, c.record.back_speed, c.record.speed(), c.speed_unit())},
           {"impact_force",
@@ -57,9 +68,19 @@ Json contact_object(const Contacts& c, double duration) {
           {"rattle_index_W", number(c.record.rattle_index(duration))}};
 }
 
+/// Error of a largest value; null: unchecked.
+Json error_of(const std::optional<Largest>& largest) {
+  if (!largest || !largest->error) return nullptr;
+  return number((largest->unit == "rad" ? to_deg(1.0) : 1.0) * *largest->error);
+}
+Json error_of(const std::optional<Largest>& largest, const std::string& unit) {
+  return largest && largest->unit == unit ? error_of(largest) : Json(nullptr);
+}
+
 void add_contacts(Json& results, const RunResult& r) {
   results["max_mesh_force_N"] = in_unit(r.mesh_force, "N");
   results["max_mesh_force_at"] = place_of(r.mesh_force, "N");
+  results["max_mesh_force_error"] = error_of(r.mesh_force, "N");
   if (r.contacts.empty()) {  // no gap anywhere, or no figures
     for (const char* key : {"front_contacts", "back_contacts", "time_separated_s"}) results[key] = nullptr;
     results["contacts"] = Json::array();
@@ -78,12 +99,6 @@ void add_contacts(Json& results, const RunResult& r) {
   results["back_contacts"] = back;
   results["time_separated_s"] = number(separated);
   results["contacts"] = std::move(list);
-}
-
-/// Error of a largest value; null: unchecked.
-Json error_of(const std::optional<Largest>& largest) {
-  if (!largest || !largest->error) return nullptr;
-  return number((largest->unit == "rad" ? to_deg(1.0) : 1.0) * *largest->error);
 }
 
 Json span_object(const RunResult& r) {
@@ -125,12 +140,22 @@ Json run_up_object(const SpeedsPassed& up) {
           {"channels", std::move(channels)}};
 }
 
+/// Whether every largest value and every figure of contacts has an error that is known.
+bool all_checked(const RunResult& r) {
+  bool any = !r.contacts.empty(), all = true;
+  for (const auto* largest : {&r.force, &r.deflection, &r.mesh_force}) {
+    any |= largest->has_value();
+    all &= !largest->has_value() || (*largest)->error.has_value();
+  }
+  for (const Contacts& c : r.contacts)
+    all &= c.known && std::isfinite(c.known->largest_force.error + c.known->time_separated.error);
+  return any && all;
+}
+
 Json results_object(const RunResult& r) {
   Json results;
   results["of"] = span_object(r);
-  results["checked"] = r.force || r.deflection
-                           ? (!r.force || r.force->error) && (!r.deflection || r.deflection->error)
-                           : false;
+  results["checked"] = all_checked(r);
   results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
   results["deflection_m"] = in_unit(r.deflection, "m");
   results["deflection_of"] = r.deflection ? Json(r.deflection->place()) : Json();

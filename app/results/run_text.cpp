@@ -122,10 +122,10 @@ std::string run_up_rows(const SpeedsPassed& up) {
   return text;
 }
 
-std::string contact_line(const std::string& name, long front, long back, double separated, double share,
-                         const std::string& force) {
+std::string contact_line(const std::string& name, long front, long back, const std::string& separated,
+                         double share, const std::string& force) {
   return "  " + pad_right(name, kLabel - 2) + pad_left(std::to_string(front), 8) +
-         pad_left(std::to_string(back), 8) + pad_left(digits(separated, 4), 15) +
+         pad_left(std::to_string(back), 8) + pad_left(separated, 15) +
          pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
 }
 
@@ -150,6 +150,25 @@ std::string impact_rows(const RunResult& r, double duration) {
   return labelled("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
 }
 
+/// Errors of a contact's row, in its columns; a question mark: unknown. Nothing where they are unchecked.
+std::string contact_error_line(const Contacts& c, double duration) {
+  if (!c.known) return {};
+  const auto text = [](double error, int width, double factor = 1.0, const std::string& unit = "") {
+    return pad_left(std::isfinite(error) ? short_digits(factor * error, 2) + unit : "?", width);
+  };
+  const ContactFigures& k = *c.known;
+  return "  " + pad_right("  +-", kLabel - 2) + text(k.front_impacts.error, 8) +
+         text(k.back_impacts.error, 8) + text(k.time_separated.error, 15) +
+         text(k.time_separated.error, 10, 100.0 / duration) +
+         text(k.largest_force.error, 18, 1.0, " " + c.force_unit) + "\n";
+}
+
+/// With the digits that its error leaves, where that is known; else with the usual ones.
+std::string contact_digits(const Contacts& c, double value, Estimate ContactFigures::*figure, int usual) {
+  if (!c.known || !std::isfinite(((*c.known).*figure).error)) return digits(value, usual);
+  return earned_digits(value, ((*c.known).*figure).error);
+}
+
 std::string contact_rows(const RunResult& r) {
   if (r.contacts.empty()) {
     if (!r.mesh_force) return {};
@@ -166,15 +185,18 @@ std::string contact_rows(const RunResult& r) {
   const Contacts* hardest = &r.contacts.front();
   for (const Contacts& c : r.contacts) {
     const ContactRecord& k = c.record;
-    text += contact_line(k.element, k.front_impacts, k.back_impacts, k.time_separated,
-                         k.time_separated / duration, digits(k.largest_force, 5) + " " + c.force_unit);
+    text += contact_line(
+        k.element, k.front_impacts, k.back_impacts,
+        contact_digits(c, k.time_separated, &ContactFigures::time_separated, 4), k.time_separated / duration,
+        contact_digits(c, k.largest_force, &ContactFigures::largest_force, 5) + " " + c.force_unit);
+    text += contact_error_line(c, duration);
     front += k.front_impacts;
     back += k.back_impacts;
     separated += k.time_separated;
     if (k.largest_force > hardest->record.largest_force) hardest = &c;
   }
   if (r.contacts.size() > 1)
-    text += contact_line("all", front, back, separated,
+    text += contact_line("all", front, back, digits(separated, 4),
                          separated / (duration * static_cast<double>(r.contacts.size())),
                          digits(hardest->record.largest_force, 5) + " " + hardest->force_unit);
   return text + impact_rows(r, duration);

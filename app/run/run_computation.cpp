@@ -76,6 +76,12 @@ std::string why_long(const System& system, const Method& method, double duration
          "a shorter duration";
 }
 
+std::vector<std::string> names_of(const std::vector<Channel>& channels) {
+  std::vector<std::string> names;
+  for (const Channel& c : channels) names.push_back(c.name());
+  return names;
+}
+
 /// Figures with their errors; false: the run failed, as the result says.
 bool find_accuracy(const RunRequest& request, const System& system, RunResult& result) {
   const ModelCase& model_case = request.model.model_case;
@@ -84,8 +90,10 @@ bool find_accuracy(const RunRequest& request, const System& system, RunResult& r
   try {
     result.accuracy = run_to_accuracy(system, {.accuracy = *request.accuracy,
                                                .t_end = model_case.duration,
+                                               .from = result.span.from,
                                                .deflection = model_case.deflection,
                                                .torques = model_case.torques,
+                                               .meshes = names_of(mesh_channels(system)),
                                                .cycle = cycle_of(request.model),
                                                .method = request.method,
                                                .progress = [&](double part) {
@@ -111,6 +119,19 @@ void take_figure(const AccuracyResult& accuracy, const std::string& name, std::o
   if (!largest || figure == nullptr || figure->name != name || figure->kind != Figure::Kind::estimate) return;
   largest->value = figure->value;
   largest->error = figure->error;
+}
+
+/// The same for contacts.
+void take_contacts(const AccuracyResult& accuracy, std::vector<Contacts>& contacts) {
+  for (std::size_t i = 0; i < std::min(contacts.size(), accuracy.contacts.size()); ++i) {
+    const ContactFigures& known = accuracy.contacts[i];
+    ContactRecord& record = contacts[i].record;
+    contacts[i].known = known;
+    record.largest_force = known.largest_force.value;
+    record.time_separated = known.time_separated.value;
+    record.front_impacts = std::lround(known.front_impacts.value);
+    record.back_impacts = std::lround(known.back_impacts.value);
+  }
 }
 
 /// Where the run starts; false: there is no such state, as the plan says.
@@ -285,6 +306,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     if (result.accuracy) {
       take_figure(*result.accuracy, "peak torque", result.force);
       take_figure(*result.accuracy, "peak deflection", result.deflection);
+      take_figure(*result.accuracy, "peak mesh force", result.mesh_force);
+      take_contacts(*result.accuracy, result.contacts);
     }
   }
   return result;

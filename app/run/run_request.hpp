@@ -11,11 +11,6 @@
 
 namespace drev::app {
 
-/// From when on figures are taken.
-struct Settle {
-  std::optional<double> time;  ///< s; none: found from the damped modes
-};
-
 struct RunRequest {
   ModelRequest model;
   Method method;

@@ -31,6 +31,8 @@ struct Largest {
 struct Contacts {
   ContactRecord record;
   std::string force_unit;  ///< N or N m
+  /// With their errors, of which some may be infinite: unknown; none: unchecked.
+  std::optional<ContactFigures> known = {};
   std::string speed_unit() const { return force_unit == "N" ? "m/s" : "rad/s"; }
 };
 

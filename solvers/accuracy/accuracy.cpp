@@ -3,7 +3,6 @@
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/periodic/spectrum.hpp>
-#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,27 +27,8 @@ constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
 constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
 constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
 constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
-constexpr int kBatches = 20, kOrders = 5;
-constexpr double kSettled = 0.1;  // of the run: left out of time averages
+constexpr int kOrders = 5;
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
-
-/// Everything watched in one run.
-struct Watched {
-  Watched(const System& system, const AccuracyOptions& o, const std::string& followed, double every)
-      : deflection(o.deflection.empty() ? std::vector<Channel>{} : find_channels(system, {o.deflection})),
-        torque(find_channels(system, o.torques)),
-        edges(system),
-        batches(system, find_channels(system, {followed}), kSettled * o.t_end, o.t_end, kBatches),
-        recorder(system, {followed}, every) {}
-  std::vector<Observer*> observers() { return {&deflection, &torque, &edges, &batches, &recorder}; }
-
-  RunSummary summary;
-  PeakWatch deflection, torque;
-  EdgeWatch edges;
-  BatchWatch batches;
-  Recorder recorder;
-  double seconds = 0.0;
-};
 
 double quantile(std::vector<double> x, double part) {
   const auto k = static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1) + 0.5);
@@ -110,17 +90,19 @@ class AccurateRun {
   }
 
  private:
+  double span() const { return o_.t_end - o_.from; }  // s
   bool going_on(double part) { return !o_.progress || o_.progress(part); }
 
   /// Samples four times as often as the fastest mode swings, if that is not too many; whole numbers a cycle.
   void choose_sampling() {
     const double rate = fastest_rate(system_);
-    const double wanted = std::max(4.0 * to_hz(rate) * o_.t_end, static_cast<double>(kLeastSamples));
+    const double length = span();
+    const double wanted = std::max(4.0 * to_hz(rate) * length, static_cast<double>(kLeastSamples));
     double count = std::min(wanted, static_cast<double>(kMostSamples));
     if (!o_.method.exact() && !o_.method.controlled())
-      count = std::min(count, std::max(1.0, o_.t_end / (4.0 * o_.method.step)));
-    every_ = o_.t_end / std::ceil(count);
-    if (o_.cycle > 0.0 && o_.cycle <= o_.t_end) every_ = o_.cycle / std::ceil(o_.cycle / every_);
+      count = std::min(count, std::max(1.0, length / (4.0 * o_.method.step)));
+    every_ = length / std::ceil(count);
+    if (o_.cycle > 0.0 && o_.cycle <= length) every_ = o_.cycle / std::ceil(o_.cycle / every_);
   }
 
   std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
@@ -156,13 +138,19 @@ class AccurateRun {
   /// A figure at time t, from both runs.
   void add(const std::string& name, const std::string& unit, double coarse, double fine, double scale,
            double t) {
+    const double error = error_between(name, coarse, fine, scale, t);
+    result_.figures.push_back({{fine, error}, name, unit, std::abs(scale)});
+  }
+
+  /// The error of a figure from both runs, and with steps from the two before.
+  double error_between(const std::string& name, double coarse, double fine, double scale, double t) {
     double error = error_of(coarse, fine, scale, t);
     if (!result_.fine.exact()) {
       double& before = differences_[name];
       error = std::max(error, kSafety * kLeastOrder * before);
       before = std::abs(coarse - fine);
     }
-    result_.figures.push_back({{fine, error}, name, unit, std::abs(scale)});
+    return error;
   }
 
   double error_of(double coarse, double fine, double scale, double t) const {
@@ -179,11 +167,50 @@ class AccurateRun {
     if (!b.torque.empty())
       add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(), b.torque.value(),
           b.torque.time());
+    if (!b.mesh.empty())
+      add("peak mesh force", b.mesh.channel().unit(), a.mesh.value(), b.mesh.value(), b.mesh.value(),
+          b.mesh.time());
+    compare_contacts(a.contacts.records(), b.contacts.records());
     compare_edges(a.edges.passed(), b.edges.passed());
     if (!o_.deflection.empty()) compare_orders(a, b);
-    result_.reached =
-        result_.horizon > o_.t_end && std::all_of(result_.figures.begin(), result_.figures.end(),
-                                                  [&](const Figure& f) { return f.keeps(o_.accuracy); });
+    result_.reached = result_.horizon > o_.t_end &&
+                      std::all_of(result_.figures.begin(), result_.figures.end(),
+                                  [&](const Figure& f) { return f.keeps(o_.accuracy); }) &&
+                      std::all_of(result_.contacts.begin(), result_.contacts.end(),
+                                  [&](const ContactFigures& c) { return keeps(c); });
+  }
+
+  /// Relative to the largest force, the span, and the number.
+  bool keeps(const ContactFigures& c) const {
+    return c.largest_force.error <= o_.accuracy * c.largest_force.value &&
+           c.time_separated.error <= o_.accuracy * span() &&
+           c.front_impacts.error <= o_.accuracy * c.front_impacts.value &&
+           c.back_impacts.error <= o_.accuracy * c.back_impacts.value;
+  }
+
+  /// Two runs that round alike may agree past the horizon: what depends on the motion there is not known.
+  void compare_contacts(const std::vector<ContactRecord>& a, const std::vector<ContactRecord>& b) {
+    const bool known = result_.horizon > o_.t_end;
+    result_.contacts.clear();
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      const std::string& name = b[i].element;
+      const auto of = [&](const char* what, double coarse, double fine, double scale, double t) -> Estimate {
+        const double error = error_between(name + what, coarse, fine, scale, t);
+        return {fine, known || t < result_.horizon ? error : std::numeric_limits<double>::infinity()};
+      };
+      const auto number = [&](const char* what, long coarse, long fine) {
+        return of(what, static_cast<double>(coarse), static_cast<double>(fine), 0.0, o_.t_end);
+      };
+      const double force = b[i].largest_force;
+      result_.contacts.push_back(
+          {.element = name,
+           // A larger force may come behind the horizon.
+           .largest_force =
+               of(": force", a[i].largest_force, force, force, known ? b[i].largest_force_time : o_.t_end),
+           .time_separated = of(": separated", a[i].time_separated, b[i].time_separated, span(), o_.t_end),
+           .front_impacts = number(": front", a[i].front_impacts, b[i].front_impacts),
+           .back_impacts = number(": back", a[i].back_impacts, b[i].back_impacts)});
+    }
   }
 
   void find_horizon(const Watched& a, const Watched& b) {
@@ -241,7 +268,7 @@ class AccurateRun {
     const auto &x = a.recorder.samples(0), &y = b.recorder.samples(0);
     if (x.size() != y.size() || y.size() < 16) return;
     const bool ordered = o_.cycle > 0.0;
-    if (ordered && o_.cycle > o_.t_end) return;
+    if (ordered && o_.cycle > span()) return;
     const Record r = ordered ? last_cycles(y) : Record{y.size() / 2, y.size() - 1, 1};
     if (r.cycles == 0) return;
     const auto of = [&](const std::vector<double>& all) {
@@ -332,24 +359,28 @@ class AccurateRun {
 
   /// Peaks over runs that start beside the first.
   void add_ensemble(const std::vector<Figure>& replaced_from) {
-    std::vector<double> deflections, torques;
+    std::vector<double> deflections, torques, meshes;
     for (int i = 1; i <= o_.ensemble && going_on(0.7 + 0.3 * i / o_.ensemble); ++i) {
       PeakWatch deflection(o_.deflection.empty() ? std::vector<Channel>{}
                                                  : find_channels(system_, {o_.deflection}));
-      PeakWatch torque(find_channels(system_, o_.torques));
+      PeakWatch torque(find_channels(system_, o_.torques)), mesh(find_channels(system_, o_.meshes));
+      AfterTime span(o_.from, {&deflection, &torque, &mesh});
       State state = neighbour(system_, i, result_.growth.z_scale, result_.growth.v_scale);
       const RunSummary run =
-          run_method(system_, result_.coarse, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state,
-                     {&deflection, &torque});
+          run_method(system_, result_.coarse, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state, {&span});
       if (!run.ok()) continue;
       deflections.push_back(deflection.value());
       torques.push_back(torque.value());
+      meshes.push_back(mesh.value());
     }
     const std::string of = ", mean of " + std::to_string(deflections.size()) + " runs";
     for (const Figure& f : replaced_from)
       if (!f.keeps(o_.accuracy) && f.name.starts_with("peak"))
         add_statistic(f.name + of, f.unit,
-                      batch_mean(f.name == "peak torque" ? torques : deflections, o_.ensemble));
+                      batch_mean(f.name == "peak torque"       ? torques
+                                 : f.name == "peak mesh force" ? meshes
+                                                               : deflections,
+                                 o_.ensemble));
   }
 
   /// Order amplitudes of the single cycles.
@@ -371,7 +402,7 @@ class AccurateRun {
   }
 
   void add_quantiles(const std::vector<double>& samples, const BatchWatch::Average& of) {
-    const auto first = static_cast<std::size_t>(kSettled * static_cast<double>(samples.size()));
+    const auto first = static_cast<std::size_t>(Watched::left_out(o_) * static_cast<double>(samples.size()));
     const std::size_t count = (samples.size() - first) / kBatches;
     if (count < 100) return;  // a quantile of 1 % means nothing
     for (const int percent : {1, 99}) {
@@ -428,6 +459,8 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   ParameterCheck check(system.name() + "/accuracy", findings);
   check.within("accuracy", o.accuracy, o.kAccuracy.low, o.kAccuracy.high, "");
   check.positive("t_end", o.t_end, "s");
+  if (!(o.from >= 0.0 && o.from < o.t_end))
+    check.fail("from", to_text(o.from), "s", "must be from 0 to less than t_end");
   check.non_negative("cycle", o.cycle, "s");
   check.positive("most_seconds", o.most_seconds, "s");
   if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");

@@ -30,8 +30,10 @@ struct AccuracyOptions {
   double accuracy = 1e-4;  ///< relative
   static constexpr Range kAccuracy{1e-12, 0.5};
   double t_end = 0.0;                     ///< s
+  double from = 0.0;                      ///< s, in [0, t_end): figures are of the run from then on
   std::string deflection = {};            ///< channel; its peak, orders and quantiles; empty: none
   std::vector<std::string> torques = {};  ///< channels; the largest peak of all
+  std::vector<std::string> meshes = {};   ///< channels of mesh forces; the largest peak of all
   double cycle = 0.0;  ///< s, of which orders are the multiples; 0: frequencies of the last half
   Method method = {};  ///< exact, controlled (the tolerance is found), or the constant step to begin with
   double most_seconds = 30.0;  ///< processor time of the longest run
@@ -39,9 +41,19 @@ struct AccuracyOptions {
   std::function<bool(double)> progress = {};
 };
 
+/// Of one contact over the span [from, t_end]. Past the horizon, where two runs do not agree, an error is
+/// infinite: unknown.
+struct ContactFigures {
+  std::string element;
+  Estimate largest_force;                ///< N or N m
+  Estimate time_separated;               ///< s
+  Estimate front_impacts, back_impacts;  ///< numbers
+};
+
 struct AccuracyResult {
-  std::vector<Figure> figures;  ///< of kind estimate, from two runs, or interval, of a statistic
-  /// Every estimate keeps the accuracy and nothing had to be given as a statistic.
+  std::vector<Figure> figures;           ///< of kind estimate, from two runs, or interval, of a statistic
+  std::vector<ContactFigures> contacts;  ///< of whatever has a gap, in the order of System::scalars()
+  /// Every estimate, those of contacts among them, keeps the accuracy and nothing had to be given as a statistic.
   bool reached = false;
   std::string reason;  ///< why not
   ErrorGrowth growth;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kBisections = 48;     // of a step, for a contact change
 constexpr double kSameTime = 1e-9;  // relative to a batch
+constexpr double kSettled = 0.1;    // of the whole run: left out of time averages
 
 /// Cubic through values and rates at the ends of a step of length h, at s in [0, 1].
 double hermite(double y_0, double r_0, double y_1, double r_1, double h, double s) {
@@ -17,7 +18,24 @@ double hermite(double y_0, double r_0, double y_1, double r_1, double h, double 
          (s3 - s2) * h * r_1;
 }
 
+std::vector<Channel> none_or_one(const System& system, const std::string& name) {
+  return name.empty() ? std::vector<Channel>{} : find_channels(system, {name});
+}
+
 }  // namespace
+
+double Watched::left_out(const AccuracyOptions& o) { return o.from > 0.0 ? 0.0 : kSettled; }
+
+Watched::Watched(const System& system, const AccuracyOptions& o, const std::string& followed, double every)
+    : deflection(none_or_one(system, o.deflection)),
+      torque(find_channels(system, o.torques)),
+      mesh(find_channels(system, o.meshes)),
+      edges(system),
+      batches(system, find_channels(system, {followed}), o.from + left_out(o) * (o.t_end - o.from), o.t_end,
+              kBatches),
+      contacts(system),
+      recorder(system, {followed}, every),
+      span_(o.from, {&deflection, &torque, &mesh, &edges, &batches, &contacts, &recorder}) {}
 
 EdgeWatch::EdgeWatch(const System& system) : system_(system) {}
 

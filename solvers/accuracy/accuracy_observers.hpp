@@ -1,12 +1,14 @@
 #pragma once
-/// What accuracy.cpp watches in each of its runs: peaks with the state ahead of them, changes of contact with
-/// their times, time averages in batches. Internal to accuracy.cpp, but for the peaks.
+/// What accuracy.cpp watches in each of its runs: peaks, changes of contact with their times, contacts, time
+/// averages in batches, samples of one channel; all of them over the span that figures are of. Internal to accuracy.cpp, but for the peaks.
 #include <drev/core/assembler.hpp>
-#include <drev/solvers/accuracy/error_growth.hpp>
+#include <drev/solvers/accuracy/accuracy.hpp>
+#include <drev/solvers/run/after_time.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <vector>
 
@@ -123,6 +125,28 @@ class BatchWatch final : public Observer {
   std::vector<Sum> forces_, values_;
   std::vector<Contact> contacts_;
   std::vector<Average> averages_;
+};
+
+inline constexpr int kBatches = 20;
+
+/// Everything watched in one run.
+struct Watched {
+  /// followed: the channel whose samples and averages are kept; every: s, between its samples.
+  Watched(const System& system, const AccuracyOptions& options, const std::string& followed, double every);
+  std::vector<Observer*> observers() { return {&span_}; }
+  /// Part of the span that is left out of time averages: nothing of one that begins later than the run.
+  static double left_out(const AccuracyOptions& options);
+
+  RunSummary summary;
+  PeakWatch deflection, torque, mesh;
+  EdgeWatch edges;
+  BatchWatch batches;
+  ContactStatistics contacts;
+  Recorder recorder;
+  double seconds = 0.0;
+
+ private:
+  AfterTime span_;
 };
 
 }  // namespace drev

@@ -54,6 +54,8 @@ Lockstep::Lockstep(const std::vector<const System*>& systems, const TransientOpt
   for (const System* system : systems_) {
     steppers_.push_back(std::make_unique<GeneralizedAlpha>(*system, scheme_, options.newton));
     assemblers_.emplace_back(*system);
+    coarse_.emplace_back(*system);
+    stiff_.emplace_back(*system);
   }
   for (LanePoint* point : {&now_, &next_}) {
     for (LaneArray* a : {&point->z, &point->v, &point->a, &point->p}) a->resize(n);
@@ -229,6 +231,8 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
         {next_.z.data(), next_.v.data(), next_.a.data(), scheme_.beta * h * h, scheme_.gamma * h}, extra);
   finish(matrices_, scheme_, h, t_new, now_, by_, extra, next_, good, energy_, force_scale_);
   watch_.step(assemblers_, now_, next_, h, t_new, good);
+  for (int lane = 0; lane < static_cast<int>(count_); ++lane)
+    if (good[lane]) look_at(lane, h, t_new);
   if (const LaneMask alone = alive_ & ~good; any(alone))
     for (int lane = 0; lane < kLanes; ++lane)
       if (alone[lane]) step_alone(lane, h, t_new, t_evaluate);
@@ -246,6 +250,22 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
       finish_lane(lane, t_);
     }
   grow_ = grow;
+}
+
+/// What the run's warnings are made from, of a step that the lane made with the others.
+void Lockstep::look_at(int lane, double h, double t_new) {
+  const bool coarse = coarse_[idx(lane)].due(h), stiff = stiff_[idx(lane)].due();
+  if (!coarse && !stiff) return;
+  Assembler& assembler = assemblers_[idx(lane)];
+  now_.get(lane, look_from_);
+  look_from_.state.t = t_;
+  next_.get(lane, look_to_);
+  look_to_.state.t = t_new;
+  if (stiff) stiff_[idx(lane)].look(assembler, look_to_);
+  if (!coarse) return;
+  const double time = assembler.time();
+  coarse_[idx(lane)].look(assembler, look_from_, look_to_, h);
+  assembler.set_time(time);
 }
 
 void Lockstep::step_alone(int lane, double h, double t_new, double t_evaluate) {
@@ -312,6 +332,8 @@ void Lockstep::finish_lane(int lane, double t) {
   s.solves = s.load_passes + equation.solves() - equation.load_passes();
   s.energy = energy_.get(lane);
   judge_energy(s, options_.energy_tolerance);
+  coarse_[idx(lane)].warn(s, options_.step);
+  stiff_[idx(lane)].warn(s);
   alive_[lane] = 0;
 }
 

@@ -11,6 +11,8 @@
 #include "solvers/batch/lane_factor.hpp"
 #include "solvers/batch/lane_loads.hpp"
 #include "solvers/batch/lane_watch.hpp"
+#include "solvers/run/stiff_twists.hpp"
+#include "solvers/stepping/coarse_steps.hpp"
 #include "solvers/stepping/generalized_alpha.hpp"
 
 namespace drev {
@@ -38,6 +40,7 @@ class Lockstep {
   void solve(double h, double t_evaluate, LaneMask& failed);
   void step_alone(int lane, double h, double t_new, double t_evaluate);
   bool accept_alone(int lane, double h);
+  void look_at(int lane, double h, double t_new);
   void finish_lane(int lane, double t);
 
   std::array<const System*, kLanes> systems_;
@@ -60,6 +63,9 @@ class Lockstep {
   LaneForces by_;
   LaneRow force_scale_, iterations_, passes_;
   LaneMask alive_{}, grow_{};
+  std::vector<CoarseSteps> coarse_;
+  std::vector<StiffTwists> stiff_;
+  EvaluatedState look_from_, look_to_;
   std::array<EvaluatedState, 2> points_alone_;
   EvaluatedState *from_alone_ = &points_alone_[0], *to_alone_ = &points_alone_[1];
   double t_ = 0.0, h_ = 0.0;

@@ -11,6 +11,7 @@
 
 #include "solvers/batch/lockstep.hpp"
 #include "solvers/run/for_all.hpp"
+#include "solvers/run/stiff_twists.hpp"
 
 namespace drev {
 
@@ -217,11 +218,16 @@ class Many {
 
 template <class Options>
 RunSummary run_one(const System& system, const Options& options, State& state,
-                   const std::vector<Observer*>& observers) {
+                   std::vector<Observer*> observers) {
+  StiffTwists stiff(system);
+  if (stiff.any()) observers.push_back(&stiff);
+  RunSummary summary;
   if constexpr (std::is_same_v<Options, TransientOptions>)
-    return simulate(system, options, state, observers);
+    summary = simulate(system, options, state, observers);
   else
-    return propagate(system, options, state, observers);
+    summary = propagate(system, options, state, observers);
+  stiff.warn(summary);
+  return summary;
 }
 
 /// One variant by itself.

@@ -27,7 +27,8 @@ constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the s
 constexpr double kRetreat = 1.0 / 16.0;  // of the step where the series overflowed
 constexpr double kTimeRounding = 4e-16;  // of the time
 constexpr double kSameTime = 1e-14;      // relative to the run's times
-constexpr double kNoProgress = 1e-12;    // relative to the largest step
+constexpr double kEnergyTolerance = 1e-6;
+constexpr double kNoProgress = 1e-12;  // relative to the largest step
 
 class ExactRun final : public StepMotion {
  public:
@@ -69,7 +70,7 @@ class ExactRun final : public StepMotion {
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
-    judge_energy(summary_, options_.energy_tolerance);
+    judge_energy(summary_, energy_tolerance());
     return summary_;
   }
 
@@ -83,6 +84,11 @@ class ExactRun final : public StepMotion {
   std::optional<int> side(int law) const override { return laws_.side(law); }
 
  private:
+  double energy_tolerance() const {
+    if (options_.energy_tolerance > 0.0) return options_.energy_tolerance;
+    return std::max(kEnergyTolerance, 2.0 * options_.tolerance);
+  }
+
   bool running() const { return summary_.status == RunStatus::success; }
 
   /// A breakpoint, the end, or a knot of a law's offset; there the step's end is evaluated ahead of the knot
@@ -373,7 +379,7 @@ void check_options(const System& system, const ExactOptions& o, const State& sta
   ParameterCheck check(system.name() + "/exact", findings);
   check.within("tolerance", o.tolerance, o.kTolerance.low, o.kTolerance.high, "");
   check_span(o.t_start, o.t_end, check);
-  check.positive("energy_tolerance", o.energy_tolerance, "");
+  check.non_negative("energy_tolerance", o.energy_tolerance, "");
   check_state(system, state, check);
   if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);
   if (!findings.empty()) throw ModelError(findings);

@@ -37,9 +37,13 @@ StiffTwists::StiffTwists(const System& system) {
 }
 
 void StiffTwists::step(const Assembler& assembler, const EvaluatedState&, const EvaluatedState& to) {
-  if (++steps_ % stride_ != 0) return;
+  if (due()) look(assembler, to);
+}
+
+bool StiffTwists::due() {
+  if (watched_.empty() || ++steps_ % stride_ != 0) return false;
   if (++taken_ % kOfEach == 0) stride_ *= 2;
-  look(assembler, to);
+  return true;
 }
 
 void StiffTwists::look(const Assembler& assembler, const EvaluatedState& point) {

@@ -27,6 +27,9 @@ class StiffTwists final : public Observer {
   bool any() const { return !watched_.empty(); }
   void start(const Assembler& assembler, const EvaluatedState& point) override { look(assembler, point); }
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
+  /// Whether look() wants to see the accepted step at hand: asked once of each, in place of step().
+  bool due();
+  void look(const Assembler& assembler, const EvaluatedState& point);
   bool needs_acceleration() const override { return false; }
   /// Adds a warning for the element of which rounding leaves least, where that is more than the digits printed.
   void warn(RunSummary& summary) const;
@@ -38,7 +41,6 @@ class StiffTwists final : public Observer {
     Channel channel;
     double largest = 0.0, rounding = 0.0;
   };
-  void look(const Assembler& assembler, const EvaluatedState& point);
   std::vector<Watched> watched_;
   long steps_ = 0, stride_ = 1, taken_ = 0;
 };

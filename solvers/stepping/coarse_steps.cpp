@@ -23,8 +23,8 @@ CoarseSteps::CoarseSteps(const System& system) : mass_(system.size()) {
   for (int i = 0; i < system.size(); ++i) mass_[i] = system.mass_values()[system.diagonal_slots()[idx(i)]];
 }
 
-void CoarseSteps::take(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h) {
-  const auto share = static_cast<double>(stride_);
+void CoarseSteps::look(Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to, double h) {
+  const double share = static_cast<double>(stride_) * h;
   if (++taken_ % kOfEach == 0) stride_ *= 2;
   change_ += share * (to.state.a - from.state.a).cwiseAbs2().dot(mass_);
   size_ += 0.5 * share * (to.state.a.cwiseAbs2() + from.state.a.cwiseAbs2()).dot(mass_);
@@ -40,8 +40,8 @@ void CoarseSteps::take(Assembler& assembler, const EvaluatedState& from, const E
     off_ += weight * (inside_.p - (1.0 - s) * from.p - s * to.p).cwiseAbs();
     largest_ = largest_.cwiseMax(inside_.p.cwiseAbs());
   }
-  load_off_ += share * h * std::sqrt((off_.array().square() / mass_.array()).sum());
-  load_size_ += share * h * std::sqrt((largest_.array().square() / mass_.array()).sum());
+  load_off_ += share * std::sqrt((off_.array().square() / mass_.array()).sum());
+  load_size_ += share * std::sqrt((largest_.array().square() / mass_.array()).sum());
 }
 
 void CoarseSteps::warn(RunSummary& summary, double step) const {

@@ -315,7 +315,7 @@ class Run final : public StepMotion {
       end_not_finite(summary_, equation_.assembler(), *now_, *next_);
       return false;
     }
-    if (!control_) coarse_.look(equation_.assembler(), *now_, *next_, h);
+    if (!control_ && coarse_.due(h)) coarse_.look(equation_.assembler(), *now_, *next_, h);
     observe(h, t_evaluate);
     std::swap(now_, next_);
     const double t = now_->state.t;

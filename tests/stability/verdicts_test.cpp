@@ -7,6 +7,7 @@
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/run/stiff_twists.hpp"
@@ -103,4 +104,79 @@ TEST_CASE("Runs with jumps of stiffness are right and say so, whatever the metho
         CHECK(std::abs(state.z[0] - right.z[0]) < 1e-2);
       }
     }
+}
+
+namespace {
+
+/// Per mesh period, of x'' + k(t) x = 0 with k = single and double in turn, double for the contact ratio less 1 of
+/// the period: the larger root of its characteristic equation, 1 where nothing grows (Meissner's equation).
+double meissner_multiplier(double single, double twice, double contact_ratio, double speed) {
+  const double period = kTwoPi / speed, w_1 = std::sqrt(twice), w_2 = std::sqrt(single);
+  const double a = w_1 * (contact_ratio - 1.0) * period, b = w_2 * (2.0 - contact_ratio) * period;
+  const double half =
+      std::abs(std::cos(a) * std::cos(b) - 0.5 * (w_1 / w_2 + w_2 / w_1) * std::sin(a) * std::sin(b));
+  return half > 1.0 ? half + std::sqrt(half * half - 1.0) : 1.0;
+}
+
+/// What a run makes of it: growth a period over the second half of the periods, from the energy; and its verdict.
+struct Grown {
+  double multiplier = 0.0;
+  RunSummary run;
+};
+Grown grown(const System& system, const Method& method, double period, int periods) {
+  State state = State::initial(system);
+  Grown g;
+  double before = 0.0;
+  for (const int until : {periods / 2, periods}) {
+    state = State::initial(system);
+    g.run = run_method(system, method, {.t_end = until * period}, state);
+    const double energy = state.z.squaredNorm() + state.v.squaredNorm();
+    if (until == periods) g.multiplier = std::pow(energy / before, 0.5 / (periods - periods / 2));
+    before = energy;
+  }
+  return g;
+}
+
+}  // namespace
+
+TEST_CASE("Parametric growth is a success where it is the model's own, and none where it is the method's",
+          "[verdict]") {
+  constexpr double kSingle = 0.8, kDouble = 1.2, kContactRatio = 1.5;
+  constexpr int kPeriods = 40;
+  int growing = 0, wrong = 0;
+  for (const double speed : {0.66, 1.0, 1.4, 1.7, 1.95, 2.0, 2.08, 2.6, 3.5}) {
+    const double period = kTwoPi / speed;
+    const double closed = meissner_multiplier(kSingle, kDouble, kContactRatio, speed);
+    const System system =
+        DrivenGear{
+            .speed = speed, .stiffness = MeshStiffness::step(kSingle, kDouble, kContactRatio), .x = 1.0}
+            .build();
+    growing += std::pow(closed, kPeriods) > 1e3;
+    for (const Method& method : {Method{.name = "exact", .tolerance = 1e-10},
+                                 {.name = "sdirk4", .tolerance = 1e-7},
+                                 {.name = "average_acceleration", .step = period / 2000}}) {
+      const Grown g = grown(system, method, period, kPeriods);
+      INFO(to_text(method) << ", speed " << speed << ": " << g.run.brief_report());
+      CHECK(g.run.ok());
+      CHECK(g.run.warnings.empty());
+      CHECK(g.multiplier == Approx(closed).margin(0.02));
+    }
+    for (const char* name : {"average_acceleration", "hht:0.1", "generalized_alpha:0.8", "newmark:0.25,0.6",
+                             "bathe", "sdirk4", "linear_acceleration"})
+      for (const int steps : {2, 3, 4, 5, 6, 8, 10, 13}) {
+        Grown g;
+        try {
+          g = grown(system, {.name = name, .step = period / steps}, period, kPeriods);
+        } catch (const std::exception&) {  // refused: the step is above the method's limit
+          continue;
+        }
+        if (std::abs(g.multiplier - closed) < 0.05 * closed) continue;
+        ++wrong;
+        INFO(name << ", " << steps << " steps a period, speed " << speed << ", grows " << g.multiplier
+                  << " a period in place of " << closed << ": " << g.run.brief_report());
+        CHECK((!g.run.ok() || !g.run.warnings.empty()));
+      }
+  }
+  CHECK(growing >= 3);
+  CHECK(wrong > 50);
 }

@@ -9,7 +9,7 @@ const RESULT_NAMES = {
   static_torque_Nm: ["Static torque", "N m", "static_at"],
   static_force_N: ["Static force", "N", "static_at"],
   dynamic_amplification: ["Dynamic amplification, largest over static", "", null],
-  max_mesh_force_N: ["Largest mesh force", "N", "max_mesh_force_at"],
+  max_mesh_force_N: ["Largest mesh force", "N", "max_mesh_force_at", "max_mesh_force_error"],
   front_contacts: ["Impacts on front flanks", "", null],
   back_contacts: ["Impacts on back flanks", "", null],
   time_separated_s: ["Time separated, all contacts", "s", null],
@@ -156,7 +156,7 @@ function showContactTable(section) {
     const heads = keys.map((key) => {
       const [name, unit] = unitOf(key);
       return (
-        name.replaceAll("_", " ").replace("max at time", "at time") +
+        name.replaceAll("_", " ").replace("max at time", "at time").replace(/ error$/, " ±") +
         (unit ? ` [${unit}]` : key.endsWith("_share") ? " [%]" : "")
       );
     });

@@ -3,6 +3,7 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method_trial.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
@@ -99,4 +100,68 @@ TEST_CASE("A method by name runs as its own function would") {
   simulate(system, {.scheme = hht(0.1), .step = 1e-3, .t_end = 0.3}, own);
   CHECK(stepped.z[0] == own.z[0]);
   CHECK_THROWS_AS(run_method(system, {.name = "euler", .step = 1e-3}, {.t_end = 0.3}), ModelError);
+}
+
+namespace {
+
+/// A load on a slow spring, driven at 4 Hz through a shaft whose own mode, at 53 kHz for 1e9 N m/rad, settles at once.
+System driven_through(double shaft_stiffness) {
+  Model m("driven through a shaft");
+  for (const char* node : {"motor", "load"}) m.add_node(node);
+  m.add<Inertia>("J_motor", {"motor"}, {.inertia = 0.012});
+  m.add<Inertia>("J_load", {"load"}, {.inertia = 0.035});
+  m.add<GroundSpring>("mount", {"load"}, {.stiffness = 500.0, .damping = 0.05});
+  m.add<ShaftSpring>("shaft", {"motor", "load"}, {.stiffness = shaft_stiffness, .damping = 2000.0});
+  m.add<AppliedTorque>("drive", {"motor"}, {.harmonics = {{4.0, 20.0, -0.5 * kPi}}});
+  return m.build();
+}
+
+}  // namespace
+
+TEST_CASE("A method more than twenty times as dear as another that keeps the accuracy gives way to it") {
+  const System stiff = driven_through(1e9);
+  const MethodChoice first = choose_method(stiff, 20.0, 1e-4);
+  REQUIRE(first.method.exact());
+  const MethodTrial trial = try_methods(stiff, first, 20.0);
+  INFO(trial.choice.reason);
+  CHECK(trial.choice.method.name == "sdirk4");
+  CHECK(trial.choice.method.tolerance == kControlledTolerance);
+  CHECK(trial.chosen_ns > kTooDear * trial.other_ns);
+  CHECK(trial.choice.reason.find("times as much as sdirk4") != std::string::npos);
+  // Counts and weights, no clocks: the same numbers each time.
+  const MethodTrial again = try_methods(stiff, first, 20.0);
+  CHECK(again.chosen_ns == trial.chosen_ns);
+  CHECK(again.other_ns == trial.other_ns);
+  // The estimates are of the right size: the counts of whole runs.
+  State exact = State::initial(stiff), other = State::initial(stiff);
+  const RunSummary part = run_method(stiff, first.method, {.t_end = 0.4}, exact);
+  const double exact_steps = static_cast<double>(part.steps) * 20.0 / 0.4;
+  CHECK(trial.chosen_ns > 8000.0 * exact_steps * 0.5);
+  CHECK(trial.chosen_ns < 8000.0 * exact_steps * 4.0);
+  // And it keeps the accuracy: at 0.4 s both are at the same place.
+  run_method(stiff, trial.choice.method, {.t_end = 0.4}, other);
+  CHECK((other.z - exact.z).norm() < 1e-3 * exact.z.norm());
+}
+
+TEST_CASE("A method that is affordable, or the cheapest that is right, stays") {
+  // Short: a run of two seconds or less is never tried beyond its first steps.
+  const System stiff = driven_through(1e9);
+  const MethodChoice chosen = choose_method(stiff, 0.5, 1e-4);
+  const MethodTrial soon = try_methods(stiff, chosen, 0.5);
+  CHECK(soon.choice.method.exact());
+  CHECK(soon.choice.reason == chosen.reason);
+  CHECK(soon.other_ns == 0.0);
+  // Long, but its steps are those of the motion.
+  const System soft = driven_through(1e4);
+  const MethodChoice cheap = choose_method(soft, 100.0, 1e-4);
+  REQUIRE(cheap.method.exact());
+  CHECK(try_methods(soft, cheap, 100.0).choice.method.exact());
+  // Constant steps are no one's choice but where nothing else is fit for the system.
+  MethodChoice constant = choose_method(stiff, 20.0, 1e-4);
+  constant.method = Method{};
+  constant.method.step = 1e-3;
+  CHECK(try_methods(stiff, constant, 20.0).choice.method.name == "average_acceleration");
+  // Interrupted: what was chosen stays.
+  CHECK(
+      try_methods(stiff, choose_method(stiff, 20.0, 1e-4), 20.0, [] { return false; }).choice.method.exact());
 }

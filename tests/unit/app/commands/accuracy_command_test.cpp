@@ -40,6 +40,43 @@ TEST_CASE("An accuracy asked for: published times of contact within the stated e
   CHECK(contains(read_file(folder / "out/report.html"), R"("name":"peak deflection")"));
 }
 
+TEST_CASE("Contacts and mesh forces carry their errors, in JSON, text and report") {
+  const drev::test::TemporaryFolder folder;
+  const auto words = [&](const char* tolerance, const char* value) {
+    return std::vector<std::string>{"run",     "gear_drive", "--set", "duration_s=0.05",
+                                    tolerance, value,        "--json"};
+  };
+  const Json tight = Json::parse(drev_command(words("--tolerance", "1e-14")).out).at("results");
+  auto asked = words("--accuracy", "1e-3");
+  asked.insert(asked.end(), {"--report", (folder / "r.html").string()});
+  const auto run = drev_command(asked);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const Json results = Json::parse(run.out).at("results");
+  CHECK(results.at("checked") == true);
+  const auto holds = [&](const Json& of, const Json& truth, const char* key, const char* error) {
+    INFO(key << ": " << of.at(key) << " +- " << of.at(error) << ", " << truth.at(key));
+    REQUIRE(of.at(error).is_number());
+    CHECK(std::abs(of.at(key).get<double>() - truth.at(key).get<double>()) <= of.at(error).get<double>());
+    CHECK(of.at(error).get<double>() <= 1e-3 * of.at(key).get<double>());
+  };
+  holds(results, tight, "max_mesh_force_N", "max_mesh_force_error");
+  REQUIRE(results.at("contacts").size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json &of = results.at("contacts")[i], &truth = tight.at("contacts")[i];
+    holds(of, truth, "max_force_N", "max_force_error_N");
+    holds(of, truth, "time_separated_s", "time_separated_error_s");
+    holds(of, truth, "front_contacts", "front_contacts_error");
+    holds(of, truth, "back_contacts", "back_contacts_error");
+    CHECK(of.at("max_force_error_N").get<double>() > 0.0);
+    CHECK(truth.at("max_force_error_N").is_null());  // a run without --accuracy
+  }
+  CHECK(contains(read_file(folder / "r.html"), "\"max_force_error_N\":"));
+  const std::string text =
+      drev_command({"run", "gear_drive", "--set", "duration_s=0.05", "--accuracy", "1e-3"}).out;
+  CHECK(contains(text, "\n    +-   "));
+}
+
 TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given") {
   const auto run =
       drev_command({"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
@@ -51,6 +88,10 @@ TEST_CASE("An accuracy that rattling does not allow is refused point by point, a
   CHECK(accuracy.at("horizon_s").get<double>() < 0.3);
   CHECK(accuracy.at("growth_rate_per_s").get<double>() > 0.0);
   CHECK(contains(accuracy.at("reason").get<std::string>(), "two runs differ by more than 0.001"));
+  // Of one motion among many; its statistics have the intervals.
+  CHECK(json.at("results").at("checked") == false);
+  CHECK(json.at("results").at("contacts")[0].at("time_separated_error_s").is_null());
+  CHECK(json.at("results").at("contacts")[0].at("front_contacts_error").is_null());
   const Json apart = figure(json, "mesh_1: share of time separated");
   CHECK(apart.at("kind") == "95 % interval");
   CHECK(figure(json, "mesh_1: rattle index").at("unit") == "W");

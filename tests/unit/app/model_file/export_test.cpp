@@ -64,6 +64,27 @@ void check_same(const ModelCase& a, const ModelCase& b, double t_end) {
 
 }  // namespace
 
+TEST_CASE("Where runs start and from when on figures are taken: read, exported and read back") {
+  const drev::ModelEntry& entry = drev::find_model("two_inertia");
+  const Parameters parameters(entry.name, entry.parameters);
+  ModelCase model_case = entry.build(parameters);
+  CHECK(model_case.start == Start::rest);
+  CHECK_FALSE(model_case.settle);
+  CHECK_FALSE(read_back(app::export_model(entry, parameters, model_case)).settle);
+  model_case.start = Start::periodic;
+  model_case.settle = Settle{0.05};
+  ModelCase back = read_back(app::export_model(entry, parameters, model_case));
+  CHECK(back.start == Start::periodic);
+  REQUIRE(back.settle);
+  CHECK(back.settle->time == 0.05);
+  model_case.start = Start::static_equilibrium;
+  model_case.settle = Settle{};
+  back = read_back(app::export_model(entry, parameters, model_case));
+  CHECK(back.start == Start::static_equilibrium);
+  REQUIRE(back.settle);
+  CHECK_FALSE(back.settle->time);
+}
+
 TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
   struct Case {
     const char* model;

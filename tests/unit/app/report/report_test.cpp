@@ -336,6 +336,22 @@ TEST_CASE("A damaged report is refused") {
   CHECK(refused(with(series - 8, 1, "")));     // no JSON
   CHECK(refused(with(page.find("\"history\":"), 9, "\"hostory\"")));
   CHECK(refused(with(page.find("\"groups\":"), 9, "\"groups\":1e9,\"g\"")));
+  // Whatever is changed and still reads well: a value of the history, a digit of a figure, the checksum itself.
+  CHECK(refused(with(series + 40, 1, page[series + 40] == 'A' ? "B" : "A")));
+  const std::size_t digit = page.find("\"max_torque_Nm\":") + 18;
+  CHECK(refused(with(digit, 1, page[digit] == '7' ? "3" : "7")));
+  const std::size_t sum = page.find(",\"checksum\":\"");
+  REQUIRE(sum != std::string::npos);
+  CHECK(refused(with(sum + 13, 1, page[sum + 13] == '0' ? "1" : "0")));
+  CHECK(refused(with(sum, 30, "")));
+  // As it was written it is taken, also after it was written anew.
+  CHECK_FALSE(refused(page));
+  std::filesystem::remove(folder / "x.html");
+  std::ofstream(folder / "e.html") << page;
+  REQUIRE(drev_command({"report", (folder / "e.html").string(), "--out", (folder / "f.html").string()})
+              .exit_code == 0);
+  CHECK(drev_command({"report", (folder / "f.html").string(), "--out", (folder / "g.html").string()})
+            .exit_code == 0);
 }
 
 TEST_CASE(

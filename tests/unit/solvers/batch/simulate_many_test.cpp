@@ -357,3 +357,37 @@ TEST_CASE("Many: another topology, a variant that cannot be built, bad options, 
   CHECK(cut.interrupted);
   for (const VariantResult& v : cut.variants) CHECK(v.summary.status == RunStatus::interrupted);
 }
+
+TEST_CASE("Variants in lockstep carry the warnings of single runs: coarse steps, stiff twists, neither") {
+  // Variant by variant: right; a vibration that the step does not follow; a shaft of which rounding leaves little.
+  constexpr double kStiffness[] = {8.5e3, 4e5, 1e16};
+  const auto build = [&](std::size_t i) {
+    Model m("two inertias");
+    for (const char* node : {"motor", "load"}) m.add_node(node);
+    m.add<Inertia>("J_motor", {"motor"}, {.inertia = 0.012});
+    m.add<Inertia>("J_load", {"load"}, {.inertia = 0.035});
+    m.add<ShaftSpring>("shaft", {"motor", "load"}, {.stiffness = kStiffness[i % 3], .damping = 0.5});
+    m.add<AppliedTorque>("drive", {"motor"}, {.harmonics = {{40.0, 20.0, 0.0}}});
+    m.set_initial("motor", 1e-3, 0.0);
+    if (i % 3 == 2) m.set_initial("load", 1e-3, 0.0);  // untwisted
+    return m.build();
+  };
+  const TransientOptions options{.step = 2.5e-4, .t_end = 0.5, .energy_tolerance = 1.0};
+  const ManyResult many = simulate_many(6, build, options, {.threads = 1});
+  TransientOptions alone = options;
+  alone.locate_contacts = true;  // keeps them from lockstep
+  const ManyResult single = simulate_many(6, build, alone, {.threads = 1});
+  for (std::size_t i = 0; i < 6; ++i) {
+    CAPTURE(i);
+    CHECK(many.variants[i].in_lockstep);
+    CHECK_FALSE(single.variants[i].in_lockstep);
+    const std::vector<std::string>& warnings = many.variants[i].summary.warnings;
+    CHECK(warnings == single.variants[i].summary.warnings);
+    if (i % 3 == 0) CHECK(warnings.empty());
+    if (i % 3 == 1) {
+      REQUIRE(warnings.size() == 1);
+      CHECK(warnings[0].find("too long for the vibration") != std::string::npos);
+    }
+    if (i % 3 == 2) CHECK(warnings.back().find("shaft is so stiff") != std::string::npos);
+  }
+}
