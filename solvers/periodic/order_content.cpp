@@ -16,6 +16,7 @@ using Complex = std::complex<double>;
 constexpr double kSameOrder = 1e-9;
 constexpr double kSettled = 1e-9;  // of the largest amplitude
 constexpr double kSame = 1e-12;    // of the largest torque: the load is one and the same
+constexpr double kNoLine = 1e-13;  // of the rms: rounding of the transform
 constexpr int kProbes = 24;        // angles at which a load is asked whether time, speed and turns matter
 constexpr int kFewestSamples = 256, kMostSamples = 1 << 16;
 
@@ -103,6 +104,7 @@ void OrderContent::pick(const std::vector<Complex>& lines, double spacing, bool 
         whole >= static_cast<double>(lines.size()))
       continue;
     const Complex c = lines[static_cast<std::size_t>(whole)];
+    if (std::abs(c) <= kNoLine * content.rms) continue;
     content.amplitudes[k] = forward ? c : std::conj(c);
     taken += 0.5 * std::norm(c);
   }

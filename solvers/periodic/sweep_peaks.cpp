@@ -23,7 +23,7 @@ constexpr double kUndamped = 1e-9;      // damping ratio that is rounding
 constexpr double kTooDamped = 0.7;      // beyond it an order has no resonance
 constexpr std::size_t kMostPeaks = 10;  // a section
 constexpr double kSmallPeak = 1e-3;     // of the section's largest
-constexpr double kWidth = 1e-9;         // of a peak's speed
+constexpr double kWidth = 1e-7;         // of a peak's speed
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Which mode of `next` each of `last` has become, by its shape: largest |x' y| / (|x| |y|) first.
