@@ -66,6 +66,13 @@ inline constexpr const char* kSweepExamples =
     "whole cycle, mean, twist, heat; amplitude and phase of each order with --json and --out. Peaks between\n"
     "the speeds are found. docs/sweep.md has the equations and an example.\n";
 
+inline constexpr const char* kCampbellExamples =
+    "Examples:\n"
+    "  drev campbell engine.toml --speeds 300:10:1800\n"
+    "  drev campbell engine.toml --speeds 300,1800 --orders 1,2,4,6 --out result --json\n"
+    "\n"
+    "relative: amplitude of the order in that section over that of the largest critical.\n";
+
 inline constexpr const char* kChartExamples =
     "Examples:\n"
     "  drev chart camshaft --set drive=held\n"

@@ -6,13 +6,11 @@
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/results/sweep_result.hpp"
+#include "app/commands/sweep_request.hpp"
 
 namespace drev::app {
 
-namespace {
-
-SweepRequest request_sweep(const CommandLine& line) {
+SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
   LinearSweepOptions options;
@@ -29,17 +27,16 @@ SweepRequest request_sweep(const CommandLine& line) {
   options.close_contacts = line.option("--contact") == "closed";
   options.balance = line.option("--balance").value_or("");
   if (const auto out = line.option("--out"); out && model)
-    for (const char* name : {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"})
+    for (const std::string& name : written)
       check_output("--out", *out + name, model->model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), std::move(options), std::move(speeds_rpm),
           line.options.contains("--absolute-sum")};
 }
 
-}  // namespace
-
 int sweep_command(const CommandLine& line) {
-  const SweepRequest request = request_sweep(line);
+  const SweepRequest request =
+      request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (const auto out = line.option("--out")) {
     create_directory(*out);

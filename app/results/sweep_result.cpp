@@ -29,24 +29,6 @@ double largest(const Vector& values) { return values.size() > 0 ? values.cwiseAb
 
 std::string bounded(double value) { return std::isfinite(value) ? digits(value, kDigits) : "unbounded"; }
 
-/// Columns, each as wide as its widest cell; the first on the left, the others on the right.
-std::string columns(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width;
-  for (const auto& row : rows)
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (width.size() <= c) width.push_back(0);
-      width[c] = std::max(width[c], row[c].size());
-    }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c)
-      line += c == 0 ? pad_right(row[c], width[c]) : "  " + pad_left(row[c], width[c]);
-    text += line + "\n";
-  }
-  return text;
-}
-
 std::string sections_text(const SweepRequest& request, const LinearSweep& sweep) {
   std::vector<std::vector<std::string>> rows{
       {"section", "half range", "at [rpm]", "largest mean", "twist half range", "heat [W]"}};
@@ -67,7 +49,7 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
                     bounded(s.heat.maxCoeff())});
     if (request.absolute_sum) rows.back().push_back(bounded(absolute_sum(s).maxCoeff()));
   }
-  return columns(rows);
+  return columns_text(rows);
 }
 
 std::string criticals_text(const LinearSweep& sweep) {
@@ -86,7 +68,7 @@ std::string criticals_text(const LinearSweep& sweep) {
     rows.push_back({digits(to_rpm(c.speed), kDigits), short_digits(c.order, kDigits),
                     std::to_string(c.mode + 1), digits(c.frequency_Hz, kDigits), digits(c.damping_ratio, 3),
                     bounded(c.amplitude), bounded(c.half_range), name_of(sweep, c.section)});
-  std::string text = columns(rows);
+  std::string text = columns_text(rows);
   if (shown.size() < sweep.criticals.size())
     text += "... the " + std::to_string(shown.size()) + " largest of " +
             std::to_string(sweep.criticals.size()) + "; --json and --out have all\n";
@@ -160,6 +142,10 @@ Json section_object(const SweepRequest& request, const SweepSection& s) {
           {"phase_deg", phase}};
 }
 
+std::string cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
+
+}  // namespace
+
 Json critical_object(const LinearSweep& sweep, const SweepCritical& c) {
   return {{"speed_rpm", number(to_rpm(c.speed))},
           {"order", number(c.order)},
@@ -170,10 +156,6 @@ Json critical_object(const LinearSweep& sweep, const SweepCritical& c) {
           {"amplitude", number(c.amplitude)},
           {"half_range", number(c.half_range)}};
 }
-
-std::string cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
-
-}  // namespace
 
 std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep) {
   const std::string& name = request.model.entry->name;

@@ -20,6 +20,8 @@ struct SweepRequest {
 std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep);
 /// As docs/results.schema.json describes it, kind "sweep".
 Json sweep_object(const SweepRequest& request, const LinearSweep& sweep);
+/// One of the criticals, as it stands in that list.
+Json critical_object(const LinearSweep& sweep, const SweepCritical& critical);
 /// A row a speed: of each section half range, maximum, minimum, mean, heat, twist.
 std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep);
 /// A row a speed and order: of each section amplitude and phase.

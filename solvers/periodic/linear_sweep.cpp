@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/sweep_peaks.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
+#include "solvers/run/for_all.hpp"
 
 namespace drev {
 
@@ -92,9 +95,26 @@ struct TwistSums {
   }
 };
 
-void note_left_out(const System& system, OrderContent& content, LinearSweep& sweep) {
+/// What a thread needs of its own.
+struct Worker {
+  explicit Worker(const TrigonometricSum& given) : sum(given) {}
+  TrigonometricSum sum;
+  LinearResponse::Point point;
+  std::vector<SumExtremes> extremes, twists;
+};
+
+/// A thread has to build the equations anew, which is worth it for many speeds.
+std::size_t threads_for(const System& system, const LinearSweepOptions& options, std::size_t orders) {
+  constexpr double kWorth = 2e5;  // unknowns times frequencies a thread, some 10 ms
+  const double work = static_cast<double>(options.speeds.size() * orders) * system.size();
+  const auto most = static_cast<std::size_t>(work / kWorth) + 1;
+  return thread_count(std::min(most, options.speeds.size()), options.threads);
+}
+
+void note_left_out(const System& system, const std::vector<OrderContent::Content>& found,
+                   const OrderContent& content, LinearSweep& sweep) {
   for (std::size_t l = 0; l < content.loads().size(); ++l) {
-    const OrderContent::Content& c = content.latest()[l];
+    const OrderContent::Content& c = found[l];
     if (!(c.left_out > kLeftOut * c.rms)) continue;
     const ElementId element = content.loads()[l]->element;
     sweep.left_out.push_back({system.element_instances()[idx(index(element))].name, c.left_out / c.rms});
@@ -136,28 +156,38 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
   for (const LinearResponse::Section& section : response.sections())
     sweep.sections.push_back(to_section(section, static_cast<Eigen::Index>(sweep.orders.size()), speeds));
   sweep.unbalanced.assign(sweep.floating_parts.size(), Vector::Zero(speeds));
-  sweep.unbalanced_scale.assign(sweep.floating_parts.size(), 0.0);
   sweep.input_power.setZero(speeds);
   sweep.dissipated_power.setZero(speeds);
   const TwistSums twist_sums(response.sections());
-  LinearResponse::Point point;
-  std::vector<SumExtremes> extremes, twists;
-  for (Eigen::Index i = 0; i < speeds; ++i) {
-    const double speed = sweep.speeds[static_cast<std::size_t>(i)];
-    response.vibration(speed, point);
-    response.mean(speed, point);
-    sum.extremes(point.amplitude, extremes);
-    twist_sums.find(point, extremes, sum, twists);
-    put(point, extremes, twists, i, sweep);
-    sweep.input_power[i] = point.input_power;
-    sweep.dissipated_power[i] = point.dissipated_power;
-    for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f) {
-      const auto part = static_cast<Eigen::Index>(f);
-      sweep.unbalanced[f][i] = point.unbalanced[part];
-      sweep.unbalanced_scale[f] = std::max(sweep.unbalanced_scale[f], point.load_sum[part]);
+  std::vector<Vector> load_sums(sweep.unbalanced.size(), Vector::Zero(speeds));
+  std::vector<std::unique_ptr<Worker>> workers(threads_for(system, options, sweep.orders.size()));
+  for_all(workers.size(), static_cast<int>(workers.size()), [&](std::size_t w, std::size_t /*thread*/) {
+    workers[w] = std::make_unique<Worker>(sum);
+    Worker& worker = *workers[w];
+    std::optional<LinearResponse> own;
+    std::vector<Finding> none;
+    if (w > 0) own.emplace(system, options, sweep.orders, none);
+    LinearResponse& here = own ? *own : response;
+    const auto count = static_cast<Eigen::Index>(workers.size()), number = static_cast<Eigen::Index>(w);
+    for (Eigen::Index i = speeds * number / count; i < speeds * (number + 1) / count; ++i) {
+      const double speed = sweep.speeds[static_cast<std::size_t>(i)];
+      here.vibration(speed, worker.point);
+      here.mean(speed, worker.point);
+      worker.sum.extremes(worker.point.amplitude, worker.extremes);
+      twist_sums.find(worker.point, worker.extremes, worker.sum, worker.twists);
+      put(worker.point, worker.extremes, worker.twists, i, sweep);
+      sweep.input_power[i] = worker.point.input_power;
+      sweep.dissipated_power[i] = worker.point.dissipated_power;
+      for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f) {
+        sweep.unbalanced[f][i] = worker.point.unbalanced[static_cast<Eigen::Index>(f)];
+        load_sums[f][i] = worker.point.load_sum[static_cast<Eigen::Index>(f)];
+      }
     }
-  }
-  note_left_out(system, response.content(), sweep);
+  });
+  for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f)
+    sweep.unbalanced_scale.push_back(load_sums[f].maxCoeff());
+  note_left_out(system, response.content().at(reference_direction(system) * sweep.speeds.back()),
+                response.content(), sweep);
   if (options.refine) find_sweep_peaks(system, response, sum, sweep);
   return sweep;
 }

@@ -43,6 +43,7 @@ struct LinearSweepOptions {
   std::vector<std::string> sections = {};  ///< channels; empty: torque or force of every element that has one
   bool close_contacts = false;  ///< false: a model with laws that are not straight lines is refused
   bool refine = true;           ///< find the peaks between the speeds, and the criticals
+  int threads = 0;              ///< at most; 0: one a processor where there is enough to do
   std::string balance = {};     ///< node whose mean torque takes up what is left over; empty: none
 };
 

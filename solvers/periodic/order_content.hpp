@@ -39,8 +39,6 @@ class OrderContent {
   OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings);
   /// One for each load on an unknown. speed: of the reference shaft, with its sign [rad/s].
   const std::vector<Content>& at(double speed);
-  /// What at() found last.
-  const std::vector<Content>& latest() const { return content_; }
   /// damping -= mean dp/dtheta', stiffness -= mean dp/dtheta of all loads at the speed, on the pattern; null: not
   /// wanted.
   void add_slopes(double speed, Vector* damping, Vector* stiffness);

@@ -17,7 +17,7 @@ constexpr double kSameOrder = 1e-9;  // of the highest order: rounding of orders
 constexpr int kPointsAPeriod = 4;    // of the highest order
 constexpr int kFewestPoints = 16;
 constexpr int kRefinements = 20;
-constexpr double kAngleTolerance = 1e-5;  // of the distance of points
+constexpr double kAngleTolerance = 1e-4;  // of the distance of points
 
 /// The largest order that all are whole multiples of, by Euclid's algorithm; 0: below `least`.
 double common_order(const std::vector<double>& orders, double least, double same) {
@@ -72,7 +72,7 @@ double TrigonometricSum::refine(const Complex* a, double start, double sign, dou
     const Complex one = std::polar(1.0, angle);
     Complex power = 1.0;
     int at = 0;
-    double y = 0.0, slope = 0.0, bend = 0.0;
+    double y = 0.0, slope = 0.0, bend = 0.0, twist = 0.0;
     for (std::size_t k = 0; k < multiples_.size(); ++k) {
       const int n = multiples_[k];
       if (dense && n >= at)
@@ -86,14 +86,17 @@ double TrigonometricSum::refine(const Complex* a, double start, double sign, dou
       y += re;
       slope -= n * im;
       bend -= static_cast<double>(n) * n * re;
+      twist += cubes_[k] * im;
     }
     value = std::max(value, sign * y);
     if (!(sign * bend < 0.0)) return angle;
-    const double step = -slope / bend;
+    // Halley's step, where it does not turn Newton's round.
+    const double newton = -slope / bend, third = 1.0 + 0.5 * newton * twist / bend;
+    const double step = newton / std::max(third, 0.5);
     if (std::abs(angle + step - start) > step_) return angle;
     angle += step;
     if (std::abs(step) < kAngleTolerance * step_) {
-      value = std::max(value, sign * (y + 0.5 * slope * step));
+      value = std::max(value, sign * (y + step * (slope + 0.5 * step * bend)));
       return angle;
     }
   }

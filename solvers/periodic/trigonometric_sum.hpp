@@ -5,7 +5,7 @@
 ///
 /// The sum is taken at 4 max(n_k) even points of the cycle. About each local maximum of the points it is above the
 /// parabola through three of them by at most B h^3 / (9 sqrt 3), B = sum n_k^3 |a_k|, h their distance; all that
-/// this leaves possible are refined by Newton's method on y' = 0. Smallest values are the largest of -y.
+/// this leaves possible are refined by Halley's method on y' = 0. Smallest values are the largest of -y.
 ///
 /// Accuracy: rounding, about 1e-15 sum |a_k| for the value; half of the digits for its angle.
 #include <Eigen/Core>

@@ -120,6 +120,32 @@ TEST_CASE("Damped modes as JSON: shares of energy sum to one", "[sweep]") {
   CHECK(Json::parse(open.out).at("contact") == "open");
 }
 
+TEST_CASE("Campbell: the criticals are those of the sweep", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const auto printed = drev_command({"campbell", kEngine, "--speeds", "600:10:2000", "--out", out, "--json"});
+  REQUIRE(printed.exit_code == 0);
+  CHECK(read_file(out + "/summary.json") == printed.out);
+  const Json json = Json::parse(printed.out);
+  const Json sweep = Json::parse(drev_command({"sweep", kEngine, "--speeds", "600:10:2000", "--json"}).out);
+  REQUIRE(json.at("criticals").size() == sweep.at("criticals").size());
+  REQUIRE(json["criticals"].size() == 4);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Json critical = json["criticals"][i];
+    largest = std::max(largest, critical.at("relative").get<double>());
+    critical.erase("relative");
+    CHECK(critical == sweep["criticals"][i]);
+    // The order meets the mode there, but for what damping and the other orders' flanks move.
+    CHECK(critical.at("order").get<double>() * critical.at("speed_rpm").get<double>() / 60.0 ==
+          Approx(critical.at("frequency_Hz").get<double>()).epsilon(0.1));
+  }
+  CHECK(largest == 1.0);
+  CHECK(json.at("modes").size() == 6);
+  CHECK(read_file(out + "/modes.csv").starts_with("speed_rpm,mode_1_frequency_Hz,mode_1_damping_ratio"));
+  CHECK(drev_command({"campbell", kEngine}).exit_code == 2);
+}
+
 TEST_CASE("Faults of a sweep are listed at once", "[sweep]") {
   const auto refused = drev_command({"sweep", kEngine, "--orders", "2,1"});
   CHECK(refused.exit_code == 2);

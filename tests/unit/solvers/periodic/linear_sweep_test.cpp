@@ -298,6 +298,62 @@ TEST_CASE("Closed contacts on request; where teeth would separate is said", "[li
   CHECK(with_mean(5.0).sections[0].separates(0));
 }
 
+namespace {
+
+/// -factor w |w|, as a propeller or fan takes it.
+class SquareLaw final : public Element, public Load {
+ public:
+  struct Params {
+    double factor = 0.0;  // N m s^2/rad^2
+  };
+  explicit SquareLaw(Params params) : params_(params) {}
+  std::string_view type() const override { return "square law"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    check.positive("factor", params_.factor, "N m s^2/rad^2");
+  }
+  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  LoadResponse evaluate(const LoadInput& in) const override {
+    return {.torque = -params_.factor * in.speed * std::abs(in.speed),
+            .dtorque_dspeed = -2.0 * params_.factor * std::abs(in.speed)};
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace
+
+TEST_CASE("A load that follows the speed damps with its slope, at every speed", "[linear_sweep]") {
+  const double k = 800.0, inertia = 2.0, factor = 0.05;
+  Model m("fan");
+  m.add_node("clock"), m.add_node("disc");
+  m.constant_speed("clock", 10.0);
+  m.add<ShaftSpring>("shaft", {"clock", "disc"}, {.stiffness = k});
+  m.add<Inertia>("J", {"disc"}, {.inertia = inertia});
+  m.add<SquareLaw>("fan", {"disc"}, {.factor = factor});
+  m.add<EngineOrderTorque>("torque", {"disc"}, {.harmonics = {{2.0, 5.0, 0.3}}, .twist_feedback = false});
+  const LinearSweep sweep = sweep_linear(m.build(), {.speeds = {4.0, 7.0, 16.0}, .orders = {2.0}});
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double speed = sweep.speeds[static_cast<std::size_t>(i)], w = 2.0 * speed, c = 2.0 * factor * speed;
+    const Complex expected = k * std::polar(5.0, 0.3) / Complex(k - w * w * inertia, w * c);
+    CHECK(std::abs(sweep.sections[0].amplitude(0, i) - expected) < 1e-12 * std::abs(expected));
+    CHECK(sweep.sections[0].mean[i] == Approx(-factor * speed * speed).epsilon(1e-12));
+  }
+  REQUIRE(sweep.modes.lambda.rows() == 1);
+  REQUIRE(sweep.modes.speeds.size() == 9);
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    const double decay = factor * sweep.modes.speeds[i] / inertia;
+    CHECK(std::abs(sweep.modes.lambda(0, i) - Complex(-decay, std::sqrt(k / inertia - decay * decay))) <
+          1e-9);
+  }
+  // c grows with w: |k / (k - (2 w)^2 J + 2 i w c)| is largest where d/dw of the squared denominator is 0.
+  REQUIRE(sweep.criticals.size() == 1);
+  const double w = sweep.criticals[0].speed;
+  CHECK(std::abs(-16.0 * w * inertia * (k - 4.0 * w * w * inertia) + 64.0 * factor * factor * w * w * w) <
+        1e-5 * k * k / w);
+}
+
 TEST_CASE("The extremes of sums are those of a fine search", "[linear_sweep]") {
   std::mt19937 draw(5);
   std::normal_distribution<double> number;
