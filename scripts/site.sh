@@ -13,7 +13,7 @@ cp -r docs/pictures "$site/"
 
 # In the order of reading; what is not named comes after.
 order=(README tutorial model_file conventions catalogue adding_an_element plugins results report theory
-       which_method parameter_study fidelity study validation performance gallery coming_from architecture)
+       which_method sweep parameter_study fidelity study validation performance gallery coming_from architecture)
 pages=()
 for name in "${order[@]}"; do
   for file in "$name.md" "docs/$name.md"; do

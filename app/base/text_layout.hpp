@@ -21,6 +21,10 @@ std::string pad_left(const std::string& text, std::size_t width);
 /// Words wrapped at 100 columns, every line but the first indented; ends with a line end.
 std::string wrap(const std::string& text, std::size_t indent);
 
+/// Columns, each as wide as its widest cell and two blanks from the next; the first on the left, the others on
+/// the right; a line a row.
+std::string columns_text(const std::vector<std::vector<std::string>>& rows);
+
 /// The width of the labels that texts for people begin their lines with.
 inline constexpr std::size_t kLabel = 24;
 /// The label, padded to it, and the text, wrapped beside it.

@@ -7,6 +7,7 @@ inline constexpr const char* kMainExamples =
     "  drev list                          the models\n"
     "  drev list camshaft                 its parameters and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
+    "  drev sweep my.toml --speeds 300:10:1800   its steady vibration by orders, and its criticals\n"
     "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
     "  drev run camshaft --report a.html  the report of it, a page for any browser\n"
     "  drev chart camshaft                which method to use for it, measured\n"
@@ -51,7 +52,26 @@ inline constexpr const char* kModesExamples =
     "Examples:\n"
     "  drev modes camshaft\n"
     "  drev modes camshaft --set drive=free --count 5 --json\n"
-    "  drev modes gear_drive --contact open\n";
+    "  drev modes gear_drive --contact open\n"
+    "  drev modes camshaft --damped --json\n";
+
+inline constexpr const char* kSweepExamples =
+    "Examples:\n"
+    "  drev sweep engine.toml --speeds 300:10:1800\n"
+    "  drev sweep engine.toml --speeds 800:10:2600 --orders 0.5:0.5:12 --out result\n"
+    "  drev sweep camshaft --set drive=held --speeds 300:10:900 --orders 1:1:40 --json\n"
+    "  drev sweep geared.toml --speeds 300:10:1800 --contact closed --balance generator\n"
+    "\n"
+    "Of each section: half range, maximum and minimum of the sum of all orders with their phases over the\n"
+    "whole cycle, mean, twist, heat; amplitude and phase of each order with --json and --out. Peaks between\n"
+    "the speeds are found. docs/sweep.md has the equations and an example.\n";
+
+inline constexpr const char* kCampbellExamples =
+    "Examples:\n"
+    "  drev campbell engine.toml --speeds 300:10:1800\n"
+    "  drev campbell engine.toml --speeds 300,1800 --orders 1,2,4,6 --out result --json\n"
+    "\n"
+    "relative: amplitude of the order in that section over that of the largest critical.\n";
 
 inline constexpr const char* kChartExamples =
     "Examples:\n"

@@ -65,4 +65,40 @@ int read_count(const char* option, const std::string& text, std::optional<int> m
   return 1;
 }
 
+std::string read_steps(const std::string& text, double most, std::vector<double>& values) {
+  const std::vector<std::string> parts = split(text, ':');
+  double first = 0.0, step = 0.0, last = 0.0;
+  if (parts.size() != 3 || !read_number(parts[0], first) || !read_number(parts[1], step) ||
+      !read_number(parts[2], last) || !std::isfinite(first) || !std::isfinite(step) || !std::isfinite(last))
+    return "must be FIRST:STEP:LAST";
+  const double steps = std::floor((last - first) / step + 1e-9);
+  if (!(steps >= 0.0) || step == 0.0) return "has a STEP that does not lead from FIRST to LAST";
+  if (steps >= most) return "has more values than " + short_digits(most, 7);
+  for (double i = 0.0; i <= steps; ++i) {
+    const double value = first + i * step;
+    values.push_back(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value);
+  }
+  return {};
+}
+
+std::vector<double> read_rising(const char* option, const std::string& text, const std::string& unit,
+                                std::vector<Finding>& findings) {
+  constexpr double kMost = 1e6;
+  std::vector<double> values;
+  std::string wrong;
+  if (text.find(':') != text.npos) {
+    wrong = read_steps(text, kMost, values);
+  } else {
+    for (const std::string& part : split(text, ',')) {
+      values.push_back(0.0);
+      if (!read_number(part, values.back())) wrong = "must be FIRST:STEP:LAST or A,B,C, numbers without unit";
+    }
+  }
+  for (std::size_t i = 0; i < values.size() && wrong.empty(); ++i)
+    if (!std::isfinite(values[i]) || !(values[i] > (i > 0 ? values[i - 1] : 0.0)))
+      wrong = "must be > 0 and rise from each to the next";
+  if (!wrong.empty()) findings.push_back({kCommandLine, option, text, unit, wrong});
+  return values;
+}
+
 }  // namespace drev::app

@@ -10,6 +10,8 @@ const std::vector<CommandEntry>& commands();
 
 int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);
+int sweep_command(const CommandLine& line);
+int campbell_command(const CommandLine& line);
 int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
 int study_command(const CommandLine& line);

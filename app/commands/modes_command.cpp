@@ -1,4 +1,7 @@
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/mode_energy.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +23,13 @@ namespace {
 struct ModesRequest {
   ModelRequest model;
   ModesOptions options;
+  bool damped = false;
+  double speed = 0.0;  ///< rad/s, at which loads that follow it act as dampers; 0: without them
+  std::optional<int> count = {};
 };
+
+constexpr Range kSpeed{1e-6, 1e7};  // rpm
+constexpr int kCount = 10;          // damped modes shown unless told otherwise
 
 ModesRequest request_modes(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
@@ -31,8 +40,16 @@ ModesRequest request_modes(const CommandLine& line) {
   if (model) elastic = model->system.size() - model->system.rigid_mode_count(options.contact);
   if (const auto count = line.option("--count"))
     options.count = read_count("--count", *count, elastic, ", the model's elastic modes", findings);
+  const bool damped = line.options.contains("--damped");
+  double speed = 0.0;
+  if (const auto text = line.option("--speed")) {
+    speed = rpm(read_plain("--speed", *text, kSpeed, findings));
+    if (!damped)
+      findings.push_back(
+          {kCommandLine, "--speed", *text, "rpm", "is for --damped: loads that follow the speed damp"});
+  }
   if (!findings.empty()) throw ModelError(std::move(findings));
-  return {std::move(*model), options};
+  return {std::move(*model), options, damped, speed, options.count};
 }
 
 /// Seven digits, or those that rounding leaves and its error.
@@ -57,10 +74,121 @@ std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::
   return text;
 }
 
+/// Time constant of a real lambda; of none that rounding leaves of zero.
+std::string decay_text(double lambda, double rounding) {
+  if (std::abs(lambda) <= rounding) return "0 1/s: turns freely, without drag";
+  return digits(lambda, 7) + " 1/s: " + (lambda < 0.0 ? "decays" : "grows") + " with the time constant " +
+         digits(1.0 / std::abs(lambda), 5) + " s";
+}
+
+/// What rounding leaves of lambda = 0 (damped_modes.hpp).
+double rounding_of(const DampedModeSet& set) {
+  double largest = 0.0;
+  for (const DampedMode& mode : set.modes) largest = std::max(largest, std::abs(mode.lambda));
+  return 1e-13 * largest;
+}
+
+/// The element with the largest share, and the share.
+std::string chief(const ModeEnergy& energy, const Eigen::MatrixXd& shares, Eigen::Index mode) {
+  if (shares.rows() == 0) return "";
+  Eigen::Index at = 0;
+  const double share = shares.col(mode).maxCoeff(&at);
+  return share > 0.0 ? energy.elements[static_cast<std::size_t>(at)] + " " + digits(100.0 * share, 3) + " %"
+                     : "none";
+}
+
+std::string damped_as_text(const ModesRequest& request, const DampedModeSet& set, const ModeEnergy& energy,
+                           std::size_t count) {
+  const std::string& name = request.model.entry->name;
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
+  text += std::string("contacts ") + (set.contact == Contact::closed ? "closed" : "open") + ", " +
+          std::to_string(set.rigid_modes) + (set.rigid_modes == 1 ? " rigid mode" : " rigid modes") +
+          (request.speed > 0.0 ? ", loads at " + digits(to_rpm(request.speed), 6) + " rpm" : std::string()) +
+          "\n\n";
+  if (count == 0) text += "no mode that swings\n";
+  if (count > 0)
+    text +=
+        "mode   frequency [Hz]    undamped [Hz]    damping ratio   Re lambda [1/s]   most elastic energy, "
+        "most heat\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    const DampedMode& mode = set.modes[i];
+    const auto column = static_cast<Eigen::Index>(i);
+    text += pad_left(std::to_string(i + 1), 4) + pad_left(digits(mode.frequency_Hz, 7), 17) +
+            pad_left(digits(mode.natural_frequency_Hz, 7), 17) + pad_left(digits(mode.damping_ratio, 5), 17) +
+            pad_left(digits(mode.lambda.real(), 6), 18) + "   " + chief(energy, energy.elastic, column) +
+            ", " + chief(energy, energy.dissipated, column) + "\n";
+  }
+  if (!set.real_lambda.empty()) text += "\nreal eigenvalues (rigid motions' speeds and overdamped modes):\n";
+  for (const double lambda : set.real_lambda) text += "  " + decay_text(lambda, rounding_of(set)) + "\n";
+  if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
+  return text;
+}
+
+Json shares_object(const ModeEnergy& energy, Eigen::Index mode) {
+  Json list = Json::array();
+  for (std::size_t e = 0; e < energy.elements.size(); ++e) {
+    const auto row = static_cast<Eigen::Index>(e);
+    list.push_back({{"element", energy.elements[e]},
+                    {"kinetic", number(energy.kinetic(row, mode))},
+                    {"elastic", number(energy.elastic(row, mode))},
+                    {"dissipated", number(energy.dissipated(row, mode))}});
+  }
+  return list;
+}
+
+Json damped_object(const ModesRequest& request, const DampedModeSet& set, const ModeEnergy& energy,
+                   std::size_t count) {
+  const System& system = request.model.system;
+  Json object = result_object("damped_modes"), modes = Json::array(), real = Json::array();
+  object["model"] = request.model.entry->name;
+  object["parameters"] = parameters_object(request.model.parameters);
+  object["contact"] = set.contact == Contact::closed ? "closed" : "open";
+  object["speed_rpm"] = request.speed > 0.0 ? number(to_rpm(request.speed)) : Json();
+  object["rigid_modes"] = set.rigid_modes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const DampedMode& mode = set.modes[i];
+    const auto column = static_cast<Eigen::Index>(i);
+    Json shape = Json::array();
+    for (int node = 0; node < system.node_count(); ++node) {
+      const std::complex<double> x = set.shapes(node, column);
+      shape.push_back({{"node", system.node_names()[idx(node)]},
+                       {"amplitude", number(std::abs(x))},
+                       {"phase_deg", number(to_deg(std::arg(x)))}});
+    }
+    modes.push_back({{"real_per_s", number(mode.lambda.real())},
+                     {"imaginary_per_s", number(mode.lambda.imag())},
+                     {"frequency_Hz", number(mode.frequency_Hz)},
+                     {"undamped_Hz", number(mode.natural_frequency_Hz)},
+                     {"damping_ratio", number(mode.damping_ratio)},
+                     {"shape", shape},
+                     {"energy", shares_object(energy, column)}});
+  }
+  for (const double lambda : set.real_lambda) {
+    const bool still = std::abs(lambda) <= rounding_of(set);
+    real.push_back({{"real_per_s", number(still ? 0.0 : lambda)}, {"turns_freely", still}});
+  }
+  object["modes"] = std::move(modes);
+  object["real_eigenvalues"] = std::move(real);
+  object["note"] = text_or_null(request.model.model_case.note);
+  return object;
+}
+
+int damped_command(const ModesRequest& request, bool json) {
+  DampedModesOptions options{.contact = request.options.contact};
+  if (request.speed > 0.0) options.damping = load_damping(request.model.system, request.speed);
+  const DampedModeSet set = solve_damped_modes(request.model.system, options);
+  const ModeEnergy energy = mode_energy(request.model.system, set);
+  const std::size_t count = std::min<std::size_t>(idx(request.count.value_or(kCount)), set.modes.size());
+  print(json ? json_text(damped_object(request, set, energy, count))
+             : damped_as_text(request, set, energy, count));
+  return kSuccess;
+}
+
 }  // namespace
 
 int modes_command(const CommandLine& line) {
   const ModesRequest request = request_modes(line);
+  if (request.damped) return damped_command(request, line.json);
   const ModeSet modes = solve_modes(request.model.system, request.options);
   const std::string contact = request.options.contact == Contact::closed ? "closed" : "open";
   if (line.json) {

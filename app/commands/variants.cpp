@@ -7,6 +7,7 @@
 
 #include "app/base/text_layout.hpp"
 #include "app/cli/command_line.hpp"
+#include "app/cli/option_values.hpp"
 
 namespace drev::app {
 
@@ -25,18 +26,14 @@ std::string read_values(const std::string& text, std::vector<std::string>& value
     }
     return {};
   }
-  double first = 0.0, step = 0.0, last = 0.0;
-  if (range.size() != 3 || !read_number(range[0], first) || !read_number(range[1], step) ||
-      !read_number(range[2], last) || !std::isfinite(first) || !std::isfinite(step) || !std::isfinite(last))
-    return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
-  const double steps = std::floor((last - first) / step + 1e-9);
-  if (!(steps >= 0.0) || step == 0.0) return "has a STEP that does not lead from FIRST to LAST";
-  if (steps >= kMostVariants) return "has more values than " + short_digits(kMostVariants, 5);
-  for (double i = 0.0; i <= steps; ++i) {
-    const double value = first + i * step;
-    const std::string text = short_digits(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value, 12);
-    if (!values.empty() && values.back() == text) return "has a STEP too small for 12 digits";
-    values.push_back(text);
+  std::vector<double> numbers;
+  const std::string wrong = read_steps(text, kMostVariants, numbers);
+  if (!wrong.empty())
+    return wrong.starts_with("must be") ? "must be NAME=A,B,C or NAME=FIRST:STEP:LAST" : wrong;
+  for (const double number : numbers) {
+    const std::string value = short_digits(number, 12);
+    if (!values.empty() && values.back() == value) return "has a STEP too small for 12 digits";
+    values.push_back(value);
   }
   return {};
 }

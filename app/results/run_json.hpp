@@ -7,7 +7,7 @@
 
 namespace drev::app {
 
-/// With what all results have: kind is "run", "modes" or "runs".
+/// With what all results have; kind: what the object is, of those that docs/results.schema.json lists.
 Json result_object(const char* kind);
 Json run_object(const RunRequest& request, const RunResult& result);
 std::string run_as_json(const RunRequest& request, const RunResult& result);

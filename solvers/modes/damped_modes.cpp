@@ -70,6 +70,7 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   // L^-1 A L^-T
   const auto reduced = [&](const Weights& weights) {
     assembler.contact_values(weights, options.contact, values);
+    if (options.damping.size() > 0) values += weights.c * options.damping;
     const Matrix half = mass.matrixL().solve(dense(system.pattern(), values));
     return Matrix(mass.matrixL().solve(half.transpose()).transpose());
   };

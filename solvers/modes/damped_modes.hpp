@@ -28,6 +28,9 @@ struct DampedModesOptions {
   Contact contact = Contact::closed;
   /// Largest number of unknowns n; time grows with n^3. Measured: 0.1 s at 100, 4 s at 400.
   int size_limit = 1500;
+  /// Added to C, values on System::pattern(); empty: nothing. That of loads which follow the speed:
+  /// load_damping() of solvers/periodic/linear_sweep.hpp.
+  Vector damping = {};
 };
 
 /// One oscillating mode: a pair of conjugate lambda.

@@ -2,8 +2,9 @@
 #include <drev/solvers/periodic/speed_sweep.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+
+#include "solvers/run/bracketed_maximum.hpp"
 
 namespace drev {
 
@@ -46,19 +47,8 @@ SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::v
       const double before = worst.amplitude;
       if (at_speed(speeds[i]) > before) top = i;
     }
-    double low = speeds[top > 0 ? top - 1 : 0], high = speeds[std::min(top + 1, speeds.size() - 1)];
-    const double width = kWidth * (high - low), golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    double left = high - golden * (high - low), right = low + golden * (high - low);
-    double y_left = high > low ? at_speed(left) : 0.0, y_right = high > low ? at_speed(right) : 0.0;
-    while (high - low > width) {
-      if (y_left >= y_right) {
-        high = right, right = left, y_right = y_left;
-        y_left = at_speed(left = high - golden * (high - low));
-      } else {
-        low = left, left = right, y_left = y_right;
-        y_right = at_speed(right = low + golden * (high - low));
-      }
-    }
+    const double low = speeds[top > 0 ? top - 1 : 0], high = speeds[std::min(top + 1, speeds.size() - 1)];
+    if (high > low) bracketed_maximum(low, speeds[top], high, kWidth * (high - low), at_speed);
   }
   return sweep;
 }

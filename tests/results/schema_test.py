@@ -81,6 +81,11 @@ with open("turning.toml", "w") as file:
 with open("turning.toml") as file, open("run_up.toml", "w") as copied:
     copied.write(file.read().replace("nominal_speed_rpm = 900",
                                      "hold = true, run_up = { speed_0_rpm = 300, speed_1_rpm = 1500, time_1_s = 3 }"))
+with open("turning.toml") as file, open("many_segments.toml", "w") as copied:
+    copied.write(file.read().replace('stiffness_Nm_per_rad = 9000, damping_Nms_per_rad = 20',
+                                     'shear_modulus_GPa = 80, segments = 450, density_kg_per_m3 = 7850, '
+                                     'outer_diameter_mm = 100, length_m = 5')
+                 .replace('"shaft_spring"', '"distributed_shaft"'))
 
 results = {
     "exact": printed("run", "camshaft", "--set", short),
@@ -96,6 +101,12 @@ results = {
     "file": printed("run", "trains/at_rest.toml"),
     "modes": printed("modes", "camshaft"),
     "open": printed("modes", "gear_drive", "--contact", "open"),
+    "damped": printed("modes", "turning.toml", "--damped", "--speed", "900"),
+    "sweep": printed("sweep", "turning.toml", "--speeds", "300:100:1200", "--orders", "0.5,2,4", "--balance", "b",
+                     "--absolute-sum"),
+    "closed": printed("sweep", "camshaft", "--speeds", "600,700", "--orders", "1:1:6", "--contact", "closed"),
+    "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
+    "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "2"),
     "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",
                         code=1),
     "energy_error": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=1e6", "k_2_N_per_m=1e6", "--step",
@@ -160,6 +171,10 @@ refused("killed", lambda r: r.update(status="success"))  # which has them
 refused("accuracy", lambda r: r["accuracy"]["figures"][0].pop("error"))
 refused("reduced", lambda r: r["reduction"].pop("reason"))
 refused("modes", lambda r: r["frequencies_Hz"].append("fast"))
+refused("damped", lambda r: r["modes"][0]["energy"][0].pop("elastic"))
+refused("sweep", lambda r: r["sections"][0].update(half_range="large"))
+refused("sweep", lambda r: r.pop("criticals"))
+refused("campbell", lambda r: r["modes"][0].pop("damping_ratio"))
 refused("many", lambda r: r["runs"][0]["summary"].pop("results"))
 refused("many", lambda r: r["runs"][1].pop("reason"))
 print(len(results), "results are as the schema says")

@@ -8,7 +8,7 @@ set(room_table
   "solvers/contact:core solvers/linear"
   "solvers/run:core solvers/linear"
   "solvers/modes:core solvers/linear"
-  "solvers/periodic:core solvers/linear solvers/run"
+  "solvers/periodic:core solvers/linear solvers/run solvers/modes"
   "solvers/stepping:core solvers/linear solvers/contact solvers/run"
   "solvers/exact:core solvers/linear solvers/contact solvers/run"
   "solvers:core solvers/linear solvers/contact solvers/run solvers/modes solvers/periodic solvers/stepping solvers/exact"

@@ -16,7 +16,7 @@ struct OptionFault {
 const std::vector<OptionFault>& faults() {
   static const std::vector<OptionFault> all{
       // commands and models
-      {{}, {"no command", "run, modes, list, chart, study, advise"}},
+      {{}, {"no command", "run, modes, sweep, campbell, list"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
       {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
       {{"--verison"}, {"--verison", "did you mean '--version'?"}},

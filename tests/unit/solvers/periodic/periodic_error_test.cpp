@@ -1,4 +1,5 @@
 // The error that a periodic response states, against periodic orbits found by shooting with exact propagation.
+#include <drev/core/state.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>

@@ -1,0 +1,31 @@
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/output_file.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/sweep_request.hpp"
+#include "app/results/campbell_result.hpp"
+
+namespace drev::app {
+
+int campbell_command(const CommandLine& line) {
+  const SweepRequest request = request_sweep(line, {"/modes.csv", "/criticals.csv", "/summary.json"});
+  const LinearSweep sweep = sweep_linear(request.model.system, request.options);
+  if (!sweep.modes_note.empty())
+    throw SolverError("campbell of " + request.model.entry->name + ": " + sweep.modes_note);
+  if (const auto out = line.option("--out")) {
+    create_directory(*out);
+    write_file(*out, "modes", "csv", campbell_modes_as_csv(sweep));
+    write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
+    write_file(*out, "summary", "json", json_text(campbell_object(request, sweep)));
+  }
+  print(line.json ? json_text(campbell_object(request, sweep)) : campbell_as_text(request, sweep));
+  return kSuccess;
+}
+
+}  // namespace drev::app

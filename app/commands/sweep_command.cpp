@@ -1,0 +1,52 @@
+#include <drev/core/units.hpp>
+
+#include "app/base/output_file.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/sweep_request.hpp"
+
+namespace drev::app {
+
+SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
+  std::vector<Finding> findings = line.findings;
+  std::optional<ModelRequest> model = build_model(line, findings);
+  LinearSweepOptions options;
+  std::vector<double> speeds_rpm;
+  if (const auto speeds = line.option("--speeds"))
+    speeds_rpm = read_rising("--speeds", *speeds, "rpm", findings);
+  else
+    findings.push_back({kCommandLine, "--speeds", "", "rpm",
+                        "is missing: the speeds of the reference shaft, such as 300:10:1800"});
+  for (const double speed : speeds_rpm) options.speeds.push_back(rpm(speed));
+  if (const auto orders = line.option("--orders"))
+    options.orders = read_rising("--orders", *orders, "", findings);
+  options.sections = line.list("--record").value_or(std::vector<std::string>{});
+  options.close_contacts = line.option("--contact") == "closed";
+  options.balance = line.option("--balance").value_or("");
+  if (const auto out = line.option("--out"); out && model)
+    for (const std::string& name : written)
+      check_output("--out", *out + name, model->model_case.files, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return {std::move(*model), std::move(options), std::move(speeds_rpm),
+          line.options.contains("--absolute-sum")};
+}
+
+int sweep_command(const CommandLine& line) {
+  const SweepRequest request =
+      request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
+  const LinearSweep sweep = sweep_linear(request.model.system, request.options);
+  if (const auto out = line.option("--out")) {
+    create_directory(*out);
+    write_file(*out, "sweep", "csv", sweep_as_csv(request, sweep));
+    write_file(*out, "orders", "csv", orders_as_csv(request, sweep));
+    write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
+    write_file(*out, "summary", "json", json_text(sweep_object(request, sweep)));
+  }
+  print(line.json ? json_text(sweep_object(request, sweep)) : sweep_as_text(request, sweep));
+  return kSuccess;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,110 @@
+#include "app/results/campbell_result.hpp"
+
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/parameter_text.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/results/run_json.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kSignificant = 6;
+
+double damping_ratio_of(std::complex<double> lambda) {
+  return std::abs(lambda) > 0.0 ? -lambda.real() / std::abs(lambda) : 0.0;
+}
+
+/// The critical's amplitude beside the largest of all that are bounded; 1 of those that are not.
+double relative(const LinearSweep& sweep, const SweepCritical& critical) {
+  double largest = 0.0;
+  for (const SweepCritical& c : sweep.criticals)
+    if (std::isfinite(c.amplitude)) largest = std::max(largest, c.amplitude);
+  if (!std::isfinite(critical.amplitude)) return 1.0;
+  return largest > 0.0 ? critical.amplitude / largest : 0.0;
+}
+
+/// Frequencies as a range, where they follow the speed.
+std::string range_text(const Eigen::RowVectorXd& values, int significant) {
+  const std::string low = digits(values.minCoeff(), significant),
+                    high = digits(values.maxCoeff(), significant);
+  return low == high ? low : low + " .. " + high;
+}
+
+}  // namespace
+
+std::string campbell_as_text(const SweepRequest& request, const LinearSweep& sweep) {
+  const std::string& name = request.model.entry->name;
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
+  text += "speeds " + short_digits(request.speeds_rpm.front(), kSignificant) + " to " +
+          short_digits(request.speeds_rpm.back(), kSignificant) + " rpm" +
+          (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
+  std::vector<std::vector<std::string>> modes{{"mode", "frequency [Hz]", "damping ratio"}};
+  for (Eigen::Index m = 0; m < sweep.modes.lambda.rows(); ++m) {
+    const Eigen::RowVectorXcd lambda = sweep.modes.lambda.row(m);
+    modes.push_back({std::to_string(m + 1), range_text(lambda.imag() / kTwoPi, kSignificant),
+                     range_text(lambda.unaryExpr(&damping_ratio_of).real(), 4)});
+  }
+  text += columns_text(modes) + "\n";
+  if (sweep.criticals.empty())
+    return text + "No order that the loads hold meets a natural frequency within the speeds.\n";
+  std::vector<std::vector<std::string>> rows{
+      {"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio", "amplitude", "relative", "in"}};
+  for (const SweepCritical& c : sweep.criticals)
+    rows.push_back({digits(to_rpm(c.speed), kSignificant), short_digits(c.order, kSignificant),
+                    std::to_string(c.mode + 1), digits(c.frequency_Hz, kSignificant),
+                    digits(c.damping_ratio, 3),
+                    std::isfinite(c.amplitude) ? digits(c.amplitude, kSignificant) : "unbounded",
+                    digits(relative(sweep, c), 3), sweep.sections[static_cast<std::size_t>(c.section)].name});
+  return text + columns_text(rows);
+}
+
+Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
+  Json object = result_object("campbell"), speeds = Json::array(), modes = Json::array(),
+       criticals = Json::array();
+  object["model"] = request.model.entry->name;
+  object["parameters"] = parameters_object(request.model.parameters);
+  object["contact"] = request.options.close_contacts ? Json("closed") : Json();
+  for (const double speed : sweep.modes.speeds) speeds.push_back(number(to_rpm(speed)));
+  for (Eigen::Index m = 0; m < sweep.modes.lambda.rows(); ++m) {
+    Json frequency = Json::array(), damping = Json::array();
+    for (const std::complex<double> lambda : sweep.modes.lambda.row(m)) {
+      frequency.push_back(number(to_hz(lambda.imag())));
+      damping.push_back(number(damping_ratio_of(lambda)));
+    }
+    modes.push_back({{"mode", m + 1}, {"frequency_Hz", frequency}, {"damping_ratio", damping}});
+  }
+  for (const SweepCritical& c : sweep.criticals) {
+    Json critical = critical_object(sweep, c);
+    critical["relative"] = number(relative(sweep, c));
+    criticals.push_back(std::move(critical));
+  }
+  object["from_rpm"] = request.speeds_rpm.front();
+  object["to_rpm"] = request.speeds_rpm.back();
+  object["orders"] = sweep.orders;
+  object["mode_speeds_rpm"] = std::move(speeds);
+  object["modes"] = std::move(modes);
+  object["criticals"] = std::move(criticals);
+  object["note"] = text_or_null(request.model.model_case.note);
+  return object;
+}
+
+std::string campbell_modes_as_csv(const LinearSweep& sweep) {
+  std::string text = "speed_rpm";
+  for (Eigen::Index m = 1; m <= sweep.modes.lambda.rows(); ++m)
+    text += ",mode_" + std::to_string(m) + "_frequency_Hz,mode_" + std::to_string(m) + "_damping_ratio";
+  text += "\n";
+  for (Eigen::Index i = 0; i < sweep.modes.speeds.size(); ++i) {
+    text += to_text(to_rpm(sweep.modes.speeds[i]));
+    for (const std::complex<double> lambda : sweep.modes.lambda.col(i))
+      text += "," + to_text(to_hz(lambda.imag())) + "," + to_text(damping_ratio_of(lambda));
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace drev::app

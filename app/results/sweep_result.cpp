@@ -1,0 +1,262 @@
+#include "app/results/sweep_result.hpp"
+
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/csv_cell.hpp"
+#include "app/base/parameter_text.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/results/run_json.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kDigits = 6;
+constexpr std::size_t kCriticalsShown = 20;
+constexpr double kRounding = 1e-12;  // of the largest mean
+constexpr double kBalanced = 1e-6;   // of the mean torques: what is left over is worth a word
+
+Vector absolute_sum(const SweepSection& section) { return section.amplitude.cwiseAbs().colwise().sum(); }
+
+const std::string& name_of(const LinearSweep& sweep, int section) {
+  return sweep.sections[static_cast<std::size_t>(section)].name;
+}
+
+double largest(const Vector& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; }
+
+std::string bounded(double value) { return std::isfinite(value) ? digits(value, kDigits) : "unbounded"; }
+
+std::string sections_text(const SweepRequest& request, const LinearSweep& sweep) {
+  std::vector<std::vector<std::string>> rows{
+      {"section", "half range", "at [rpm]", "largest mean", "twist half range", "heat [W]"}};
+  if (request.absolute_sum) rows.front().emplace_back("absolute sum");
+  double largest_mean = 0.0;
+  for (const SweepSection& s : sweep.sections) largest_mean = std::max(largest_mean, largest(s.mean));
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    const SweepSection& s = sweep.sections[c];
+    const Vector half = s.half_range();
+    const double mean = largest(s.mean) > kRounding * largest_mean ? largest(s.mean) : 0.0;
+    Eigen::Index at = 0;
+    double value = half.maxCoeff(&at), speed = sweep.speeds[static_cast<std::size_t>(at)];
+    for (const SweepPeak& peak : sweep.peaks)
+      if (peak.section == static_cast<int>(c) && peak.half_range > value)
+        value = peak.half_range, speed = peak.speed;
+    rows.push_back({s.name, bounded(value), digits(to_rpm(speed), kDigits), digits(mean, kDigits),
+                    s.twist_unit.empty() ? "" : bounded(s.twist_half_range.maxCoeff()) + " " + s.twist_unit,
+                    bounded(s.heat.maxCoeff())});
+    if (request.absolute_sum) rows.back().push_back(bounded(absolute_sum(s).maxCoeff()));
+  }
+  return columns_text(rows);
+}
+
+std::string criticals_text(const LinearSweep& sweep) {
+  if (!sweep.modes_note.empty()) return wrap("Criticals: " + sweep.modes_note, 0);
+  if (sweep.criticals.empty())
+    return "No order that the loads hold meets a natural frequency within the speeds.\n";
+  std::vector<SweepCritical> shown = sweep.criticals;
+  std::stable_sort(shown.begin(), shown.end(),
+                   [](const auto& a, const auto& b) { return a.amplitude > b.amplitude; });
+  if (shown.size() > kCriticalsShown) shown.resize(kCriticalsShown);
+  std::stable_sort(shown.begin(), shown.end(),
+                   [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  std::vector<std::vector<std::string>> rows{
+      {"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio", "amplitude", "half range", "in"}};
+  for (const SweepCritical& c : shown)
+    rows.push_back({digits(to_rpm(c.speed), kDigits), short_digits(c.order, kDigits),
+                    std::to_string(c.mode + 1), digits(c.frequency_Hz, kDigits), digits(c.damping_ratio, 3),
+                    bounded(c.amplitude), bounded(c.half_range), name_of(sweep, c.section)});
+  std::string text = columns_text(rows);
+  if (shown.size() < sweep.criticals.size())
+    text += "... the " + std::to_string(shown.size()) + " largest of " +
+            std::to_string(sweep.criticals.size()) + "; --json and --out have all\n";
+  return text;
+}
+
+std::string notes_text(const SweepRequest& request, const LinearSweep& sweep) {
+  std::string text;
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    if (const double left = largest(sweep.unbalanced[f]); left > kBalanced * sweep.unbalanced_scale[f])
+      text +=
+          wrap("Mean torque does not balance: up to " + digits(left, kDigits) + " N m are left over of " +
+                   digits(sweep.unbalanced_scale[f], kDigits) + " N m on the part of " +
+                   sweep.floating_parts[f] + " (referred to the reference shaft). " +
+                   (request.options.balance.empty()
+                        ? "Means are those of the train that this speeds up; --balance NODE takes it up at "
+                          "a node. Vibration does not depend on it."
+                        : "It is taken up at " + request.options.balance + "."),
+               0);
+  for (const LinearSweep::LeftOut& load : sweep.left_out)
+    text += wrap(load.load + ": " + digits(100.0 * load.share, 3) +
+                     " % of what alternates in it (rms) is in none of the orders",
+                 0);
+  for (const SweepSection& section : sweep.sections) {
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < section.mean.size(); ++i) count += section.separates(i) ? 1 : 0;
+    if (count > 0)
+      text += wrap(section.name + ": changes its sign at " + std::to_string(count) + " of " +
+                       std::to_string(section.mean.size()) +
+                       " speeds: the teeth separate there, and what is said of these speeds does not hold; "
+                       "'drev run --start periodic' follows them",
+                   0);
+  }
+  return text;
+}
+
+Json numbers(const Vector& values, double factor = 1.0) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(factor * value));
+  return list;
+}
+
+Json section_object(const SweepRequest& request, const SweepSection& s) {
+  Json amplitude = Json::array(), phase = Json::array();
+  for (Eigen::Index k = 0; k < s.amplitude.rows(); ++k) {
+    amplitude.push_back(numbers(s.amplitude.row(k).cwiseAbs()));
+    phase.push_back(numbers(s.amplitude.row(k).cwiseArg(), to_deg(1.0)));
+  }
+  Json separates;
+  if (s.contact) {
+    separates = Json::array();
+    for (Eigen::Index i = 0; i < s.mean.size(); ++i) separates.push_back(s.separates(i));
+  }
+  Json twist;
+  if (!s.twist_unit.empty())
+    twist = {
+        {"unit", s.twist_unit}, {"mean", numbers(s.twist_mean)}, {"half_range", numbers(s.twist_half_range)}};
+  return {{"name", s.name},
+          {"unit", s.unit},
+          {"half_range", numbers(s.half_range())},
+          {"maximum", numbers(s.maximum)},
+          {"minimum", numbers(s.minimum)},
+          {"maximum_at_deg", numbers(s.maximum_angle, to_deg(1.0))},
+          {"minimum_at_deg", numbers(s.minimum_angle, to_deg(1.0))},
+          {"mean", numbers(s.mean)},
+          {"heat_W", numbers(s.heat)},
+          {"twist", twist},
+          {"separates", separates},
+          {"absolute_sum", request.absolute_sum ? numbers(absolute_sum(s)) : Json()},
+          {"amplitude", amplitude},
+          {"phase_deg", phase}};
+}
+
+std::string cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
+
+}  // namespace
+
+Json critical_object(const LinearSweep& sweep, const SweepCritical& c) {
+  return {{"speed_rpm", number(to_rpm(c.speed))},
+          {"order", number(c.order)},
+          {"mode", c.mode + 1},
+          {"frequency_Hz", number(c.frequency_Hz)},
+          {"damping_ratio", number(c.damping_ratio)},
+          {"section", name_of(sweep, c.section)},
+          {"amplitude", number(c.amplitude)},
+          {"half_range", number(c.half_range)}};
+}
+
+std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep) {
+  const std::string& name = request.model.entry->name;
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
+  text += std::to_string(sweep.orders.size()) + " orders " + short_digits(sweep.orders.front(), kDigits) +
+          " to " + short_digits(sweep.orders.back(), kDigits) + ", " + std::to_string(sweep.speeds.size()) +
+          " speeds " + short_digits(request.speeds_rpm.front(), kDigits) + " to " +
+          short_digits(request.speeds_rpm.back(), kDigits) + " rpm" +
+          (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
+  text += sections_text(request, sweep) + "\n" + criticals_text(sweep);
+  const std::string notes = notes_text(request, sweep);
+  if (!notes.empty()) text += "\n" + notes;
+  if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
+  return text;
+}
+
+Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
+  Json object = result_object("sweep");
+  object["model"] = request.model.entry->name;
+  object["parameters"] = parameters_object(request.model.parameters);
+  object["contact"] = request.options.close_contacts ? Json("closed") : Json();
+  Json sections = Json::array(), peaks = Json::array(), criticals = Json::array(), floating = Json::array(),
+       left_out = Json::array();
+  for (const SweepSection& section : sweep.sections) sections.push_back(section_object(request, section));
+  for (const SweepPeak& peak : sweep.peaks)
+    peaks.push_back({{"section", name_of(sweep, peak.section)},
+                     {"speed_rpm", number(to_rpm(peak.speed))},
+                     {"half_range", number(peak.half_range)},
+                     {"at_end", peak.at_end}});
+  for (const SweepCritical& critical : sweep.criticals) criticals.push_back(critical_object(sweep, critical));
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    floating.push_back({{"node", sweep.floating_parts[f]},
+                        {"left_over_Nm", numbers(sweep.unbalanced[f])},
+                        {"mean_torques_Nm", number(sweep.unbalanced_scale[f])}});
+  for (const LinearSweep::LeftOut& load : sweep.left_out)
+    left_out.push_back({{"load", load.load}, {"share", number(load.share)}});
+  object["speeds_rpm"] = request.speeds_rpm;
+  object["orders"] = sweep.orders;
+  object["cycle_deg"] = number(to_deg(sweep.cycle));
+  object["sections"] = std::move(sections);
+  object["peaks"] = std::move(peaks);
+  object["criticals"] = std::move(criticals);
+  object["criticals_note"] = text_or_null(sweep.modes_note);
+  object["floating_parts"] = std::move(floating);
+  object["balance"] = text_or_null(request.options.balance);
+  object["input_power_W"] = numbers(sweep.input_power);
+  object["dissipated_power_W"] = numbers(sweep.dissipated_power);
+  object["left_out"] = std::move(left_out);
+  object["note"] = text_or_null(request.model.model_case.note);
+  return object;
+}
+
+std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep) {
+  std::string text = "speed_rpm";
+  for (const SweepSection& s : sweep.sections) {
+    for (const char* what : {"half_range", "maximum", "minimum", "mean", "heat_W"})
+      text += "," + csv_cell(s.name + " " + what);
+    if (!s.twist_unit.empty()) text += "," + csv_cell(s.name + " twist_half_range_" + s.twist_unit);
+    if (request.absolute_sum) text += "," + csv_cell(s.name + " absolute_sum");
+  }
+  text += "\n";
+  for (std::size_t i = 0; i < sweep.speeds.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    text += to_text(request.speeds_rpm[i]);
+    for (const SweepSection& s : sweep.sections) {
+      for (const double value :
+           {0.5 * (s.maximum[at] - s.minimum[at]), s.maximum[at], s.minimum[at], s.mean[at], s.heat[at]})
+        text += "," + cell(value);
+      if (!s.twist_unit.empty()) text += "," + cell(s.twist_half_range[at]);
+      if (request.absolute_sum) text += "," + cell(s.amplitude.col(at).cwiseAbs().sum());
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string orders_as_csv(const SweepRequest& request, const LinearSweep& sweep) {
+  std::string text = "speed_rpm,order";
+  for (const SweepSection& s : sweep.sections)
+    text += "," + csv_cell(s.name + " amplitude") + "," + csv_cell(s.name + " phase_deg");
+  text += "\n";
+  for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
+    for (std::size_t k = 0; k < sweep.orders.size(); ++k) {
+      text += to_text(request.speeds_rpm[i]) + "," + to_text(sweep.orders[k]);
+      for (const SweepSection& s : sweep.sections) {
+        const std::complex<double> a =
+            s.amplitude(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
+        text += "," + cell(std::abs(a)) + "," + cell(to_deg(std::arg(a)));
+      }
+      text += "\n";
+    }
+  return text;
+}
+
+std::string criticals_as_csv(const LinearSweep& sweep) {
+  std::string text = "speed_rpm,order,mode,frequency_Hz,damping_ratio,section,amplitude,half_range\n";
+  for (const SweepCritical& c : sweep.criticals)
+    text += to_text(to_rpm(c.speed)) + "," + to_text(c.order) + "," + std::to_string(c.mode + 1) + "," +
+            to_text(c.frequency_Hz) + "," + to_text(c.damping_ratio) + "," +
+            csv_cell(name_of(sweep, c.section)) + "," + cell(c.amplitude) + "," + cell(c.half_range) + "\n";
+  return text;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,32 @@
+#pragma once
+/// A linear sweep as text, JSON and tables.
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <string>
+#include <vector>
+
+#include "app/base/json_values.hpp"
+#include "app/run/model_request.hpp"
+
+namespace drev::app {
+
+struct SweepRequest {
+  ModelRequest model;
+  LinearSweepOptions options;
+  std::vector<double> speeds_rpm;  ///< options.speeds as they were given
+  bool absolute_sum = false;       ///< the sum of the orders' amplitudes, too
+};
+
+std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep);
+/// As docs/results.schema.json describes it, kind "sweep".
+Json sweep_object(const SweepRequest& request, const LinearSweep& sweep);
+/// One of the criticals, as it stands in that list.
+Json critical_object(const LinearSweep& sweep, const SweepCritical& critical);
+/// A row a speed: of each section half range, maximum, minimum, mean, heat, twist.
+std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep);
+/// A row a speed and order: of each section amplitude and phase.
+std::string orders_as_csv(const SweepRequest& request, const LinearSweep& sweep);
+/// A row a critical speed.
+std::string criticals_as_csv(const LinearSweep& sweep);
+
+}  // namespace drev::app

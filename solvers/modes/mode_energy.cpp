@@ -1,0 +1,77 @@
+#include <drev/core/element.hpp>
+#include <drev/core/scalar_force.hpp>
+#include <drev/solvers/modes/mode_energy.hpp>
+
+#include "core/element_parts.hpp"
+
+namespace drev {
+
+namespace {
+
+using Shares = Eigen::MatrixXd;
+
+/// Of each mode x' A x over some nodes.
+Eigen::RowVectorXd forms(const Eigen::MatrixXd& a, const Eigen::MatrixXcd& x) {
+  return (x.conjugate().cwiseProduct(a * x)).colwise().sum().real();
+}
+
+void normalise(Shares& shares) {
+  for (Eigen::Index j = 0; j < shares.cols(); ++j) {
+    const double sum = shares.col(j).sum();
+    if (sum > 0.0) shares.col(j) /= sum;
+  }
+}
+
+}  // namespace
+
+ModeEnergy mode_energy(const System& system, const DampedModeSet& modes) {
+  const std::vector<ElementInstance>& instances = system.element_instances();
+  const auto count = static_cast<Eigen::Index>(instances.size()), columns = modes.shapes.cols();
+  ModeEnergy energy;
+  energy.kinetic = energy.elastic = energy.dissipated = Shares::Zero(count, columns);
+  // What Rayleigh damping is proportional to, and its factors, element by element.
+  Eigen::RowVectorXd mass = Eigen::RowVectorXd::Zero(columns), stiffness = mass;
+  std::vector<std::pair<double, double>> rayleigh(instances.size());
+  ElementParts parts;
+  for (std::size_t e = 0; e < instances.size(); ++e) {
+    const auto row = static_cast<Eigen::Index>(e);
+    std::vector<int> nodes;
+    for (const NodeRef& ref : instances[e].nodes) nodes.push_back(system.node_of(ref));
+    for (const NodeId id : instances[e].internal) nodes.push_back(index(id));
+    parts.for_each(*instances[e].element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
+      const Eigen::MatrixXcd x = modes.shapes(of_part, Eigen::all);
+      const Eigen::RowVectorXd kinetic = forms(terms.mass, x), elastic = forms(terms.stiffness, x);
+      energy.kinetic.row(row) += kinetic;
+      energy.elastic.row(row) += elastic;
+      energy.dissipated.row(row) += forms(terms.damping, x);
+      if (terms.rayleigh) mass += kinetic, stiffness += elastic;
+      rayleigh[e].first += terms.rayleigh_a;
+      rayleigh[e].second += terms.rayleigh_b;
+      for (const ScalarSpec& scalar : terms.scalars) {
+        if (modes.contact == Contact::open && scalar.force->gap()) continue;
+        const Eigen::RowVectorXd squares = (scalar.b.transpose() * x).cwiseAbs2();
+        energy.elastic.row(row) += scalar.force->closed_stiffness() * squares;
+        energy.dissipated.row(row) += scalar.force->closed_damping() * squares;
+      }
+    });
+  }
+  for (std::size_t e = 0; e < instances.size(); ++e)
+    energy.dissipated.row(static_cast<Eigen::Index>(e)) +=
+        rayleigh[e].first * mass + rayleigh[e].second * stiffness;
+
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index e = 0; e < count; ++e) {
+    if (energy.kinetic.row(e).isZero(0.0) && energy.elastic.row(e).isZero(0.0) &&
+        energy.dissipated.row(e).isZero(0.0))
+      continue;
+    kept.push_back(e);
+    energy.elements.push_back(instances[static_cast<std::size_t>(e)].name);
+  }
+  for (Shares* shares : {&energy.kinetic, &energy.elastic, &energy.dissipated}) {
+    *shares = (*shares)(kept, Eigen::all).eval();
+    normalise(*shares);
+  }
+  return energy;
+}
+
+}  // namespace drev

@@ -1,0 +1,66 @@
+#pragma once
+/// The steady vibration of a linear system at one speed: what sweep_linear() calls at every speed, on its grid
+/// and between. Equations: linear_sweep.hpp.
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include "solvers/linear/complex_elimination.hpp"
+#include "solvers/periodic/order_content.hpp"
+
+namespace drev {
+
+class LinearResponse {
+ public:
+  struct Section {
+    std::string name, unit, twist_unit;
+    std::vector<Entry> stiffness, damping;  ///< y = stiffness z + damping z'
+    std::vector<Entry> twist;               ///< its element's twist; empty: none
+    std::vector<Entry> damper;              ///< the damper's part of y; heat is damper z' times twist'
+    bool contact = false;
+  };
+  struct Point {
+    Eigen::MatrixXcd amplitude;  ///< orders x sections
+    Eigen::MatrixXcd twist;      ///< the same
+    Vector mean, twist_mean, heat;
+    Vector unbalanced, load_sum;  ///< of each floating part: left over; sum of |mean torque|
+    double input_power = 0.0, dissipated_power = 0.0;
+  };
+
+  /// Everything wrong goes to findings; the object is of no use then.
+  LinearResponse(const System& system, const LinearSweepOptions& options, const std::vector<double>& orders,
+                 std::vector<Finding>& findings);
+
+  /// speed: > 0, of the reference shaft [rad/s]. only: >= 0: number of the one order that is wanted.
+  void vibration(double speed, Point& point, int only = -1);
+  /// Throws SolverError where the static stiffness is singular although no part floats.
+  void mean(double speed, Point& point);
+
+  const std::vector<Section>& sections() const { return sections_; }
+  const std::vector<std::string>& floating() const { return floating_; }
+  OrderContent& content() { return *content_; }
+  /// Damping with the loads' mean slopes at the speed, on the pattern.
+  const Vector& damping_at(double speed);
+
+ private:
+  void check_model(bool close_contacts, std::vector<Finding>& findings) const;
+  void find_sections(const std::vector<std::string>& names, std::vector<Finding>& findings);
+  void drag_along(Vector& p) const;
+  void prepare_mean(const std::string& balance, std::vector<Finding>& findings);
+
+  const System& system_;
+  Assembler assembler_;
+  std::vector<double> orders_;
+  std::vector<Section> sections_;
+  std::optional<OrderContent> content_;
+  double direction_ = 1.0;  // sign of the reference shaft's speed
+  Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
+  ComplexElimination elimination_, mean_elimination_;
+  std::vector<std::string> floating_;
+  std::vector<Vector> rigid_;                  // motion of each floating part, the ratios of its nodes
+  std::vector<std::size_t> dragged_;           // those of them that do not turn with the reference shaft
+  std::vector<std::vector<Entry>> balance_;    // of each part: row of the node that balances it
+  std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
+  std::vector<std::complex<double>> z_, p_;
+};
+
+}  // namespace drev

@@ -1,0 +1,205 @@
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "solvers/periodic/linear_response.hpp"
+#include "solvers/periodic/sweep_peaks.hpp"
+#include "solvers/periodic/trigonometric_sum.hpp"
+#include "solvers/run/for_all.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kMostNumbers = 1e8;  // sections x speeds x orders: 3.2 GB with twists
+constexpr double kLeftOut = 1e-3;     // share of a load that is worth a word
+constexpr double kHalf = 0.5;
+constexpr int kHalfOrders = 24;
+
+void check_options(const System& system, const LinearSweepOptions& options, std::vector<Finding>& findings) {
+  ParameterCheck check(system.name() + "/sweep", findings);
+  const auto rising = [&](const char* name, const std::vector<double>& values, const char* unit) {
+    check.increasing(name, values, unit);
+    if (!values.empty()) check.positive(name, values.front(), unit);
+  };
+  rising("speeds", options.speeds, "rad/s");
+  rising("orders", options.orders, "");
+  if (options.speeds.empty()) check.fail("speeds", "none", "", "must be at least one");
+}
+
+/// Space for what is found at every speed.
+SweepSection to_section(const LinearResponse::Section& given, Eigen::Index orders, Eigen::Index speeds) {
+  SweepSection section;
+  section.name = given.name;
+  section.unit = given.unit;
+  section.contact = given.contact;
+  section.amplitude.setZero(orders, speeds);
+  if (!given.twist.empty()) {
+    section.twist_unit = given.twist_unit;
+    section.twist.setZero(orders, speeds);
+  }
+  for (Vector* values :
+       {&section.mean, &section.maximum, &section.minimum, &section.maximum_angle, &section.minimum_angle,
+        &section.twist_mean, &section.twist_half_range, &section.heat})
+    values->setZero(speeds);
+  return section;
+}
+
+void put(const LinearResponse::Point& point, const std::vector<SumExtremes>& extremes,
+         const std::vector<SumExtremes>& twists, Eigen::Index at, LinearSweep& sweep) {
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    SweepSection& section = sweep.sections[c];
+    const auto column = static_cast<Eigen::Index>(c);
+    section.amplitude.col(at) = point.amplitude.col(column);
+    section.mean[at] = point.mean[column];
+    section.maximum[at] = extremes[c].max;
+    section.minimum[at] = extremes[c].min;
+    section.maximum_angle[at] = extremes[c].max_angle;
+    section.minimum_angle[at] = extremes[c].min_angle;
+    section.heat[at] = point.heat[column];
+    if (section.twist.size() == 0) continue;
+    section.twist.col(at) = point.twist.col(column);
+    section.twist_mean[at] = point.twist_mean[column];
+    section.twist_half_range[at] = twists[c].half_range();
+  }
+}
+
+/// Sections whose torque is their twist times one number need no sum of their own for the twist.
+struct TwistSums {
+  std::vector<double> factor;  // half range of the twist over that of the section; 0: to be summed up
+  std::vector<Eigen::Index> columns;
+
+  explicit TwistSums(const std::vector<LinearResponse::Section>& sections) {
+    for (std::size_t c = 0; c < sections.size(); ++c) {
+      const LinearResponse::Section& s = sections[c];
+      const bool damped =
+          std::any_of(s.damping.begin(), s.damping.end(), [](const Entry& e) { return e.coeff != 0.0; });
+      const bool proportional = !damped && s.twist.size() == s.stiffness.size() && !s.twist.empty();
+      factor.push_back(proportional ? std::abs(s.twist.front().coeff / s.stiffness.front().coeff) : 0.0);
+      if (!proportional && !s.twist.empty()) columns.push_back(static_cast<Eigen::Index>(c));
+    }
+  }
+  void find(const LinearResponse::Point& point, const std::vector<SumExtremes>& sections,
+            TrigonometricSum& sum, std::vector<SumExtremes>& twists) const {
+    twists.assign(sections.size(), {});
+    std::vector<SumExtremes> found;
+    if (!columns.empty()) sum.extremes(point.twist(Eigen::all, columns), found);
+    for (std::size_t c = 0; c < sections.size(); ++c)
+      if (factor[c] > 0.0) twists[c] = {factor[c] * sections[c].max, factor[c] * sections[c].min};
+    for (std::size_t i = 0; i < columns.size(); ++i) twists[static_cast<std::size_t>(columns[i])] = found[i];
+  }
+};
+
+/// What a thread needs of its own.
+struct Worker {
+  explicit Worker(const TrigonometricSum& given) : sum(given) {}
+  TrigonometricSum sum;
+  LinearResponse::Point point;
+  std::vector<SumExtremes> extremes, twists;
+};
+
+/// A thread has to build the equations anew, which is worth it for many speeds.
+std::size_t threads_for(const System& system, const LinearSweepOptions& options, std::size_t orders) {
+  constexpr double kWorth = 2e5;  // unknowns times frequencies a thread, some 10 ms
+  const double work = static_cast<double>(options.speeds.size() * orders) * system.size();
+  const auto most = static_cast<std::size_t>(work / kWorth) + 1;
+  return thread_count(std::min(most, options.speeds.size()), options.threads);
+}
+
+void note_left_out(const System& system, const std::vector<OrderContent::Content>& found,
+                   const OrderContent& content, LinearSweep& sweep) {
+  for (std::size_t l = 0; l < content.loads().size(); ++l) {
+    const OrderContent::Content& c = found[l];
+    if (!(c.left_out > kLeftOut * c.rms)) continue;
+    const ElementId element = content.loads()[l]->element;
+    sweep.left_out.push_back({system.element_instances()[idx(index(element))].name, c.left_out / c.rms});
+  }
+}
+
+}  // namespace
+
+std::complex<double> SweepModes::at(Eigen::Index mode, double speed) const {
+  Eigen::Index i = 0;
+  while (i + 2 < speeds.size() && speeds[i + 1] < speed) ++i;
+  if (speeds.size() < 2) return lambda(mode, 0);
+  const double part = (speed - speeds[i]) / (speeds[i + 1] - speeds[i]);
+  return (1.0 - part) * lambda(mode, i) + part * lambda(mode, i + 1);
+}
+
+LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options) {
+  LinearSweep sweep;
+  sweep.speeds = options.speeds;
+  sweep.orders = options.orders;
+  if (sweep.orders.empty())
+    for (int i = 1; i <= kHalfOrders; ++i) sweep.orders.push_back(kHalf * i);
+  std::vector<Finding> findings;
+  check_options(system, options, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  LinearResponse response(system, options, sweep.orders, findings);
+  const double numbers = static_cast<double>(response.sections().size()) *
+                         static_cast<double>(sweep.speeds.size() * sweep.orders.size());
+  if (numbers > kMostNumbers)
+    findings.push_back({system.name() + "/sweep", "", to_text(numbers), "",
+                        "numbers are too many (sections times speeds times orders, at most " +
+                            to_text(kMostNumbers) + "); name the sections that are wanted"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  TrigonometricSum sum(sweep.orders, system.name() + "/sweep");
+  sweep.cycle = sum.cycle();
+  sweep.floating_parts = response.floating();
+
+  const auto speeds = static_cast<Eigen::Index>(sweep.speeds.size());
+  for (const LinearResponse::Section& section : response.sections())
+    sweep.sections.push_back(to_section(section, static_cast<Eigen::Index>(sweep.orders.size()), speeds));
+  sweep.unbalanced.assign(sweep.floating_parts.size(), Vector::Zero(speeds));
+  sweep.input_power.setZero(speeds);
+  sweep.dissipated_power.setZero(speeds);
+  const TwistSums twist_sums(response.sections());
+  std::vector<Vector> load_sums(sweep.unbalanced.size(), Vector::Zero(speeds));
+  std::vector<std::unique_ptr<Worker>> workers(threads_for(system, options, sweep.orders.size()));
+  for_all(workers.size(), static_cast<int>(workers.size()), [&](std::size_t w, std::size_t /*thread*/) {
+    workers[w] = std::make_unique<Worker>(sum);
+    Worker& worker = *workers[w];
+    std::optional<LinearResponse> own;
+    std::vector<Finding> none;
+    if (w > 0) own.emplace(system, options, sweep.orders, none);
+    LinearResponse& here = own ? *own : response;
+    const auto count = static_cast<Eigen::Index>(workers.size()), number = static_cast<Eigen::Index>(w);
+    for (Eigen::Index i = speeds * number / count; i < speeds * (number + 1) / count; ++i) {
+      const double speed = sweep.speeds[static_cast<std::size_t>(i)];
+      here.vibration(speed, worker.point);
+      here.mean(speed, worker.point);
+      worker.sum.extremes(worker.point.amplitude, worker.extremes);
+      twist_sums.find(worker.point, worker.extremes, worker.sum, worker.twists);
+      put(worker.point, worker.extremes, worker.twists, i, sweep);
+      sweep.input_power[i] = worker.point.input_power;
+      sweep.dissipated_power[i] = worker.point.dissipated_power;
+      for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f) {
+        sweep.unbalanced[f][i] = worker.point.unbalanced[static_cast<Eigen::Index>(f)];
+        load_sums[f][i] = worker.point.load_sum[static_cast<Eigen::Index>(f)];
+      }
+    }
+  });
+  for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f)
+    sweep.unbalanced_scale.push_back(load_sums[f].maxCoeff());
+  note_left_out(system, response.content().at(reference_direction(system) * sweep.speeds.back()),
+                response.content(), sweep);
+  if (options.refine) find_sweep_peaks(system, response, sum, sweep);
+  return sweep;
+}
+
+Vector load_damping(const System& system, double speed) {
+  std::vector<Finding> findings;
+  OrderContent content(system, {}, findings);
+  ParameterCheck(system.name() + "/load damping", findings).positive("speed", speed, "rad/s");
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  Vector damping = Vector::Zero(system.damping_values().size());
+  content.add_slopes(reference_direction(system) * speed, &damping, nullptr);
+  return damping;
+}
+
+}  // namespace drev

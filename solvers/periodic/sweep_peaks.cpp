@@ -1,0 +1,251 @@
+#include "solvers/periodic/sweep_peaks.hpp"
+
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "solvers/periodic/linear_response.hpp"
+#include "solvers/periodic/trigonometric_sum.hpp"
+#include "solvers/run/bracketed_maximum.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kMostUnknowns = 400;      // of damped modes, dense
+constexpr int kModeSpeeds = 9;          // at which the modes are sought where loads follow the speed
+constexpr double kUndamped = 1e-9;      // damping ratio that is rounding
+constexpr double kTooDamped = 0.7;      // beyond it an order has no resonance
+constexpr std::size_t kMostPeaks = 10;  // a section
+constexpr double kSmallPeak = 1e-3;     // of the section's largest
+constexpr double kWidth = 1e-7;         // of a peak's speed
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// Which mode of `next` each of `last` has become, by its shape: largest |x' y| / (|x| |y|) first.
+std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::MatrixXcd& next) {
+  struct Pair {
+    double likeness;
+    Eigen::Index from, to;
+  };
+  std::vector<Pair> pairs;
+  for (Eigen::Index i = 0; i < last.cols(); ++i)
+    for (Eigen::Index j = 0; j < next.cols(); ++j)
+      pairs.push_back(
+          {std::abs(last.col(i).dot(next.col(j))) / (last.col(i).norm() * next.col(j).norm()), i, j});
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.likeness > b.likeness; });
+  std::vector<Eigen::Index> to(static_cast<std::size_t>(last.cols()), -1);
+  std::vector<bool> taken(static_cast<std::size_t>(next.cols()), false);
+  for (const Pair& pair : pairs) {
+    if (to[static_cast<std::size_t>(pair.from)] >= 0 || taken[static_cast<std::size_t>(pair.to)]) continue;
+    to[static_cast<std::size_t>(pair.from)] = pair.to;
+    taken[static_cast<std::size_t>(pair.to)] = true;
+  }
+  return to;
+}
+
+SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
+  const bool follows = response.content().follows_speed() && speeds.size() > 1;
+  const int count = follows ? kModeSpeeds : 1;
+  SweepModes modes;
+  modes.speeds.resize(count);
+  Eigen::MatrixXcd shapes;
+  for (int i = 0; i < count; ++i) {
+    const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;
+    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
+    const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
+    if (i == 0) {
+      shapes = set.shapes;
+      modes.lambda.setZero(set.shapes.cols(), count);
+    }
+    const std::vector<Eigen::Index> to = matched(shapes, set.shapes);
+    for (std::size_t m = 0; m < to.size(); ++m) {
+      if (to[m] < 0) continue;
+      const auto mode = static_cast<Eigen::Index>(m);
+      modes.lambda(mode, i) = set.modes[static_cast<std::size_t>(to[m])].lambda;
+      shapes.col(mode) = set.shapes.col(to[m]);
+    }
+  }
+  return modes;
+}
+
+class Search {
+ public:
+  Search(LinearResponse& response, TrigonometricSum& sum, LinearSweep& sweep)
+      : response_(response),
+        sum_(sum),
+        sweep_(sweep),
+        low_(sweep.speeds.front()),
+        high_(sweep.speeds.back()) {
+    find_content();
+    for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+      const Vector curve = sweep.sections[c].half_range();
+      for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
+        curves_[sweep.speeds[i]].push_back(curve[static_cast<Eigen::Index>(i)]);
+      largest_.push_back(curve.maxCoeff());
+    }
+  }
+
+  void seed() {
+    for (Eigen::Index m = 0; m < sweep_.modes.lambda.rows(); ++m)
+      for (std::size_t k = 0; k < sweep_.orders.size(); ++k) {
+        const double speed = has_content_[k] ? meets(m, sweep_.orders[k]) : 0.0;
+        if (!(speed > 0.0)) continue;
+        const std::complex<double> lambda = sweep_.modes.at(m, speed);
+        const double ratio = -lambda.real() / std::abs(lambda);
+        if (ratio > kTooDamped) continue;
+        SweepCritical critical;
+        critical.mode = static_cast<int>(m);
+        critical.order = sweep_.orders[k];
+        critical.speed = speed;
+        critical.frequency_Hz = to_hz(lambda.imag());
+        critical.damping_ratio = ratio;
+        sweep_.criticals.push_back(critical);
+        numbers_.push_back(static_cast<int>(k));
+        if (!(ratio > kUndamped)) continue;
+        const double width = std::abs(lambda.real()) / sweep_.orders[k];
+        for (const double at : {speed - width, speed, speed + width})
+          if (at > low_ && at < high_) all_sections(at);
+      }
+  }
+
+  void find_peaks() {
+    const std::vector<std::pair<double, std::vector<double>>> points(curves_.begin(), curves_.end());
+    for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
+      std::vector<SweepPeak> peaks;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double here = points[i].second[c];
+        const bool first = i == 0, last = i + 1 == points.size();
+        const bool top =
+            (first || here >= points[i - 1].second[c]) && (last || here > points[i + 1].second[c]);
+        if (!top || !(here > kSmallPeak * largest_[c])) continue;
+        SweepPeak peak{static_cast<int>(c), points[i].first, here, first || last};
+        if (!peak.at_end && std::isfinite(here)) {
+          const BracketedMaximum found =
+              bracketed_maximum(points[i - 1].first, points[i].first, points[i + 1].first,
+                                kWidth * points[i].first, [&](double speed) { return one(speed, c); });
+          if (found.value >= here) peak.speed = found.at, peak.half_range = found.value;
+        }
+        peaks.push_back(peak);
+      }
+      std::stable_sort(peaks.begin(), peaks.end(),
+                       [](const SweepPeak& a, const SweepPeak& b) { return a.half_range > b.half_range; });
+      if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
+      if (!peaks.empty()) largest_[c] = std::max(largest_[c], peaks.front().half_range);
+      sweep_.peaks.insert(sweep_.peaks.end(), peaks.begin(), peaks.end());
+    }
+  }
+
+  void find_criticals() {
+    for (std::size_t i = 0; i < sweep_.criticals.size(); ++i) {
+      SweepCritical& critical = sweep_.criticals[i];
+      const int order = numbers_[i];
+      if (!(critical.damping_ratio > kUndamped)) {
+        critical.amplitude = critical.half_range = kInfinite;
+        critical.section = most_moved(critical.speed, order, 1.0 + 1e-6);
+        continue;
+      }
+      critical.section = most_moved(critical.speed, order, 1.0);
+      const auto section = static_cast<Eigen::Index>(critical.section);
+      const double reach = 4.0 * critical.damping_ratio;
+      const BracketedMaximum found = bracketed_maximum(
+          std::max(low_, critical.speed / (1.0 + reach)), critical.speed,
+          std::min(high_, critical.speed * (1.0 + reach)), kWidth * critical.speed, [&](double speed) {
+            response_.vibration(speed, point_, order);
+            return std::abs(point_.amplitude(order, section));
+          });
+      critical.speed = found.at;
+      critical.amplitude = found.value;
+      critical.half_range = one(found.at, static_cast<std::size_t>(critical.section));
+    }
+    std::stable_sort(sweep_.criticals.begin(), sweep_.criticals.end(),
+                     [](const SweepCritical& a, const SweepCritical& b) { return a.speed < b.speed; });
+  }
+
+ private:
+  /// Orders in which any load has content, at any end of the speeds.
+  void find_content() {
+    has_content_.assign(sweep_.orders.size(), false);
+    for (const SweepSection& section : sweep_.sections)
+      for (std::size_t k = 0; k < has_content_.size(); ++k)
+        has_content_[k] = has_content_[k] || !section.amplitude.row(static_cast<Eigen::Index>(k)).isZero(0.0);
+  }
+  /// The speed at which an order meets the mode, within those of the sweep; 0: none.
+  double meets(Eigen::Index mode, double order) const {
+    const auto above = [&](double speed) { return order * speed - sweep_.modes.at(mode, speed).imag(); };
+    if (!(above(low_) <= 0.0) || !(above(high_) >= 0.0)) return 0.0;
+    double low = low_, high = high_;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (above(middle) < 0.0 ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+  void all_sections(double speed) {
+    if (curves_.contains(speed)) return;
+    response_.vibration(speed, point_);
+    sum_.extremes(point_.amplitude, extremes_);
+    std::vector<double>& here = curves_[speed];
+    for (std::size_t c = 0; c < extremes_.size(); ++c) {
+      here.push_back(extremes_[c].half_range());
+      largest_[c] = std::max(largest_[c], here.back());
+    }
+  }
+  double one(double speed, std::size_t section) {
+    response_.vibration(speed, point_);
+    sum_.extremes(point_.amplitude.col(static_cast<Eigen::Index>(section)), extremes_);
+    return extremes_.front().half_range();
+  }
+  /// The section of the first one's unit in which the order is largest.
+  int most_moved(double speed, int order, double beside) {
+    response_.vibration(beside * speed, point_, order);
+    int best = 0;
+    double most = -1.0;
+    for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
+      const double part = std::abs(point_.amplitude(order, static_cast<Eigen::Index>(c)));
+      if (sweep_.sections[c].unit == sweep_.sections.front().unit && part > most)
+        most = part, best = static_cast<int>(c);
+    }
+    return best;
+  }
+
+  LinearResponse& response_;
+  TrigonometricSum& sum_;
+  LinearSweep& sweep_;
+  double low_, high_;
+  std::map<double, std::vector<double>> curves_;  // half ranges of all sections, by speed
+  std::vector<double> largest_;                   // half range of each section
+  std::vector<bool> has_content_;
+  std::vector<int> numbers_;  // of each critical's order
+  LinearResponse::Point point_;
+  std::vector<SumExtremes> extremes_;
+};
+
+}  // namespace
+
+void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
+                      LinearSweep& sweep) {
+  if (system.size() > kMostUnknowns) {
+    sweep.modes_note =
+        "damped modes are not sought with more than " + std::to_string(kMostUnknowns) +
+        " unknowns: a resonance that is narrower than the distance of the speeds can be missed";
+  } else {
+    try {
+      sweep.modes = follow_modes(system, response, sweep.speeds);
+    } catch (const SolverError& error) {
+      sweep.modes_note = std::string(error.what()) +
+                         ": a resonance that is narrower than the distance of the speeds can be missed";
+    }
+  }
+  Search search(response, sum, sweep);
+  search.seed();
+  search.find_peaks();
+  search.find_criticals();
+}
+
+}  // namespace drev

@@ -1,0 +1,62 @@
+#pragma once
+/// The largest value of a function of one variable between two bounds, by parabolas through three points with
+/// golden section where they do not close in. Of several local maxima one is found.
+///
+/// Source: R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall, 1973, chapter 5
+/// (procedure localmin).
+#include <cmath>
+#include <limits>
+
+namespace drev {
+
+struct BracketedMaximum {
+  double at = 0.0, value = 0.0;
+};
+
+/// look(t): the function, taken for t in [low, high]. start: where to begin, best a point above both ends; at
+/// or outside the bounds: golden section chooses. width: of the place, absolute; no less than rounding allows.
+template <class Look>
+BracketedMaximum bracketed_maximum(double low, double start, double high, double width, const Look& look) {
+  const double golden = 0.5 * (3.0 - std::sqrt(5.0));
+  const double rounding = std::sqrt(std::numeric_limits<double>::epsilon());
+  constexpr int kMostLooks = 100;
+  double a = low, b = high;
+  double x = start > low && start < high ? start : a + golden * (b - a);
+  double f_x = look(x), w = x, v = x, f_w = f_x, f_v = f_x, step = 0.0, before = 0.0;
+  for (int i = 0; i < kMostLooks; ++i) {
+    const double middle = 0.5 * (a + b), near = 1e-2 * rounding * std::abs(x) + 0.25 * width;
+    if (std::abs(x - middle) <= 2.0 * near - 0.5 * (b - a)) break;
+    bool parabola = false;
+    if (std::abs(before) > near) {
+      const double r = (x - w) * (f_x - f_v), q_0 = (x - v) * (f_x - f_w);
+      double p = (x - v) * q_0 - (x - w) * r, q = 2.0 * (q_0 - r);
+      q > 0.0 ? p = -p : q = -q;
+      const double last = before;
+      before = step;
+      if (std::abs(p) < std::abs(0.5 * q * last) && p > q * (a - x) && p < q * (b - x)) {
+        step = p / q;
+        const double u = x + step;
+        if (u - a < 2.0 * near || b - u < 2.0 * near) step = x < middle ? near : -near;
+        parabola = true;
+      }
+    }
+    if (!parabola) {
+      before = x < middle ? b - x : a - x;
+      step = golden * before;
+    }
+    const double u = x + (std::abs(step) >= near ? step : step > 0.0 ? near : -near), f_u = look(u);
+    if (f_u >= f_x) {
+      (u < x ? b : a) = x;
+      v = w, f_v = f_w, w = x, f_w = f_x, x = u, f_x = f_u;
+    } else {
+      (u < x ? a : b) = u;
+      if (f_u >= f_w || w == x)
+        v = w, f_v = f_w, w = u, f_w = f_u;
+      else if (f_u >= f_v || v == x || v == w)
+        v = u, f_v = f_u;
+    }
+  }
+  return {x, f_x};
+}
+
+}  // namespace drev

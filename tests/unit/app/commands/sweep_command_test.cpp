@@ -1,0 +1,161 @@
+// drev sweep and drev modes --damped: what they print and write, and that docs/sweep.md shows it.
+#include <drev/core/units.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kEngine = DREV_SOURCE_DIR "/models/engine/engine.toml";
+
+}  // namespace
+
+TEST_CASE("The page on sweeps shows what the commands print", "[sweep]") {
+  std::istringstream page(read_file(DREV_SOURCE_DIR "/docs/sweep.md"));
+  std::string shown, printed;
+  int commands = 0;
+  bool console = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("```")) {
+      if (console) CHECK(shown == printed);
+      console = line == "```console";
+    } else if (console && line.starts_with("$ drev ")) {
+      std::vector<std::string> words;
+      std::istringstream typed(line.substr(7));
+      for (std::string word; typed >> word;) words.push_back(word == "engine.toml" ? kEngine : word);
+      const auto outcome = drev_command(words);
+      CHECK(outcome.exit_code == 0);
+      printed = outcome.out;
+      shown.clear();
+      ++commands;
+    } else if (console) {
+      shown += line + "\n";
+    }
+  }
+  CHECK(commands == 2);
+}
+
+TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const std::vector<std::string> words{"sweep",    kEngine,     "--speeds", "900,1500",
+                                       "--orders", "0.5:0.5:8", "--record", "rear.torque_Nm,hub.angle_rad",
+                                       "--out",    out};
+  std::vector<std::string> as_json = words;
+  as_json.insert(as_json.end(), {"--json", "--absolute-sum"});
+  const auto printed = drev_command(as_json);
+  REQUIRE(printed.exit_code == 0);
+  CHECK(read_file(out + "/summary.json") == printed.out);
+  const Json json = Json::parse(printed.out);
+  CHECK(json.at("kind") == "sweep");
+  CHECK(json.at("speeds_rpm") == Json({900.0, 1500.0}));
+  CHECK(json.at("orders").size() == 16);
+  CHECK(json.at("cycle_deg").get<double>() == Approx(720.0));
+  REQUIRE(json.at("sections").size() == 2);
+  const Json& rear = json["sections"][0];
+  CHECK(rear.at("name") == "rear.torque_Nm");
+  CHECK(json["sections"][1].at("twist").is_null());
+  double sum = 0.0, at = 0.0;
+  const double angle = drev::deg(rear.at("maximum_at_deg")[1].get<double>());
+  for (std::size_t k = 0; k < 16; ++k) {
+    const double a = rear.at("amplitude")[k][1], order = json["orders"][k];
+    sum += a;
+    at += a * std::cos(order * angle + drev::deg(rear.at("phase_deg")[k][1].get<double>()));
+  }
+  CHECK(rear.at("absolute_sum")[1].get<double>() == Approx(sum).epsilon(1e-12));
+  CHECK(rear.at("maximum")[1].get<double>() == Approx(at).epsilon(1e-9));
+  CHECK(rear.at("half_range")[1].get<double>() < sum);
+  CHECK(rear.at("mean")[1].get<double>() == Approx(-1500.0).epsilon(1e-9));  // end b behind end a
+  CHECK(json.at("input_power_W")[1].get<double>() ==
+        Approx(json.at("dissipated_power_W")[1].get<double>()).epsilon(1e-11));
+
+  std::istringstream table(read_file(out + "/sweep.csv"));
+  std::string header, row;
+  std::getline(table, header), std::getline(table, row);
+  CHECK(header.starts_with("speed_rpm,rear.torque_Nm half_range,rear.torque_Nm maximum"));
+  CHECK(std::stod(row.substr(row.find(',') + 1)) == rear.at("half_range")[0].get<double>());
+  std::istringstream orders(read_file(out + "/orders.csv"));
+  int rows = -1;
+  for (std::string line; std::getline(orders, line);) ++rows;
+  CHECK(rows == 32);
+  CHECK(read_file(out + "/criticals.csv").starts_with("speed_rpm,order,mode,"));
+}
+
+TEST_CASE("Damped modes as JSON: shares of energy sum to one", "[sweep]") {
+  const auto printed = drev_command({"modes", kEngine, "--damped", "--count", "3", "--json"});
+  REQUIRE(printed.exit_code == 0);
+  const Json json = Json::parse(printed.out);
+  CHECK(json.at("kind") == "damped_modes");
+  CHECK(json.at("rigid_modes") == 2);
+  REQUIRE(json.at("modes").size() == 3);
+  for (const Json& mode : json["modes"]) {
+    const double re = mode.at("real_per_s"), im = mode.at("imaginary_per_s");
+    CHECK(mode.at("frequency_Hz").get<double>() == Approx(im / drev::kTwoPi));
+    CHECK(mode.at("damping_ratio").get<double>() == Approx(-re / std::hypot(re, im)));
+    double largest = 0.0, kinetic = 0.0, elastic = 0.0, dissipated = 0.0;
+    for (const Json& node : mode.at("shape")) largest = std::max(largest, node.at("amplitude").get<double>());
+    for (const Json& element : mode.at("energy")) {
+      kinetic += element.at("kinetic").get<double>();
+      elastic += element.at("elastic").get<double>();
+      dissipated += element.at("dissipated").get<double>();
+    }
+    CHECK(largest == Approx(1.0));
+    CHECK(kinetic == Approx(1.0));
+    CHECK(elastic == Approx(1.0));
+    CHECK(dissipated == Approx(1.0));
+  }
+  int free = 0;
+  for (const Json& real : json.at("real_eigenvalues")) free += real.at("turns_freely").get<bool>() ? 1 : 0;
+  CHECK(free == 1);  // the train; its damper's ring is dragged along
+  const auto open = drev_command({"modes", "gear_drive", "--damped", "--contact", "open", "--json"});
+  CHECK(Json::parse(open.out).at("contact") == "open");
+}
+
+TEST_CASE("Campbell: the criticals are those of the sweep", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const auto printed = drev_command({"campbell", kEngine, "--speeds", "600:10:2000", "--out", out, "--json"});
+  REQUIRE(printed.exit_code == 0);
+  CHECK(read_file(out + "/summary.json") == printed.out);
+  const Json json = Json::parse(printed.out);
+  const Json sweep = Json::parse(drev_command({"sweep", kEngine, "--speeds", "600:10:2000", "--json"}).out);
+  REQUIRE(json.at("criticals").size() == sweep.at("criticals").size());
+  REQUIRE(json["criticals"].size() == 4);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Json critical = json["criticals"][i];
+    largest = std::max(largest, critical.at("relative").get<double>());
+    critical.erase("relative");
+    CHECK(critical == sweep["criticals"][i]);
+    // The order meets the mode there, but for what damping and the other orders' flanks move.
+    CHECK(critical.at("order").get<double>() * critical.at("speed_rpm").get<double>() / 60.0 ==
+          Approx(critical.at("frequency_Hz").get<double>()).epsilon(0.1));
+  }
+  CHECK(largest == 1.0);
+  CHECK(json.at("modes").size() == 6);
+  CHECK(read_file(out + "/modes.csv").starts_with("speed_rpm,mode_1_frequency_Hz,mode_1_damping_ratio"));
+  CHECK(drev_command({"campbell", kEngine}).exit_code == 2);
+}
+
+TEST_CASE("Faults of a sweep are listed at once", "[sweep]") {
+  const auto refused = drev_command({"sweep", kEngine, "--orders", "2,1"});
+  CHECK(refused.exit_code == 2);
+  for (const char* part : {"2 faults", "--speeds", "is missing", "--orders", "rise from each to the next"})
+    CHECK(contains(refused.err, part));
+  const auto contacts = drev_command({"sweep", "camshaft", "--speeds", "300:10:900"});
+  CHECK(contacts.exit_code == 2);
+  CHECK(contains(contacts.err, "--contact closed"));
+  CHECK(drev_command({"modes", kEngine, "--speed", "900"}).exit_code == 2);
+  const auto closed = drev_command({"sweep", "camshaft", "--speeds", "700", "--contact", "closed"});
+  CHECK(closed.exit_code == 0);
+  CHECK(contains(closed.out, "the teeth separate there"));
+}
