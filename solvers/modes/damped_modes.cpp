@@ -2,6 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -39,14 +40,12 @@ Matrix basis_by_stiffness(const Matrix& k, bool symmetric) {
   return eigen.vectors(Eigen::all, order);
 }
 
-void check_rigid(const System& system, const Matrix& k, const Matrix& v, int rigid) {
+/// Whether the rounding of the stiffest element leaves as many motions without a restoring torque as the graph has.
+bool rigid_motions_stand_apart(const Matrix& k, const Matrix& v, int rigid) {
   constexpr double kRounding = 1e-13;
   int found = 0;
-  while (found < system.size() && (k * v.col(found)).norm() <= kRounding * k.norm()) ++found;
-  if (found != rigid)
-    throw SolverError("damped modes of " + system.name() + ": the model has " + std::to_string(rigid) +
-                      " parts free to turn, but " + std::to_string(found) +
-                      " motions without a restoring torque beside the stiffest element's rounding");
+  while (found < k.rows() && (k * v.col(found)).norm() <= kRounding * k.norm()) ++found;
+  return found == rigid;
 }
 
 DampedMode to_mode(std::complex<double> lambda) {
@@ -80,17 +79,27 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   DampedModeSet set;
   set.contact = options.contact;
   const int r = set.rigid_modes = system.rigid_mode_count(options.contact);
-  const Matrix v = basis_by_stiffness(k, system.symmetric_tangent());
-  check_rigid(system, k, v, r);
-  k = (v.transpose() * k * v).eval();
+  const int e = n - r;
+  Matrix v = basis_by_stiffness(k, system.symmetric_tangent());
+  Vector scale = Vector::Constant(e, k.norm() > 0.0 ? std::sqrt(k.norm()) : 1.0);
+  if (rigid_motions_stand_apart(k, v, r)) {
+    k = (v.transpose() * k * v).eval();
+  } else {
+    // Soft parts beside very stiff ones: the undamped modes, which are found to their own accuracy.
+    const ModeSet undamped = solve_modes(system, {.count = e, .contact = options.contact});
+    Matrix x(n, n);
+    x << undamped.rigid_vectors, undamped.vectors;
+    v = mass.matrixU() * x;
+    for (int j = 0; j < e; ++j) scale[j] = undamped.omega(j);
+    k.setZero();
+    k.diagonal().tail(e) = scale.cwiseAbs2();
+  }
   c = (v.transpose() * c * v).eval();
 
   // Unknowns: w_0 y of the elastic coordinates, y' of all.
-  const int e = n - r;
-  const double w0 = k.norm() > 0.0 ? std::sqrt(k.norm()) : 1.0;
   Matrix a = Matrix::Zero(e + n, e + n);
-  a.block(0, e + r, e, e) = w0 * Matrix::Identity(e, e);
-  a.block(e, 0, n, e) = -k.rightCols(e) / w0;
+  a.block(0, e + r, e, e) = scale.asDiagonal();
+  a.block(e, 0, n, e) = -k.rightCols(e) * scale.cwiseInverse().asDiagonal();
   a.block(e, e, n, n) = -c;
   const GeneralEigen eigen = general_eigen(a);
   if (!eigen.converged)

@@ -13,7 +13,10 @@
 /// 0 that is exact (and left out) and one for its rate, -c/J where something drags on it. Without
 /// the split the double zero of a free drivetrain would come out as +- 1e-8 w_0.
 ///
-/// Accuracy: about eps w_0, absolute; half the digits at critical damping (a double lambda).
+/// Where stiffnesses and inertias spread so widely that elastic motions cannot be told from rigid ones beside
+/// |K^|, y are the undamped modes (modes.hpp), each with its own w_0 = omega_j.
+///
+/// Accuracy: about eps w_0 (eps max omega_j), absolute; half the digits at critical damping (a double lambda).
 ///
 /// Source: F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Review 43(2), 2001,
 /// doi:10.1137/S0036144500381988.
@@ -52,8 +55,8 @@ struct DampedModeSet {
   Eigen::MatrixXcd shapes;
 };
 
-/// Throws ModelError above size_limit, SolverError where the rigid-body motions are not what the
-/// graph says or the eigensolver does not converge.
+/// Throws ModelError above size_limit, SolverError where solve_modes() refuses so wide a spread, or the
+/// eigensolver does not converge.
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options = {});
 
 }  // namespace drev

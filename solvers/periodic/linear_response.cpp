@@ -17,6 +17,8 @@ namespace {
 using Complex = std::complex<double>;
 using Section = LinearResponse::Section;
 
+constexpr double kNoDrag = 1e-13;  // of the largest damping
+
 std::vector<Entry> over_unknowns(const System& system, const std::vector<Entry>& nodes, double factor = 1.0) {
   std::vector<Entry> row;
   for (const Entry& node : nodes)
@@ -243,6 +245,8 @@ void LinearResponse::drag_along(Vector& p) const {
 void LinearResponse::mean(double speed, Point& point) {
   const auto& contents = content_->at(direction_ * speed);
   Vector p = -direction_ * speed * system_.nominal_drag().head(system_.size());
+  // Ratios to rounding leave that of the dampers between nodes of one speed.
+  if (p.cwiseAbs().maxCoeff() <= kNoDrag * speed * damping_.cwiseAbs().maxCoeff()) p.setZero();
   point.load_sum = Vector::Zero(static_cast<Eigen::Index>(rigid_.size()));
   point.unbalanced = point.load_sum;
   for (std::size_t f = 0; f < rigid_.size(); ++f)

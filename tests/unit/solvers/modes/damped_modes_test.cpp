@@ -152,3 +152,28 @@ TEST_CASE("Undamped frequencies are those of solve_modes; the limit is kept", "[
   }
   CHECK_THROWS_AS(solve_damped_modes(system, {.size_limit = 19}), ModelError);
 }
+
+TEST_CASE("A soft coupling beside a stiff shaft with next to no inertia is not refused", "[damped_modes]") {
+  // omega^2 is 7 of the one mode and 1e16 of the other: 1e-15 of the largest.
+  const double j_a = 50.0, j_b = 20.0, j_c = 1e-9, soft = 100.0, drag = 1.0, stiff = 1e7, damping = 1e-3;
+  Model m("wide spread");
+  for (const char* node : {"a", "b", "c"}) m.add_node(node);
+  m.add<Inertia>("J_a", {"a"}, {.inertia = j_a});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = j_b});
+  m.add<Inertia>("J_c", {"c"}, {.inertia = j_c});
+  m.add<ShaftSpring>("soft", {"a", "b"}, {.stiffness = soft, .damping = drag});
+  m.add<ShaftSpring>("stiff", {"b", "c"}, {.stiffness = stiff, .damping = damping});
+  const DampedModeSet set = solve_damped_modes(m.build());
+  CHECK(set.rigid_modes == 1);
+  REQUIRE(set.modes.size() == 2);
+  // J_c adds 5e-11 of J_b to the one, and the rest is 5e-11 of J_c's motion in the other.
+  const double low = 1.0 / j_a + 1.0 / (j_b + j_c), high = 1.0 / j_b + 1.0 / j_c;
+  const auto lambda = [](double decay, double square) {
+    return std::complex<double>(-decay, std::sqrt(square - decay * decay));
+  };
+  const std::complex<double> slow = lambda(0.5 * drag * low, soft * low),
+                             fast = lambda(0.5 * damping * high, stiff * high);
+  CHECK(std::abs(set.modes[0].lambda - slow) < 1e-7 * std::abs(slow));
+  CHECK(std::abs(set.modes[1].lambda - fast) < 1e-9 * std::abs(fast));
+  CHECK(std::abs(set.shapes(1, 0) / set.shapes(0, 0) + j_a / j_b) < 1e-7);
+}
