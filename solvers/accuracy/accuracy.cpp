@@ -19,6 +19,7 @@ namespace drev {
 namespace {
 
 constexpr double kSafety = 2.0;           // on the difference of two runs
+constexpr double kFolded = 1.0;           // on what folds back more with half the samples
 constexpr double kLeastOrder = 0.25;      // of a difference over the one before: second order
 constexpr double kRounding = 1e-14;       // relative, before growth
 constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
@@ -28,6 +29,7 @@ constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled step
 constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
 constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
 constexpr int kOrders = 5;
+constexpr double kLeastOfCycle = 1024.0;  // samples: kinks fold back into the orders
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
 
 double quantile(std::vector<double> x, double part) {
@@ -40,6 +42,12 @@ double quantile(std::vector<double> x, double part) {
 Spectrum cycle_spectrum(std::vector<double> record, double every) {
   record.front() = 0.5 * (record.front() + record.back());
   return spectrum(record, every);
+}
+
+std::vector<double> every_other(const std::vector<double>& record) {
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < record.size(); i += 2) kept.push_back(record[i]);
+  return kept;
 }
 
 class AccurateRun {
@@ -97,12 +105,14 @@ class AccurateRun {
   void choose_sampling() {
     const double rate = fastest_rate(system_);
     const double length = span();
-    const double wanted = std::max(4.0 * to_hz(rate) * length, static_cast<double>(kLeastSamples));
+    double wanted = std::max(4.0 * to_hz(rate) * length, static_cast<double>(kLeastSamples));
+    if (o_.cycle > 0.0) wanted = std::max(wanted, kLeastOfCycle * length / o_.cycle);
     double count = std::min(wanted, static_cast<double>(kMostSamples));
     if (!o_.method.exact() && !o_.method.controlled())
       count = std::min(count, std::max(1.0, length / (4.0 * o_.method.step)));
     every_ = length / std::ceil(count);
-    if (o_.cycle > 0.0 && o_.cycle <= length) every_ = o_.cycle / std::ceil(o_.cycle / every_);
+    if (o_.cycle > 0.0 && o_.cycle <= length)
+      every_ = o_.cycle / (2.0 * std::ceil(o_.cycle / (2.0 * every_)));
   }
 
   std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
@@ -276,6 +286,9 @@ class AccurateRun {
       return ordered ? cycle_spectrum(record, every_) : line_spectrum(record);
     };
     const Spectrum coarse = of(x), fine = of(y);
+    // Lines above the sampling fold back: with every other sample, at least twice as much.
+    const Spectrum folded =
+        ordered ? cycle_spectrum(every_other(part(y, r.begin, r.end)), 2.0 * every_) : fine;
     std::vector<std::size_t> lines;
     for (std::size_t k = r.cycles; k + 1 < fine.amplitude.size(); k += r.cycles)
       if (ordered ||
@@ -295,8 +308,12 @@ class AccurateRun {
       orders_[name.str()] = k / r.cycles;
       add(name.str(), unit_of_deflection(), coarse.amplitude[k], fine.amplitude[k], b.deflection.value(),
           o_.t_end);
-      if (ordered) continue;
       Figure& line = result_.figures.back();
+      if (ordered) {
+        const double there = k < folded.amplitude.size() ? folded.amplitude[k] : 0.0;
+        line.error += kFolded * std::abs(line.value - there);
+        continue;
+      }
       line.error += spread_over_halves(y, r, fine.frequency_Hz[k], fine.amplitude[k]);
       // What is no steady line has no one amplitude: it is another in each half of the record.
       if (!line.keeps(o_.accuracy)) result_.figures.pop_back();

@@ -37,13 +37,27 @@ Watched::Watched(const System& system, const AccuracyOptions& o, const std::stri
       recorder(system, {followed}, every),
       span_(o.from, {&deflection, &torque, &mesh, &edges, &batches, &contacts, &recorder}) {}
 
-EdgeWatch::EdgeWatch(const System& system) : system_(system) {}
+EdgeWatch::EdgeWatch(const System& system) : system_(system), sides_(system.scalars().size()) {}
+
+/// The law is on this side of its gap from t on: which edges it passed to come there.
+void EdgeWatch::note_side(std::size_t law, int side, double t) {
+  const int before = sides_[law].value_or(side);
+  sides_[law] = side;
+  for (int now = before; now != side; now += side > before ? 1 : -1) {
+    const int next = now + (side > before ? 1 : -1);
+    passed_.push_back({t, law, std::max(now, next) > 0, next != 0});
+  }
+}
 
 void EdgeWatch::step(const Assembler& /*assembler*/, const EvaluatedState& from, const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
   for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
     const auto gap = system_.scalars()[j].force->gap();
     if (!gap) continue;
+    if (const auto side = motion_ ? motion_->side(static_cast<int>(j)) : std::nullopt) {
+      note_side(j, *side, from.state.t);
+      continue;
+    }
     const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
     std::vector<EdgePassed> here;
     for (const bool high : {false, true}) {

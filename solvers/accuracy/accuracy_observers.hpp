@@ -10,6 +10,7 @@
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace drev {
@@ -41,7 +42,7 @@ class PeakWatch final : public Observer {
 
 /// The deflection of a law passed an edge of its gap.
 struct EdgePassed {
-  double t = 0.0;        ///< s, on the cubic through deflections and rates at both ends of the step
+  double t = 0.0;  ///< s; where the method does not locate it, on the cubic through both ends of the step
   std::size_t law = 0;   ///< of System::scalars()
   bool high = false;     ///< which edge
   bool outward = false;  ///< contact made
@@ -50,12 +51,16 @@ struct EdgePassed {
 class EdgeWatch final : public Observer {
  public:
   explicit EdgeWatch(const System& system);
+  void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler&, const EvaluatedState&) override {}
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   const std::vector<EdgePassed>& passed() const { return passed_; }
 
  private:
+  void note_side(std::size_t law, int side, double t);
   const System& system_;
+  const StepMotion* motion_ = nullptr;
+  std::vector<std::optional<int>> sides_;  // of each law in the last step that knew
   std::vector<EdgePassed> passed_;
 };
 

@@ -13,6 +13,8 @@ constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
 // What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
+// By the last coefficients: so many that a force which is even or odd by chance is not taken for a smooth one.
+constexpr int kTail = 4;
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
 // Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
@@ -256,8 +258,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   }
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
   const auto note_rest = [&](const LegendreProjection& forces, double part, int row) {
-    const double tail = std::abs(forces.coefficient(kProjectionDegree, row)) +
-                        std::abs(forces.coefficient(kProjectionDegree - 1, row));
+    double tail = 0.0;
+    for (int j = kProjectionDegree - kTail + 1; j <= kProjectionDegree; ++j)
+      tail += std::abs(forces.coefficient(j, row));
     const double rest = part * tail * relative_move(series, row);
     if (std::isfinite(rest)) pass.residual = std::max(pass.residual, rest);
   };

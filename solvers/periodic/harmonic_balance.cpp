@@ -311,7 +311,11 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
     const double largest = size(z);
     const bool linear = slopes_.empty() && feedback_.empty();
     outcome.residual = left > 0.0 ? left / largest : 0.0;
-    if (left == 0.0 || (linear && left <= tolerance * largest)) return outcome;
+    // The last correction is made all the same: in the highest harmonics it is small as an angle only.
+    if (left == 0.0 || (linear && left <= tolerance * largest)) {
+      z += error;
+      return outcome;
+    }
     if (linear) {
       d = error;
     } else {
@@ -321,7 +325,10 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
     // S^-1 R is the error only where the slopes are the closed ones; Newton's own step is it everywhere.
     const double step = size(d);
     outcome.residual = step / largest;
-    if (step <= tolerance * largest) return outcome;
+    if (step <= tolerance * largest) {
+      z += d;
+      return outcome;
+    }
     if (outcome.iterations == kMaxNewton) break;
     double part = 1.0, then = 0.0;
     for (; part >= kShortest; part /= 2) {

@@ -19,8 +19,9 @@ constexpr int kFewest = 16, kMost = 4096;
 constexpr double kLargestSize = 2e7;  // unknowns x harmonics: 320 MB a motion
 constexpr double kFirstTail = 1e-3;
 constexpr double kPeriodicity = 1e-8;
-constexpr double kUneven = 10.0;  // kinks fall between the samples of each level differently: measured 7.5
-constexpr double kSwing = 0.02;   // of the range: how far an extremum may rise above the samples beside it
+constexpr double kUneven = 10.0;   // kinks fall between the samples of each level differently: measured 7.5
+constexpr double kSwing = 0.02;    // of the range: how far an extremum may rise above the samples beside it
+constexpr double kLoosest = 1e-2;  // error at the most harmonics; beyond, it is another motion
 constexpr double kNewtonTolerance = 1e-2;  // of the tolerance
 
 /// What a level of harmonics gives.
@@ -92,19 +93,22 @@ class SeriesMotion {
   double w_;
 };
 
-/// Largest and smallest value of a channel over the period: at even times `h` apart, and between those near
-/// them on the motion itself.
+/// Largest and smallest value of a channel over the period: at even times `h` apart, and beside those that are
+/// extreme on the motion itself.
 Peak peak_of(const Channel& channel, const Eigen::RowVectorXd& y, double h, SeriesMotion& motion) {
   Peak p{{y[0], 0.0, y[0], 0.0}};
   for (Eigen::Index s = 1; s < y.size(); ++s) p.note(y[s], h * static_cast<double>(s));
-  const double top = p.max, bottom = p.min;
+  const double swing = kSwing * (p.max - p.min), top = p.max - swing, bottom = p.min + swing;
+  const auto look = [&](double t) { return motion.look(channel, t); };
   for (Eigen::Index s = 0; s < y.size(); ++s) {
-    const double here = y[s], next = y[(s + 1) % y.size()];
-    const double swing = std::max(std::abs(next - here), kSwing * (top - bottom));
-    if (std::max(here, next) < top - swing && std::min(here, next) > bottom + swing) continue;
-    const auto look = [&](double t) { return motion.look(channel, t); };
+    const double before = y[(s + y.size() - 1) % y.size()], here = y[s], next = y[(s + 1) % y.size()];
+    const bool highest = here > before && here >= next && here >= top;
+    const bool lowest = here < before && here <= next && here <= bottom;
+    if (!highest && !lowest) continue;
     const double t = h * static_cast<double>(s);
-    search_peak(look(t), look(t + h), look, p.max - p.min, p);
+    const PeakSample middle = look(t);
+    search_peak(look(t - h), middle, look, p.max - p.min, p);
+    search_peak(middle, look(t + h), look, p.max - p.min, p);
   }
   return p;
 }
@@ -197,8 +201,7 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
     before = std::move(level);
   }
   response.contact_closed = level.closed;
-  response.found =
-      given || response.error <= kUneven * options.tolerance;  // the estimate without its allowance
+  response.found = given || response.error <= std::max(options.tolerance, kLoosest);
   if (!response.found)
     response.reason = "the error is " + to_text(response.error) + " with " + std::to_string(harmonics) +
                       " harmonics, not the tolerance " + to_text(options.tolerance);

@@ -19,7 +19,7 @@ namespace drev {
 struct PeriodicOptions {
   double period = 0.0;  ///< T [s]; 0: `turns` of the reference shaft
   int harmonics =
-      0;  ///< H; 0: doubled until the error is within the tolerance; at 4096 ten times that is found, too
+      0;  ///< H; 0: doubled until the error is within the tolerance, up to 4096; there 1e-2 is found, too
   double tolerance = 1e-6;  ///< relative, of the channels (of the motion, without any); >= 1e-10
   std::vector<std::string> channels = {};
   double turns = 1.0;  ///< of the reference shaft in a period; half orders need 2
