@@ -87,6 +87,13 @@ with open("turning.toml") as file, open("many_segments.toml", "w") as copied:
                                      'outer_diameter_mm = 100, length_m = 5')
                  .replace('"shaft_spring"', '"distributed_shaft"'))
 
+with open("spline.toml", "w") as file:  # a contact in N m
+    file.write('format = 1\n[nodes]\na = { initial_speed_rad_per_s = 2 }\nb = {}\n[elements]\n'
+               'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n'
+               'Jb = { type = "inertia", node = "b", inertia_kg_m2 = 1 }\n'
+               's = { type = "polyline_spring", nodes = ["a", "b"], dead_band = { stiffness_Nm_per_rad = 2000, '
+               'half_gap_rad = 0.01 } }\n[run]\nduration_s = 0.2\n')
+
 results = {
     "exact": printed("run", "camshaft", "--set", short),
     "held": printed("run", "camshaft", "--set", "drive=held", short),
@@ -94,6 +101,7 @@ results = {
     "constant steps": printed("run", "two_mass_backlash", "--method", "hht:0.1", "--step", "0.001"),
     "controlled": printed("run", "gear_drive", "--set", short, "--method", "sdirk4", "--tolerance", "1e-4"),
     "accuracy": printed("run", "two_mass_backlash", "--accuracy", "1e-4"),
+    "contact in N m": printed("run", "spline.toml", "--accuracy", "1e-4"),
     "statistics": printed("run", "gear_drive", "--accuracy", "1e-2"),
     "reduced": printed("run", "long.toml", "--reduce", "5%"),
     "turning": printed("run", "turning.toml"),
