@@ -11,6 +11,14 @@ const std::vector<CommandEntry>& commands() {
   static const OptionEntry run{"--run", "NAME", "Run of a model file that is meant; default: its [run]"};
   static const OptionEntry plugin{"--plugin", "FILE,...",
                                   "Shared libraries with elements of one's own for model files", commas};
+  static const OptionEntry speeds{"--speeds", "RPM",
+                                  "FIRST:STEP:LAST or A,B,C of the reference shaft; must be given"};
+  static const OptionEntry orders{"--orders", "ORDERS",
+                                  "FIRST:STEP:LAST or A,B,C a revolution of it; default: 0.5:0.5:12"};
+  static const OptionEntry linear{
+      "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
+  static const OptionEntry sections{"--record", "CHANNEL,...",
+                                    "Sections; default: every torque and force of an element", commas};
   static const std::vector<CommandEntry> table{
       {.name = "run",
        .summary = "Simulates a model in time, or several, and prints what it found",
@@ -62,15 +70,10 @@ const std::vector<CommandEntry>& commands() {
        .execute = modes_command},
       {.name = "sweep",
        .summary = "Steady vibration by orders over speed of a linear model, with its criticals",
-       .options = {{"--speeds", "RPM", "FIRST:STEP:LAST or A,B,C of the reference shaft; must be given"},
-                   {"--orders", "ORDERS", "FIRST:STEP:LAST or A,B,C a revolution of it; default: 0.5:0.5:12"},
-                   {"--contact",
-                    "STATE",
-                    "closed: takes a model with contacts as if they never opened",
-                    one,
-                    {"closed"}},
-                   {"--record", "CHANNEL,...", "Sections; default: every torque and force of an element",
-                    commas},
+       .options = {speeds,
+                   orders,
+                   linear,
+                   sections,
                    {"--balance", "NODE",
                     "Where the mean torque that is left over is taken up; default: nowhere"},
                    {"--absolute-sum", "", "Sums of the orders' amplitudes without their phases, too", none},
@@ -81,15 +84,10 @@ const std::vector<CommandEntry>& commands() {
        .execute = sweep_command},
       {.name = "campbell",
        .summary = "Damped natural frequencies over speed, and the speeds at which orders meet them",
-       .options = {{"--speeds", "RPM", "FIRST:STEP:LAST or A,B,C of the reference shaft; must be given"},
-                   {"--orders", "ORDERS", "FIRST:STEP:LAST or A,B,C a revolution of it; default: 0.5:0.5:12"},
-                   {"--contact",
-                    "STATE",
-                    "closed: takes a model with contacts as if they never opened",
-                    one,
-                    {"closed"}},
-                   {"--record", "CHANNEL,...", "Sections; default: every torque and force of an element",
-                    commas},
+       .options = {speeds,
+                   orders,
+                   linear,
+                   sections,
                    {"--out", "DIR", "Creates DIR with modes.csv, criticals.csv and summary.json"},
                    run,
                    plugin},

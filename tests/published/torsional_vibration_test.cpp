@@ -19,6 +19,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/problems/engine_chain.hpp"
+#include "tests/problems/square_law.hpp"
 #include "tests/published/read_csv.hpp"
 
 using namespace drev;
@@ -107,32 +108,6 @@ TEST_CASE("Six cylinders with viscous shafts: half range of the sum of 24 orders
   }
 }
 
-namespace {
-
-/// P_MCR w^2 / w_MCR^3 against the rotation.
-class Propeller final : public Element, public Load {
- public:
-  struct Params {
-    double factor = 0.0;  // N m s^2/rad^2
-  };
-  explicit Propeller(Params params) : params_(params) {}
-  std::string_view type() const override { return "propeller"; }
-  int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.positive("factor", params_.factor, "N m s^2/rad^2");
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
-  LoadResponse evaluate(const LoadInput& in) const override {
-    return {.torque = -params_.factor * in.speed * std::abs(in.speed),
-            .dtorque_dspeed = -2.0 * params_.factor * std::abs(in.speed)};
-  }
-
- private:
-  Params params_;
-};
-
-}  // namespace
-
 TEST_CASE("Marine shafting: damped modes at 66 rpm with the propeller's law", "[torsional_vibration]") {
   const std::vector<double> inertias{8730, 578, 4920, 4920,   4920,   4920,
                                      4920, 735, 8136, 82.095, 194.14, 21497};
@@ -149,7 +124,7 @@ TEST_CASE("Marine shafting: damped modes at 66 rpm with the propeller's law", "[
                          {.stiffness = stiffnesses[i - 1], .damping = i == 1 ? 2e5 : 0.0});
     if (i >= 2 && i <= 6) m.add<Dashpot>("c" + std::to_string(i), {node}, {.damping = 540.0});
   }
-  m.add<Propeller>("propeller", {"n11"}, {.factor = factor});
+  m.add<SquareLaw>("propeller", {"n11"}, {.factor = factor});
   m.set_reference("n11", constant_speed(rpm(66.0)));
   const System system = m.build();
   // Printed: 330.08, 502.10, 1872.20 cycles/min.

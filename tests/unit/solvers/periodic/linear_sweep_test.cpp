@@ -15,6 +15,7 @@
 #include "solvers/periodic/trigonometric_sum.hpp"
 #include "solvers/run/bracketed_maximum.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/square_law.hpp"
 
 using namespace drev;
 
@@ -297,32 +298,6 @@ TEST_CASE("Closed contacts on request; where teeth would separate is said", "[li
   CHECK_FALSE(mesh.separates(0));
   CHECK(with_mean(5.0).sections[0].separates(0));
 }
-
-namespace {
-
-/// -factor w |w|, as a propeller or fan takes it.
-class SquareLaw final : public Element, public Load {
- public:
-  struct Params {
-    double factor = 0.0;  // N m s^2/rad^2
-  };
-  explicit SquareLaw(Params params) : params_(params) {}
-  std::string_view type() const override { return "square law"; }
-  int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.positive("factor", params_.factor, "N m s^2/rad^2");
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
-  LoadResponse evaluate(const LoadInput& in) const override {
-    return {.torque = -params_.factor * in.speed * std::abs(in.speed),
-            .dtorque_dspeed = -2.0 * params_.factor * std::abs(in.speed)};
-  }
-
- private:
-  Params params_;
-};
-
-}  // namespace
 
 TEST_CASE("A load that follows the speed damps with its slope, at every speed", "[linear_sweep]") {
   const double k = 800.0, inertia = 2.0, factor = 0.05;
