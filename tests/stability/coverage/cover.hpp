@@ -5,6 +5,17 @@
 
 namespace coverage {
 
+inline constexpr std::size_t kUnits = 6;
+/// Angles, speeds, accelerations, mesh forces, mesh deflections, torques.
+inline std::size_t unit(ChannelId::Kind kind) {
+  using Kind = ChannelId::Kind;
+  if (kind == Kind::angle || kind == Kind::twist || kind == Kind::polyline_deflection) return 0;
+  if (kind == Kind::speed) return 1;
+  if (kind == Kind::acceleration) return 2;
+  if (kind == Kind::mesh_force) return 3;
+  return kind == Kind::mesh_deflection ? 4 : 5;
+}
+
 /// What is known of a model before drev is asked.
 struct Case {
   Spec spec;

@@ -17,7 +17,7 @@ constexpr int kMostPeriods = 3000;
 constexpr Real kSettled = 1e-16L;    // change of the state over a period, relative
 constexpr Real kRounding = 1e-13L;   // below it a change that does not fall any more is rounding
 constexpr double kDouble = 1e-14;    // relative: less is not asked of an error in double precision
-constexpr double kStill = 1e-9;      // of the largest of its kind: a channel that does not move
+constexpr double kStill = 1e-9;      // of the largest of its unit: a channel that does not move
 constexpr double kElsewhere = 1e-2;  // relative: the reference settled on another motion
 constexpr int kOrders = 6;
 
@@ -103,7 +103,7 @@ void compare_response(const drev::PeriodicResponse& r, const Settled& truth,
     const double largest = static_cast<double>(truth.peaks[c].amplitude());
     double of_kind = 0.0;
     for (std::size_t other = 0; other < channels.size(); ++other)
-      if (channels[other].kind == channels[c].kind)
+      if (unit(channels[other].kind) == unit(channels[c].kind))
         of_kind = std::max(of_kind, static_cast<double>(truth.peaks[other].amplitude()));
     if (!(largest > kStill * of_kind)) continue;
     const double known = 10.0 * static_cast<double>(truth.change) * largest;

@@ -55,17 +55,6 @@ double size(const ReferenceResult& r, std::size_t channel) {
   return static_cast<double>(r.peaks[channel].amplitude());
 }
 
-constexpr std::size_t kUnits = 6;
-/// Angles, speeds, accelerations, mesh forces, mesh deflections, torques.
-std::size_t unit(ChannelId::Kind kind) {
-  using Kind = ChannelId::Kind;
-  if (kind == Kind::angle || kind == Kind::twist || kind == Kind::polyline_deflection) return 0;
-  if (kind == Kind::speed) return 1;
-  if (kind == Kind::acceleration) return 2;
-  if (kind == Kind::mesh_force) return 3;
-  return kind == Kind::mesh_deflection ? 4 : 5;
-}
-
 /// A tolerance is relative to the largest deflection, or rate, of all: to the largest channel of the same unit.
 std::array<double, kUnits> largest_of_units(const ReferenceModel& model, const ReferenceResult& r) {
   std::array<double, kUnits> largest{};
