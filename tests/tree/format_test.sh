@@ -10,7 +10,7 @@ set -euo pipefail
 what=$1 root=$2
 shift 2
 cd "$root"
-jobs=$(nproc 2>/dev/null || echo 2)
+jobs=$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
 need() {
   command -v "$1" >/dev/null || { echo "SKIPPED: no $1 here (Debian's package $1)"; exit 77; }
 }

@@ -18,7 +18,7 @@ fi
 
 failed=0
 tr -s ' \n' '\n\n' <<<"$headers" | sed '/^$/d' |
-  xargs -P "$(nproc 2>/dev/null || echo 2)" -I{} sh -c '
+  xargs -P "$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)" -I{} sh -c '
     header=$1; shift
     echo "#include \"$header\"" | "$@" -std=c++20 -fsyntax-only -Wall -Wextra -Wno-unused-function -Werror -I. -x c++ - \
       || { echo "FAILED: $header does not compile by itself" >&2; exit 1; }' sh {} "$compiler" "$@" || failed=1
