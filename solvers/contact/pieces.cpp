@@ -1,5 +1,7 @@
 #include "solvers/contact/pieces.hpp"
 
+#include <span>
+
 namespace drev {
 
 std::vector<LawPiece> stretches_between_kinks(const ScalarForce& force) {
@@ -21,7 +23,8 @@ std::vector<LawPiece> bounds_alone(const ScalarForce& force) {
   return pieces;
 }
 
-std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term, std::span<const LawPiece> own) {
+std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term) {
+  const std::span<const LawPiece> own = term.force->pieces();
   if (own.empty() || term.phase_node >= 0) return stretches_between_kinks(*term.force);
   return {own.begin(), own.end()};
 }

@@ -3,7 +3,6 @@
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/system.hpp>
 
-#include <span>
 #include <vector>
 
 namespace drev {
@@ -13,8 +12,8 @@ namespace drev {
 std::vector<LawPiece> bounds_alone(const ScalarForce& force);
 /// The stretches of x between a law's kinks, as pieces without forces of their own.
 std::vector<LawPiece> stretches_between_kinks(const ScalarForce& force);
-/// The `own` pieces of a term's law; where it has none, or where its stiffness follows the phase of a node,
-/// the stretches between its kinks.
-std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term, std::span<const LawPiece> own);
+/// The pieces of a term's law; where it has none, or follows the phase of a node, the stretches between its
+/// kinks.
+std::vector<LawPiece> pieces_or_stretches(const ScalarTerm& term);
 
 }  // namespace drev

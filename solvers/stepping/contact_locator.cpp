@@ -38,8 +38,7 @@ double sum(const std::vector<Entry>& entries, const Vector& q) {
 ContactLocator::ContactLocator(const System& system) : system_(system), zero_(Vector::Zero(system.size())) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (auto pieces = pieces_or_stretches(term, term.force->pieces()); pieces.size() > 1)
-      laws_.push_back({j, std::move(pieces)});
+    if (auto pieces = pieces_or_stretches(term); pieces.size() > 1) laws_.push_back({j, std::move(pieces)});
     if (term.phase_node >= 0 && (term.force->next_knot(0.0, 1.0) || term.force->next_knot(0.0, -1.0)))
       phased_.push_back(j);
   }
