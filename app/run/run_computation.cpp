@@ -83,7 +83,7 @@ std::vector<std::string> names_of(const std::vector<Channel>& channels) {
 }
 
 /// Figures with their errors; false: the run failed, as the result says.
-bool find_accuracy(const RunRequest& request, const System& system, RunResult& result) {
+bool find_accuracy(const RunRequest& request, const System& system, double start_error, RunResult& result) {
   const ModelCase& model_case = request.model.model_case;
   Progress shown([&] { return why_long(system, request.method, model_case.duration); });
   const Timer timer;
@@ -96,6 +96,7 @@ bool find_accuracy(const RunRequest& request, const System& system, RunResult& r
                                                .meshes = names_of(mesh_channels(system)),
                                                .cycle = cycle_of(request.model),
                                                .method = request.method,
+                                               .start_error = std::min(1.0, start_error),
                                                .progress = [&](double part) {
                                                  shown.update(part);
                                                  return !interrupted();
@@ -271,7 +272,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     observers.insert(observers.begin(), run_up->observer());
   }
   observers.insert(observers.begin(), &figures);
-  if (request.accuracy && !find_accuracy(request, full, result)) return result;
+  if (request.accuracy && !find_accuracy(request, full, plan.start ? plan.start->error : 0.0, result))
+    return result;
   const Timer timer;
   try {
     Progress shown([&] { return why_long(system, result.method, duration); });

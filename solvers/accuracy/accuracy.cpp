@@ -27,6 +27,7 @@ constexpr double kTightening = 1e-3;      // of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
 constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
 constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
+constexpr double kOfEnsemble = 1e-6;      // tolerance of exact propagation of runs that are averaged
 constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
 constexpr int kOrders = 5;
 constexpr double kLeastOfCycle = 1024.0;  // samples: kinks fold back into the orders
@@ -141,7 +142,7 @@ class AccurateRun {
   bool ends(int level, double seconds) const {
     if (result_.fine.exact()) return result_.fine.tolerance <= kLeastTolerance;
     if (result_.fine.controlled() && result_.fine.tolerance <= kLeastOfSteps) return true;
-    if (2.0 * seconds > o_.most_seconds) return true;
+    if (2.0 * seconds > o_.most_seconds || o_.start_error > o_.accuracy) return true;
     return level >= 2 && result_.growth.factor(o_.t_end) > kChaos;
   }
 
@@ -164,8 +165,8 @@ class AccurateRun {
   }
 
   double error_of(double coarse, double fine, double scale, double t) const {
-    return kSafety * std::abs(coarse - fine) +
-           std::max(kRounding, result_.fine.tolerance) * result_.growth.factor(t) * std::abs(scale);
+    const double off = std::max(kRounding, result_.fine.tolerance) + o_.start_error;
+    return kSafety * std::abs(coarse - fine) + off * result_.growth.factor(t) * std::abs(scale);
   }
 
   void compare(const Watched& a, const Watched& b) {
@@ -377,6 +378,9 @@ class AccurateRun {
   /// Peaks over runs that start beside the first.
   void add_ensemble(const std::vector<Figure>& replaced_from) {
     std::vector<double> deflections, torques, meshes;
+    Method method = result_.coarse;
+    // They differ by much more than a tolerance.
+    if (method.exact()) method.tolerance = std::max(method.tolerance, kOfEnsemble);
     for (int i = 1; i <= o_.ensemble && going_on(0.7 + 0.3 * i / o_.ensemble); ++i) {
       PeakWatch deflection(o_.deflection.empty() ? std::vector<Channel>{}
                                                  : find_channels(system_, {o_.deflection}));
@@ -384,7 +388,7 @@ class AccurateRun {
       AfterTime span(o_.from, {&deflection, &torque, &mesh});
       State state = neighbour(system_, i, result_.growth.z_scale, result_.growth.v_scale);
       const RunSummary run =
-          run_method(system_, result_.coarse, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state, {&span});
+          run_method(system_, method, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state, {&span});
       if (!run.ok()) continue;
       deflections.push_back(deflection.value());
       torques.push_back(torque.value());
@@ -444,7 +448,9 @@ class AccurateRun {
               "interval";
     } else {
       text << "not every figure keeps " << o_.accuracy << " yet, and a finer run would ";
-      if (result_.fine.exact() || result_.fine.tolerance == kLeastOfSteps)
+      if (o_.start_error > o_.accuracy)
+        text << "not know its start better: the state it starts from has an error of " << o_.start_error;
+      else if (result_.fine.exact() || result_.fine.tolerance == kLeastOfSteps)
         text << "only add rounding";
       else
         text << "take more than " << o_.most_seconds << " s";
@@ -480,6 +486,7 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
     check.fail("from", to_text(o.from), "s", "must be from 0 to less than t_end");
   check.non_negative("cycle", o.cycle, "s");
   check.positive("most_seconds", o.most_seconds, "s");
+  check.within("start_error", o.start_error, 0.0, 1.0, "");
   if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
   if (!o.method.exact() && !o.method.controlled()) check.positive("method.step", o.method.step, "s");
   if (o.method.exact())

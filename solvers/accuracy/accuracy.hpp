@@ -38,6 +38,9 @@ struct AccuracyOptions {
   Method method = {};  ///< exact, controlled (the tolerance is found), or the constant step to begin with
   double most_seconds = 30.0;  ///< processor time of the longest run
   int ensemble = 8;            ///< perturbed runs for peaks past the horizon
+  /// Of the initial state, relative to the largest deviation and rate (FoundStart::error): it grows or decays as any
+  /// small difference does, and is part of the error of every figure. In [0, 1].
+  double start_error = 0.0;
   std::function<bool(double)> progress = {};
 };
 

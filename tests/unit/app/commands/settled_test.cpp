@@ -124,7 +124,7 @@ TEST_CASE("What cannot be a start or a settling time is a fault of its place, al
   CHECK(contains(none.json["reason"].get<std::string>(), "floats freely (with shaft)"));
 }
 
-TEST_CASE("With --accuracy, figures and their errors are of the part after the settling time") {
+TEST_CASE("With --accuracy, figures and their errors are of the part after the settling time", "[once]") {
   // The transient has the time constant 2 J/c = 0.5 s: exp(-9) of it is left after 4.5 s.
   const Ran settled = run_of(disc("8", ""), {"--settle", "4.5", "--accuracy", "1e-8"});
   INFO(settled.err);

@@ -74,7 +74,7 @@ TEST_CASE("Study: free frequencies within 0.005 Hz of an independent solver's") 
   CHECK(rows[19].published == "788.97");
 }
 
-TEST_CASE("Study: the report of the cheap groups") {
+TEST_CASE("Study: the report of the cheap groups", "[once]") {
   const drev::test::TemporaryFolder folder;
   const auto run = drev_command(
       {"study", "--only", "data,frequencies,held_frequencies,benchmark", "--out", (folder / "out").string()});

@@ -1,5 +1,6 @@
 // Figures with their errors against closed forms.
 // Covers solvers/accuracy/accuracy_observers.hpp and solvers/run/estimate.hpp through run_to_accuracy().
+#include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
@@ -49,6 +50,32 @@ TEST_CASE("Accuracy: a damped oscillator let go at 1, by exact, constant and con
       covers(r, "peak torque", force);
       for (const Figure& f : r.figures) CHECK(f.keeps(accuracy));
     }
+}
+
+TEST_CASE("Accuracy: the error of the state that a run starts from is in every figure") {
+  // The oscillator above, let go at 1.0001 where 1 is meant: all of it is 1e-4 off.
+  Model m = unit_oscillator();
+  m.add<Dashpot>("c", {"m"}, {.damping = 0.6});
+  m.set_initial("m", 1.0 + 1e-4, 0.0);
+  const System system = m.build();
+  const double d = 0.3, w = std::sqrt(4 * kPi * kPi - d * d), t = std::atan2(w, d) / w;
+  const double force = 0.6 * (w * w + d * d) / w * std::exp(-d * t) * std::sin(w * t);
+  AccuracyOptions options{
+      .accuracy = 1e-6, .t_end = 3.0, .deflection = "m.position_m", .torques = {"c.force_N"}};
+  options.method = {.name = "exact"};
+  const AccuracyResult unaware = run_to_accuracy(system, options);
+  CHECK(unaware.reached);
+  CHECK(std::abs(unaware.find("peak torque")->value - force) > 100 * unaware.find("peak torque")->error);
+  options.start_error = 1.1e-4;
+  const AccuracyResult r = run_to_accuracy(system, options);
+  covers(r, "peak deflection", 1.0);
+  covers(r, "peak torque", force);
+  CHECK_FALSE(r.reached);
+  CHECK(r.reason.find("the state it starts from has an error of 0.00011") != std::string::npos);
+  options.accuracy = 1e-3;
+  CHECK(run_to_accuracy(system, options).reached);
+  options.start_error = -1.0;
+  CHECK_THROWS_AS(run_to_accuracy(system, options), ModelError);
 }
 
 TEST_CASE("Accuracy: times of contact of a ball between two walls, and order amplitudes") {

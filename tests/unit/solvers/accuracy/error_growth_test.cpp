@@ -27,7 +27,7 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
   CHECK(g.time_of(10.0) == HUGE_VAL);
 }
 
-TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair") {
+TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair", "[once]") {
   // Published: 0.10947 a unit of time.
   const ErrorGrowth g = measure_error_growth(
       chaotic_oscillator(),

@@ -84,7 +84,7 @@ TEST_CASE("Exact propagation: a torque that is a function of speed") {
   CHECK(state.z[0] == Approx(2.0 / 0.5 * std::log(1 + 0.5 * 3.0 * 10.0 / 2.0)).epsilon(1e-11));
 }
 
-TEST_CASE("Exact propagation: meshes that are smooth, stepped or damped by penetration") {
+TEST_CASE("Exact propagation: meshes that are smooth, stepped or damped by penetration", "[once]") {
   const GearMesh::Params plain{.base_radius_1 = 0.05,
                                .base_radius_2 = 0.1,
                                .teeth_1 = 20,

@@ -192,7 +192,7 @@ TEST_CASE("A gap that opens, a stiffness by phase: exact propagation comes back 
   }
 }
 
-TEST_CASE("Camshaft held: the last turn of a long exact run") {
+TEST_CASE("Camshaft held: the last turn of a long exact run", "[once]") {
   for (const char* loads : {"source", "actual"}) {
     INFO(loads);
     Parameters s("camshaft", camshaft_entry().parameters);

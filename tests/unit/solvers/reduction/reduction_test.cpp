@@ -148,7 +148,7 @@ TEST_CASE("All modes kept: the same motion in other coordinates") {
   }
 }
 
-TEST_CASE("All modes kept: the same periodic response") {
+TEST_CASE("All modes kept: the same periodic response", "[once]") {
   const System full = camshaft("held");
   const PeriodicOptions options{.tolerance = 1e-5, .channels = {"inlet_9-fuel_1.twist_rad"}};
   const PeriodicResponse a = solve_periodic(full, options);
