@@ -122,7 +122,13 @@ void take_figure(const AccuracyResult& accuracy, const std::string& name, std::o
   largest->error = figure->error;
 }
 
-/// The same for contacts.
+/// The error that rounding leaves of the torque of a stiff element.
+void take_rounding(const RunSummary& summary, std::optional<Largest>& largest) {
+  for (const auto& [channel, error] : summary.rounding)
+    if (largest && largest->channel == channel) largest->error = std::max(largest->error.value_or(0.0), error);
+}
+
+/// The figures of contacts that the accuracy found.
 void take_contacts(const AccuracyResult& accuracy, std::vector<Contacts>& contacts) {
   for (std::size_t i = 0; i < std::min(contacts.size(), accuracy.contacts.size()); ++i) {
     const ContactFigures& known = accuracy.contacts[i];
@@ -311,6 +317,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
       take_figure(*result.accuracy, "peak mesh force", result.mesh_force);
       take_contacts(*result.accuracy, result.contacts);
     }
+    take_rounding(result.summary, result.force);
   }
   return result;
 }

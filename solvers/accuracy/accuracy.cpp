@@ -113,7 +113,7 @@ class AccurateRun {
       count = std::min(count, std::max(1.0, length / (4.0 * o_.method.step)));
     every_ = length / std::ceil(count);
     if (o_.cycle > 0.0 && o_.cycle <= length)
-      every_ = o_.cycle / (2.0 * std::ceil(o_.cycle / (2.0 * every_)));
+      every_ = o_.cycle / (4.0 * std::ceil(o_.cycle / (4.0 * every_)));
   }
 
   std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
@@ -251,21 +251,19 @@ class AccurateRun {
       add("last comparable contact change", "s", a[same - 1].t, b[same - 1].t, b[same - 1].t, b[same - 1].t);
     }
     if (result_.horizon <= o_.t_end) return;
-    const double all = static_cast<double>(b.size());
-    result_.figures.push_back({{all, kSafety * std::abs(all - static_cast<double>(a.size()))},
-                               "contact changes",
-                               "",
-                               std::max(1.0, all)});
+    const auto all = static_cast<double>(b.size()), coarse = static_cast<double>(a.size());
+    result_.figures.push_back(
+        {{all, kSafety * std::abs(all - coarse)}, "contact changes", "", std::max(1.0, all)});
   }
 
-  /// Whole cycles at the end of the run, as many as fit into its last half or else into the run.
+  /// Whole cycles at the end of the run, as many as fit behind the part left out or else into the run.
   struct Record {
     std::size_t begin = 0, end = 0, cycles = 0;
   };
-  Record last_cycles(const std::vector<double>& samples) const {
+  Record last_cycles(const std::vector<double>& samples, double left_out) const {
     const auto per_cycle = static_cast<std::size_t>(std::round(o_.cycle / every_));
     const std::size_t steps = samples.size() - 1;
-    std::size_t cycles = steps / 2 / per_cycle;
+    auto cycles = static_cast<std::size_t>((1.0 - left_out) * static_cast<double>(steps / per_cycle));
     if (cycles == 0) cycles = steps / per_cycle;
     return {steps - cycles * per_cycle, steps, cycles};
   }
@@ -280,7 +278,7 @@ class AccurateRun {
     if (x.size() != y.size() || y.size() < 16) return;
     const bool ordered = o_.cycle > 0.0;
     if (ordered && o_.cycle > span()) return;
-    const Record r = ordered ? last_cycles(y) : Record{y.size() / 2, y.size() - 1, 1};
+    const Record r = ordered ? last_cycles(y, 0.5) : Record{y.size() / 2, y.size() - 1, 1};
     if (r.cycles == 0) return;
     const auto of = [&](const std::vector<double>& all) {
       const std::vector<double> record = part(all, r.begin, r.end);
@@ -288,8 +286,10 @@ class AccurateRun {
     };
     const Spectrum coarse = of(x), fine = of(y);
     // Lines above the sampling fold back: with every other sample, at least twice as much.
-    const Spectrum folded =
-        ordered ? cycle_spectrum(every_other(part(y, r.begin, r.end)), 2.0 * every_) : fine;
+    const std::vector<double> half = every_other(part(y, r.begin, r.end));
+    const Spectrum folded = ordered ? cycle_spectrum(half, 2.0 * every_) : fine;
+    // One difference may be small by chance.
+    const Spectrum twice = ordered ? cycle_spectrum(every_other(half), 4.0 * every_) : fine;
     std::vector<std::size_t> lines;
     for (std::size_t k = r.cycles; k + 1 < fine.amplitude.size(); k += r.cycles)
       if (ordered ||
@@ -311,8 +311,9 @@ class AccurateRun {
           o_.t_end);
       Figure& line = result_.figures.back();
       if (ordered) {
-        const double there = k < folded.amplitude.size() ? folded.amplitude[k] : 0.0;
-        line.error += kFolded * std::abs(line.value - there);
+        const auto at = [k](const Spectrum& s) { return k < s.amplitude.size() ? s.amplitude[k] : 0.0; };
+        line.error += kFolded * std::max(std::abs(line.value - at(folded)),
+                                         kLeastOrder * std::abs(at(folded) - at(twice)));
         continue;
       }
       line.error += spread_over_halves(y, r, fine.frequency_Hz[k], fine.amplitude[k]);
@@ -410,7 +411,7 @@ class AccurateRun {
     for (const Figure& f : figures) {
       const auto order = orders_.find(f.name);
       if (f.keeps(o_.accuracy) || order == orders_.end()) continue;
-      const Record r = last_cycles(samples);
+      const Record r = last_cycles(samples, Watched::left_out(o_));
       const std::size_t length = (r.end - r.begin) / r.cycles;
       std::vector<double> amplitudes;
       for (std::size_t i = 0; i < r.cycles; ++i)

@@ -139,6 +139,18 @@ double difference(const Level& coarse, const Level& fine) {
   return largest;
 }
 
+/// Largest part of a channel that its series leaves out, over its largest value. A channel that follows the time (a load at
+/// the nominal angle) is the same with any number of harmonics, and its series is not.
+double truncated(const HarmonicBalance& balance, const Level& level, const Harmonics& amplitudes) {
+  const Eigen::MatrixXd series = balance.motion(amplitudes, 0, static_cast<int>(level.values.cols()));
+  double largest = 0.0;
+  for (Eigen::Index c = 0; c < series.rows(); ++c) {
+    const double off = (level.values.row(c) - series.row(c)).cwiseAbs().maxCoeff();
+    if (off > 0.0) largest = std::max(largest, off / level.values.row(c).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
 double given_period(const System& system, const PeriodicOptions& options, PeriodicResponse& response) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name() + "/periodic response", findings);
@@ -210,6 +222,7 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
   response.v = balance.motion(z, 1, 4 * harmonics).col(0);
   if (channels.empty()) return response;
   const Harmonics amplitudes = balance.to_harmonics(level.values, harmonics);
+  response.error += kUneven * truncated(balance, level, amplitudes);
   SeriesMotion motion(system, z, kTwoPi / period);
   for (Eigen::Index c = 0; c < amplitudes.rows(); ++c) {
     response.peaks.push_back(peak_of(channels[static_cast<std::size_t>(c)], level.values.row(c),

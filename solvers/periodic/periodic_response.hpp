@@ -36,7 +36,7 @@ struct PeriodicResponse {
   int harmonics = 0;   ///< H
   int iterations = 0;  ///< of Newton's method, in all
   /// Estimated, relative to a channel's largest value: 10 times the sum of its largest difference from that with
-  /// half the harmonics and of the step that is left to Newton's method.
+  /// half the harmonics, of the step that is left to Newton's method and of what its series leaves out.
   double error = 0.0;
   bool contact_closed = true;  ///< where found: no law with a gap leaves its flank
   Vector z, v;                 ///< where found: unknowns and rates at t = 0, to start a run from

@@ -24,6 +24,9 @@ struct RunSummary {
   /// Sentences without full stop on what a figure may be wrong by although the run came to its end; to be shown
   /// before any figure.
   std::vector<std::string> warnings;
+  /// Torques of elements so stiff that rounding of their angles leaves less than five digits: the channel, and the error
+  /// that it leaves, of its unit (solvers/run/stiff_twists.hpp).
+  std::vector<std::pair<std::string, double>> rounding;
   std::string scheme;
   double step = 0.0;       ///< s, as asked for; 0: the method's own
   double tolerance = 0.0;  ///< as asked for; 0: constant steps

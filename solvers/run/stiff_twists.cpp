@@ -66,6 +66,7 @@ void StiffTwists::warn(RunSummary& summary) const {
   for (const Watched& w : watched_) {
     if (!(w.rounding * walk > kPrinted * w.largest)) continue;
     ++others;
+    summary.rounding.emplace_back(w.channel.name(), w.rounding * walk);
     if (!worst || w.rounding * worst->largest > worst->rounding * w.largest) worst = &w;
   }
   if (!worst) return;

@@ -31,7 +31,8 @@ class StiffTwists final : public Observer {
   bool due();
   void look(const Assembler& assembler, const EvaluatedState& point);
   bool needs_acceleration() const override { return false; }
-  /// Adds a warning for the element of which rounding leaves least, where that is more than the digits printed.
+  /// Adds a warning for the element of which rounding leaves least, and the error of each of which it leaves less than
+  /// the digits printed.
   void warn(RunSummary& summary) const;
   /// The error that rounding leaves of a channel after so many steps, of its unit; 0 where it is not watched.
   double error(const std::string& channel, long steps) const;

@@ -75,10 +75,16 @@ TEST_CASE("A shaft too stiff for its angles: the run says what rounding leaves, 
     const double off = std::abs(peaks.peaks()[0].amplitude() - peak) / peak;
     CHECK((warns(run, "shaft is so stiff") || off < 1e-3 || !run.ok()));
     if (stiffness >= 1e16) CHECK(warns(run, "shaft is so stiff"));
+    REQUIRE(run.rounding.size() == (warns(run, "shaft is so stiff") ? 1u : 0u));
+    for (const auto& [channel, error] : run.rounding) {
+      CHECK(channel == "shaft.torque_Nm");
+      CHECK(error > off * peak);
+    }
   }
   const RunSummary soft =
       run_method(two_inertias(1e7), {.name = "exact", .tolerance = 1e-10}, {.t_end = 0.2});
   CHECK(soft.warnings.empty());
+  CHECK(soft.rounding.empty());
 }
 
 TEST_CASE("Runs with jumps of stiffness are right and say so, whatever the method and where they end",

@@ -260,3 +260,23 @@ TEST_CASE(
   const std::string value = run.text.substr(line + 15, run.text.find(" +-", line) - line - 15);
   CHECK(value == run.text.substr(list + 13, run.text.find(" +-", list) - list - 13));
 }
+
+TEST_CASE("A torque of which rounding leaves little is printed with what it leaves") {
+  const std::string stiff =
+      "format = 1\n[nodes]\nmotor = {}\nload = {}\n[elements]\n"
+      "a = { type = \"inertia\", node = \"motor\", inertia_kg_m2 = 0.012 }\n"
+      "b = { type = \"inertia\", node = \"load\", inertia_kg_m2 = 0.035 }\n"
+      "shaft = { type = \"shaft_spring\", nodes = [\"motor\", \"load\"], stiffness_Nm_per_rad = 1e16 }\n"
+      "drive = { type = \"applied_torque\", node = \"motor\", harmonics = { frequency_Hz = [40], "
+      "amplitude_Nm = "
+      "[20], phase_deg = [-90] } }\n[run]\nduration_s = 0.05\n";
+  const Ran run = run_of(stiff, {"--method", "sdirk4", "--tolerance", "1e-4"});
+  REQUIRE(run.exit_code == 0);
+  CHECK(contains(run.text, "shaft is so stiff that rounding"));
+  // Rigid: the load's share of the torque.
+  const Json& results = run.json["results"];
+  const double off = results["max_torque_Nm"].get<double>() - 20.0 * 0.035 / 0.047;
+  REQUIRE(results["max_error"].is_number());
+  CHECK(std::abs(off) < results["max_error"].get<double>());
+  CHECK(contains(run.text.substr(run.text.find("Largest torque")), " +- "));
+}
