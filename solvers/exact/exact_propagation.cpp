@@ -62,6 +62,8 @@ class ExactRun final : public StepMotion {
     laws_.locate(now_.inputs);
     EnergyMonitor energy(assembler_, now_);
     energy_ = &energy;
+    forces_ = std::any_of(observers_.begin(), observers_.end(),
+                          [](const Observer* o) { return o->needs_acceleration(); });
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
     check_start(summary_, system_, now_.state);
@@ -74,7 +76,11 @@ class ExactRun final : public StepMotion {
     return summary_;
   }
 
-  State take_state() { return std::move(now_.state); }
+  /// With its acceleration, which steps that nobody watches do without.
+  State take_state() {
+    if (!whole_ && now_.state.z.allFinite()) evaluate(assembler_, now_, now_.state.t);
+    return std::move(now_.state);
+  }
 
   Point at(double t) override {
     move_inside(t, look_);
@@ -140,11 +146,18 @@ class ExactRun final : public StepMotion {
     to.history = from.history;
     series_.evaluate(s, to.z, to.v);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
-    evaluate(assembler_, next_, ahead_of_break ? stop.evaluation_time() : t_new);
+    const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
+    const bool whole = forces_ || t_new == stop.t;
+    if (whole)
+      evaluate(assembler_, next_, evaluated_at);
+    else
+      evaluate_energies(next_, evaluated_at);
     const ProjectedLaws::Work smooth = smooth_.work(series_, s, next_);
     if (!energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
-                       series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated))
+                       series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated)) {
+      evaluate(assembler_, next_, evaluated_at);
       return end_not_finite(summary_, assembler_, now_, next_);
+    }
     if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
     ++summary_.steps;
     if (t_new > from.t)
@@ -160,6 +173,7 @@ class ExactRun final : public StepMotion {
       }
     }
     std::swap(now_, next_);
+    whole_ = whole;
     if (!progress_.goes_on(summary_.steps, now_.state.t))
       end_interrupted(summary_, system_.name(), now_.state.t);
   }
@@ -217,8 +231,6 @@ class ExactRun final : public StepMotion {
     step_ = {t_0, length, end.s};
     find_kinks();
     auto kink = kinks_.begin();
-    const bool forces = std::any_of(observers_.begin(), observers_.end(),
-                                    [](const Observer* o) { return o->needs_acceleration(); });
     for (double i = 1.0;;) {
       double t = i < parts ? t_0 + length * (i / parts) : t_new;
       const double part = t;
@@ -243,7 +255,7 @@ class ExactRun final : public StepMotion {
         move_inside(t, point);
       else
         move_along(t, point);
-      if (forces)
+      if (forces_)
         evaluate(assembler_, point, t);
       else
         evaluate_motion(point, t);
@@ -330,6 +342,12 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
+  /// Motion, laws and what energies need.
+  void evaluate_energies(EvaluatedState& point, double t) {
+    evaluate_motion(point, t);
+    assembler_.multiply_stiffness(point.state.z, point.kz);
+  }
+
   /// Motion and laws only.
   void evaluate_motion(EvaluatedState& point, double t) {
     assembler_.set_time(t);
@@ -372,6 +390,8 @@ class ExactRun final : public StepMotion {
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
   int changes_here_ = 0, change_limit_ = 0;
+  bool forces_ = false;  // some observer wants accelerations and forces
+  bool whole_ = true;    // now_ has them
 };
 
 void check_options(const System& system, const ExactOptions& o, const State& state) {

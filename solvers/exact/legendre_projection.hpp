@@ -9,7 +9,9 @@
 /// 9). Inside the step the motion is off by about h^2 |rest|/(m D^3).
 #include <drev/core/lanes.hpp>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace drev {
@@ -33,21 +35,37 @@ struct NodePolynomial {
 /// rounding: of the values; what bends by no more is left out, since powers of s would carry it far.
 NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values, double rounding);
 
+/// Forces by node of Gauss's rule and row.
+class NodeForces {
+ public:
+  explicit NodeForces(int stride)
+      : stride_(stride), f_(GaussRule::kNodes * static_cast<std::size_t>(stride)) {}
+  void clear() { std::fill(f_.begin(), f_.end(), 0.0); }
+  double& at(std::size_t q, int row) {
+    return f_[q * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(row)];
+  }
+  const double* data() const { return f_.data(); }
+
+ private:
+  int stride_;
+  std::vector<double> f_;
+};
+
 /// Coefficients a_j of one force a row, and their conversion to powers of s.
 class LegendreProjection {
  public:
   /// stride: rows, in whole lanes.
   explicit LegendreProjection(int stride) : stride_(stride), a_(kProjectionTerms * size()) {}
 
-  void clear() { a_.assign(a_.size(), 0.0); }
+  void clear() { std::fill(a_.begin(), a_.end(), 0.0); }
   LegendreProjection& operator+=(const LegendreProjection& other) {
     for (std::size_t i = 0; i < a_.size(); ++i) a_[i] += other.a_[i];
     return *this;
   }
   double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
   double coefficient(int j, int row) const { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
-  /// Adds what a force of `row` that is `value` at node q of the Gauss rule gives to its coefficients.
-  void add_node(std::size_t q, int row, double value);
+  /// Adds the coefficients of forces that are known at the nodes of Gauss's rule.
+  void add_nodes(const NodeForces& forces);
   /// out_k += coefficients of s^k for k < kept, out_k = them above, k = 0 ... kProjectionDegree; column k at
   /// out + k stride.
   void add_powers(int kept, double* out) const;
@@ -64,20 +82,21 @@ class KinkMoments {
  public:
   void clear() { count_ = 0; }
   int count() const { return count_; }
-  /// theta: `terms` coefficients; theta passes `knot` once in [0, 1], and monotonously.
-  void add(int row, double knot, double jump, const std::vector<double>& theta);
-  /// Adds the moments of all kinks. tolerance: relative, of each.
-  void add_to(LegendreProjection& projection, double tolerance);
+  /// theta: its coefficients, as many for each kink, at most kMostTerms; it passes `knot` once in [0, 1], and
+  /// monotonously, and stands at `end` there.
+  void add(int row, double knot, double jump, double end, std::span<const double> theta);
+  /// Adds the moments of all kinks.
+  void add_to(LegendreProjection& projection);
   /// After add_to(): the s at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
 
  private:
+  static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
   int count_ = 0;
   std::size_t terms_ = 0;
   std::vector<int> row_;
   std::vector<double> knot_, jump_, end_, place_;
-  std::vector<std::vector<double>> theta_;  // by degree, then knot
-  std::vector<const double*> columns_;
+  std::vector<double> theta_;  // by group of lanes, degree, lane
   std::vector<double> moments_;
 };
 

@@ -15,6 +15,7 @@ constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
 constexpr double kPathRest = 4e-3;
 // By the last coefficients: so many that a force which is even or odd by chance is not taken for a smooth one.
 constexpr int kTail = 4;
+constexpr int kAnalyticTail = 2;  // of a load that is a sum of harmonics
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
 // Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
@@ -31,6 +32,7 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 LoadSeries::LoadSeries(const System& system)
     : system_(system),
       assembler_(system),
+      smooth_(system),
       stride_(TaylorSeries::stride(system)),
       p_(idx(kProjectionTerms * stride_)),
       base_(idx(3 * stride_)),
@@ -45,12 +47,11 @@ LoadSeries::LoadSeries(const System& system)
       if (term.load->stretch(0.0, 0.0, 1.0)) on_prescribed_.push_back(&term);
       continue;
     }
-    const Place place{&term, system.place(map), map.coeff, system.ratio(term.node),
-                      term.load->depends_on_motion()};
     if (term.load->stretch(0.0, 0.0, 1.0))
-      loads_.push_back({place});
+      loads_.push_back(
+          {{&term, system.place(map), map.coeff, system.ratio(term.node), term.load->depends_on_motion()}});
     else
-      smooth_.push_back({place});
+      smooth_.add(term);
   }
 }
 
@@ -63,9 +64,7 @@ void LoadSeries::move(double t, const Vector& z, const Vector& v) {
     l.angle = l.ratio * nominal.value + l.deviation;
     l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * along(l.row, v) : 0.0);
   }
-  for (Smooth& l : smooth_) {
-    l.torque = assembler_.load(*l.term, z, v).torque;
-  }
+  smooth_.move(assembler_, z, v);
 }
 
 void LoadSeries::look_up(Linear& l, double direction) {
@@ -83,7 +82,7 @@ void LoadSeries::locate_as(const LoadSeries& other) {
   t_ = other.t_;
   assembler_.set_time(t_);
   loads_ = other.loads_;
-  smooth_ = other.smooth_;
+  smooth_.move_as(other.smooth_);
 }
 
 void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole) {
@@ -137,7 +136,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
     p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
     p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
   }
-  for (const Smooth& l : smooth_) p(0, l.row) += l.coeff * l.torque;
+  smooth_.add_to(h, phi_, p_.data());
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < stride_; ++i) series.right_side(k)[i] += p(k, i);
   for (const Linear& l : loads_) {
@@ -148,6 +147,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
     // The slope acts on the change of the deviation over the step.
     series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
   }
+  smooth_.add_slopes(series);
 }
 
 double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k) const {
@@ -155,7 +155,16 @@ double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k)
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
+/// theta_ = the terms of the load's angle.
+void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series) {
+  theta_.assign(idx(std::max(series.degree(), 2) + 1), 0.0);
+  if (l.feedback)
+    for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = l.coeff * series.coefficient(k, l.row);
+  for (std::size_t k = 1; k < 3; ++k) theta_[k] += l.ratio * phi_[k];
+  theta_[0] = l.angle;
+}
+
+double LoadSeries::find_kinks(const TaylorSeries& series) {
   if (loads_.empty()) return 0.0;
   kinks_.clear();
   double contraction = 0.0;
@@ -191,9 +200,7 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
         break;
       }
       if (!have_theta) {
-        theta_.resize(idx(series.degree() + 1));
-        theta_[0] = l.angle;
-        for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = angle_term(l, series, k);
+        expand_angle(l, series);
         have_theta = true;
       }
       const double jump = next.angle_slope - l.ahead.angle_slope;
@@ -201,7 +208,7 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
         l.watched = true;
         break;
       }
-      kinks_.add(l.row, bound, l.coeff * jump, theta_);
+      kinks_.add(l.row, bound, l.coeff * jump, end, theta_);
       jumps += std::abs(jump);
       l.ahead = next;
       l.ahead_angle_0 = bound;
@@ -210,26 +217,7 @@ double LoadSeries::find_kinks(const TaylorSeries& series, double tolerance) {
     contraction = std::max(contraction, l.contraction);
   }
   of_kinks_.clear();
-  kinks_.add_to(of_kinks_, tolerance);
-  return contraction;
-}
-
-double LoadSeries::project_smooth(const TaylorSeries& series) {
-  if (smooth_.empty()) return 0.0;
-  const GaussRule& rule = gauss_rule();
-  double contraction = 0.0;
-  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-    series.evaluate(rule.s[q], z_, v_);
-    assembler_.set_time(t_ + h_ * rule.s[q]);
-    for (const Smooth& l : smooth_) {
-      const LoadResponse at_node = assembler_.load(*l.term, z_, v_);
-      projection_.add_node(q, l.row, l.coeff * (at_node.torque - l.torque));
-      const double move = l.coeff * l.coeff * series.mobility(l.row);
-      contraction = std::max(contraction, move * (0.5 * h_ * h_ * std::abs(at_node.dtorque_dangle) +
-                                                  h_ * std::abs(at_node.dtorque_dspeed)));
-    }
-  }
-  assembler_.set_time(t_);
+  kinks_.add_to(of_kinks_);
   return contraction;
 }
 
@@ -240,8 +228,7 @@ double LoadSeries::relative_move(const TaylorSeries& series, int row) const {
   return move / scale;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first,
-                                     double tolerance) {
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -250,21 +237,23 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   }
   projection_.clear();
   Pass pass;
-  pass.contraction = std::max(find_kinks(series, tolerance), project_smooth(series));
+  pass.contraction = std::max(find_kinks(series), smooth_.project(series, first, projection_));
   if (!laws.empty()) {
     of_loads_ = projection_;
     if (kinks_.count() > 0) of_loads_ += of_kinks_;
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
-  const auto note_rest = [&](const LegendreProjection& forces, double part, int row) {
+  const auto note_rest = [&](const LegendreProjection& forces, double part, int row, int terms = kTail) {
     double tail = 0.0;
-    for (int j = kProjectionDegree - kTail + 1; j <= kProjectionDegree; ++j)
+    for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(forces.coefficient(j, row));
     const double rest = part * tail * relative_move(series, row);
     if (std::isfinite(rest)) pass.residual = std::max(pass.residual, rest);
   };
-  for (const Smooth& l : smooth_) note_rest(projection_, kPathRest, l.row);
+  smooth_.for_rows([&](int row, bool analytic) {
+    note_rest(projection_, kPathRest, row, analytic ? kAnalyticTail : kTail);
+  });
   for (const int row : laws.rows()) note_rest(projection_, kPathRest, row);
   if (kinks_.count() > 0) {
     // A kink is projected along a path that lacks the rest itself.
@@ -278,7 +267,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     if (size > 0.0) pass.change = std::max(pass.change, size * relative_move(series, row));
   };
   for (const Linear& l : loads_) note_change(l.row);
-  for (const Smooth& l : smooth_) note_change(l.row);
+  smooth_.for_rows([&](int row, bool) { note_change(row); });
   for (const int row : laws.rows()) note_change(row);
   if (pass.change == 0.0) return pass;
   projected_ = true;
@@ -363,7 +352,7 @@ double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end)
       const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
       sum += 0.5 * l.stretch.angle_slope * turn * turn;
     }
-  return sum;
+  return sum + smooth_.slope_work(series, end);
 }
 
 }  // namespace drev

@@ -11,6 +11,7 @@
 
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
+#include "solvers/exact/smooth_loads.hpp"
 #include "solvers/exact/taylor_series.hpp"
 
 namespace drev {
@@ -46,8 +47,8 @@ class LoadSeries {
     double residual = 0.0;
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
-  /// first: the step is new. tolerance: relative, of the kinks' moments.
-  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, double tolerance);
+  /// first: the step is new.
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
@@ -86,25 +87,22 @@ class LoadSeries {
     double contraction = 0.0;                          // by its kinks in this step: Pass::contraction
     bool watched = false;                              // its angle may turn back in this step
   };
-  struct Smooth : Place {
-    double torque = 0.0;  // at the step's start
-  };
   void move(double t, const Vector& z, const Vector& v);
   void look_up(Linear& load, double direction);
   double along(int row, const Vector& z) const {
     return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
   }
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
-  double find_kinks(const TaylorSeries& series, double tolerance);
+  void expand_angle(const Linear& load, const TaylorSeries& series);
+  double find_kinks(const TaylorSeries& series);
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const;
-  double project_smooth(const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;
   std::vector<Linear> loads_;
-  std::vector<Smooth> smooth_;
+  SmoothLoads smooth_;
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
   std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns

@@ -13,7 +13,10 @@ constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
 }  // namespace
 
 ProjectedLaws::ProjectedLaws(const System& system)
-    : system_(system), assembler_(system), offsets_(system.scalars().size()) {
+    : system_(system),
+      assembler_(system),
+      offsets_(system.scalars().size()),
+      forces_(TaylorSeries::stride(system)) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     if (!linear_pieces(term).empty()) continue;
@@ -127,6 +130,7 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
   if (laws_.empty()) return 0.0;
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
+  forces_.clear();
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
     series.evaluate(rule.s[q], z_, v_);
     assembler_.set_time(t_ + h_ * rule.s[q]);
@@ -138,12 +142,13 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
       double mobility = 0.0;
       for (const Entry& e : term.z) {
         mobility += e.coeff * e.coeff * series.mobility(e.index);
-        projection.add_node(q, e.index, -e.coeff * difference);
+        forces_.at(q, e.index) -= e.coeff * difference;
       }
       gain = std::max(
           gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) + h_ * std::abs(r.dy_dx_dot - law.c)));
     }
   }
+  projection.add_nodes(forces_);
   return gain;
 }
 

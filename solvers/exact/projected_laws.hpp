@@ -68,6 +68,7 @@ class ProjectedLaws {
   std::vector<int> rows_;
   std::vector<std::vector<double>> offsets_;
   std::vector<double> g_;
+  NodeForces forces_;
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
 };

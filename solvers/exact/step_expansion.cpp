@@ -10,7 +10,6 @@ namespace {
 constexpr double kShorten = 0.9;      // of the step at which the loads' rest is just small enough
 constexpr double kLoosest = 1e-3;     // tolerance of a pass that is not the last
 constexpr double kSettled = 1e-15;    // of the motion: rounding of what is projected
-constexpr double kProjected = 0.1;    // of a step's share, that the projection may add
 constexpr double kJump = 1e-4;        // of the tolerance: error allowed per undeclared discontinuity
 constexpr double kBehindKnot = 1e-3;  // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;   // of the step: a knot that its nodes see
@@ -40,15 +39,13 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     const double got = series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
-    const double kinks = kProjected * share / std::max(projected_, share);
-    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, std::max(kinks, kLeastShare));
+    const LoadSeries::Pass made = known.project(series, smooth, pass == 0);
     if (made.residual > std::max(share, kJump * limits.tolerance) && h > limits.shortest) {
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);
       if (knot && *knot > kAtStart) return {h * *knot * (1.0 + kBehindKnot), true};
       return {h * std::max(0.2, kShorten * std::pow(share / made.residual, 1.0 / kProjectionTerms))};
     }
-    if (pass == 0) projected_ = made.change;
     contraction_ = std::max(made.contraction, 1e-300);
     // What this pass was off by comes back in the next one times the contraction factor.
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kSettled);
@@ -61,7 +58,6 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   known.locate_as(other.known);
   const double h = s * other.series.step();
   contraction_ = other.contraction_;
-  projected_ = other.projected_;
   series.scale_as(other.series);
   const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
   return !made.to_knot && made.h == h;

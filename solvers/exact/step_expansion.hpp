@@ -45,8 +45,7 @@ class StepExpansion {
   ProjectedLaws smooth;
 
  private:
-  // Of the last step: how the projection's change came back, and what the projection changed.
-  double contraction_ = 1.0, projected_ = 1.0;
+  double contraction_ = 1.0;  // of the last step: how the projection's change came back
 };
 
 /// The least tolerance of a step: below it is rounding.

@@ -99,9 +99,19 @@ void TaylorSeries::find_storage() {
   sums_.assign(idx(2 * stride_), 0.0);
   k_ = k_base_;
   c_ = c_base_;
-  for (const Diagonal& d : diagonals_) {
-    k_views_.push_back({d.offset, k_.data() + d.values});
-    c_views_.push_back({d.offset, c_.data() + d.values});
+  if (diagonals_.empty()) return;
+  block_begin_.assign(1, 0);
+  for (int begin = 0; begin < stride_; begin += kLanes) {
+    for (const Diagonal& d : diagonals_) {
+      bool any = false;
+      for (int row = begin; row < std::min(begin + kLanes, n_); ++row)
+        for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
+          any |= p.innerIndexPtr()[s] - row == d.offset;
+      if (!any) continue;
+      k_views_.push_back({d.offset, k_.data() + d.values});
+      c_views_.push_back({d.offset, c_.data() + d.values});
+    }
+    block_begin_.push_back(static_cast<int>(k_views_.size()));
   }
 }
 
@@ -233,13 +243,11 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   double* next = z_.data() + idx(pad_ + k * stride_);
   const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
   if (!diagonals_.empty() && diagonal_mass_) {
-    std::span<const DiagonalView> c(c_views_);
-    if (!damped_)
-      c = {};
-    else if (main_damping_)
-      c = c.subspan(idx(main_), 1);
-    const double largest =
-        series_term(stride_, k_views_, c, c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
+    const bool main_alone = damped_ && main_damping_, whole = damped_ && !main_damping_;
+    const double largest = series_term(stride_, {block_begin_.data(), k_views_.data()},
+                                       {block_begin_.data(), whole ? c_views_.data() : nullptr},
+                                       main_alone ? c_.data() + diagonals_[idx(main_)].values : nullptr,
+                                       c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
     rows_of(next);
     return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
   }
@@ -314,17 +322,21 @@ double TaylorSeries::dissipated(double s) {
   if (undamped_) return 0.0;
   const int degree = energy_degree();
   rates_.resize(idx(degree * stride_));
-  forces_.assign(idx(degree * stride_), 0.0);
   for (int j = 1; j <= degree; ++j) {
     const double* z = coefficients(j);
     double* rate = rates_.data() + idx((j - 1) * stride_);
-    double* force = forces_.data() + idx((j - 1) * stride_);
     for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
     for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
-    // The product reads beside the column: from the coefficients, which have room there.
-    subtract_product(c_base_, base_main_damping_, z, -j, force);
   }
-  return series_product(stride_, degree, rates_.data(), forces_.data(), s) / h_;
+  if (base_main_damping_)
+    return series_product(stride_, degree, rates_.data(), nullptr,
+                          c_base_.data() + diagonals_[idx(main_)].values, s) /
+           h_;
+  forces_.assign(idx(degree * stride_), 0.0);
+  // The product reads beside the column: from the coefficients, which have room there.
+  for (int j = 1; j <= degree; ++j)
+    subtract_product(c_base_, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
+  return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
 }
 
 void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
@@ -336,6 +348,13 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
     z[i] = sums[i];
     v[i] = sums[stride_ + i] / h_;
   }
+}
+
+void TaylorSeries::at_nodes(double* z, double* v) const {
+  constexpr int n = GaussRule::kNodes;
+  series_at_nodes(stride_, degree_, coefficients(0), gauss_rule().s.data(), n, z, v);
+  if (v == nullptr) return;
+  for (int i = 0; i < n * stride_; ++i) v[i] /= h_;
 }
 
 }  // namespace drev

@@ -73,6 +73,8 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
+  /// z, and v where it is not null, at the nodes of Gauss's rule: rows of node q at q stride().
+  void at_nodes(double* z, double* v) const;
   /// The degree up to which terms count in energies.
   int energy_degree() const;
   /// int z'^T C z' dt from 0 to s of the step with the system's own C: what linear dampers took
@@ -120,10 +122,11 @@ class TaylorSeries {
   const System& system_;
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
-  std::vector<std::size_t> position_;  // of a slot of the pattern in k_, c_
-  std::vector<Diagonal> diagonals_;    // padded to stride_; empty: rows of the pattern
-  int main_ = -1;                      // which diagonal is the main one
-  std::vector<DiagonalView> k_views_, c_views_;
+  std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_
+  std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
+  int main_ = -1;                                // which diagonal is the main one
+  std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
+  std::vector<int> block_begin_;
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;

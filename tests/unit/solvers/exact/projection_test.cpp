@@ -47,9 +47,9 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
     std::vector<double> places;
     for (int i = 0; i < 20; ++i) {
       places.push_back(i == 0 ? 0.0 : i == 19 ? 1.0 : 0.03 + 0.05 * i);
-      kinks.add(i, value(theta, places.back()), 500.0 + i, theta);
+      kinks.add(i, value(theta, places.back()), 500.0 + i, value(theta, 1.0), theta);
     }
-    kinks.add_to(projection, 1e-16);
+    kinks.add_to(projection);
     for (int i = 0; i < 20; ++i)
       for (int j = 0; j < kProjectionTerms; ++j) {
         // Gauss on the part behind the knot: a polynomial of degree 27 at most.

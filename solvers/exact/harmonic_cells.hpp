@@ -1,0 +1,44 @@
+#pragma once
+/// HarmonicCells: a sum of harmonics as polynomials of its angle, each about the middle of a cell.
+///
+/// With o the highest order, a cell reaches |theta - centre| <= 0.7/o; its Taylor polynomial of 16 terms is off by
+/// at most 0.7^16/16! = 2e-16 of the sum of the amplitudes, and by 1e-14 as far as 0.9/o. Cells are made when an
+/// angle first enters them and kept where the orders have a common period of at most 8 revolutions.
+#include <drev/core/law/harmonic_load.hpp>
+
+#include <array>
+#include <vector>
+
+namespace drev {
+
+class HarmonicCells {
+ public:
+  static constexpr int kTerms = 16;
+  struct Cell {
+    double centre = 0.0;                    ///< rad, of the period's first turn
+    std::array<double, kTerms> terms = {};  ///< of (theta - centre)^k
+    bool made = false;
+  };
+
+  explicit HarmonicCells(const LoadOrders& orders);
+  /// The cell of an angle [rad], and the angle less its centre.
+  struct Place {
+    const Cell* cell;
+    double distance;
+  };
+  Place at(double angle);
+  /// How far from its centre a cell's polynomial holds [rad].
+  double reach() const { return reach_; }
+  /// Torque and slope there.
+  static LoadResponse value(const Place& place);
+
+ private:
+  void make(double centre, Cell& cell) const;
+
+  LoadOrders orders_;
+  double reach_ = 0.0, width_ = 0.0;
+  double turns_ = 0.0;  // of the common period; 0: none
+  std::vector<Cell> cells_;
+};
+
+}  // namespace drev

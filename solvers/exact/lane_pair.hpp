@@ -1,0 +1,99 @@
+#pragma once
+/// LanePair and run_widest(): loops over eight doubles at once, compiled for several levels of x86-64, each with
+/// the type of lanes that its registers hold.
+///
+/// A vector of 64 bytes (core/lanes.hpp) lies in one register with AVX-512. On a level without it, compilers pass
+/// it through memory at each operation, at a tenth of the speed; there a pair of vectors of 32 bytes is taken.
+#include <drev/core/lanes.hpp>
+
+namespace drev {
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define DREV_SERIES_LEVELS
+#endif
+
+/// Eight doubles in two vectors. Loops written over a type of lanes take this one or Lanes.
+struct LanePair {
+  using Half = double __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
+  Half low, high;
+
+  double operator[](int lane) const { return lane < kLanes / 2 ? low[lane] : high[lane - kLanes / 2]; }
+#define DREV_BY_HALVES(op)                                                                   \
+  [[gnu::always_inline]] friend LanePair operator op(const LanePair& a, const LanePair& b) { \
+    return {a.low op b.low, a.high op b.high};                                               \
+  }                                                                                          \
+  [[gnu::always_inline]] friend LanePair operator op(double a, const LanePair& b) {          \
+    return {a op b.low, a op b.high};                                                        \
+  }                                                                                          \
+  [[gnu::always_inline]] friend LanePair operator op(const LanePair& a, double b) {          \
+    return {a.low op b, a.high op b};                                                        \
+  }                                                                                          \
+  [[gnu::always_inline]] LanePair& operator op##=(const LanePair& b) { return *this = *this op b; }
+  DREV_BY_HALVES(+)
+  DREV_BY_HALVES(-)
+  DREV_BY_HALVES(*)
+  DREV_BY_HALVES(/)
+#undef DREV_BY_HALVES
+};
+[[gnu::always_inline]] inline void load(const double* from, LanePair& to) {
+  std::memcpy(&to.low, from, sizeof to.low);
+  std::memcpy(&to.high, from + kLanes / 2, sizeof to.high);
+}
+[[gnu::always_inline]] inline void store(const LanePair& from, double* to) {
+  std::memcpy(to, &from.low, sizeof from.low);
+  std::memcpy(to + kLanes / 2, &from.high, sizeof from.high);
+}
+[[gnu::always_inline]] inline void magnitude(LanePair& x) {
+  x.low = x.low < 0.0 ? -x.low : x.low;
+  x.high = x.high < 0.0 ? -x.high : x.high;
+}
+/// most = max(most, x).
+[[gnu::always_inline]] inline void raise(Lanes& most, const Lanes& x) { most = most < x ? x : most; }
+[[gnu::always_inline]] inline void raise(LanePair& most, const LanePair& x) {
+  most.low = most.low < x.low ? x.low : most.low;
+  most.high = most.high < x.high ? x.high : most.high;
+}
+/// The sum of all lanes, and their largest.
+template <class L>
+[[gnu::always_inline]] inline double sum_of(const L& x) {
+  double sum = 0.0;
+  for (int l = 0; l < kLanes; ++l) sum += x[l];
+  return sum;
+}
+template <class L>
+[[gnu::always_inline]] inline double largest_of(const L& x) {
+  double most = x[0];
+  for (int l = 1; l < kLanes; ++l) most = most < x[l] ? x[l] : most;
+  return most;
+}
+
+/// Kernel::run<L>(arguments...) with the type of lanes L that suits the best level of this machine. run is a
+/// static member template, [[gnu::always_inline]], so that it is compiled once a level.
+#ifdef DREV_SERIES_LEVELS
+template <class Kernel, class... A>
+[[gnu::noinline, gnu::target("arch=x86-64-v4")]] auto run_on_v4(A... arguments) {
+  return Kernel::template run<Lanes>(arguments...);
+}
+template <class Kernel, class... A>
+[[gnu::noinline, gnu::target("arch=x86-64-v3")]] auto run_on_v3(A... arguments) {
+  return Kernel::template run<LanePair>(arguments...);
+}
+#endif
+template <class Kernel, class... A>
+[[gnu::noinline]] auto run_on_any(A... arguments) {
+  return Kernel::template run<LanePair>(arguments...);
+}
+template <class Kernel, class... A>
+auto run_widest(A... arguments) {
+#ifdef DREV_SERIES_LEVELS
+  static const auto best = __builtin_cpu_supports("x86-64-v4")   ? run_on_v4<Kernel, A...>
+                           : __builtin_cpu_supports("x86-64-v3") ? run_on_v3<Kernel, A...>
+                                                                 : run_on_any<Kernel, A...>;
+  return best(arguments...);
+#else
+  return run_on_any<Kernel, A...>(arguments...);
+#endif
+}
+
+}  // namespace drev
