@@ -45,7 +45,8 @@ LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector
   const double n = system_.ratio(term.node);
   const double q = over_coeff(map, z, &MotionPoint::value);
   const double q_dot = over_coeff(map, v, &MotionPoint::rate);
-  return term.load->evaluate({t_, n * nominal_.value, map.coeff * q, n * nominal_.rate + map.coeff * q_dot});
+  const double rate = n * nominal_.rate;
+  return term.load->evaluate({t_, n * nominal_.value, map.coeff * q, rate + map.coeff * q_dot, rate});
 }
 
 void Assembler::external_of_motions(Vector& p) const {

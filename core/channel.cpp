@@ -33,8 +33,9 @@ class ChannelFinder {
     }
     for (std::size_t l = 0; l < system.loads().size(); ++l) {
       const bool turns = rotational(system.loads()[l].node);
-      add(element(system.loads()[l].element) + force_name(turns), force_unit(turns), Channel::Kind::load,
-          static_cast<int>(l));
+      const LoadTerm& load = system.loads()[l];
+      add(element(load.element) + (load.suffix.empty() ? "" : "_" + load.suffix) + force_name(turns),
+          force_unit(turns), Channel::Kind::load, static_cast<int>(l));
     }
     for (std::size_t r = 0; r < system.ideal_ratios().size(); ++r) {
       const bool turns = rotational(system.ideal_ratios()[r].second);

@@ -11,6 +11,7 @@
 
 namespace drev {
 
+class FrequencyStiffness;
 class GeneralForce;
 class Load;
 class ScalarForce;
@@ -30,19 +31,33 @@ struct ScalarSpec {
 struct LoadSpec {
   int node = 0;
   const Load* load = nullptr;  ///< owned by the element
+  std::string suffix = {};     ///< empty, or what distinguishes several of one element ("2")
 };
 
-/// b^T n = 0: what the element asks of the nominal ratios n of its nodes, at most two of them. With
-/// one entry the node stands still nominally (it is tied to ground).
+/// b^T n = 0: what the element asks of the nominal ratios n of its nodes. With one entry the node stands
+/// still nominally (it is tied to ground).
 struct SpeedRatioConstraint {
   LocalRow b;
   bool only_in_contact = false;  ///< no tie while the contact is open
+  /// One entry: a spring acts on the node's deviation, which may turn nominally (a governor); n is free.
+  bool holds_deviation = false;
+  /// Ties the ratios alone, by no stiffness: a damper's ring turns with its hub, but may drift against it.
+  bool ratio_only = false;
 };
 
 /// A force or torque to report: stiffness^T q + damping^T v.
 struct OutputSpec {
   std::string suffix;  ///< empty, or what distinguishes several of one element ("2")
   LocalRow stiffness, damping;
+  /// The deflection b^T q that the force belongs to, reported beside it; empty: none.
+  LocalRow deflection = {};
+};
+
+/// What a complex stiffness k*(i omega) along b has beyond the element's own matrices. Methods in the frequency
+/// domain add it; methods in time know the matrices alone.
+struct FrequencySpec {
+  LocalRow b;
+  const FrequencyStiffness* stiffness = nullptr;  ///< owned by the element
 };
 
 /// What an element adds to the equation of motion. The matrices come zeroed, n x n over its nodes.
@@ -54,11 +69,16 @@ struct Terms {
 
   Eigen::MatrixXd mass, damping, stiffness;  ///< constant, symmetric
   bool rayleigh = false;                     ///< mass and stiffness take part in C = a M + b K
+  /// Constant, symmetric, as damping, but on the rates of the deviations alone: the nominal motion does not drag.
+  /// Empty: none.
+  Eigen::MatrixXd deviation_damping;
   std::vector<ScalarSpec> scalars;
+  std::vector<FrequencySpec> frequency_stiffnesses;
   std::vector<LoadSpec> loads;
   std::vector<const GeneralForce*> generals;
   std::vector<SpeedRatioConstraint> speed_ratio_constraints;
-  /// Rows with b^T q = 0 exactly: ideal ratios, eliminated.
+  /// Rows with b^T q = 0 exactly, eliminated, for the nominal speeds too. Two entries: an ideal ratio. More (a
+  /// planetary set): the last node of the row that is free follows the others.
   std::vector<LocalRow> constraints;
   std::vector<OutputSpec> outputs;
   double rayleigh_a = 0.0;  ///< 1/s, for the whole model

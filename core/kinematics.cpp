@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <queue>
 
@@ -63,7 +64,7 @@ std::string loop_text(const Walk& walk, const std::vector<ElementInstance>& elem
 }  // namespace
 
 std::vector<int> connected_components(int nodes, const std::vector<Closure>& speed_ratio_constraints,
-                                      bool with_contacts) {
+                                      bool with_contacts, bool with_ratios) {
   std::vector<int> root(idx(nodes));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int i) {
@@ -71,7 +72,7 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& spe
     return i;
   };
   for (const Closure& c : speed_ratio_constraints)
-    if (c.second >= 0 && (with_contacts || !c.only_in_contact)) {
+    if (c.second >= 0 && (with_contacts || !c.only_in_contact) && (with_ratios || !c.ratio_only)) {
       const int a = find(c.first), b = find(c.second);
       root[idx(std::max(a, b))] = std::min(a, b);
     }
@@ -85,13 +86,83 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& spe
   return component;
 }
 
+ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std::vector<int>& component,
+                                 const std::vector<double>& relative, const std::vector<bool>& known,
+                                 std::vector<double> speed, bool open) {
+  constexpr double kNone = 1e-10;  // relative, of what is left of a row
+  struct Row {
+    std::map<int, double> a;  // over components that are not known
+    double right = 0.0, size = 0.0;
+    int pivot = -1;
+    const WideClosure* of = nullptr;
+  };
+  ComponentSpeeds result;
+  std::vector<Row> rows;
+  for (const WideClosure& closure : wide) {
+    if (open && closure.only_in_contact) continue;
+    Row row;
+    row.of = &closure;
+    for (const auto& [node, b] : closure.b) {
+      const int c = component[idx(node)];
+      const double term = b * relative[idx(node)];
+      if (known[idx(c)])
+        row.right -= term * speed[idx(c)];
+      else
+        row.a[c] += term;
+      row.size = std::max(row.size, std::abs(term));
+    }
+    for (const Row& other : rows) {
+      const auto at = row.a.find(other.pivot);
+      if (at == row.a.end()) continue;
+      const double factor = at->second;
+      row.a.erase(at);
+      for (const auto& [c, a] : other.a)
+        if (c != other.pivot) row.a[c] -= factor * a;
+      row.right -= factor * other.right;
+    }
+    double largest = kNone * row.size;
+    for (const auto& [c, a] : row.a)
+      if (std::abs(a) > largest) largest = std::abs(a), row.pivot = c;
+    if (row.pivot < 0) {
+      if (std::abs(row.right) > kNone * row.size) result.contradicting.push_back(&closure);
+      continue;
+    }
+    const double scale = 1.0 / row.a[row.pivot];
+    for (auto& [c, a] : row.a) a *= scale;
+    row.right *= scale;
+    // Out of the rows before, so that each pivot stands in its own row alone.
+    for (Row& other : rows) {
+      const auto at = other.a.find(row.pivot);
+      if (at == other.a.end()) continue;
+      const double factor = at->second;
+      other.a.erase(at);
+      for (const auto& [c, a] : row.a)
+        if (c != row.pivot) other.a[c] -= factor * a;
+      other.right -= factor * row.right;
+    }
+    rows.push_back(std::move(row));
+  }
+  for (const Row& row : rows) {
+    result.dependent.push_back(row.pivot);
+    speed[idx(row.pivot)] = row.right;
+    for (const auto& [c, a] : row.a)
+      if (c != row.pivot && std::abs(a) > kNone && std::abs(row.right) > kNone) {
+        result.undetermined.push_back(row.of);
+        break;
+      }
+  }
+  result.speed = std::move(speed);
+  return result;
+}
+
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
                        const std::vector<ElementInstance>& element_instances,
-                       const std::vector<Closure>& speed_ratio_constraints, int reference,
-                       std::vector<Finding>& findings) {
+                       const std::vector<Closure>& speed_ratio_constraints,
+                       const std::vector<WideClosure>& wide, const std::vector<int>& prescribed,
+                       int reference, std::vector<Finding>& findings) {
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
-  k.component = connected_components(nodes, speed_ratio_constraints, true);
+  k.component = connected_components(nodes, speed_ratio_constraints, true, true);
   k.ratio.assign(idx(nodes), 0.0);
   const Edges edges = edges_of(nodes, speed_ratio_constraints);
 
@@ -136,12 +207,36 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
   for (int i = 0; i < nodes; ++i)
     if (!seen[idx(i)]) walk_from(i, 1.0);
 
+  k.relative = walk.relative;
   if (reference < 0) return k;
   const int moving = k.component[idx(reference)];
-  for (int i = 0; i < nodes; ++i)
-    if (k.component[idx(i)] == moving) k.ratio[idx(i)] = walk.relative[idx(i)];
+  const auto components = idx(*std::max_element(k.component.begin(), k.component.end()) + 1);
+  std::vector<double> speed(components, 0.0);
+  std::vector<bool> known(components, false);
   for (const Closure& row : speed_ratio_constraints)
-    if (row.second < 0 && k.component[idx(row.first)] == moving)
+    if (row.second < 0 && !row.holds_deviation) known[idx(k.component[idx(row.first)])] = true;
+  for (const int node : prescribed)
+    if (node >= 0) known[idx(k.component[idx(node)])] = true;
+  known[idx(moving)] = true;
+  speed[idx(moving)] = 1.0;
+  const ComponentSpeeds solved = solve_components(wide, k.component, k.relative, known, speed, false);
+  const auto say = [&](const WideClosure& row, const std::string& why) {
+    std::string nodes;
+    for (const auto& [node, b] : row.b) nodes += (nodes.empty() ? "" : ", ") + node_names[idx(node)];
+    findings.push_back(
+        {model + "/" + element_instances[idx(row.element)].name, "nominal speeds", nodes, "", why});
+  };
+  for (const WideClosure* row : solved.contradicting)
+    say(*row, "contradict each other: what else ties these nodes does not let the set turn");
+  for (const WideClosure* row : solved.undetermined)
+    say(*row,
+        "do not follow from the reference shaft: hold or ground one of them, or tie two (a planetary set "
+        "free on "
+        "all sides has two motions)");
+  for (int i = 0; i < nodes; ++i)
+    k.ratio[idx(i)] = solved.speed[idx(k.component[idx(i)])] * walk.relative[idx(i)];
+  for (const Closure& row : speed_ratio_constraints)
+    if (row.second < 0 && !row.holds_deviation && k.component[idx(row.first)] == moving)
       findings.push_back({model + "/" + element_instances[idx(row.element)].name, "node",
                           node_names[idx(row.first)], "",
                           "turns with the reference shaft and cannot be tied to ground by a spring"});

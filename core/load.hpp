@@ -14,6 +14,7 @@ struct LoadInput {
   double nominal_angle = 0.0;  ///< n phi(t) [rad]
   double deviation = 0.0;      ///< q [rad] (or m)
   double speed = 0.0;          ///< n phi' + q' [rad/s] (or m/s)
+  double nominal_speed = 0.0;  ///< n phi' [rad/s]; 0 where the node does not turn nominally
 };
 
 /// What a load returns.

@@ -134,6 +134,13 @@ class RitzProjector {
       for (int k = 0; k < count(); ++k)
         if (row[k] != 0.0) term.z.push_back({k, row[k]});
     }
+    for (FrequencyTerm& term : system_.frequency_terms_) {
+      Vector row = Vector::Zero(count());
+      for (const Entry& e : term.z) row += e.coeff * basis_.row(e.index).transpose();
+      term.z.clear();
+      for (int k = 0; k < count(); ++k)
+        if (row[k] != 0.0) term.z.push_back({k, row[k]});
+    }
   }
 
   void assemble() {

@@ -19,6 +19,7 @@
 
 namespace drev {
 
+class FrequencyStiffness;
 class GeneralForce;
 class Load;
 class ScalarForce;
@@ -59,11 +60,19 @@ struct ScalarTerm {
   std::vector<int> slots;  ///< of (z_a, z_b), row by row, in the pattern's values
 };
 
+/// What methods in the frequency domain add: b k*(i omega) b^T.
+struct FrequencyTerm {
+  ElementId element{};
+  const FrequencyStiffness* stiffness = nullptr;
+  std::vector<Entry> nodes, z;  ///< b over nodes; over the unknowns
+};
+
 struct LoadTerm {
   ElementId element{};
   int node = 0;
   const Load* load = nullptr;
-  int slot = -1;  ///< diagonal slot of its unknown; -1 where the node has none
+  int slot = -1;            ///< diagonal slot of its unknown; -1 where the node has none
+  std::string suffix = {};  ///< of its channel, for elements with several loads
 };
 
 struct GeneralTerm {
@@ -165,6 +174,7 @@ class System {
   /// Places in loads() of those on unknowns that are no such tables: which follow the motion, which do not.
   const std::vector<int>& moving_loads() const { return moving_loads_; }
   const std::vector<int>& known_loads() const { return known_loads_; }
+  const std::vector<FrequencyTerm>& frequency_terms() const { return frequency_terms_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
   const std::vector<IdealRatio>& ideal_ratios() const { return ideal_ratios_; }
   bool loads_depend_on_motion() const { return loads_depend_on_motion_; }
@@ -221,6 +231,7 @@ class System {
   std::vector<LoadTerm> loads_;
   TableLoads table_loads_;
   std::vector<int> moving_loads_, known_loads_;
+  std::vector<FrequencyTerm> frequency_terms_;
   std::vector<GeneralTerm> generals_;
   std::vector<IdealRatio> ideal_ratios_;
   std::vector<double> breakpoints_;

@@ -1,6 +1,7 @@
 #include "core/system_builder.hpp"
 
 #include <drev/core/load.hpp>
+#include <drev/core/ritz_projection.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,7 @@ System SystemBuilder::build() {
   check_values();
   finish();
   throw_if_findings();
-  return std::move(system_);
+  return wide_constraints_.empty() ? std::move(system_) : constrained();
 }
 
 void SystemBuilder::throw_if_findings() const {
@@ -116,12 +117,12 @@ void SystemBuilder::resolve_motions() {
 }
 
 void SystemBuilder::find_nominal_motion() {
-  Kinematics kinematics = find_ratios(model_.name(), model_.node_names(), model_.element_instances(),
-                                      closures_, reference_node_, findings_);
+  Kinematics kinematics =
+      find_ratios(model_.name(), model_.node_names(), model_.element_instances(), closures_, wide_closures_,
+                  resolved_prescriptions_, reference_node_, findings_);
   system_.ratio_ = std::move(kinematics.ratio);
-  system_.floating_closed_ = floating_parts(kinematics.component, Contact::closed);
-  system_.floating_open_ =
-      floating_parts(connected_components(system_.node_count(), closures_, false), Contact::open);
+  system_.floating_closed_ = floating_parts(kinematics.relative, Contact::closed);
+  system_.floating_open_ = floating_parts(kinematics.relative, Contact::open);
   std::vector<Closure>().swap(closures_);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
@@ -142,13 +143,18 @@ void SystemBuilder::find_nominal_motion() {
   }
 }
 
-std::vector<int> SystemBuilder::floating_parts(const std::vector<int>& component, Contact contact) const {
+std::vector<int> SystemBuilder::floating_parts(const std::vector<double>& relative, Contact contact) const {
+  const bool open = contact == Contact::open;
+  const std::vector<int> component = connected_components(system_.node_count(), closures_, !open);
   std::vector<bool> counted(component.size(), false);  // as tied or floating, by component
   for (const Closure& row : closures_)
-    if (row.second < 0 && (contact == Contact::closed || !row.only_in_contact))
-      counted[idx(component[idx(row.first)])] = true;
+    if (row.second < 0 && !(open && row.only_in_contact)) counted[idx(component[idx(row.first)])] = true;
   for (const int node : resolved_prescriptions_)
     if (node >= 0) counted[idx(component[idx(node)])] = true;
+  // A row over several parts takes one rigid motion.
+  const ComponentSpeeds tied = solve_components(wide_closures_, component, relative, counted,
+                                                std::vector<double>(component.size(), 0.0), open);
+  for (const int c : tied.dependent) counted[idx(c)] = true;
   std::vector<int> floating;
   for (int i = 0; i < static_cast<int>(component.size()); ++i) {
     if (counted[idx(component[idx(i)])]) continue;
@@ -219,6 +225,61 @@ void SystemBuilder::set_initial() {
     v = initial.rate / map.coeff;
     by = node;
   }
+}
+
+System SystemBuilder::constrained() {
+  constexpr double kNone = 1e-12;  // of the largest entry: none is left
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system_.size(), system_.size());
+  std::vector<int> dependent;
+  for (const WideConstraint& constraint : wide_constraints_) {
+    // The row over what the constraints before it left free: b^T B.
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(system_.size());
+    double largest = 0.0;
+    int pivot = -1;
+    const std::string where = place(model_.element_instances()[idx(index(constraint.element))].name);
+    for (const Entry& e : constraint.nodes) {
+      const NodeMap& map = system_.node_map(e.index);
+      largest = std::max(largest, std::abs(e.coeff));
+      if (map.prescribed >= 0 && system_.prescribed()[idx(map.prescribed)].at)
+        findings_.push_back({where, "node", node_name(e.index), "",
+                             "has a given motion, which a constraint over three nodes does not take; put a "
+                             "shaft between"});
+      if (map.unknown >= 0) row += e.coeff * map.coeff * basis.row(map.unknown);
+    }
+    for (const Entry& e : constraint.nodes)
+      if (const int k = system_.node_map(e.index).unknown; k >= 0 && std::abs(row[k]) > kNone * largest)
+        pivot = k;
+    for (int k = 0; pivot < 0 && k < system_.size(); ++k)
+      if (std::abs(row[k]) > kNone * largest) pivot = k;
+    if (pivot < 0) {
+      findings_.push_back(
+          {where, "nodes", "", "", "are all held or tied already: the torque in this set is undetermined"});
+      continue;
+    }
+    const Eigen::VectorXd column = basis.col(pivot);
+    basis -= column * row / row[pivot];
+    basis.col(pivot).setZero();
+    dependent.push_back(pivot);
+  }
+  throw_if_findings();
+  Eigen::MatrixXd free(system_.size(), system_.size() - static_cast<Eigen::Index>(dependent.size()));
+  Vector z(free.cols()), v(free.cols());
+  for (int k = 0, column = 0; k < system_.size(); ++k) {
+    if (std::count(dependent.begin(), dependent.end(), k) > 0) continue;
+    z[column] = system_.initial_z_[k], v[column] = system_.initial_v_[k];
+    free.col(column++) = basis.col(k);
+  }
+  const auto agree = [&](const Vector& given, const Vector& independent, const char* what) {
+    const Vector full = free * independent;
+    for (const int k : dependent)
+      if (given[k] != 0.0 && std::abs(given[k] - full[k]) > kInitialTolerance * std::abs(full[k]))
+        findings_.push_back({place(system_.unknown_name(k)), what, to_text(given[k]), "",
+                             "but the nodes that it is tied to give " + to_text(full[k])});
+  };
+  agree(system_.initial_z_, z, "initial deviation");
+  agree(system_.initial_v_, v, "initial rate");
+  throw_if_findings();
+  return ritz_projection(system_, free).with_initial(z, v);
 }
 
 void SystemBuilder::finish() {

@@ -29,7 +29,7 @@ class SystemBuilder {
   // Nominal motion, elimination, and what must hold of the whole. These pass over faulty elements, so
   // that all findings come at once.
   void find_nominal_motion();
-  std::vector<int> floating_parts(const std::vector<int>& component, Contact contact) const;
+  std::vector<int> floating_parts(const std::vector<double>& relative, Contact contact) const;
   void eliminate();
   void check_inertias();
   void set_initial();
@@ -38,6 +38,8 @@ class SystemBuilder {
   void assemble_matrices();
   void check_values();
   void finish();
+  /// Without the unknowns that wide constraints make dependent.
+  System constrained();
   void throw_if_findings() const;
 
   std::string place(const std::string& part) const { return model_.name() + "/" + part; }
@@ -55,11 +57,18 @@ class SystemBuilder {
   System system_;
   std::vector<Finding> findings_;
   NameIndex node_by_name_{0, {}};
-  NodeMatrix mass_[2], damping_, stiffness_[2];  // the second ones take part in C = a M + b K
+  NodeMatrix mass_[2], damping_, deviation_damping_,
+      stiffness_[2];  // the second ones take part in C = a M + b K
   std::vector<Closure> closures_;
-  std::vector<int> faulty_nodes_;            // of elements whose terms are not known
-  std::vector<int> resolved_prescriptions_;  // -1: unknown or already prescribed
-  bool inertia_in_doubt_ = false;            // a fault hides which node some inertia or tie belongs to
+  std::vector<WideClosure> wide_closures_;
+  struct WideConstraint {
+    ElementId element;
+    std::vector<Entry> nodes;
+  };
+  std::vector<WideConstraint> wide_constraints_;  // rows over three nodes or more
+  std::vector<int> faulty_nodes_;                 // of elements whose terms are not known
+  std::vector<int> resolved_prescriptions_;       // -1: unknown or already prescribed
+  bool inertia_in_doubt_ = false;                 // a fault hides which node some inertia or tie belongs to
   int reference_node_ = -1;
   double rayleigh_a_ = 0.0, rayleigh_b_ = 0.0;
 };

@@ -113,23 +113,37 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
   const ElementId id{element};
   keep_entries(nodes, terms.mass, mass_[terms.rayleigh]);
   keep_entries(nodes, terms.damping, damping_);
+  keep_entries(nodes, terms.deviation_damping, deviation_damping_);
   keep_entries(nodes, terms.stiffness, stiffness_[terms.rayleigh]);
   rayleigh_a_ += terms.rayleigh_a;
   rayleigh_b_ += terms.rayleigh_b;
-  const auto add_closure = [&](const std::vector<Entry>& b, bool only_in_contact) {
+  const auto add_closure = [&](const std::vector<Entry>& b, const SpeedRatioConstraint& how) {
     if (b.empty()) return;
+    if (b.size() > 2) {
+      WideClosure wide;
+      for (const Entry& e : b) wide.b.emplace_back(e.index, e.coeff);
+      wide.only_in_contact = how.only_in_contact;
+      wide.element = element;
+      wide_closures_.push_back(std::move(wide));
+      return;
+    }
     Closure row;
     row.element = element;
-    row.only_in_contact = only_in_contact;
+    row.only_in_contact = how.only_in_contact;
+    row.holds_deviation = how.holds_deviation;
+    row.ratio_only = how.ratio_only;
     row.first = b[0].index, row.b_first = b[0].coeff;
     if (b.size() > 1) row.second = b[1].index, row.b_second = b[1].coeff;
     closures_.push_back(row);
   };
-  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
-    add_closure(over_nodes(c.b, nodes), c.only_in_contact);
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) add_closure(over_nodes(c.b, nodes), c);
   for (const LocalRow& row : terms.constraints) {
     const std::vector<Entry> b = over_nodes(row, nodes);
-    add_closure(b, false);
+    add_closure(b, {});
+    if (b.size() > 2) {
+      wide_constraints_.push_back({id, b});
+      continue;
+    }
     system_.ideal_ratios_.push_back({id, b[0].index, b[1].index, b[0].coeff, b[1].coeff});
   }
   for (const ScalarSpec& s : terms.scalars) {
@@ -148,7 +162,10 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     term.varies = s.force->varies();
     system_.scalars_.push_back(std::move(term));
   }
-  for (const LoadSpec& l : terms.loads) system_.loads_.push_back({id, nodes[idx(l.node)], l.load, -1});
+  for (const FrequencySpec& f : terms.frequency_stiffnesses)
+    system_.frequency_terms_.push_back({id, f.stiffness, over_nodes(f.b, nodes), {}});
+  for (const LoadSpec& l : terms.loads)
+    system_.loads_.push_back({id, nodes[idx(l.node)], l.load, -1, l.suffix});
   for (const GeneralForce* g : terms.generals) {
     system_.generals_.push_back({id, g, nodes, system_.history_size_, {}});
     system_.history_size_ += g->history_size();
@@ -167,8 +184,11 @@ std::vector<OutputTerm> System::outputs() const {
     for (const NodeId id : p.internal) nodes.push_back(index(id));
     const ElementId id{static_cast<int>(e)};
     parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
-      for (const OutputSpec& o : terms.outputs)
+      for (const OutputSpec& o : terms.outputs) {
         outputs.push_back({id, o.suffix, over_nodes(o.stiffness, of_part), over_nodes(o.damping, of_part)});
+        if (o.deflection.size() > 0)
+          outputs.push_back({id, o.suffix, over_nodes(o.deflection, of_part), {}, false, true});
+      }
       for (const ScalarSpec& s : terms.scalars)
         if (const LawPiece* line = straight_line(s)) {
           const bool along = s.along_line_of_action;
@@ -214,6 +234,7 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
   matrix("mass", terms.mass);
   matrix("damping", terms.damping);
   matrix("stiffness", terms.stiffness);
+  if (terms.deviation_damping.size() > 0) matrix("deviation_damping", terms.deviation_damping);
   for (const ScalarSpec& s : terms.scalars) {
     const int entries = row("scalar b", s.b, false);
     if (entries == 0) fail("scalar b", "0", "must have an entry that is not 0");
@@ -230,6 +251,10 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
           findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node), "",
                                "is translational; a gear needs a rotational node"});
       }
+  }
+  for (const FrequencySpec& f : terms.frequency_stiffnesses) {
+    row("frequency stiffness b", f.b, false);
+    if (!f.stiffness) fail("frequency stiffness", "", "is missing (a null pointer)");
   }
   for (const LoadSpec& l : terms.loads) {
     if (l.node < 0 || l.node >= n) fail("load node", std::to_string(l.node), "is no node of the element");
@@ -248,16 +273,16 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       fail("general force", std::to_string(n) + " nodes",
            "must have at most " + std::to_string(kMaxLocalDofs));
   }
-  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
-    if (row("closure", c.b, false) > 2) fail("closure", "", "may tie at most two nodes");
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) row("closure", c.b, false);
   for (const LocalRow& b : terms.constraints) {
     const int entries = row("constraint", b, false);
-    if (entries >= 0 && entries != 2)
-      fail("constraint", std::to_string(entries) + " nodes", "must tie exactly two");
+    if (entries == 0 || entries == 1)
+      fail("constraint", std::to_string(entries) + " nodes", "must tie at least two");
   }
   for (const OutputSpec& o : terms.outputs) {
     row("output stiffness", o.stiffness, true);
     row("output damping", o.damping, true);
+    row("output deflection", o.deflection, true);
   }
   if (terms.rayleigh_a != 0.0 || terms.rayleigh_b != 0.0) {
     ParameterCheck check(place(p.name), findings_);

@@ -97,6 +97,10 @@ void SystemBuilder::eliminate() {
 }
 
 void SystemBuilder::map_terms() {
+  for (FrequencyTerm& term : system_.frequency_terms_)
+    for (const Entry& e : term.nodes)
+      if (const NodeMap& map = system_.node_map_[idx(e.index)]; map.unknown >= 0)
+        add_entry(term.z, map.unknown, e.coeff * map.coeff);
   for (ScalarTerm& term : system_.scalars_)
     for (const Entry& e : term.nodes) {
       const NodeMap& map = system_.node_map_[idx(e.index)];
@@ -110,6 +114,7 @@ template <class Visit>
 void SystemBuilder::for_each_entry(int matrix, const Visit& visit) const {
   if (matrix == 1) {
     damping_.for_each(1.0, visit);
+    deviation_damping_.for_each(1.0, visit);
     mass_[1].for_each(rayleigh_a_, visit);
     stiffness_[1].for_each(rayleigh_b_, visit);
   } else {
@@ -129,6 +134,10 @@ std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
     for (const ScalarTerm& s : system_.scalars_)
       for (const Entry& r : s.z)
         for (const Entry& c : s.z)
+          if (r.index != c.index) visit(r.index, c.index);
+    for (const FrequencyTerm& f : system_.frequency_terms_)
+      for (const Entry& r : f.z)
+        for (const Entry& c : f.z)
           if (r.index != c.index) visit(r.index, c.index);
     for (const GeneralTerm& g : system_.generals_)
       for (const int i : g.nodes)
@@ -199,6 +208,7 @@ void SystemBuilder::assemble_matrices() {
   // Entries go as soon as their values stand: a large model's memory is at its highest here.
   system_.damping_ = values_on_pattern(1);
   damping_.clear();
+  deviation_damping_.clear();
   system_.stiffness_ = values_on_pattern(2);
   for (NodeMatrix& part : stiffness_) part.clear();
   system_.mass_ = values_on_pattern(0);

@@ -221,7 +221,8 @@ void check_load(const Load& load, const CheckOptions& o, Draw& draw, Findings& o
     const LoadInput in{.t = draw.between(0.0, o.time),
                        .nominal_angle = draw.between(-o.angle, o.angle),
                        .deviation = draw.magnitude(o.deflection),
-                       .speed = draw.magnitude(o.rate)};
+                       .speed = draw.magnitude(o.rate),
+                       .nominal_speed = draw.magnitude(o.rate)};
     const LoadResponse r = load.evaluate(in);
     const std::string where = "t = " + to_text(in.t) + ", angle = " + to_text(in.nominal_angle) + " + " +
                               to_text(in.deviation) + ", speed = " + to_text(in.speed);

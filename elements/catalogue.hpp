@@ -2,14 +2,23 @@
 /// Every element of the catalogue.
 #include <drev/elements/applied_torque.hpp>
 #include <drev/elements/cam_torque.hpp>
+#include <drev/elements/couplings/absolute_damper.hpp>
+#include <drev/elements/couplings/elastic_coupling.hpp>
+#include <drev/elements/couplings/torsional_damper.hpp>
 #include <drev/elements/dashpot.hpp>
 #include <drev/elements/distributed_shaft.hpp>
+#include <drev/elements/engine/engine_cylinders.hpp>
 #include <drev/elements/engine_order_torque.hpp>
 #include <drev/elements/gear_mesh.hpp>
+#include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/ground_spring.hpp>
 #include <drev/elements/ideal_gear.hpp>
 #include <drev/elements/inertia.hpp>
 #include <drev/elements/involute.hpp>
+#include <drev/elements/machines/generator.hpp>
+#include <drev/elements/machines/propeller.hpp>
+#include <drev/elements/machines/speed_governor.hpp>
+#include <drev/elements/machines/torque_curve.hpp>
 #include <drev/elements/polyline_spring.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
 #include <drev/elements/segment_count.hpp>

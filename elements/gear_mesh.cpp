@@ -107,7 +107,9 @@ void GearMesh::check_radii(ParameterCheck& check) const {
 
 void GearMesh::describe(int nodes, Terms& terms) const {
   LocalRow b(nodes);
-  b << radius_1_, params_.internal ? -radius_2_ : radius_2_;
+  b[0] = radius_1_;
+  b[1] = params_.internal ? -radius_2_ : radius_2_;
+  if (nodes == 3) b[2] = -(b[0] + b[1]);  // all turn together: the mesh does not move
   const bool phased = params_.stiffness.varies() || params_.transmission_error.varies();
   terms.scalars.push_back(
       {.b = b, .force = this, .phase_node = phased ? 0 : -1, .along_line_of_action = true});

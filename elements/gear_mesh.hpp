@@ -5,6 +5,15 @@
 ///   internal pair   x = r_b1 theta_1 - r_b2 theta_2 - e      gear 2 is the ring
 ///   f = b y(x, x_dot),   b = (r_b1, +-r_b2)                y: BacklashLaw [N], the force reported
 ///
+/// A third node carries the bearings of both gears, a housing or a planet carrier that turns by theta_c:
+///
+///   external   x = r_b1 theta_1 + r_b2 theta_2 - (r_b1 + r_b2) theta_c - e
+///   internal   x = r_b1 theta_1 - r_b2 theta_2 - (r_b1 - r_b2) theta_c - e
+///
+/// It takes the gears' reaction. A planet is a node with one mesh to the sun (external) and one to the ring
+/// (internal, gear 1 the planet), both with the carrier as third node. The mesh phase is that of gear 1's own angle:
+/// right for a housing, not for a carrier that turns.
+///
 /// y > 0: the flanks in front carry (gear 1 turned forward relative to the mesh); y brakes gear 1
 /// with the torque r_b1 y. e is the transmission error. Nominal speeds: r_b1 n_1 +- r_b2 n_2 = 0.
 ///
@@ -51,6 +60,7 @@ class GearMesh final : public Element, public ScalarForce {
 
   std::string_view type() const override { return "gear mesh"; }
   int min_nodes() const override { return 2; }
+  int max_nodes() const override { return 3; }
   void check(ParameterCheck& check) const override;
   void describe(int nodes, Terms& terms) const override;
 

@@ -119,6 +119,8 @@ void list(Fields& f, CamTorque::Params& p) {
     f.fault("lacks table");
   f.number({"phase", D::angle}, p.phase);
   f.flag("twist_feedback", p.twist_feedback);
+  list_interpolation(f, p.interpolation);
+  f.number({"scale", D::none}, p.scale);
 }
 
 void list(Fields& f, EngineOrderTorque::Params& p) {
@@ -144,7 +146,16 @@ std::vector<ElementType>& table() {
                                         row<IdealGear>("ideal_gear"),
                                         row<AppliedTorque>("applied_torque"),
                                         row<CamTorque>("cam_torque"),
-                                        row<EngineOrderTorque>("engine_order_torque")};
+                                        row<EngineOrderTorque>("engine_order_torque"),
+                                        row<EngineCylinders>("engine_cylinders"),
+                                        row<ElasticCoupling>("elastic_coupling"),
+                                        row<TorsionalDamper>("torsional_damper"),
+                                        row<AbsoluteDamper>("absolute_damper"),
+                                        row<Propeller>("propeller"),
+                                        row<TorqueCurve>("torque_curve"),
+                                        row<Generator>("generator"),
+                                        row<SpeedGovernor>("speed_governor"),
+                                        row<PlanetarySet>("planetary_set")};
   return types;
 }
 

@@ -40,6 +40,12 @@ bool list_harmonics(Fields& f, const char* name, const Quantity& order, const Qu
   return given;
 }
 
+void list_interpolation(Fields& f, Interpolation& interpolation) {
+  int word = static_cast<int>(interpolation);
+  f.choice("interpolation", {"linear", "cubic"}, word);
+  interpolation = static_cast<Interpolation>(word);
+}
+
 bool list_periodic(Fields& f, const char* name, const Quantity& argument, const Quantity& value,
                    double period, PeriodicTable& table) {
   std::vector<double> arguments = table.arguments(), values = table.values();

@@ -1,7 +1,17 @@
 #pragma once
-/// Fields that several elements have, and those of the gear mesh.
+/// Fields that several elements have, and those of the gear mesh and of engines, couplings, machines and gear sets.
 #include <drev/app/model_file/fields.hpp>
+#include <drev/elements/couplings/absolute_damper.hpp>
+#include <drev/elements/couplings/elastic_coupling.hpp>
+#include <drev/elements/couplings/torsional_damper.hpp>
+#include <drev/elements/engine/engine_cylinders.hpp>
 #include <drev/elements/gear_mesh.hpp>
+#include <drev/elements/gears/planetary_set.hpp>
+#include <drev/elements/machines/generator.hpp>
+#include <drev/elements/machines/propeller.hpp>
+#include <drev/elements/machines/speed_governor.hpp>
+#include <drev/elements/machines/torque_curve.hpp>
+#include <drev/elements/periodic_curve.hpp>
 
 namespace drev::app {
 
@@ -14,6 +24,18 @@ bool list_harmonics(Fields& f, const char* name, const Quantity& order, const Qu
 bool list_periodic(Fields& f, const char* name, const Quantity& argument, const Quantity& value,
                    double period, PeriodicTable& table);
 
+/// linear or cubic between the points of a table.
+void list_interpolation(Fields& f, Interpolation& interpolation);
+
 void list(Fields& f, GearMesh::Params& p);
+void list(Fields& f, EngineCylinders::Params& p);
+void list(Fields& f, ElasticCoupling::Params& p);
+void list(Fields& f, TorsionalDamper::Params& p);
+void list(Fields& f, AbsoluteDamper::Params& p);
+void list(Fields& f, Propeller::Params& p);
+void list(Fields& f, TorqueCurve::Params& p);
+void list(Fields& f, Generator::Params& p);
+void list(Fields& f, SpeedGovernor::Params& p);
+void list(Fields& f, PlanetarySet::Params& p);
 
 }  // namespace drev::app

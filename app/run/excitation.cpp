@@ -44,7 +44,9 @@ class Orders {
     for (int i = 0; i <= kLoadSamples; ++i) {
       const double angle = 2.0 * kTwoPi * i / kLoadSamples;
       torque[static_cast<std::size_t>(i)] =
-          term.load->evaluate({.nominal_angle = angle, .speed = ratio * rate_}).torque;
+          term.load
+              ->evaluate({.nominal_angle = angle, .speed = ratio * rate_, .nominal_speed = ratio * rate_})
+              .torque;
     }
     const auto [low, high] = std::minmax_element(torque.begin(), torque.end());
     const double range = *high - *low;

@@ -129,10 +129,10 @@ void LaneLoads::evaluate_by_lane(const LaneMotion& motion, const LaneMask& open,
   for (Evaluated& load : evaluated_)
     for (int lane = 0; lane < kLanes; ++lane)
       if (open[lane] && load.moves == moving) {
-        const double n = load.ratio.v[lane], c = load.coeff.v[lane];
+        const double n = load.ratio.v[lane], c = load.coeff.v[lane], rate = n * phi_rate_.v[lane];
         load.torque.v[lane] = load.loads[idx(lane)]
                                   ->evaluate({t_, n * phi_.v[lane], c * motion.z(load.row, lane),
-                                              n * phi_rate_.v[lane] + c * motion.v(load.row, lane)})
+                                              rate + c * motion.v(load.row, lane), rate})
                                   .torque;
       }
 }

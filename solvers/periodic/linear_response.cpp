@@ -2,6 +2,7 @@
 
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/core/units.hpp>
 
 #include <Eigen/QR>
@@ -68,6 +69,8 @@ std::map<std::string, Section> element_sections(const System& system, std::vecto
       section.twist = over_unknowns(system, outputs[o + 1].stiffness);
     else if (const double size = largest_coefficient(given); size > 0.0)
       section.twist = over_unknowns(system, given, 1.0 / size);
+    for (std::size_t f = 0; f < system.frequency_terms().size(); ++f)
+      if (system.frequency_terms()[f].element == term.element) section.frequency_term = static_cast<int>(f);
     if (!sections.emplace(section.name, section).second) continue;
     in_order.push_back(section.name);
   }
@@ -223,6 +226,25 @@ void LinearResponse::prepare_mean(const std::string& balance, std::vector<Findin
   }
 }
 
+void LinearResponse::add_frequency_terms(double omega) {
+  damping_at_omega_ = damping_here_;
+  stiffness_at_omega_ = stiffness_here_;
+  const SparseMatrix& pattern = system_.pattern();
+  beyond_.clear();
+  for (const FrequencyTerm& term : system_.frequency_terms()) {
+    const Complex k = term.stiffness->beyond_matrices(omega);
+    beyond_.push_back(k);
+    for (const Entry& c : term.z)
+      for (const Entry& r : term.z) {
+        const int* first = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index];
+        const int* last = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index + 1];
+        const auto slot = std::lower_bound(first, last, r.index) - pattern.innerIndexPtr();
+        stiffness_at_omega_[slot] += k.real() * r.coeff * c.coeff;
+        damping_at_omega_[slot] += k.imag() / omega * r.coeff * c.coeff;
+      }
+  }
+}
+
 const Vector& LinearResponse::damping_at(double speed) {
   damping_here_ = damping_;
   stiffness_here_ = stiffness_;
@@ -306,7 +328,11 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
     if (!any) continue;
     p_ = z_;
     const Complex s(0.0, direction_ * orders_[static_cast<std::size_t>(k)] * speed);
-    if (!elimination_.factorize(mass_, damping_here_, stiffness_here_, s)) {
+    const bool complex_stiffness = !system_.frequency_terms().empty();
+    if (complex_stiffness) add_frequency_terms(std::abs(s.imag()));
+    const Vector& damping_values = complex_stiffness ? damping_at_omega_ : damping_here_;
+    if (!elimination_.factorize(mass_, damping_values,
+                                complex_stiffness ? stiffness_at_omega_ : stiffness_here_, s)) {
       point.amplitude.row(k).setConstant(std::numeric_limits<double>::infinity());
       point.twist.row(k).setConstant(std::numeric_limits<double>::infinity());
       point.heat.setConstant(std::numeric_limits<double>::infinity());
@@ -321,6 +347,14 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
       point.amplitude(k, c) =
           product(section.stiffness, z_) + Complex(-s.imag() * damping.imag(), s.imag() * damping.real());
       point.twist(k, c) = twist;
+      if (section.frequency_term >= 0) {
+        // The matrices' torque and what is beyond them; heat = w/2 Im(T conj x). At a negative s k* is conjugate.
+        const auto& term = system_.frequency_terms()[idx(section.frequency_term)];
+        const Complex beyond = beyond_[idx(section.frequency_term)];
+        point.amplitude(k, c) += (s.imag() > 0.0 ? beyond : std::conj(beyond)) * product(term.z, z_);
+        point.heat[c] += 0.5 * s.imag() * (point.amplitude(k, c) * std::conj(twist)).imag();
+        continue;
+      }
       const Complex damper = product(section.damper, z_);
       point.heat[c] += 0.5 * rate * (damper.real() * twist.real() + damper.imag() * twist.imag());
     }
@@ -330,7 +364,7 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
       input += s.imag() * (z.real() * p.imag() - z.imag() * p.real());
       for (int e = outer[j]; e < outer[j + 1]; ++e) {
         const Complex other = z_[idx(inner[e])];
-        dissipated += damping_here_[e] * (z.real() * other.real() + z.imag() * other.imag());
+        dissipated += damping_values[e] * (z.real() * other.real() + z.imag() * other.imag());
       }
     }
     point.input_power += 0.5 * input;

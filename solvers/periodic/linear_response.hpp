@@ -16,6 +16,7 @@ class LinearResponse {
     std::vector<Entry> stiffness, damping;  ///< y = stiffness z + damping z'
     std::vector<Entry> twist;               ///< its element's twist; empty: none
     std::vector<Entry> damper;              ///< the damper's part of y; heat is damper z' times twist'
+    int frequency_term = -1;                ///< of the system: its element's complex stiffness
     bool contact = false;
   };
   struct Point {
@@ -45,6 +46,9 @@ class LinearResponse {
   void check_model(bool close_contacts, std::vector<Finding>& findings) const;
   void find_sections(const std::vector<std::string>& names, std::vector<Finding>& findings);
   void drag_along(Vector& p) const;
+  /// Adds the complex stiffnesses at a frequency [rad/s], > 0, to what it factors: Re k* b b' to the stiffness,
+  /// Im k*/omega b b' to the damping.
+  void add_frequency_terms(double omega);
   void prepare_mean(const std::string& balance, std::vector<Finding>& findings);
 
   const System& system_;
@@ -54,6 +58,8 @@ class LinearResponse {
   std::optional<OrderContent> content_;
   double direction_ = 1.0;  // sign of the reference shaft's speed
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
+  Vector damping_at_omega_, stiffness_at_omega_;  // with complex stiffnesses; unused without
+  std::vector<std::complex<double>> beyond_;      // of each frequency term, at the last frequency
   ComplexElimination elimination_, mean_elimination_;
   std::vector<std::string> floating_;
   std::vector<Vector> rigid_;                  // motion of each floating part, the ratios of its nodes

@@ -116,8 +116,9 @@ void note_left_out(const System& system, const std::vector<OrderContent::Content
   for (std::size_t l = 0; l < content.loads().size(); ++l) {
     const OrderContent::Content& c = found[l];
     if (!(c.left_out > kLeftOut * c.rms)) continue;
-    const ElementId element = content.loads()[l]->element;
-    sweep.left_out.push_back({system.element_instances()[idx(index(element))].name, c.left_out / c.rms});
+    const LoadTerm& load = *content.loads()[l];
+    const std::string name = system.element_instances()[idx(index(load.element))].name;
+    sweep.left_out.push_back({load.suffix.empty() ? name : name + "_" + load.suffix, c.left_out / c.rms});
   }
 }
 

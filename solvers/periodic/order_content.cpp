@@ -1,5 +1,6 @@
 #include "solvers/periodic/order_content.hpp"
 
+#include <drev/core/law/speed_scaled_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 
@@ -20,8 +21,10 @@ constexpr double kNoLine = 1e-13;  // of the rms: rounding of the transform
 constexpr int kProbes = 24;        // angles at which a load is asked whether time, speed and turns matter
 constexpr int kFewestSamples = 256, kMostSamples = 1 << 16;
 
-LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0) {
-  return term.load->evaluate({.t = t, .nominal_angle = angle, .deviation = 0.0, .speed = speed});
+LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0,
+                      double deviation = 0.0) {
+  return term.load->evaluate(
+      {.t = t, .nominal_angle = angle, .deviation = deviation, .speed = speed, .nominal_speed = speed});
 }
 
 /// Angles that no even division of a turn hits.
@@ -86,6 +89,9 @@ OrderContent::OrderContent(const System& system, std::vector<double> orders, std
         continue;
       }
     }
+    constexpr double kTurned = 0.3;  // rad
+    source.by_angle = same_everywhere([&](double a) { return at_angle(term, a + kTurned, speed); },
+                                      [&](double a) { return at_angle(term, a, speed, 0.0, kTurned); });
     loads_.push_back(&term);
     sources_.push_back(source);
   }
@@ -172,7 +178,9 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
       content.speed_slope += r.dtorque_dspeed / samples;
       steepest = std::max(steepest, std::abs(r.dtorque_dangle));
     }
-    if (std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
+    // What repeats with the angle itself, nominal and deviation alike, has no mean slope; samples of a curve with
+    // kinks have.
+    if (source.by_angle || std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
     for (const double value : torque) square += (value - content.mean) * (value - content.mean) / samples;
     content.rms = std::sqrt(square);
     fft.fwd(lines, torque);
@@ -201,6 +209,52 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
   return content;
 }
 
+OrderContent::Content OrderContent::of_curves(const LoadTerm& term, Source& source, double speed) const {
+  const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
+  const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
+  const std::vector<double> factors = load.speed_factors(ratio * speed);
+  const auto count = static_cast<Eigen::Index>(factors.size());
+  if (source.curves.empty()) {
+    Eigen::MatrixXd values(kMostSamples, count);
+    Eigen::FFT<double> fft;
+    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    std::vector<Complex> lines;
+    std::vector<double> column(static_cast<std::size_t>(kMostSamples));
+    for (Eigen::Index k = 0; k < count; ++k) {
+      Content content;
+      for (int i = 0; i < kMostSamples; ++i)
+        values(i, k) = load.curve(static_cast<int>(k), source.turns * kTwoPi * i / kMostSamples);
+      content.mean = values.col(k).mean();
+      values.col(k).array() -= content.mean;
+      content.rms = std::sqrt(values.col(k).squaredNorm() / kMostSamples);
+      std::copy_n(values.col(k).data(), kMostSamples, column.begin());
+      fft.fwd(lines, column);
+      lines.resize(static_cast<std::size_t>(kMostSamples) / 2);
+      for (Complex& line : lines) line *= 2.0 / kMostSamples;
+      pick(lines, spacing, ratio > 0.0, content);
+      source.curves.push_back(std::move(content));
+    }
+    source.products = values.transpose() * values / kMostSamples;
+  }
+  Content sum;
+  sum.node = term.node;
+  sum.amplitudes.assign(orders_.size(), 0.0);
+  const Eigen::Map<const Vector> f(factors.data(), count);
+  sum.rms = std::sqrt(std::max(0.0, f.dot(source.products * f)));
+  double taken = 0.0;
+  const auto curve = [&](Eigen::Index k) -> const Content& {
+    return source.curves[static_cast<std::size_t>(k)];
+  };
+  for (Eigen::Index k = 0; k < count; ++k) sum.mean += f[k] * curve(k).mean;
+  for (std::size_t o = 0; o < orders_.size(); ++o) {
+    for (Eigen::Index k = 0; k < count; ++k) sum.amplitudes[o] += f[k] * curve(k).amplitudes[o];
+    taken += 0.5 * std::norm(sum.amplitudes[o]);
+  }
+  sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - taken));
+  if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
+  return sum;
+}
+
 const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     Source& source = sources_[l];
@@ -212,7 +266,11 @@ const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
           term.node, r.torque, r.dtorque_dangle, r.dtorque_dspeed, std::vector<Complex>(orders_.size()),
           0.0,       0.0};
     } else {
-      content_[l] = term.load->table() ? of_table(term) : of_samples(term, source, speed);
+      const bool no_slope = source.by_angle || !term.load->depends_on_motion();
+      const bool scaled = no_slope && dynamic_cast<const SpeedScaledLoad*>(term.load) != nullptr;
+      content_[l] = term.load->table() ? of_table(term)
+                    : scaled           ? of_curves(term, source, speed)
+                                       : of_samples(term, source, speed);
     }
     source.known = !source.follows_speed;
   }

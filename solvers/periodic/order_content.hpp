@@ -49,10 +49,15 @@ class OrderContent {
   struct Source {
     double turns = 1.0;  // of its node, in which it repeats
     bool constant = false, follows_speed = false, known = false;
-    int samples = 0;  // that its content has settled with; 0: not known yet
+    bool by_angle = false;  // a deviation acts as the nominal angle does
+    int samples = 0;        // that its content has settled with; 0: not known yet
+    /// Of each curve of a load that says its torque as curves scaled by the speed (SpeedScaledLoad), once found.
+    std::vector<Content> curves;
+    Eigen::MatrixXd products;  // means of the products of two curves, without their means
   };
   Content of_table(const LoadTerm& term) const;
   Content of_samples(const LoadTerm& term, Source& source, double speed) const;
+  Content of_curves(const LoadTerm& term, Source& source, double speed) const;
   void pick(const std::vector<std::complex<double>>& lines, double spacing, bool forward,
             Content& content) const;
 

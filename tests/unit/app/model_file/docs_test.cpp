@@ -1,4 +1,4 @@
-// docs/model_file.md: every example is a sound file, or part of one; every element, key and unit is there.
+// docs/model_file.md and docs/train_elements.md: every example is a sound file, or part of one; every element, key and unit is there.
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/system.hpp>
@@ -13,7 +13,8 @@ using drev::test::contains;
 namespace {
 
 const std::string& page() {
-  static const std::string text = test::read_file(DREV_SOURCE_DIR "/docs/model_file.md");
+  static const std::string text = test::read_file(DREV_SOURCE_DIR "/docs/model_file.md") +
+                                  test::read_file(DREV_SOURCE_DIR "/docs/train_elements.md");
   return text;
 }
 

@@ -1,0 +1,38 @@
+#pragma once
+/// AbsoluteDamper: a viscous damper on the deviation of one node from its nominal motion.
+///
+///   tau = c q'          on the LEFT side; q' = omega - n phi'
+///
+/// What calculations by orders call absolute damping: the engine's damping at each crank throw, a bearing, whose mean
+/// torque is part of the load. The nominal motion loses nothing by it; a Dashpot on one node brakes that too.
+#include <drev/core/element.hpp>
+#include <drev/elements/not_given.hpp>
+
+namespace drev {
+
+class AbsoluteDamper final : public Element {
+ public:
+  struct Params {
+    double damping = kNotGiven;  ///< c [N m s/rad], >= 0; on a translational node N s/m
+  };
+  explicit AbsoluteDamper(Params params) : params_(params) {}
+
+  const Params& params() const { return params_; }
+  std::string_view type() const override { return "absolute damper"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    check.non_negative("damping", params_.damping, "N m s/rad");
+  }
+  void describe(int nodes, Terms& terms) const override {
+    terms.deviation_damping = Eigen::MatrixXd::Zero(nodes, nodes);
+    terms.deviation_damping(0, 0) = params_.damping;
+    LocalRow b = LocalRow::Zero(nodes), none = b;
+    b[0] = params_.damping;
+    terms.outputs.push_back({.suffix = "", .stiffness = none, .damping = b});
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

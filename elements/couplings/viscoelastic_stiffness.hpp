@@ -1,0 +1,74 @@
+#pragma once
+/// ViscoelasticStiffness: a spring with a loss factor (hysteretic damping), rubber or the material of a shaft.
+///
+///   k*(f) = k(f) (1 + i eta(f))        torque amplitude = k* times twist amplitude, heat = w/2 Im(k*) |twist|^2
+///
+/// k, eta constant, or tables over the frequency (linear between their points, constant outside). Relative damping
+/// psi (loss a cycle over elastic energy) = 2 pi eta. In the frequency domain (drev sweep) k* holds exactly at every
+/// order. In time, and for damped modes, a chain of Maxwell branches stands for it,
+///
+///   G(s) = k_0 + sum_j k_j (c_j s + m_j s^2)/(k_j + c_j s + m_j s^2),     c_j = tau_j k_j,  m_j = c_j/(8 w_high)
+///
+/// fitted with k_0, k_j >= 0 to k* over lowest_frequency <= f <= highest_frequency (least squares of the relative
+/// error at 80 frequencies, evenly on a log scale; tau_j even on a log scale between 1/(2 w_high) and 2/w_low).
+/// fit_error() is the largest |G - k*|/|k*| there. No causal material has both k and eta constant: k then grows by
+/// (2/pi) eta ln 10 = 1.47 eta a decade, so that for eta = 0.1 the error over a decade is 5 %. Keep the band
+/// to what matters, about the resonance; fit_error is refused above `permitted_error`.
+///
+/// m_j makes a node of each branch's inner point that methods in time can step; it is part of the fit. Undamped modes
+/// see it as an inertia and list modes of the branches: use damped modes (drev modes --damped) and the sweep.
+/// Below the band the stiffness falls to k_0, which carries the mean torque in time; sweeps take k_0 for the mean too.
+/// Source: H. Oberst's loss factor as in D. I. G. Jones, Handbook of Viscoelastic Vibration Damping, Wiley, 2001;
+/// mini-oscillators: P. C. Hughes, D. J. McTavish, J. Vib. Acoust. 115 (1993) 103.
+#include <drev/core/element.hpp>
+#include <drev/core/law/frequency_stiffness.hpp>
+#include <drev/elements/not_given.hpp>
+
+#include <complex>
+#include <vector>
+
+namespace drev {
+
+class ViscoelasticStiffness final : public FrequencyStiffness {
+ public:
+  struct Params {
+    double stiffness = kNotGiven;           ///< k [N m/rad], > 0; or the tables below
+    double loss_factor = 0.0;               ///< eta [-], 0 to 2
+    std::vector<double> frequencies = {};   ///< of the tables, ascending [Hz]
+    std::vector<double> stiffnesses = {};   ///< k at these [N m/rad], > 0
+    std::vector<double> loss_factors = {};  ///< eta at these [-], 0 to 2
+    double lowest_frequency = kNotGiven;    ///< of the fit [Hz], > 0; needed where anything is lost
+    double highest_frequency = kNotGiven;   ///< of the fit [Hz], > lowest_frequency
+    int branches = 0;                       ///< of the chain, at most 12; 0: two a decade and one
+    double permitted_error = 0.1;           ///< of the fit [-], > 0
+  };
+  struct Branch {
+    double stiffness = 0.0, damping = 0.0, inertia = 0.0;  ///< k_j, c_j, m_j
+  };
+
+  ViscoelasticStiffness() = default;
+  explicit ViscoelasticStiffness(Params params);
+
+  const Params& params() const { return params_; }
+  std::complex<double> at(double omega) const;     ///< k* [N m/rad]; omega > 0 [rad/s]
+  std::complex<double> chain(double omega) const;  ///< G(i omega)
+  std::complex<double> beyond_matrices(double omega) const override { return at(omega) - chain(omega); }
+  double static_stiffness() const { return static_stiffness_; }  ///< k_0 [N m/rad]
+  const std::vector<Branch>& branches() const { return branches_; }
+  double fit_error() const { return fit_error_; }
+  bool loses() const;  ///< whether any loss factor is > 0 or the stiffness follows the frequency
+  void check(ParameterCheck& check) const;
+  /// Adds the chain along b, whose branches' points are the local nodes from `first` on, and what the frequency domain
+  /// adds. damping: viscous, beside it [N m s/rad].
+  void describe(const LocalRow& b, int first, double damping, Terms& terms) const;
+
+ private:
+  bool usable() const;
+  void fit();
+
+  Params params_;
+  double static_stiffness_ = 0.0, fit_error_ = 0.0;
+  std::vector<Branch> branches_;
+};
+
+}  // namespace drev

@@ -1,0 +1,152 @@
+#include <drev/core/units.hpp>
+#include <drev/elements/engine/engine_cylinders.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+double cycle(int strokes) { return strokes == 2 ? kTwoPi : 2.0 * kTwoPi; }
+
+}  // namespace
+
+EngineCylinders::EngineCylinders(Params params)
+    : params_(std::move(params)),
+      crank_{0.5 * params_.stroke, params_.rod},
+      area_(0.25 * kPi * params_.bore * params_.bore),
+      gas_(params_.gas, cycle(params_.strokes)) {
+  for (std::size_t k = 0; k < params_.firing_angles.size(); ++k)
+    cylinders_.emplace_back(*this, static_cast<int>(k));
+}
+
+std::vector<double> EngineCylinders::even_firing(const std::string& order, int strokes, double first) {
+  std::vector<int> sequence;
+  bool readable = !order.empty();
+  for (std::size_t i = 0; readable && i <= order.size();) {
+    int number = 0;
+    const auto result = std::from_chars(order.data() + i, order.data() + order.size(), number);
+    i = static_cast<std::size_t>(result.ptr - order.data());
+    readable = result.ec == std::errc{} && (i == order.size() || order[i] == '-');
+    sequence.push_back(number);
+    ++i;
+  }
+  std::vector<int> sorted = sequence;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t k = 0; k < sorted.size(); ++k) readable = readable && sorted[k] == static_cast<int>(k) + 1;
+  if (!readable)
+    throw ModelError({{"engine", "firing_order", order, "",
+                       "must name each cylinder from 1 on once, separated by '-', as in 1-5-3-6-2-4"}});
+  std::vector<double> angles(sequence.size());
+  const double interval = cycle(strokes) / static_cast<double>(sequence.size());
+  for (std::size_t i = 0; i < sequence.size(); ++i)
+    angles[static_cast<std::size_t>(sequence[i] - 1)] = first + interval * static_cast<double>(i);
+  return angles;
+}
+
+void EngineCylinders::check(ParameterCheck& check) const {
+  const Params& p = params_;
+  check.positive("bore", p.bore, "m");
+  check.positive("stroke", p.stroke, "m");
+  check.positive("rod", p.rod, "m");
+  if (p.rod <= 0.6 * p.stroke)
+    check.fail("rod", to_text(p.rod), "m",
+               "must be longer than 0.6 stroke, " + to_text(0.6 * p.stroke) + " m");
+  check.non_negative("oscillating_mass", p.oscillating_mass, "kg");
+  check.non_negative("rotating_mass", p.rotating_mass, "kg");
+  check.finite("crankcase_pressure", p.crankcase_pressure, "Pa");
+  check.finite("mean_tangential_pressure", p.mean_tangential_pressure, "Pa");
+  if (p.strokes != 2 && p.strokes != 4)
+    check.fail("strokes", std::to_string(p.strokes), "", "must be 2 or 4");
+  check.all_finite("firing_angles", p.firing_angles, "rad");
+  if (p.firing_angles.empty()) check.fail("firing_angles", "none", "rad", "each cylinder needs one");
+  if (!gas_.empty() || !p.gas.pressure.empty()) gas_.check(check);
+  check_harmonics(check, "tangential_pressure", p.tangential_pressure, "Pa", false);
+  const bool tangential = !p.tangential_pressure.empty() || p.mean_tangential_pressure != 0.0;
+  if (tangential && !gas_.empty())
+    check.fail("tangential_pressure", "given", "", "must not be there beside pressure; give one of them");
+  const int count = static_cast<int>(p.firing_angles.size());
+  if (p.misfiring_cylinder < 0 || p.misfiring_cylinder > count)
+    check.fail("misfiring_cylinder", std::to_string(p.misfiring_cylinder), "",
+               "must be the number of a cylinder, 1 to " + std::to_string(count) + ", or 0 for none");
+  if (p.misfiring_cylinder > 0 && tangential)
+    check.fail("misfiring_cylinder", std::to_string(p.misfiring_cylinder), "",
+               "needs curves of pressure: harmonics do not tell the compression");
+}
+
+void EngineCylinders::describe(int nodes, Terms& terms) const {
+  double inertia = params_.rotating_mass * crank_.radius * crank_.radius;
+  if (params_.mean_oscillating_inertia) inertia += params_.oscillating_mass * crank_.mean_square();
+  const int count = std::min(nodes, static_cast<int>(cylinders_.size()));
+  for (int k = 0; k < nodes; ++k) terms.mass(k, k) = inertia;
+  for (int k = 0; k < count; ++k)
+    terms.loads.push_back(
+        {k, &cylinders_[static_cast<std::size_t>(k)], count > 1 ? std::to_string(k + 1) : std::string()});
+}
+
+LoadResponse EngineCylinders::Cylinder::evaluate(const LoadInput& in) const {
+  const Params& p = engine_.params_;
+  const bool follows = p.twist_feedback;
+  const double speed = follows ? in.speed : in.nominal_speed;
+  const double angle =
+      in.nominal_angle + (follows ? in.deviation : 0.0) - p.firing_angles[static_cast<std::size_t>(number_)];
+  const CrankSlider::Derivatives x = engine_.crank_.at(angle);
+  const double m = p.oscillating_mass, w_2 = speed * speed;
+  LoadResponse r{.torque = -m * x.second * x.first * w_2,
+                 .dtorque_dangle = -m * w_2 * (x.second * x.second + x.first * x.third),
+                 .dtorque_dspeed = -2.0 * m * x.second * x.first * speed};
+  if (!engine_.gas_.empty()) {
+    const bool nominal = in.nominal_speed != 0.0 || !follows;
+    const GasPressure::Point gas =
+        engine_.gas_.at(angle, nominal ? in.nominal_speed : speed, p.misfiring_cylinder == number_ + 1);
+    const double over = gas.pressure - p.crankcase_pressure;
+    r.torque -= over * engine_.area_ * x.first;
+    r.dtorque_dangle -= engine_.area_ * (gas.angle_slope * x.first + over * x.second);
+    if (!nominal) r.dtorque_dspeed -= gas.speed_slope * engine_.area_ * x.first;
+  } else if (!p.tangential_pressure.empty() || p.mean_tangential_pressure != 0.0) {
+    const CurvePoint t = sum_at(p.tangential_pressure, angle);
+    const double arm = engine_.area_ * engine_.crank_.radius;
+    r.torque += arm * (p.mean_tangential_pressure + t.value);
+    r.dtorque_dangle += arm * t.slope;
+  }
+  if (!follows) r.dtorque_dangle = r.dtorque_dspeed = 0.0;
+  return r;
+}
+
+std::vector<double> EngineCylinders::Cylinder::speed_factors(double speed) const {
+  std::vector<double> factors{speed * speed, 1.0};
+  if (engine_.gas_.empty()) return factors;
+  const std::vector<double> gas = engine_.gas_.factors(speed);
+  factors.insert(factors.end(), gas.begin(), gas.end());
+  return factors;
+}
+
+double EngineCylinders::Cylinder::curve(int k, double angle) const {
+  const Params& p = engine_.params_;
+  angle -= p.firing_angles[static_cast<std::size_t>(number_)];
+  const CrankSlider::Derivatives x = engine_.crank_.at(angle);
+  if (k == 0) return -p.oscillating_mass * x.second * x.first;
+  if (k > 1)
+    return -engine_.gas_.curve(k - 2, angle, p.misfiring_cylinder == number_ + 1) * engine_.area_ * x.first;
+  if (!engine_.gas_.empty()) return p.crankcase_pressure * engine_.area_ * x.first;
+  return engine_.area_ * engine_.crank_.radius *
+         (p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle).value);
+}
+
+double EngineCylinders::torque(int k, double angle, double speed) const {
+  return cylinders_.at(static_cast<std::size_t>(k))
+      .evaluate({.nominal_angle = angle, .speed = speed, .nominal_speed = speed})
+      .torque;
+}
+
+double EngineCylinders::mean_torque(int k, double speed) const {
+  constexpr int kPoints = 1 << 16;
+  const double period = cycle(params_.strokes);
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) sum += torque(k, period * (i + 0.5) / kPoints, speed) / kPoints;
+  return sum;
+}
+
+}  // namespace drev

@@ -1,0 +1,99 @@
+#pragma once
+/// EngineCylinders: gas and mass torque of the cylinders of an engine on its crankshaft, one throw a node.
+///
+///   tau_k = -((p - p_c) A + m_osc x'' w^2) x'      on the RIGHT side: positive drives the crank forward
+///
+/// x(a) distance from crank centre to piston pin (crank_slider.hpp), x', x'' its derivatives by the crank angle,
+/// a = theta_k - (firing angle of the cylinder) the angle from its firing top dead centre, A = pi bore^2/4, p the
+/// gas pressure in the cylinder, p_c the crankcase's (or back) pressure, m_osc piston, pin and the rod's upper part,
+/// w the speed of the throw. Exact slider-crank, no series. theta_k and w are the actual ones, so that twist and
+/// speed feed back; twist_feedback = false takes the nominal ones. The pressure follows the NOMINAL speed of the
+/// throw (a curve belongs to the mean speed of a cycle), the actual one where it has no nominal motion.
+///
+/// Gas: curves of pressure (gas_pressure.hpp); or, the classic way, harmonics of the tangential pressure,
+///   (p - p_c) A x' replaced by -A r (t_0 + sum t_i cos(order_i a + phase_i)),   orders a turn of the crank;
+/// or none (a motored engine without compression).
+///
+/// Inertia: m_rot r^2 (crank pin's share of the rod and what else turns at the crank radius) is added to the node,
+/// and with mean_oscillating_inertia also the mean of m_osc x'^2. LIMIT: the inertia that varies with the angle acts
+/// by its term -m_osc x' x'' w^2 (at constant speed all there is); its term in the acceleration is left out, as
+/// usual in orders.
+///
+/// Misfire of one cylinder: no injection, compression stays (its pressure is symmetric about the firing dead
+/// centre). Mean gas torque of a cylinder = pmi V_h/(4 pi), four strokes.
+/// Source: E. J. Nestorides, A Handbook on Torsional Vibration, Cambridge, 1958, chapter 4; IACS UR M53 (half range
+/// by synthesis, misfire).
+#include <drev/core/element.hpp>
+#include <drev/core/law/speed_scaled_load.hpp>
+#include <drev/core/load.hpp>
+#include <drev/elements/engine/crank_slider.hpp>
+#include <drev/elements/engine/gas_pressure.hpp>
+#include <drev/elements/harmonic.hpp>
+#include <drev/elements/not_given.hpp>
+
+#include <string>
+#include <vector>
+
+namespace drev {
+
+class EngineCylinders final : public Element {
+ public:
+  struct Params {
+    double bore = kNotGiven;                ///< m, > 0
+    double stroke = kNotGiven;              ///< 2 r [m], > 0
+    double rod = kNotGiven;                 ///< l [m], > 0.6 stroke
+    double oscillating_mass = 0.0;          ///< m_osc of a cylinder [kg], >= 0
+    double rotating_mass = 0.0;             ///< m_rot at the crank radius [kg], >= 0
+    bool mean_oscillating_inertia = false;  ///< add the mean of m_osc x'^2 to the nodes
+    int strokes = 4;                        ///< of a cycle: 2 or 4
+    /// Crank angle at the firing top dead centre of each cylinder [rad], one a node; even_firing() finds them.
+    std::vector<double> firing_angles = {};
+    GasPressure::Params gas = {};
+    double crankcase_pressure = 0.0;                 ///< p_c [Pa]
+    std::vector<Harmonic> tangential_pressure = {};  ///< instead of gas: order, Pa, rad; no misfire
+    double mean_tangential_pressure = 0.0;           ///< t_0 [Pa]
+    int misfiring_cylinder = 0;                      ///< number from 1; 0: none
+    bool twist_feedback = true;
+  };
+  explicit EngineCylinders(Params params);
+
+  /// Firing angles of cylinders 1, 2, ... that fire at even intervals of a cycle in an order such as
+  /// "1-5-3-6-2-4", the first of them at `first` [rad]. Throws ModelError where a number is missing or twice.
+  static std::vector<double> even_firing(const std::string& order, int strokes, double first = 0.0);
+
+  const Params& params() const { return params_; }
+  std::string_view type() const override { return "set of engine cylinders"; }
+  /// One node a cylinder.
+  int min_nodes() const override {
+    return params_.firing_angles.empty() ? 1 : static_cast<int>(params_.firing_angles.size());
+  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
+  /// Torque of cylinder k (from 0) at a crank angle and speed that are nominal and actual [rad], [rad/s] -> N m.
+  double torque(int k, double angle, double speed) const;
+  /// Mean torque of cylinder k over a cycle at a speed [N m].
+  double mean_torque(int k, double speed) const;
+
+ private:
+  class Cylinder final : public Load, public SpeedScaledLoad {
+   public:
+    Cylinder(const EngineCylinders& engine, int number) : engine_(engine), number_(number) {}
+    LoadResponse evaluate(const LoadInput& in) const override;
+    bool depends_on_motion() const override { return engine_.params_.twist_feedback; }
+    /// w^2 of the mass torque, 1 of what the speed does not move, then those of the gas pressure's curves.
+    std::vector<double> speed_factors(double speed) const override;
+    double curve(int k, double angle) const override;
+
+   private:
+    const EngineCylinders& engine_;
+    int number_;
+  };
+
+  Params params_;
+  CrankSlider crank_;
+  double area_ = 0.0;
+  GasPressure gas_;
+  std::vector<Cylinder> cylinders_;
+};
+
+}  // namespace drev

@@ -1,0 +1,125 @@
+#include <drev/elements/engine/gas_pressure.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+constexpr double kJump = 1e-9;  // of the period: over which a curve that does not close jumps
+
+PeriodicCurve make_curve(std::vector<double> angle, std::vector<double> value, double period,
+                         Interpolation interpolation) {
+  if (angle.size() >= 3 && std::abs(angle.back() - angle.front() - period) <= 1e-12 * period) {
+    if (value.back() == value.front())
+      angle.pop_back(), value.pop_back();
+    else if (interpolation == Interpolation::linear)
+      angle.back() = angle.front() + period * (1.0 - kJump);
+  }
+  return {PeriodicTable(std::move(angle), std::move(value), period), interpolation};
+}
+
+}  // namespace
+
+GasPressure::GasPressure(Params params, double period) : params_(std::move(params)), period_(period) {
+  const Params& p = params_;
+  const std::size_t n = p.angle.size();
+  const std::vector<double>& parameter = p.speed.empty() ? p.load : p.speed;
+  sizes_fit_ = p.pressure.size() == n && (parameter.empty() || parameter.size() == n);
+  if (n == 0 || !sizes_fit_) return;  // check() says so
+  std::vector<PeriodicCurve> curves;
+  std::vector<double> values;
+  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+    while (end < n && (parameter.empty() || parameter[end] == parameter[begin])) ++end;
+    const auto part = [&](const std::vector<double>& all) {
+      return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 all.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    curves.push_back(make_curve(part(p.angle), part(p.pressure), period, p.interpolation));
+    values.push_back(parameter.empty() ? 0.0 : parameter[begin]);
+  }
+  curves_ = CurveFamily(std::move(curves), std::move(values));
+  reference_ = p.reference_pressure > 0.0 ? p.reference_pressure
+                                          : *std::max_element(p.pressure.begin(), p.pressure.end());
+}
+
+double GasPressure::mirrored(double& angle, bool misfires) const {
+  if (!misfires) return 1.0;
+  const double behind = angle - period_ * std::floor(angle / period_);
+  if (behind >= 0.5 * period_) return 1.0;
+  angle = -behind;
+  return -1.0;
+}
+
+GasPressure::Scale GasPressure::peak_scale(double size) const {
+  const std::vector<double>&at = params_.peak_speed, &peak = params_.peak_pressure;
+  if (at.empty()) return {};
+  if (size <= at.front()) return {peak.front() / reference_, 0.0};
+  if (size >= at.back()) return {peak.back() / reference_, 0.0};
+  const auto i = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), size) - at.begin());
+  const double slope = (peak[i] - peak[i - 1]) / (at[i] - at[i - 1]);
+  return {(peak[i - 1] + slope * (size - at[i - 1])) / reference_, slope / reference_};
+}
+
+GasPressure::Point GasPressure::at(double angle, double speed, bool misfires) const {
+  const double side = mirrored(angle, misfires), direction = speed < 0.0 ? -1.0 : 1.0, size = std::abs(speed);
+  const bool by_speed = !params_.speed.empty();
+  const CurveFamily::Point c = curves_.at(angle + params_.firing_tdc, by_speed ? size : params_.at_load);
+  const Scale scale = peak_scale(size);
+  const double by_size = (by_speed ? c.parameter_slope * scale.factor : 0.0) + c.value * scale.slope;
+  return {c.value * scale.factor, side * c.slope * scale.factor, direction * by_size};
+}
+
+std::vector<double> GasPressure::factors(double speed) const {
+  const double size = std::abs(speed);
+  const std::vector<double>& at = curves_.parameters();
+  std::vector<double> parts(curves_.curves().size(), 0.0);
+  const double parameter = params_.speed.empty() ? params_.at_load : size;
+  if (parts.size() == 1 || parameter <= at.front()) {
+    parts.front() = 1.0;
+  } else if (parameter >= at.back()) {
+    parts.back() = 1.0;
+  } else {
+    const auto i = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), parameter) - at.begin());
+    parts[i] = (parameter - at[i - 1]) / (at[i] - at[i - 1]);
+    parts[i - 1] = 1.0 - parts[i];
+  }
+  for (double& part : parts) part *= peak_scale(size).factor;
+  return parts;
+}
+
+double GasPressure::curve(int k, double angle, bool misfires) const {
+  mirrored(angle, misfires);
+  return curves_.curves()[static_cast<std::size_t>(k)].at(angle + params_.firing_tdc).value;
+}
+
+void GasPressure::check(ParameterCheck& check) const {
+  const Params& p = params_;
+  if (!sizes_fit_)
+    check.fail("pressure", std::to_string(p.pressure.size()) + " pressures", "",
+               "must be as many as the angles, " + std::to_string(p.angle.size()) +
+                   ", and as the speeds or loads where there are any");
+  if (!p.speed.empty() && !p.load.empty())
+    check.fail("pressure", "speed and load", "",
+               "curves are given over the speed or over the load, not both");
+  if (!p.peak_speed.empty() && !p.speed.empty())
+    check.fail("peak_pressure", "given", "", "must not be there beside curves over the speed");
+  check.all_finite("pressure.pressure", p.pressure, "Pa");
+  check.finite("firing_tdc", p.firing_tdc, "rad");
+  check.finite("load", p.at_load, "");
+  check.non_negative("reference_pressure", p.reference_pressure, "Pa");
+  if (sizes_fit_ && !curves_.curves().empty()) {
+    check.increasing(p.speed.empty() ? "pressure.load" : "pressure.speed", curves_.parameters(), "");
+    for (const PeriodicCurve& curve : curves_.curves()) curve.check(check, "pressure", "rad", "Pa");
+    if (!(reference_ > 0.0))
+      check.fail("pressure", to_text(reference_), "Pa", "the largest pressure must be > 0");
+  }
+  check.increasing("peak_pressure.speed", p.peak_speed, "rad/s");
+  check.all_finite("peak_pressure.pressure", p.peak_pressure, "Pa");
+  if (p.peak_speed.size() != p.peak_pressure.size())
+    check.fail("peak_pressure", std::to_string(p.peak_pressure.size()) + " pressures", "",
+               "must be as many as the speeds, " + std::to_string(p.peak_speed.size()));
+}
+
+}  // namespace drev

@@ -1,0 +1,92 @@
+#pragma once
+/// Generator: a synchronous machine on a stiff grid, and its short circuit.
+///
+///   tau = -torque - k_s q - c_s q'                                                    before the fault, RIGHT side
+///   tau = -torque - exp(-(t - t_0)/T) (A_1 sin(w_e (t - t_0)) + A_2 sin(2 w_e (t - t_0)))   from t_0 on, besides
+///
+/// q: deviation of the rotor from its nominal motion, which is the grid's: the synchronous torque holds it. k_s:
+/// synchronising torque per mechanical radian, = pole pairs times that per electrical radian; c_s: damper winding.
+/// Undamped swing of the rotor J alone: sqrt(k_s/J). k_s and c_s act during the fault too. The air-gap torque of a
+/// short circuit at the terminals: A_1 at the grid's frequency w_e = 2 pi f, A_2 at twice of it (two-phase; 0 for
+/// three-phase), both decaying with T; usual values A_1 = torque/x'', from the maker. Without k_s: an island set, on
+/// which a speed governor acts. Inertia is an Inertia beside it.
+/// Source: W. Nuernberg, R. Hanitsch, Die Pruefung elektrischer Maschinen, 6th ed., Springer, 1987 (form of the
+/// short-circuit torque); numbers are the maker's.
+#include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/not_given.hpp>
+
+#include <cmath>
+
+namespace drev {
+
+class Generator final : public Element, public Load {
+ public:
+  struct Params {
+    double torque = 0.0;                 ///< that it takes [N m], finite
+    double synchronous_stiffness = 0.0;  ///< k_s [N m/rad], >= 0
+    double synchronous_damping = 0.0;    ///< c_s [N m s/rad], >= 0
+    double fault_time = kNotGiven;       ///< t_0 [s], >= 0; not given: no short circuit
+    double fault_torque = 0.0;           ///< A_1 [N m]
+    double fault_torque_double = 0.0;    ///< A_2, at twice the frequency [N m]
+    double grid_frequency = 50.0;        ///< f [Hz], > 0
+    double fault_decay = kNotGiven;      ///< T [s], > 0; not given: no decay
+  };
+  explicit Generator(Params params) : params_(params) {}
+
+  const Params& params() const { return params_; }
+  std::string_view type() const override { return "generator"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    const Params& p = params_;
+    check.finite("torque", p.torque, "N m");
+    check.non_negative("synchronous_stiffness", p.synchronous_stiffness, "N m/rad");
+    check.non_negative("synchronous_damping", p.synchronous_damping, "N m s/rad");
+    check.finite("fault_torque", p.fault_torque, "N m");
+    check.finite("fault_torque_double", p.fault_torque_double, "N m");
+    check.positive("grid_frequency", p.grid_frequency, "Hz");
+    if (faults()) check.non_negative("fault_time", p.fault_time, "s");
+    if (!std::isnan(p.fault_decay)) check.positive("fault_decay", p.fault_decay, "s");
+    if (!faults() && (p.fault_torque != 0.0 || p.fault_torque_double != 0.0))
+      check.fail("fault_time", "NaN", "s", "must be given with the torque of a short circuit");
+  }
+  void describe(int nodes, Terms& terms) const override {
+    LocalRow b = LocalRow::Zero(nodes);
+    b[0] = 1.0;
+    terms.loads.push_back({0, this, "gap"});
+    if (params_.synchronous_stiffness == 0.0 && params_.synchronous_damping == 0.0) return;
+    terms.stiffness(0, 0) = params_.synchronous_stiffness;
+    terms.deviation_damping = params_.synchronous_damping * b * b.transpose();
+    if (params_.synchronous_stiffness > 0.0)
+      terms.speed_ratio_constraints.push_back({.b = b, .holds_deviation = true});
+    terms.outputs.push_back({.suffix = "synchronous",
+                             .stiffness = params_.synchronous_stiffness * b,
+                             .damping = params_.synchronous_damping * b});
+  }
+
+  LoadResponse evaluate(const LoadInput& in) const override {
+    LoadResponse r{.torque = -params_.torque};
+    const double t = in.t - params_.fault_time;
+    if (!faults() || t < 0.0) return r;
+    const double phase = kTwoPi * params_.grid_frequency * t;
+    const double decay = std::isnan(params_.fault_decay) ? 1.0 : std::exp(-t / params_.fault_decay);
+    r.torque -= decay * (params_.fault_torque * std::sin(phase) +
+                         params_.fault_torque_double * std::sin(2.0 * phase));
+    return r;
+  }
+  bool depends_on_motion() const override { return false; }
+  std::vector<double> breakpoints() const override {
+    return faults() ? std::vector<double>{params_.fault_time} : std::vector<double>{};
+  }
+  std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/, double /*direction*/) const override {
+    if (faults()) return std::nullopt;
+    return LoadStretch{.torque = -params_.torque};
+  }
+
+ private:
+  bool faults() const { return !std::isnan(params_.fault_time); }
+  Params params_;
+};
+
+}  // namespace drev

@@ -1,0 +1,58 @@
+#pragma once
+/// Propeller: the torque that a propeller or fan takes of its shaft, with its blades' harmonics.
+///
+///   tau = -Q (w/w_0)|w/w_0| (1 + sum a_i cos(order_i theta + phase_i)) - (a - 2) Q(w_n)/|w_n| (w - w_n)
+///
+/// on the RIGHT side: it brakes. Q: torque at the rated speed w_0; w, theta: actual speed and angle of the node; orders
+/// are per turn of the propeller: multiples of the number of blades. About the nominal speed w_n the quadratic law
+/// damps with c = 2 Q(w_n)/w_n by itself; the last term is for a measured or an Archer damping factor a other than 2,
+/// c = a Q(w_n)/w_n (a in 30/pi = 9.549ths where it is stated per rpm: a = 30 N m per N m/rpm is 30/9.549 = 3.14). It
+/// acts where the node turns nominally. Inertia, entrained water included, is an Inertia beside it.
+/// Source: quadratic law (propeller at constant advance ratio); S. Archer, Torsional vibration damping coefficients for
+/// marine propellers, Engineering 1955 (by its title).
+#include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
+#include <drev/elements/harmonic.hpp>
+#include <drev/elements/not_given.hpp>
+
+#include <cmath>
+
+namespace drev {
+
+class Propeller final : public Element, public Load {
+ public:
+  struct Params {
+    double rated_torque = kNotGiven;       ///< Q [N m], > 0
+    double rated_speed = kNotGiven;        ///< w_0 [rad/s], > 0
+    double damping_factor = 2.0;           ///< a [-], >= 0; 2: the quadratic law's own
+    std::vector<Harmonic> harmonics = {};  ///< of the torque: order, part of the mean [-], rad
+    bool twist_feedback = true;            ///< harmonics at the actual angle
+  };
+  explicit Propeller(Params params) : params_(std::move(params)) {}
+
+  const Params& params() const { return params_; }
+  std::string_view type() const override { return "propeller"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    check.positive("rated_torque", params_.rated_torque, "N m");
+    check.positive("rated_speed", params_.rated_speed, "rad/s");
+    check.non_negative("damping_factor", params_.damping_factor, "");
+    check_harmonics(check, "harmonics", params_.harmonics, "", false);
+  }
+  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+
+  LoadResponse evaluate(const LoadInput& in) const override {
+    const Params& p = params_;
+    const double factor = p.rated_torque / (p.rated_speed * p.rated_speed), w = in.speed;
+    const CurvePoint h = sum_at(p.harmonics, in.nominal_angle + (p.twist_feedback ? in.deviation : 0.0));
+    const double extra = (p.damping_factor - 2.0) * factor * std::abs(in.nominal_speed);
+    return {.torque = -factor * w * std::abs(w) * (1.0 + h.value) - extra * (w - in.nominal_speed),
+            .dtorque_dangle = p.twist_feedback ? -factor * w * std::abs(w) * h.slope : 0.0,
+            .dtorque_dspeed = -2.0 * factor * std::abs(w) * (1.0 + h.value) - extra};
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

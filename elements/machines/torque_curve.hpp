@@ -1,0 +1,54 @@
+#pragma once
+/// TorqueCurve: a torque over the speed of a node, linear between points: a motor, a brake, a pump.
+///
+///   tau = scale table(w)       on the RIGHT side: positive drives the node in the positive sense
+///
+/// w: actual speed of the node, with its sign; constant before the first and behind the last point. About the nominal
+/// speed it damps with -dtau/dw (a falling motor curve damps, a rising one drives vibration).
+#include <drev/core/element.hpp>
+#include <drev/core/load.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace drev {
+
+class TorqueCurve final : public Element, public Load {
+ public:
+  struct Params {
+    std::vector<double> speeds = {};   ///< ascending [rad/s], at least 2
+    std::vector<double> torques = {};  ///< at these [N m]
+    double scale = 1.0;                ///< factor of the torques [-], finite
+  };
+  explicit TorqueCurve(Params params) : params_(std::move(params)) {}
+
+  const Params& params() const { return params_; }
+  std::string_view type() const override { return "torque curve"; }
+  int min_nodes() const override { return 1; }
+  void check(ParameterCheck& check) const override {
+    const Params& p = params_;
+    if (p.speeds.size() < 2 || p.torques.size() != p.speeds.size())
+      check.fail(
+          "curve",
+          std::to_string(p.speeds.size()) + " speeds, " + std::to_string(p.torques.size()) + " torques", "",
+          "must be as many of each, at least 2");
+    check.increasing("curve.speed", p.speeds, "rad/s");
+    check.all_finite("curve.torque", p.torques, "N m");
+    check.finite("scale", p.scale, "");
+  }
+  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+
+  LoadResponse evaluate(const LoadInput& in) const override {
+    const std::vector<double>&w = params_.speeds, &tau = params_.torques;
+    if (in.speed < w.front()) return {.torque = params_.scale * tau.front()};
+    if (in.speed >= w.back()) return {.torque = params_.scale * tau.back()};
+    const auto i = static_cast<std::size_t>(std::upper_bound(w.begin(), w.end(), in.speed) - w.begin());
+    const double slope = params_.scale * (tau[i] - tau[i - 1]) / (w[i] - w[i - 1]);
+    return {.torque = params_.scale * tau[i - 1] + slope * (in.speed - w[i - 1]), .dtorque_dspeed = slope};
+  }
+
+ private:
+  Params params_;
+};
+
+}  // namespace drev

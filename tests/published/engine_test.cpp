@@ -1,0 +1,162 @@
+/// The six-cylinder diesel of tests/problems/engine_chain.hpp with its cylinders as elements: gas pressure over the
+/// crank angle, scaled by the peak pressure over speed (models/six_cylinder, openTorsion's example data, MIT), slider
+/// and crank, oscillating mass; shafts with a loss factor of 0.035. Expected: two separate programs (exact Fourier
+/// integrals in numpy; Holzer state vectors and midpoint integration in C++), which agree to 2e-8.
+#include <drev/core/channel.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+#include <drev/solvers/run/recorder.hpp>
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+#include "tests/problems/engine_chain.hpp"
+#include "tests/published/read_csv.hpp"
+
+using namespace drev;
+
+namespace {
+
+using Chain = test::EngineChain;
+
+GasPressure::Params measured_pressure() {
+  GasPressure::Params gas{.reference_pressure = 15.2e6, .firing_tdc = deg(360)};
+  for (const auto& row : read_csv("../../../models/six_cylinder/pressure.csv")) {
+    gas.angle.push_back(deg(std::stod(row[0])));
+    gas.pressure.push_back(1e6 * std::stod(row[1]));
+  }
+  for (const auto& row : read_csv("../../../models/six_cylinder/peak_pressure.csv")) {
+    gas.peak_speed.push_back(rpm(std::stod(row[0])));
+    gas.peak_pressure.push_back(1e6 * std::stod(row[1]));
+  }
+  return gas;
+}
+
+EngineCylinders::Params diesel(const std::string& order, int misfiring = 0) {
+  return {.bore = 0.105,
+          .stroke = 0.137,
+          .rod = 0.207,
+          .oscillating_mass = 2.521,
+          .firing_angles = EngineCylinders::even_firing(order, 4, deg(360)),
+          .gas = measured_pressure(),
+          .misfiring_cylinder = misfiring};
+}
+
+/// eta: loss factor of the shafts; with 0 they are viscous, c = viscous k/(2 pi 216.6 Hz).
+Model train(double eta, double speed, EngineCylinders::Params engine, double viscous = 0.035) {
+  Model m("six cylinders");
+  std::vector<NodeRef> throws;
+  for (std::size_t i = 0; i < Chain::kInertias.size(); ++i) {
+    const std::string node = "n" + std::to_string(i);
+    m.add_node(node);
+    m.add<Inertia>("J_" + node, {node}, {.inertia = Chain::kInertias[i]});
+    const std::string before = "n" + std::to_string(i - 1);
+    if (i > 0 && eta > 0.0)
+      m.add<ElasticCoupling>(Chain::shaft(i - 1), {before, node},
+                             {.material = {.stiffness = Chain::kStiffnesses[i - 1],
+                                           .loss_factor = eta,
+                                           .lowest_frequency = 150,
+                                           .highest_frequency = 300}});
+    if (i > 0 && eta == 0.0)
+      m.add<ShaftSpring>(Chain::shaft(i - 1), {before, node},
+                         {.stiffness = Chain::kStiffnesses[i - 1],
+                          .damping = viscous / (kTwoPi * 216.58360524) * Chain::kStiffnesses[i - 1]});
+    if (i < 2 || i > 7) continue;
+    m.add<AbsoluteDamper>("drag_" + node, {node}, {.damping = 2.0});
+    throws.emplace_back(node);
+  }
+  m.add("engine", throws, std::make_shared<const EngineCylinders>(std::move(engine)));
+  m.set_reference("n8", constant_speed(speed));
+  return m;
+}
+
+const SweepSection& shaft_of(const LinearSweep& sweep, int number) {
+  for (const SweepSection& s : sweep.sections)
+    if (s.name == Chain::shaft(std::size_t(number - 1)) + ".torque_Nm") return s;
+  throw std::runtime_error("no such shaft");
+}
+
+}  // namespace
+
+TEST_CASE("Six cylinders by their pressure: mean torque", "[engine]") {
+  const EngineCylinders engine(diesel("1-4-2-6-3-5"));
+  for (const auto& [speed, mean] :
+       {std::pair{1000.0, 168.013429}, {1500.0, 174.470086}, {2000.0, 175.451150}, {2500.0, 92.370256}})
+    CHECK(engine.mean_torque(3, rpm(speed)) == Approx(mean).epsilon(5e-8));
+}
+
+TEST_CASE("Six cylinders by their pressure: half range of the flywheel shaft, both firing orders",
+          "[engine]") {
+  const std::vector<double> speeds{1000, 1500, 2000, 2175, 2500};
+  std::vector<double> in_rad;
+  for (const double speed : speeds) in_rad.push_back(rpm(speed));
+  const auto sweep_of = [&](const char* order) {
+    return sweep_linear(train(0.035, rpm(2000), diesel(order)).build(),
+                        {.speeds = in_rad, .refine = false, .threads = 1});
+  };
+  const LinearSweep sweep = sweep_of("1-4-2-6-3-5");
+  const std::vector<double> half{1942.31777, 2822.39112, 4353.69346, 7999.03920, 1293.23206};
+  const std::vector<double> other{1942.80660, 2891.99131, 4575.82818, 8049.34251, 1390.61573};
+  for (std::size_t s = 0; s < speeds.size(); ++s) {
+    INFO(speeds[s]);
+    CHECK(shaft_of(sweep, 8).half_range()[Eigen::Index(s)] == Approx(half[s]).epsilon(1e-7));
+    CHECK(sweep.input_power[Eigen::Index(s)] ==
+          Approx(sweep.dissipated_power[Eigen::Index(s)]).epsilon(1e-11));
+  }
+  CHECK(sweep.dissipated_power[2] == Approx(762.887192).epsilon(1e-7));
+  CHECK(sweep.dissipated_power[3] == Approx(4479.174692).epsilon(1e-7));
+  const std::vector<double> each{761.9855, 1153.878, 4571.939, 5683.600,
+                                 7022.838, 8077.141, 8168.212, 7999.039};
+  for (int i = 1; i <= 8; ++i)
+    CHECK(shaft_of(sweep, i).half_range()[3] == Approx(each[std::size_t(i - 1)]).epsilon(1e-6));
+  const LinearSweep mirrored = sweep_of("1-5-3-6-2-4");
+  for (std::size_t s = 0; s < speeds.size(); ++s)
+    CHECK(shaft_of(mirrored, 8).half_range()[Eigen::Index(s)] == Approx(other[s]).epsilon(1e-7));
+}
+
+TEST_CASE("Each cylinder misfiring: sweep and settled run in time agree", "[engine]") {
+  const double speed = rpm(2000.0), cycle = 2.0 * kTwoPi / speed, settled = 2.0 * cycle;
+  std::vector<double> orders;
+  for (int k = 1; k <= 120; ++k) orders.push_back(0.5 * k);
+  std::vector<double> half_order;
+  // Damped enough to settle within two cycles: by exp(-20).
+  for (int misfiring = 0; misfiring <= 6; ++misfiring) {
+    EngineCylinders::Params engine = diesel("1-4-2-6-3-5", misfiring);
+    // A spline without the curve's jump: its orders fall with their fourth power.
+    engine.gas.interpolation = Interpolation::cubic;
+    engine.gas.angle.pop_back(), engine.gas.pressure.pop_back();
+    engine.twist_feedback = false;
+    double mean = 0.0;
+    const EngineCylinders alone(engine);
+    for (int k = 0; k < 6; ++k) mean += alone.mean_torque(k, speed);
+    Model m = train(0.0, speed, engine, 0.3);
+    m.add<EngineOrderTorque>("brake", {"n8"}, {.mean = -mean});
+    m.add<AbsoluteDamper>("grid", {"n8"}, {.damping = 500.0});
+    const System system = m.build();
+    const LinearSweep sweep =
+        sweep_linear(system, {.speeds = {speed}, .orders = orders, .refine = false, .threads = 1});
+    const SweepSection& shaft = shaft_of(sweep, 8);
+    const double half_range = shaft.half_range()[0];
+    half_order.push_back(std::abs(shaft.amplitude(0, 0)));
+    CHECK(sweep.input_power[0] == Approx(sweep.dissipated_power[0]).epsilon(1e-11));
+
+    if (misfiring == 0) continue;
+    Recorder recorder(system, {"shaft_8.torque_Nm"}, cycle / 144.0);
+    const RunSummary run = propagate(system, {.tolerance = 1e-8, .t_end = settled + cycle}, {&recorder});
+    CHECK(run.ok());
+    double worst = 0.0;
+    for (std::size_t i = 2 * 144; i <= 3 * 144; ++i) {
+      const double phi = speed * cycle / 144.0 * static_cast<double>(i);
+      double expected = shaft.mean[0];
+      for (std::size_t k = 0; k < orders.size(); ++k)
+        expected += (shaft.amplitude(Eigen::Index(k), 0) * std::polar(1.0, orders[k] * phi)).real();
+      worst = std::max(worst, std::abs(recorder.samples(0)[i] - expected));
+    }
+    INFO(misfiring << ": " << worst / half_range << ", steps " << run.steps);
+    CHECK(worst < 1e-6 * half_range);
+  }
+  // Order 0.5 is what a misfire is known by.
+  for (int k = 1; k <= 6; ++k) CHECK(half_order[std::size_t(k)] > 20.0 * half_order[0]);
+}
