@@ -13,9 +13,11 @@ constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
 constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
 // What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
+// What the step's end is off by, of the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
+constexpr double kEndRest = 1e-6;
 // By the last coefficients: so many that a force which is even or odd by chance is not taken for a smooth one.
 constexpr int kTail = 4;
-constexpr int kAnalyticTail = 2;  // of a load that is a sum of harmonics
+constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between the bounds of its pieces
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
 // Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
@@ -244,20 +246,26 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
-  const auto note_rest = [&](const LegendreProjection& forces, double part, int row, int terms = kTail) {
+  const auto rest_of = [&](const LegendreProjection& forces, int row, int terms) {
     double tail = 0.0;
     for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(forces.coefficient(j, row));
-    const double rest = part * tail * relative_move(series, row);
-    if (std::isfinite(rest)) pass.residual = std::max(pass.residual, rest);
+    const double rest = tail * relative_move(series, row);
+    return std::isfinite(rest) ? rest : 0.0;
   };
-  smooth_.for_rows([&](int row, bool analytic) {
-    note_rest(projection_, kPathRest, row, analytic ? kAnalyticTail : kTail);
-  });
-  for (const int row : laws.rows()) note_rest(projection_, kPathRest, row);
+  // The path is off inside the step; of that, the contraction factor comes back at its end.
+  const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
+  const auto note_rest = [&](int row, bool analytic) {
+    const double rest = rest_of(projection_, row, analytic ? kAnalyticTail : kTail);
+    pass.inside = std::max(pass.inside, kPathRest * rest);
+    pass.residual = std::max(pass.residual, at_end * rest);
+  };
+  smooth_.for_rows(note_rest);
+  laws.for_rows(note_rest);
   if (kinks_.count() > 0) {
     // A kink is projected along a path that lacks the rest itself.
-    for (const Linear& l : loads_) note_rest(of_kinks_, kKinkRest * l.contraction, l.row);
+    for (const Linear& l : loads_)
+      pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
     projection_ += of_kinks_;
   }
   const auto note_change = [&](int row) {
@@ -268,7 +276,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   };
   for (const Linear& l : loads_) note_change(l.row);
   smooth_.for_rows([&](int row, bool) { note_change(row); });
-  for (const int row : laws.rows()) note_change(row);
+  laws.for_rows([&](int row, bool) { note_change(row); });
   if (pass.change == 0.0) return pass;
   projected_ = true;
   with_laws_ = !laws.empty();

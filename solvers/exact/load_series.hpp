@@ -43,8 +43,10 @@ class LoadSeries {
     /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated
     /// from the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
     double contraction = 0.0;
-    /// Of the motion, by what no polynomial of the projection's degree holds of the forces.
+    /// Of the motion at the step's end, by what no polynomial of the projection's degree holds of the forces.
     double residual = 0.0;
+    /// The same inside the step, of smooth forces.
+    double inside = 0.0;
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new.

@@ -28,8 +28,12 @@ class ProjectedLaws {
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
-  /// What projection leaves of law forces, by row, is judged there.
-  const std::vector<int>& rows() const { return rows_; }
+  /// Calls judge(row, analytic) for every row on which such a law acts; analytic: the law states pieces, and
+  /// is analytic between their bounds and its knots.
+  template <class Judge>
+  void for_rows(const Judge& judge) const {
+    for (const Row& r : rows_) judge(r.row, r.analytic);
+  }
 
   /// The first time in (t, end) at which the offset of a law has a knot: a step must end there.
   std::optional<double> next_break(double t, double end) const;
@@ -65,7 +69,11 @@ class ProjectedLaws {
   const System& system_;
   Assembler assembler_;
   std::vector<Law> laws_;
-  std::vector<int> rows_;
+  struct Row {
+    int row;
+    bool analytic;
+  };
+  std::vector<Row> rows_;
   std::vector<std::vector<double>> offsets_;
   std::vector<double> g_;
   NodeForces forces_;

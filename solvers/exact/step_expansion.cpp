@@ -10,6 +10,7 @@ namespace {
 constexpr double kShorten = 0.9;      // of the step at which the loads' rest is just small enough
 constexpr double kLoosest = 1e-3;     // tolerance of a pass that is not the last
 constexpr double kSettled = 1e-15;    // of the motion: rounding of what is projected
+constexpr double kInside = 0.1;       // of the tolerance: what the motion inside the step may be off by
 constexpr double kJump = 1e-4;        // of the tolerance: error allowed per undeclared discontinuity
 constexpr double kBehindKnot = 1e-3;  // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;   // of the step: a knot that its nodes see
@@ -40,11 +41,13 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0);
-    if (made.residual > std::max(share, kJump * limits.tolerance) && h > limits.shortest) {
+    const double excess = std::max(made.residual / std::max(share, kJump * limits.tolerance),
+                                   made.inside / (kInside * limits.tolerance));
+    if (excess > 1.0 && h > limits.shortest) {
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);
       if (knot && *knot > kAtStart) return {h * *knot * (1.0 + kBehindKnot), true};
-      return {h * std::max(0.2, kShorten * std::pow(share / made.residual, 1.0 / kProjectionTerms))};
+      return {h * std::max(0.2, kShorten * std::pow(excess, -1.0 / kProjectionTerms))};
     }
     contraction_ = std::max(made.contraction, 1e-300);
     // What this pass was off by comes back in the next one times the contraction factor.
