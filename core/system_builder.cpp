@@ -1,5 +1,6 @@
 #include "core/system_builder.hpp"
 
+#include <drev/core/at_speed.hpp>
 #include <drev/core/load.hpp>
 
 #include <algorithm>
@@ -236,5 +237,20 @@ void SystemBuilder::finish() {
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
 }
+
+System SystemBuilder::at_speed(const System& system, double speed) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name(), findings);
+  check.finite("speed", speed, "rad/s");
+  if (speed == 0.0) check.fail("speed", "0", "rad/s", "must not be 0");
+  if (!system.reference())
+    check.fail("reference shaft", "none", "", "must be there: name a shaft that turns (nominal_speed)");
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  System other = system;
+  other.reference_ = constant_speed(speed);
+  return other;
+}
+
+System at_speed(const System& system, double speed) { return SystemBuilder::at_speed(system, speed); }
 
 }  // namespace drev

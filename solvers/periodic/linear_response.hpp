@@ -5,19 +5,15 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include "solvers/linear/complex_elimination.hpp"
+#include "solvers/periodic/mean_equilibrium.hpp"
 #include "solvers/periodic/order_content.hpp"
+#include "solvers/periodic/section_rows.hpp"
 
 namespace drev {
 
 class LinearResponse {
  public:
-  struct Section {
-    std::string name, unit, twist_unit;
-    std::vector<Entry> stiffness, damping;  ///< y = stiffness z + damping z'
-    std::vector<Entry> twist;               ///< its element's twist; empty: none
-    std::vector<Entry> damper;              ///< the damper's part of y; heat is damper z' times twist'
-    bool contact = false;
-  };
+  using Section = SectionRows;
   struct Point {
     Eigen::MatrixXcd amplitude;  ///< orders x sections
     Eigen::MatrixXcd twist;      ///< the same
@@ -36,16 +32,13 @@ class LinearResponse {
   void mean(double speed, Point& point);
 
   const std::vector<Section>& sections() const { return sections_; }
-  const std::vector<std::string>& floating() const { return floating_; }
+  const std::vector<std::string>& floating() const { return mean_->floating(); }
   OrderContent& content() { return *content_; }
   /// Damping with the loads' mean slopes at the speed, on the pattern.
   const Vector& damping_at(double speed);
 
  private:
   void check_model(bool close_contacts, std::vector<Finding>& findings) const;
-  void find_sections(const std::vector<std::string>& names, std::vector<Finding>& findings);
-  void drag_along(Vector& p) const;
-  void prepare_mean(const std::string& balance, std::vector<Finding>& findings);
 
   const System& system_;
   Assembler assembler_;
@@ -54,11 +47,8 @@ class LinearResponse {
   std::optional<OrderContent> content_;
   double direction_ = 1.0;  // sign of the reference shaft's speed
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
-  ComplexElimination elimination_, mean_elimination_;
-  std::vector<std::string> floating_;
-  std::vector<Vector> rigid_;                  // motion of each floating part, the ratios of its nodes
-  std::vector<std::size_t> dragged_;           // those of them that do not turn with the reference shaft
-  std::vector<std::vector<Entry>> balance_;    // of each part: row of the node that balances it
+  ComplexElimination elimination_;
+  std::optional<MeanEquilibrium> mean_;
   std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
   std::vector<std::complex<double>> z_, p_;
 };
