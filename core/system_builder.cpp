@@ -1,6 +1,5 @@
 #include "core/system_builder.hpp"
 
-#include <drev/core/at_speed.hpp>
 #include <drev/core/load.hpp>
 
 #include <algorithm>
@@ -250,7 +249,5 @@ System SystemBuilder::at_speed(const System& system, double speed) {
   other.reference_ = constant_speed(speed);
   return other;
 }
-
-System at_speed(const System& system, double speed) { return SystemBuilder::at_speed(system, speed); }
 
 }  // namespace drev

@@ -14,7 +14,7 @@ class SystemBuilder {
  public:
   explicit SystemBuilder(const Model& model) : model_(model) {}
   System build();
-  /// at_speed.hpp
+  /// solvers/at_speed.hpp
   static System at_speed(const System& system, double speed);
 
  private:

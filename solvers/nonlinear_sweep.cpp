@@ -1,6 +1,6 @@
-#include <drev/core/at_speed.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
+#include <drev/solvers/at_speed.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <algorithm>

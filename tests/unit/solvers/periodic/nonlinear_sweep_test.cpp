@@ -1,11 +1,11 @@
 // Sweeps of nonlinear models: branches, folds, stability, tongues, runs, free trains. Expected values come from
 // programs that put closed-form pieces together (shooting, saltation), to 1e-10.
 // Covers solvers/periodic/law_balance.hpp, mean_equilibrium.hpp, motion_sections.hpp, section_rows.hpp,
-// branch_tracer.hpp, floquet.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and core/at_speed.hpp.
-#include <drev/core/at_speed.hpp>
+// branch_tracer.hpp, floquet.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and solvers/at_speed.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/at_speed.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
 
