@@ -298,4 +298,17 @@ void SystemBuilder::finish() {
   all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
+System SystemBuilder::at_speed(const System& system, double speed) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name(), findings);
+  check.finite("speed", speed, "rad/s");
+  if (speed == 0.0) check.fail("speed", "0", "rad/s", "must not be 0");
+  if (!system.reference())
+    check.fail("reference shaft", "none", "", "must be there: name a shaft that turns (nominal_speed)");
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  System other = system;
+  other.reference_ = constant_speed(speed);
+  return other;
+}
+
 }  // namespace drev

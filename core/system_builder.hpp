@@ -14,6 +14,8 @@ class SystemBuilder {
  public:
   explicit SystemBuilder(const Model& model) : model_(model) {}
   System build();
+  /// solvers/at_speed.hpp
+  static System at_speed(const System& system, double speed);
 
  private:
   // Names, known motions, elements: what can be found wrong with each by itself.

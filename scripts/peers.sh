@@ -6,11 +6,12 @@
 #   scripts/peers.sh            prints the table
 #   scripts/peers.sh --write    puts it into docs/performance.md too
 #
-# The peers are Debian's octave, python3-scipy, libsundials-dev. Other interpreters: DREV_OCTAVE, DREV_PYTHON.
+# The peers are Debian's octave, python3-scipy, libsundials-dev, and openTorsion (pip install opentorsion). Other
+# interpreters: DREV_OCTAVE, DREV_PYTHON, DREV_OPENTORSION.
 set -euo pipefail
 case ${1:-} in
   "" | --write) ;;
-  *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 cd "$root"
@@ -43,6 +44,7 @@ run octave ""
 run scipy ""
 run modes liblapack-dev
 run sundials libsundials-dev "SUNDIALS held"
+run opentorsion ""
 
 {
   processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1)

@@ -61,10 +61,12 @@ inline constexpr const char* kSweepExamples =
     "  drev sweep engine.toml --speeds 800:10:2600 --orders 0.5:0.5:12 --out result\n"
     "  drev sweep camshaft --set drive=held --speeds 300:10:900 --orders 1:1:40 --json\n"
     "  drev sweep geared.toml --speeds 300:10:1800 --contact closed --balance generator\n"
+    "  drev sweep gear_pair.toml --speeds 2000:50:4000 --out result\n"
     "\n"
     "Of each section: half range, maximum and minimum of the sum of all orders with their phases over the\n"
     "whole cycle, mean, twist, heat; amplitude and phase of each order with --json and --out. Peaks between\n"
-    "the speeds are found. docs/sweep.md has the equations and an example.\n";
+    "the speeds are found. Models with contacts: curves of periodic motions through their folds, which of\n"
+    "them are stable, where the train jumps. docs/sweep.md has the equations and examples.\n";
 
 inline constexpr const char* kCampbellExamples =
     "Examples:\n"

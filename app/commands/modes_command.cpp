@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/csv_cell.hpp"
 #include "app/base/json_values.hpp"
+#include "app/base/output_file.hpp"
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
@@ -26,6 +28,7 @@ struct ModesRequest {
   bool damped = false;
   double speed = 0.0;  ///< rad/s, at which loads that follow it act as dampers; 0: without them
   std::optional<int> count = {};
+  std::optional<std::string> out = {};  ///< directory for tables
 };
 
 constexpr Range kSpeed{1e-6, 1e7};  // rpm
@@ -48,8 +51,14 @@ ModesRequest request_modes(const CommandLine& line) {
       findings.push_back(
           {kCommandLine, "--speed", *text, "rpm", "is for --damped: loads that follow the speed damp"});
   }
+  const auto out = line.option("--out");
+  if (out && !damped)
+    findings.push_back({kCommandLine, "--out", *out, "", "is for --damped"});
+  else if (out && model)
+    for (const char* name : {"/modes.csv", "/shapes.csv", "/energy.csv", "/summary.json"})
+      check_output("--out", *out + name, model->model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
-  return {std::move(*model), options, damped, speed, options.count};
+  return {std::move(*model), options, damped, speed, options.count, out};
 }
 
 /// Seven digits, or those that rounding leaves and its error.
@@ -173,12 +182,58 @@ Json damped_object(const ModesRequest& request, const DampedModeSet& set, const 
   return object;
 }
 
+/// A row a mode.
+std::string damped_modes_as_csv(const DampedModeSet& set, std::size_t count) {
+  std::string text = "mode,real_per_s,imaginary_per_s,frequency_Hz,undamped_Hz,damping_ratio\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    const DampedMode& mode = set.modes[i];
+    text += std::to_string(i + 1);
+    for (const double value : {mode.lambda.real(), mode.lambda.imag(), mode.frequency_Hz,
+                               mode.natural_frequency_Hz, mode.damping_ratio})
+      text += "," + to_text(value);
+    text += "\n";
+  }
+  return text;
+}
+
+/// A row a mode and node.
+std::string shapes_as_csv(const System& system, const DampedModeSet& set, std::size_t count) {
+  std::string text = "mode,node,amplitude,phase_deg\n";
+  for (std::size_t i = 0; i < count; ++i)
+    for (int node = 0; node < system.node_count(); ++node) {
+      const std::complex<double> x = set.shapes(node, static_cast<Eigen::Index>(i));
+      text += std::to_string(i + 1) + "," + csv_cell(system.node_names()[idx(node)]) + "," +
+              to_text(std::abs(x)) + "," + to_text(to_deg(std::arg(x))) + "\n";
+    }
+  return text;
+}
+
+/// A row a mode and element.
+std::string energy_as_csv(const ModeEnergy& energy, std::size_t count) {
+  std::string text = "mode,element,kinetic,elastic,dissipated\n";
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t e = 0; e < energy.elements.size(); ++e) {
+      const auto row = static_cast<Eigen::Index>(e), mode = static_cast<Eigen::Index>(i);
+      text += std::to_string(i + 1) + "," + csv_cell(energy.elements[e]) + "," +
+              to_text(energy.kinetic(row, mode)) + "," + to_text(energy.elastic(row, mode)) + "," +
+              to_text(energy.dissipated(row, mode)) + "\n";
+    }
+  return text;
+}
+
 int damped_command(const ModesRequest& request, bool json) {
   DampedModesOptions options{.contact = request.options.contact};
   if (request.speed > 0.0) options.damping = load_damping(request.model.system, request.speed);
   const DampedModeSet set = solve_damped_modes(request.model.system, options);
   const ModeEnergy energy = mode_energy(request.model.system, set);
   const std::size_t count = std::min<std::size_t>(idx(request.count.value_or(kCount)), set.modes.size());
+  if (request.out) {
+    create_directory(*request.out);
+    write_file(*request.out, "modes", "csv", damped_modes_as_csv(set, count));
+    write_file(*request.out, "shapes", "csv", shapes_as_csv(request.model.system, set, count));
+    write_file(*request.out, "energy", "csv", energy_as_csv(energy, count));
+    write_file(*request.out, "summary", "json", json_text(damped_object(request, set, energy, count)));
+  }
   print(json ? json_text(damped_object(request, set, energy, count))
              : damped_as_text(request, set, energy, count));
   return kSuccess;

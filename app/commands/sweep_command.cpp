@@ -7,6 +7,7 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
+#include "app/results/branches_result.hpp"
 
 namespace drev::app {
 
@@ -34,9 +35,53 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
           line.options.contains("--absolute-sum")};
 }
 
+namespace {
+
+/// A model with laws that are no straight lines, as it is.
+int sweep_branches(const CommandLine& line, const SweepRequest& request) {
+  std::vector<Finding> findings;
+  NonlinearSweepOptions options;
+  options.speeds = request.options.speeds;
+  options.orders = request.options.orders;
+  options.sections = request.options.sections;
+  options.balance = request.options.balance;
+  if (const auto turns = line.option("--cycle"))
+    options.turns = read_plain("--cycle", *turns, {1e-6, 1000.0}, findings);
+  if (const auto tolerance = line.option("--tolerance"))
+    options.tolerance = read_plain("--tolerance", *tolerance, {1e-12, 0.1}, findings);
+  if (request.absolute_sum)
+    findings.push_back(
+        {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
+  const auto out = line.option("--out");
+  if (out)
+    for (const char* name : {"/branches.csv", "/orders.csv", "/changes.csv", "/summary.json"})
+      check_output("--out", *out + name, request.model.model_case.files, findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
+  const Json object = line.json || out ? branches_object(request.model, options, sweep) : Json();
+  if (out) {
+    create_directory(*out);
+    write_file(*out, "branches", "csv", motions_as_csv(sweep));
+    write_file(*out, "orders", "csv", motion_orders_as_csv(sweep));
+    write_file(*out, "changes", "csv", changes_as_csv(sweep));
+    write_file(*out, "summary", "json", json_text(object));
+  }
+  print(line.json ? json_text(object) : branches_as_text(request.model, options, sweep));
+  return kSuccess;
+}
+
+}  // namespace
+
 int sweep_command(const CommandLine& line) {
   const SweepRequest request =
       request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
+  if (!request.options.close_contacts && !request.model.system.scalars().empty())
+    return sweep_branches(line, request);
+  std::vector<Finding> findings;
+  for (const char* option : {"--cycle", "--tolerance"})
+    if (line.option(option))
+      findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (const auto out = line.option("--out")) {
     create_directory(*out);

@@ -5,20 +5,15 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include "solvers/linear/complex_elimination.hpp"
+#include "solvers/periodic/mean_equilibrium.hpp"
 #include "solvers/periodic/order_content.hpp"
+#include "solvers/periodic/section_rows.hpp"
 
 namespace drev {
 
 class LinearResponse {
  public:
-  struct Section {
-    std::string name, unit, twist_unit;
-    std::vector<Entry> stiffness, damping;  ///< y = stiffness z + damping z'
-    std::vector<Entry> twist;               ///< its element's twist; empty: none
-    std::vector<Entry> damper;              ///< the damper's part of y; heat is damper z' times twist'
-    int frequency_term = -1;                ///< of the system: its element's complex stiffness
-    bool contact = false;
-  };
+  using Section = SectionRows;
   struct Point {
     Eigen::MatrixXcd amplitude;  ///< orders x sections
     Eigen::MatrixXcd twist;      ///< the same
@@ -37,19 +32,16 @@ class LinearResponse {
   void mean(double speed, Point& point);
 
   const std::vector<Section>& sections() const { return sections_; }
-  const std::vector<std::string>& floating() const { return floating_; }
+  const std::vector<std::string>& floating() const { return mean_->floating(); }
   OrderContent& content() { return *content_; }
   /// Damping with the loads' mean slopes at the speed, on the pattern.
   const Vector& damping_at(double speed);
 
  private:
   void check_model(bool close_contacts, std::vector<Finding>& findings) const;
-  void find_sections(const std::vector<std::string>& names, std::vector<Finding>& findings);
-  void drag_along(Vector& p) const;
   /// Adds the complex stiffnesses at a frequency [rad/s], > 0, to what it factors: Re k* b b' to the stiffness,
   /// Im k*/omega b b' to the damping.
   void add_frequency_terms(double omega);
-  void prepare_mean(const std::string& balance, std::vector<Finding>& findings);
 
   const System& system_;
   Assembler assembler_;
@@ -60,11 +52,8 @@ class LinearResponse {
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
   Vector damping_at_omega_, stiffness_at_omega_;  // with complex stiffnesses; unused without
   std::vector<std::complex<double>> beyond_;      // of each frequency term, at the last frequency
-  ComplexElimination elimination_, mean_elimination_;
-  std::vector<std::string> floating_;
-  std::vector<Vector> rigid_;                  // motion of each floating part, the ratios of its nodes
-  std::vector<std::size_t> dragged_;           // those of them that do not turn with the reference shaft
-  std::vector<std::vector<Entry>> balance_;    // of each part: row of the node that balances it
+  ComplexElimination elimination_;
+  std::optional<MeanEquilibrium> mean_;
   std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
   std::vector<std::complex<double>> z_, p_;
 };

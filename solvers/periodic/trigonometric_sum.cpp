@@ -51,15 +51,20 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
   highest_ = *std::max_element(multiples_.begin(), multiples_.end());
   const int points = std::max(kFewestPoints, kPointsAPeriod * highest_);
   step_ = kTwoPi / points;
-  const auto count = static_cast<Eigen::Index>(orders.size());
-  table_.resize(points, 2 * count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    for (int p = 0; p < points; ++p) {
-      const long turns = static_cast<long>(multiples_[static_cast<std::size_t>(k)]) * p % points;
-      const double angle = step_ * static_cast<double>(turns);
-      table_(p, 2 * k) = std::cos(angle);
-      table_(p, 2 * k + 1) = -std::sin(angle);
-    }
+  for (std::size_t k = 0; k < multiples_.size(); ++k)
+    (multiples_[k] % 2 == 0 ? even_ : odd_).rows.push_back(static_cast<Eigen::Index>(k));
+  for (Group* group : {&even_, &odd_}) {
+    group->cosines.resize(points / 4 + 1, static_cast<Eigen::Index>(group->rows.size()));
+    group->sines.resizeLike(group->cosines);
+    for (Eigen::Index k = 0; k < group->cosines.cols(); ++k)
+      for (int p = 0; p <= points / 4; ++p) {
+        const auto row = static_cast<std::size_t>(group->rows[static_cast<std::size_t>(k)]);
+        const double angle = step_ * static_cast<double>(static_cast<long>(multiples_[row]) * p % points);
+        group->cosines(p, k) = std::cos(angle);
+        group->sines(p, k) = std::sin(angle);
+      }
+  }
+  samples_.resize(points, 0);
 }
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
@@ -137,10 +142,34 @@ double TrigonometricSum::largest(const Complex* a, Eigen::Index column, double s
 void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out) {
   out.assign(static_cast<std::size_t>(amplitudes.cols()), {});
   if (multiples_.empty() || amplitudes.cols() == 0) return;
-  // Real and imaginary parts stand beside each other in memory, as cosines and sines do in the table.
-  const Eigen::Map<const Eigen::MatrixXd> parts(reinterpret_cast<const double*>(amplitudes.data()),
-                                                2 * amplitudes.rows(), amplitudes.cols());
-  samples_.noalias() = table_ * parts;
+  const Eigen::Index points = samples_.rows(), quarter = points / 4, columns = amplitudes.cols();
+  for (Group* group : {&even_, &odd_}) {
+    const auto rows = static_cast<Eigen::Index>(group->rows.size());
+    group->real.resize(rows, columns);
+    group->imaginary.resize(rows, columns);
+    for (Eigen::Index c = 0; c < columns; ++c)
+      for (Eigen::Index k = 0; k < rows; ++k) {
+        const Complex a = amplitudes(group->rows[static_cast<std::size_t>(k)], c);
+        group->real(k, c) = a.real();
+        group->imaginary(k, c) = a.imag();
+      }
+    group->of_cosines.noalias() = group->cosines * group->real;
+    group->of_sines.noalias() = group->sines * group->imaginary;
+  }
+  // cos n (pi - x) = (-1)^n cos n x, sin n (pi - x) = -(-1)^n sin n x, and both times (-1)^n at x + pi.
+  samples_.resize(points, columns);
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    double* y = samples_.col(c).data();
+    const double *ce = even_.of_cosines.col(c).data(), *se = even_.of_sines.col(c).data(),
+                 *co = odd_.of_cosines.col(c).data(), *so = odd_.of_sines.col(c).data();
+    for (Eigen::Index p = 0; p <= quarter; ++p) {
+      const double plus = ce[p] + co[p], minus = ce[p] - co[p], sines = se[p] + so[p], other = se[p] - so[p];
+      y[p] = plus - sines;
+      y[2 * quarter - p] = minus + other;
+      y[2 * quarter + p] = minus - other;
+      if (p > 0) y[points - p] = plus + sines;
+    }
+  }
   for (Eigen::Index c = 0; c < amplitudes.cols(); ++c) {
     SumExtremes& e = out[static_cast<std::size_t>(c)];
     const Complex* a = amplitudes.data() + c * amplitudes.rows();

@@ -46,8 +46,14 @@ class TrigonometricSum {
   std::vector<int> multiples_;
   std::vector<double> cubes_;  // of them
   std::vector<Top> tops_;
-  Eigen::MatrixXd table_;  // cosines and sines of each order at each point
-  Eigen::MatrixXd parts_, samples_;
+  /// Sums over even and odd multiples n, of cosines and of sines: those of a quarter of the cycle give all four.
+  struct Group {
+    std::vector<Eigen::Index> rows;  // of the orders
+    Eigen::MatrixXd cosines, sines;  // points of a quarter x orders
+    Eigen::MatrixXd real, imaginary, of_cosines, of_sines;
+  };
+  Group even_, odd_;
+  Eigen::MatrixXd samples_;
 };
 
 }  // namespace drev

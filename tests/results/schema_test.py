@@ -94,6 +94,18 @@ with open("spline.toml", "w") as file:  # a contact in N m
                's = { type = "polyline_spring", nodes = ["a", "b"], dead_band = { stiffness_Nm_per_rad = 2000, '
                'half_gap_rad = 0.01 } }\n[run]\nduration_s = 0.2\n')
 
+with open("pair.toml", "w") as file:  # folds
+    file.write('format = 1\nnote = "gear pair"\n[nodes]\na = { nominal_speed_rpm = 9 }\nb = {}\n[elements]\n'
+               'J_a = { type = "inertia", node = "a", inertia_kg_m2 = 2 }\n'
+               'J_b = { type = "inertia", node = "b", inertia_kg_m2 = 2 }\n'
+               'T_a = { type = "engine_order_torque", node = "a", mean_Nm = 0.1 }\n'
+               'T_b = { type = "engine_order_torque", node = "b", mean_Nm = 0.1 }\n'
+               'mesh = { type = "gear_mesh", nodes = ["a", "b"], base_radius_1_m = 1, base_radius_2_m = 1, teeth_1 = 1, '
+               'teeth_2 = 1, stiffness_N_per_m = 1, normal_backlash_m = 2, damping_Ns_per_m = 0.1, '
+               'damping_law = "always", transmission_error = { order = [1], amplitude_m = [0.05] } }\n')
+with open("pair.toml") as file, open("chaos.toml", "w") as copied:  # no stable motion
+    copied.write(file.read().replace("amplitude_m = [0.05]", "amplitude_m = [0.5]"))
+
 results = {
     "exact": printed("run", "camshaft", "--set", short),
     "held": printed("run", "camshaft", "--set", "drive=held", short),
@@ -113,6 +125,10 @@ results = {
     "sweep": printed("sweep", "turning.toml", "--speeds", "300:100:1200", "--orders", "0.5,2,4", "--balance", "b",
                      "--absolute-sum"),
     "closed": printed("sweep", "camshaft", "--speeds", "600,700", "--orders", "1:1:6", "--contact", "closed"),
+    "branches": printed("sweep", "pair.toml", "--speeds", "7.6,8.2", "--orders", "1", "--tolerance", "1e-3",
+                        "--balance", "b"),
+    "statistics of runs": printed("sweep", "chaos.toml", "--speeds", "9.549,9.55", "--orders", "1", "--tolerance",
+                                  "1e-2"),
     "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
     "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "2"),
     "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",
@@ -182,6 +198,7 @@ refused("modes", lambda r: r["frequencies_Hz"].append("fast"))
 refused("damped", lambda r: r["modes"][0]["energy"][0].pop("elastic"))
 refused("sweep", lambda r: r["sections"][0].update(half_range="large"))
 refused("sweep", lambda r: r.pop("criticals"))
+refused("branches", lambda r: r["branches"][0]["sections"][0].pop("heat_W"))
 refused("campbell", lambda r: r["modes"][0].pop("damping_ratio"))
 refused("many", lambda r: r["runs"][0]["summary"].pop("results"))
 refused("many", lambda r: r["runs"][1].pop("reason"))

@@ -16,6 +16,7 @@ using Json = nlohmann::json;
 namespace {
 
 const std::string kEngine = DREV_SOURCE_DIR "/models/engine/engine.toml";
+const std::string kGearPair = DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml";
 
 }  // namespace
 
@@ -31,7 +32,8 @@ TEST_CASE("The page on sweeps shows what the commands print", "[sweep]") {
     } else if (console && line.starts_with("$ drev ")) {
       std::vector<std::string> words;
       std::istringstream typed(line.substr(7));
-      for (std::string word; typed >> word;) words.push_back(word == "engine.toml" ? kEngine : word);
+      for (std::string word; typed >> word;)
+        words.push_back(word == "engine.toml" ? kEngine : word == "gear_pair.toml" ? kGearPair : word);
       const auto outcome = drev_command(words);
       CHECK(outcome.exit_code == 0);
       printed = outcome.out;
@@ -41,7 +43,7 @@ TEST_CASE("The page on sweeps shows what the commands print", "[sweep]") {
       shown += line + "\n";
     }
   }
-  CHECK(commands == 2);
+  CHECK(commands == 3);
 }
 
 TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
@@ -151,11 +153,74 @@ TEST_CASE("Faults of a sweep are listed at once", "[sweep]") {
   CHECK(refused.exit_code == 2);
   for (const char* part : {"2 faults", "--speeds", "is missing", "--orders", "rise from each to the next"})
     CHECK(contains(refused.err, part));
-  const auto contacts = drev_command({"sweep", "camshaft", "--speeds", "300:10:900"});
+  const auto contacts =
+      drev_command({"sweep", kGearPair, "--speeds", "900", "--cycle", "0", "--absolute-sum"});
   CHECK(contacts.exit_code == 2);
-  CHECK(contains(contacts.err, "--contact closed"));
+  for (const char* part : {"--cycle", "--absolute-sum", "linear models"}) CHECK(contains(contacts.err, part));
+  CHECK(contains(drev_command({"sweep", kGearPair, "--speeds", "900"}).err, "must be at least two"));
+  CHECK(contains(drev_command({"sweep", kEngine, "--speeds", "900", "--cycle", "1"}).err, "not linear"));
+  CHECK(contains(drev_command({"modes", kEngine, "--out", "x"}).err, "is for --damped"));
   CHECK(drev_command({"modes", kEngine, "--speed", "900"}).exit_code == 2);
   const auto closed = drev_command({"sweep", "camshaft", "--speeds", "700", "--contact", "closed"});
   CHECK(closed.exit_code == 0);
   CHECK(contains(closed.out, "the teeth separate there"));
+}
+
+TEST_CASE("A sweep of a gear pair with backlash: branches as JSON and as tables", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const std::vector<std::string> words{"sweep",     kGearPair,  "--speeds",
+                                       "1800,1900", "--out",    out,
+                                       "--json",    "--record", "mesh.force_N,wheel.angle_rad"};
+  const auto printed = drev_command(words);
+  REQUIRE(printed.exit_code == 0);
+  CHECK(read_file(out + "/summary.json") == printed.out);
+  const Json json = Json::parse(printed.out);
+  CHECK(json.at("kind") == "branches");
+  CHECK(json.at("cycle_deg").get<double>() == Approx(12.0));
+  CHECK(json.at("unsolved_rpm").empty());
+  CHECK(json.at("sections")[0].at("contact") == true);
+  // The nondimensional fold at 0.8284639844 of sqrt(k r^2/J)/30.
+  const double natural = drev::to_rpm(std::sqrt(2e8 * 0.05 * 0.05 / 0.01) / 30.0);
+  int folds = 0;
+  for (const Json& change : json.at("changes")) {
+    if (change.at("what") != "fold") continue;
+    ++folds;
+    CHECK(change.at("speed_rpm").get<double>() == Approx(0.8284639844 * natural).epsilon(1e-9));
+  }
+  CHECK(folds == 1);
+  std::istringstream table(read_file(out + "/branches.csv"));
+  std::string line;
+  std::getline(table, line);
+  CHECK(line.starts_with(
+      "curve,turns,speed_rpm,asked,state,multiplier,separates,error,mesh.force_N half_range"));
+  std::size_t rows = 0, motions = 0;
+  while (std::getline(table, line)) ++rows;
+  for (const Json& branch : json.at("branches")) {
+    motions += branch.at("speed_rpm").size();
+    CHECK(branch.at("sections")[0].at("amplitude").size() == json.at("orders").size());
+  }
+  CHECK(rows == motions);
+  CHECK(
+      read_file(out + "/changes.csv").starts_with("speed_rpm,error_rpm,curve,what,mesh.force_N half_range"));
+}
+
+TEST_CASE("Damped modes as tables", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const auto printed = drev_command({"modes", kEngine, "--damped", "--out", out, "--json"});
+  REQUIRE(printed.exit_code == 0);
+  CHECK(read_file(out + "/summary.json") == printed.out);
+  const Json json = Json::parse(printed.out);
+  std::istringstream table(read_file(out + "/modes.csv"));
+  std::string line;
+  std::getline(table, line);
+  CHECK(line == "mode,real_per_s,imaginary_per_s,frequency_Hz,undamped_Hz,damping_ratio");
+  for (const Json& mode : json.at("modes")) {
+    REQUIRE(std::getline(table, line));
+    const std::size_t comma = line.find(',');
+    CHECK(std::stod(line.substr(comma + 1)) == mode.at("real_per_s").get<double>());
+  }
+  CHECK(read_file(out + "/shapes.csv").starts_with("mode,node,amplitude,phase_deg\n1,ring,"));
+  CHECK(read_file(out + "/energy.csv").starts_with("mode,element,kinetic,elastic,dissipated\n1,"));
 }

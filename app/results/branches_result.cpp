@@ -1,0 +1,341 @@
+#include "app/results/branches_result.hpp"
+
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/csv_cell.hpp"
+#include "app/base/parameter_text.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/results/run_json.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kFigureDigits = 6;
+constexpr int kCurveDigits = 4;     // of a speed between those asked for: a step along the curve
+constexpr double kLeftOver = 1e-9;  // N m that is worth a word
+
+std::string rpm_text(double speed) { return short_digits(to_rpm(speed), 8); }
+
+std::string state_of(const SweptMotion& motion) {
+  return !motion.judged ? "" : motion.stable ? "stable" : "unstable";
+}
+
+/// "810 to 1150 rpm" of the stable stretches of a branch, in the order of its arc.
+std::string stable_text(const SweptBranch& branch) {
+  std::vector<std::string> stretches;
+  for (std::size_t i = 0; i < branch.motions.size();) {
+    std::size_t end = i;
+    while (end < branch.motions.size() && branch.motions[end].stable) ++end;
+    if (end > i)
+      stretches.push_back(short_digits(to_rpm(branch.motions[i].speed), kCurveDigits) + " to " +
+                          short_digits(to_rpm(branch.motions[end - 1].speed), kCurveDigits));
+    i = std::max(end, i + 1);
+  }
+  if (!branch.motions.empty() && !branch.motions.front().judged) return "not judged";
+  return stretches.empty() ? "nowhere" : join(stretches);
+}
+
+std::string branches_table(const NonlinearSweep& sweep) {
+  std::vector<std::vector<std::string>> rows{{"curve", "turns a cycle", "stable [rpm], along it"}};
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    rows.push_back({std::to_string(b + 1), short_digits(sweep.branches[b].turns, kFigureDigits),
+                    stable_text(sweep.branches[b])});
+  return columns_text(rows);
+}
+
+/// Of each section the largest half range at the speeds asked for, among the motions that a train can have.
+std::string largest_table(const NonlinearSweep& sweep) {
+  std::vector<std::vector<std::string>> rows{
+      {"section", "half range", "at [rpm]", "curve", "lowest", "highest", "heat [W]"}};
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    const auto at = static_cast<Eigen::Index>(c);
+    const SweptMotion* best = nullptr;
+    std::size_t curve = 0;
+    for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+      for (const SweptMotion& motion : sweep.branches[b].motions)
+        if (motion.asked && (motion.stable || !motion.judged) &&
+            (best == nullptr || motion.half_range()[at] > best->half_range()[at]))
+          best = &motion, curve = b;
+    if (best == nullptr) continue;
+    rows.push_back({sweep.sections[c].name, digits(best->half_range()[at], kFigureDigits),
+                    rpm_text(best->speed), std::to_string(curve + 1),
+                    digits(best->minimum[at], kFigureDigits), digits(best->maximum[at], kFigureDigits),
+                    digits(best->heat[at], kFigureDigits)});
+  }
+  return columns_text(rows);
+}
+
+/// The power of ten above an error, which itself is known to no digit.
+std::string bound_text(double error, double speed) {
+  if (!std::isfinite(error)) return "unknown";
+  return short_digits(std::pow(10.0, std::ceil(std::log10(std::max(error, 1e-9 * speed)))), 1);
+}
+
+std::string changes_table(const NonlinearSweep& sweep) {
+  if (sweep.changes.empty()) return "The curves neither fold nor lose their stability.\n";
+  std::vector<std::vector<std::string>> rows{
+      {"at [rpm]", "within [rpm]", "curve", "what", "half range", "jumps to"}};
+  for (const SweptChange& change : sweep.changes)
+    rows.push_back(
+        {digits(to_rpm(change.speed), 9), bound_text(to_rpm(change.error), to_rpm(change.speed)),
+         std::to_string(change.branch + 1), to_text(change.kind),
+         change.motion.maximum.size() > 0 ? digits(change.motion.half_range()[0], kFigureDigits) : "",
+         change.jumps_to.size() > 0 ? digits(change.jumps_to[0], kFigureDigits) : ""});
+  return columns_text(rows) + wrap("Half ranges are of " + sweep.sections.front().name + ".", 0);
+}
+
+std::string runs_table(const NonlinearSweep& sweep) {
+  if (sweep.runs.empty()) return {};
+  std::string text;
+  std::vector<std::vector<std::string>> rows{
+      {"run at [rpm]", "cycles", "section", "mean", "+-", "deviation", "lowest", "highest"}};
+  for (const SweptRun& run : sweep.runs) {
+    if (!run.reason.empty()) {
+      text += wrap("No run at " + rpm_text(run.speed) + " rpm: " + run.reason + ".", 0);
+      continue;
+    }
+    for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+      const auto at = static_cast<Eigen::Index>(c);
+      rows.push_back({rpm_text(run.speed), std::to_string(run.cycles), sweep.sections[c].name,
+                      digits(run.mean[at], kFigureDigits), digits(run.mean_error[at], 2),
+                      digits(run.deviation[at], kFigureDigits), digits(run.lowest[at], kFigureDigits),
+                      digits(run.highest[at], kFigureDigits)});
+    }
+  }
+  if (rows.size() > 1)
+    text += "No periodic motion that was found is stable at these speeds; what a run does:\n" +
+            columns_text(rows);
+  return text;
+}
+
+double largest_left_over(const NonlinearSweep& sweep, std::size_t part) {
+  double most = 0.0;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions)
+      if (motion.left_over.size() > static_cast<Eigen::Index>(part))
+        most = std::max(most, std::abs(motion.left_over[static_cast<Eigen::Index>(part)]));
+  return most;
+}
+
+std::string notes_text(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
+  std::string text;
+  double error = 0.0;
+  bool judged = true;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions) {
+      if (motion.asked) error = std::max(error, motion.error);
+      judged = judged && motion.judged;
+    }
+  if (!sweep.branches.empty())
+    text += wrap("Largest error of a motion at the speeds asked for: " + digits(error, 1) +
+                     " of its section's largest value" +
+                     (error > options.tolerance
+                          ? ", more than the " + short_digits(options.tolerance, 2) + " asked for"
+                          : std::string()) +
+                     ".",
+                 0);
+  if (!judged) text += wrap("Stability is not judged with more than 200 unknowns.", 0);
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    if (!sweep.branches[b].whole)
+      text += wrap("Curve " + std::to_string(b + 1) + " could not be followed to its end.", 0);
+  if (!sweep.unsolved.empty()) {
+    std::vector<std::string> speeds;
+    for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
+    text += wrap("No periodic motion was found at " + join(speeds) + " rpm.", 0);
+  }
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    if (const double left = largest_left_over(sweep, f); left > kLeftOver)
+      text +=
+          wrap("Mean torque does not balance: up to " + digits(left, kFigureDigits) +
+                   " N m are left over on the part of " + sweep.floating_parts[f] +
+                   " (referred to the reference shaft). " +
+                   (options.balance.empty()
+                        ? "The motions are those of the train that this speeds up; --balance NODE takes it "
+                          "up at a node."
+                        : "It is taken up at " + options.balance + "."),
+               0);
+  return text;
+}
+
+/// [section] of a vector of sections in one motion, or of one number.
+template <class Of>
+Json along(const SweptBranch& branch, const Of& of) {
+  Json list = Json::array();
+  for (const SweptMotion& motion : branch.motions) list.push_back(of(motion));
+  return list;
+}
+
+Json over_sections(const Vector& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
+Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
+  Json sections = Json::array();
+  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(sweep.sections.size()); ++c) {
+    const auto of = [&](const Vector SweptMotion::*values) {
+      return along(branch, [&](const SweptMotion& m) { return number((m.*values)[c]); });
+    };
+    Json amplitude = Json::array(), phase = Json::array();
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(sweep.orders.size()); ++k) {
+      amplitude.push_back(
+          along(branch, [&](const SweptMotion& m) { return number(std::abs(m.amplitude(k, c))); }));
+      phase.push_back(
+          along(branch, [&](const SweptMotion& m) { return number(to_deg(std::arg(m.amplitude(k, c)))); }));
+    }
+    sections.push_back(
+        {{"half_range", along(branch, [&](const SweptMotion& m) { return number(m.half_range()[c]); })},
+         {"maximum", of(&SweptMotion::maximum)},
+         {"minimum", of(&SweptMotion::minimum)},
+         {"mean", of(&SweptMotion::mean)},
+         {"heat_W", of(&SweptMotion::heat)},
+         {"twist_maximum", of(&SweptMotion::twist_maximum)},
+         {"twist_minimum", of(&SweptMotion::twist_minimum)},
+         {"amplitude", amplitude},
+         {"phase_deg", phase}});
+  }
+  return {{"cycle_deg", number(360.0 * branch.turns)},
+          {"whole", branch.whole},
+          {"speed_rpm", along(branch, [](const SweptMotion& m) { return number(to_rpm(m.speed)); })},
+          {"asked", along(branch, [](const SweptMotion& m) { return Json(m.asked); })},
+          {"stable", along(branch, [](const SweptMotion& m) { return m.judged ? Json(m.stable) : Json(); })},
+          {"multiplier",
+           along(branch, [](const SweptMotion& m) { return m.judged ? number(m.multiplier) : Json(); })},
+          {"separates", along(branch, [](const SweptMotion& m) { return Json(m.separates); })},
+          {"harmonics", along(branch, [](const SweptMotion& m) { return Json(m.harmonics); })},
+          {"error", along(branch, [](const SweptMotion& m) { return number(m.error); })},
+          {"sections", sections}};
+}
+
+std::string table_cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
+
+}  // namespace
+
+std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,
+                             const NonlinearSweep& sweep) {
+  const std::string& name = model.entry->name;
+  std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
+  text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
+          std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
+          rpm_text(sweep.speeds.back()) + " rpm\n\n";
+  text += branches_table(sweep) + "\n" + largest_table(sweep) + "\n" + changes_table(sweep);
+  for (const std::string& part :
+       {runs_table(sweep), notes_text(options, sweep), wrap(model.model_case.note, 0)})
+    if (!part.empty() && part != "\n") text += "\n" + part;
+  return text;
+}
+
+Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& options,
+                     const NonlinearSweep& sweep) {
+  Json object = result_object("branches");
+  object["model"] = model.entry->name;
+  object["parameters"] = parameters_object(model.parameters);
+  Json sections = Json::array(), branches = Json::array(), changes = Json::array(), runs = Json::array(),
+       floating = Json::array(), speeds = Json::array(), unsolved = Json::array();
+  for (const auto& section : sweep.sections)
+    sections.push_back({{"name", section.name},
+                        {"unit", section.unit},
+                        {"twist_unit", text_or_null(section.twist_unit)},
+                        {"contact", section.contact}});
+  for (const SweptBranch& branch : sweep.branches) branches.push_back(branch_object(sweep, branch));
+  for (const SweptChange& change : sweep.changes)
+    changes.push_back({{"what", to_text(change.kind)},
+                       {"branch", change.branch + 1},
+                       {"speed_rpm", number(to_rpm(change.speed))},
+                       {"error_rpm", number(to_rpm(change.error))},
+                       {"half_range", over_sections(change.motion.half_range())},
+                       {"jumps_to", change.jumps_to.size() > 0 ? over_sections(change.jumps_to) : Json()}});
+  for (const SweptRun& run : sweep.runs)
+    runs.push_back({{"speed_rpm", number(to_rpm(run.speed))},
+                    {"cycles", run.cycles},
+                    {"reason", text_or_null(run.reason)},
+                    {"mean", over_sections(run.mean)},
+                    {"mean_error", over_sections(run.mean_error)},
+                    {"deviation", over_sections(run.deviation)},
+                    {"lowest", over_sections(run.lowest)},
+                    {"highest", over_sections(run.highest)}});
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    floating.push_back(
+        {{"node", sweep.floating_parts[f]}, {"left_over_Nm", number(largest_left_over(sweep, f))}});
+  for (const double speed : sweep.speeds) speeds.push_back(number(to_rpm(speed)));
+  for (const double speed : sweep.unsolved) unsolved.push_back(number(to_rpm(speed)));
+  object["speeds_rpm"] = std::move(speeds);
+  object["orders"] = sweep.orders;
+  object["cycle_deg"] = number(360.0 * sweep.turns);
+  object["tolerance"] = number(options.tolerance);
+  object["sections"] = std::move(sections);
+  object["branches"] = std::move(branches);
+  object["changes"] = std::move(changes);
+  object["runs"] = std::move(runs);
+  object["unsolved_rpm"] = std::move(unsolved);
+  object["floating_parts"] = std::move(floating);
+  object["balance"] = text_or_null(options.balance);
+  object["note"] = text_or_null(model.model_case.note);
+  return object;
+}
+
+std::string motions_as_csv(const NonlinearSweep& sweep) {
+  std::string text = "curve,turns,speed_rpm,asked,state,multiplier,separates,error";
+  for (const auto& section : sweep.sections) {
+    for (const char* what : {"half_range", "maximum", "minimum", "mean", "heat_W"})
+      text += "," + csv_cell(section.name + " " + what);
+    for (const char* what : {"twist_maximum_", "twist_minimum_"})
+      text += "," + csv_cell(section.name + " " + what + section.twist_unit);
+  }
+  text += "\n";
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    for (const SweptMotion& m : sweep.branches[b].motions) {
+      text += std::to_string(b + 1) + "," + to_text(sweep.branches[b].turns) + "," +
+              to_text(to_rpm(m.speed)) + "," + (m.asked ? "1," : "0,") + state_of(m) + "," +
+              (m.judged ? table_cell(m.multiplier) : "") + "," + (m.separates ? "1," : "0,") +
+              table_cell(m.error);
+      for (Eigen::Index c = 0; c < m.maximum.size(); ++c)
+        for (const double value : {m.half_range()[c], m.maximum[c], m.minimum[c], m.mean[c], m.heat[c],
+                                   m.twist_maximum[c], m.twist_minimum[c]})
+          text += "," + table_cell(value);
+      text += "\n";
+    }
+  return text;
+}
+
+std::string motion_orders_as_csv(const NonlinearSweep& sweep) {
+  std::string text = "curve,speed_rpm,state,order";
+  for (const auto& section : sweep.sections)
+    text += "," + csv_cell(section.name + " amplitude") + "," + csv_cell(section.name + " phase_deg");
+  text += "\n";
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    for (const SweptMotion& m : sweep.branches[b].motions)
+      for (std::size_t k = 0; m.asked && k < sweep.orders.size(); ++k) {
+        text += std::to_string(b + 1) + "," + to_text(to_rpm(m.speed)) + "," + state_of(m) + "," +
+                to_text(sweep.orders[k]);
+        for (Eigen::Index c = 0; c < m.amplitude.cols(); ++c) {
+          const std::complex<double> a = m.amplitude(static_cast<Eigen::Index>(k), c);
+          text += "," + table_cell(std::abs(a)) + "," + table_cell(to_deg(std::arg(a)));
+        }
+        text += "\n";
+      }
+  return text;
+}
+
+std::string changes_as_csv(const NonlinearSweep& sweep) {
+  std::string text = "speed_rpm,error_rpm,curve,what";
+  for (const auto& section : sweep.sections)
+    text += "," + csv_cell(section.name + " half_range") + "," + csv_cell(section.name + " jumps_to");
+  text += "\n";
+  for (const SweptChange& change : sweep.changes) {
+    text += to_text(to_rpm(change.speed)) + "," + table_cell(to_rpm(change.error)) + "," +
+            std::to_string(change.branch + 1) + "," + to_text(change.kind);
+    for (Eigen::Index c = 0; c < change.motion.maximum.size(); ++c)
+      text += "," + table_cell(change.motion.half_range()[c]) + "," +
+              (change.jumps_to.size() > 0 ? table_cell(change.jumps_to[c]) : "");
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace drev::app

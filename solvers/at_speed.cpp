@@ -1,0 +1,9 @@
+#include <drev/solvers/at_speed.hpp>
+
+#include "core/system_builder.hpp"
+
+namespace drev {
+
+System at_speed(const System& system, double speed) { return SystemBuilder::at_speed(system, speed); }
+
+}  // namespace drev

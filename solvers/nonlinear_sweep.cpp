@@ -1,0 +1,494 @@
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/at_speed.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "solvers/cycle_run.hpp"
+#include "solvers/periodic/branch_tracer.hpp"
+#include "solvers/periodic/motion_sections.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kFewestHarmonics = 24;
+constexpr int kMostRows = 1100;       // of Newton's matrix: 0.3 s a step
+constexpr int kProbe = 192;           // harmonics of the linear motion that the first number is read from
+constexpr double kTail = 1e-5;        // of the linear motion
+constexpr double kSameSpeed = 1e-12;  // relative
+constexpr double kPerturbation = 1e-3;
+constexpr int kMostBranches = 12;
+constexpr int kBatches = 20;
+constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
+constexpr int kRunSamples = 64;     // a cycle
+constexpr double kSameFold = 1e-7;  // of the speed: a fold with more harmonics
+constexpr int kDefaultOrders = 12;
+constexpr double kBalanced = 1e-6;  // N m left over that a run may have
+
+using Kind = BranchEvent::Kind;
+
+/// Motions of one number of cycles.
+struct Family {
+  std::unique_ptr<LawBalance> balance;
+  int harmonics = 0;
+  std::vector<int> lines;  // harmonics of the orders asked for; beyond all: none
+};
+
+struct Traced {
+  int cycles = 1;
+  Branch branch;
+};
+
+class Sweeper {
+ public:
+  Sweeper(const System& system, const NonlinearSweepOptions& options);
+  NonlinearSweep run();
+
+ private:
+  Family& family(int cycles);
+  BranchTracer tracer(int cycles);
+  bool tell(double part) const { return !options_.progress || options_.progress(part); }
+  void trace(int cycles, double speed, const Vector& x);
+  bool start_at(double speed);
+  bool known(double speed, const Vector& x);
+  void collect(std::size_t number);
+  SweptMotion motion_of(int cycles, const BranchPoint& point) const;
+  SweptMotion asked_for(int cycles, const BranchPoint& point);
+  void put(const MotionSections::Figures& figures, SweptMotion& motion) const;
+  const SweptMotion* nearest(double speed) const;
+  bool stable_at(double speed) const;
+  bool any_at(double speed) const;
+  void fill_with_runs();
+  bool run_at(double speed);
+  void find_jumps();
+
+  const System& system_;
+  NonlinearSweepOptions options_;
+  double low_ = 0.0, high_ = 0.0;
+  std::unique_ptr<MotionSections> sections_;
+  std::unique_ptr<FloquetProduct> stability_;
+  mutable std::map<int, Family> families_;
+  std::vector<Traced> traced_;
+  NonlinearSweep sweep_;
+};
+
+Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
+    : system_(system), options_(options) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/sweep", findings);
+  check.increasing("speeds", options.speeds, "rad/s");
+  check.increasing("orders", options.orders, "");
+  if (options.speeds.size() < 2)
+    check.fail("speeds", std::to_string(options.speeds.size()) + " values", "rad/s",
+               "must be at least two, for a model that is not linear");
+  else
+    check.positive("speeds", options.speeds.front(), "rad/s");
+  if (!options.orders.empty()) check.positive("orders", options.orders.front(), "");
+  check.non_negative("turns", options.turns, "");
+  check.within("tolerance", options.tolerance, 1e-12, 0.1, "");
+  check.within("run_cycles", options.run_cycles, 40, 1e6, "");
+  if (system.size() == 0)
+    findings.push_back({system.name(), "", "", "", "every node is prescribed: nothing vibrates"});
+  if (!system.reference())
+    findings.push_back({system.name(), "", "", "",
+                        "no shaft turns nominally: orders need a reference shaft (nominal_speed or "
+                        "constant_speed)"});
+  sections_ = std::make_unique<MotionSections>(find_section_rows(system, options.sections, findings));
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  sweep_.turns = options.turns > 0.0 ? options.turns : cycle_turns(system);
+  LawBalance balance(system, sweep_.turns > 0.0 ? sweep_.turns : 1.0, options.balance, findings);
+  if (sweep_.turns == 0.0 && findings.empty())
+    check.fail("turns", "0", "",
+               "must be given: laws and loads have no common cycle of 20 turns of the reference shaft");
+  if (balance.inputs() == 0 && findings.empty())
+    check.fail("laws", "none", "",
+               "must be at least one that is no straight line; sweep_linear() is for "
+               "linear models");
+  if (const int rows = balance.inputs() * (2 * kFewestHarmonics + 1); rows > kMostRows)
+    check.fail("laws", std::to_string(balance.inputs()), "",
+               "and loads that follow the twist of their node are too many, at most " +
+                   std::to_string(kMostRows / (2 * kFewestHarmonics + 1)) +
+                   "; loads over the nominal angle (twist_feedback = false) do not count, closed contacts "
+                   "(drev sweep --contact closed) neither");
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  sweep_.speeds = options.speeds;
+  sweep_.orders = options.orders;
+  if (sweep_.orders.empty())
+    for (int n = 1; n <= kDefaultOrders; ++n) sweep_.orders.push_back(n / sweep_.turns);
+  low_ = options.speeds.front();
+  high_ = options.speeds.back();
+  for (const SectionRows& rows : sections_->sections())
+    sweep_.sections.push_back({rows.name, rows.unit, rows.twist_unit, rows.contact});
+  sweep_.floating_parts = balance.mean().floating();
+  if (system.size() <= FloquetProduct::kMostUnknowns) stability_ = std::make_unique<FloquetProduct>(system);
+}
+
+Family& Sweeper::family(int cycles) {
+  const auto found = families_.find(cycles);
+  if (found != families_.end()) {
+    found->second.balance->set_harmonics(found->second.harmonics);
+    return found->second;
+  }
+  Family& made = families_[cycles];
+  std::vector<Finding> none;
+  made.balance = std::make_unique<LawBalance>(system_, cycles * sweep_.turns, options_.balance, none);
+  for (const double order : sweep_.orders) {
+    const double line = order * cycles * sweep_.turns;
+    const bool whole = std::abs(line - std::round(line)) < 1e-9 * line;
+    made.lines.push_back(whole ? static_cast<int>(std::round(line)) : 1 << 30);
+  }
+  // As many harmonics as the linear motion has, and as many again, for the kinks.
+  const int most = std::max(kFewestHarmonics, kMostRows / (4 * made.balance->inputs()));
+  int needed = kFewestHarmonics;
+  if (cycles == 1) {
+    const int probe = std::min(kProbe, most);
+    made.balance->set_harmonics(probe);
+    Vector x;
+    const Eigen::Index block = 2 * probe + 1;
+    if (made.balance->linear_start(low_, x))
+      for (int i = 0; i < made.balance->inputs(); ++i) {
+        const Vector of = x.segment(i * block + 1, block - 1);
+        const double size = of.norm();
+        for (int n = probe; n > needed / 2 && size > 0.0; --n)
+          if (of.segment(2 * n - 2, 2).norm() > kTail * size) needed = std::max(needed, 2 * n);
+      }
+  } else {
+    needed = cycles * family(1).harmonics;
+  }
+  Family& again = families_[cycles];
+  again.harmonics = std::min(needed, most);
+  again.balance->set_harmonics(again.harmonics);
+  return again;
+}
+
+BranchTracer Sweeper::tracer(int cycles) {
+  return {*family(cycles).balance,
+          stability_.get(),
+          {.low = low_, .high = high_, .cycles = cycles, .most_rows = kMostRows}};
+}
+
+void Sweeper::trace(int cycles, double speed, const Vector& x) {
+  if (traced_.size() >= static_cast<std::size_t>(kMostBranches)) return;
+  traced_.push_back({cycles, tracer(cycles).trace(speed, x)});
+  collect(traced_.size() - 1);
+}
+
+/// Whether a curve of single cycles passes the motion.
+bool Sweeper::known(double speed, const Vector& x) {
+  for (const Traced& one : traced_) {
+    if (one.cycles != 1) continue;
+    BranchTracer tracer = this->tracer(1);
+    for (std::size_t i = 0; i + 1 < one.branch.points.size(); ++i) {
+      const BranchPoint &a = one.branch.points[i], &b = one.branch.points[i + 1];
+      if ((a.speed - speed) * (b.speed - speed) > 0.0 || a.speed == b.speed) continue;
+      const auto here = tracer.between(a, b, speed);
+      if (here && (here->x - x).norm() <= 1e-6 * x.norm()) return true;
+    }
+  }
+  return false;
+}
+
+/// A curve from the motion with closed contacts, where there is one that is not known.
+bool Sweeper::start_at(double speed) {
+  Vector x;
+  BranchTracer tracer = this->tracer(1);
+  if (!family(1).balance->linear_start(speed, x) || !tracer.solve(speed, x)) return false;
+  if (!known(speed, x)) trace(1, speed, x);
+  return true;
+}
+
+void Sweeper::put(const MotionSections::Figures& figures, SweptMotion& motion) const {
+  motion.maximum = figures.maximum;
+  motion.minimum = figures.minimum;
+  motion.mean = figures.mean;
+  motion.twist_mean = figures.twist_mean;
+  motion.twist_maximum = figures.twist_maximum;
+  motion.twist_minimum = figures.twist_minimum;
+  motion.heat = figures.heat;
+  motion.amplitude = figures.amplitude;
+  motion.left_over = figures.left_over;
+  motion.separates = figures.separates;
+  motion.z = figures.z;
+  motion.v = figures.v;
+}
+
+SweptMotion Sweeper::motion_of(int cycles, const BranchPoint& point) const {
+  Family& of = families_.at(cycles);
+  of.balance->set_harmonics(point.harmonics);
+  MotionSections::Figures figures;
+  SweptMotion motion;
+  motion.speed = point.speed;
+  motion.judged = stability_ != nullptr;
+  motion.stable = point.stable;
+  motion.multiplier = point.multiplier;
+  motion.harmonics = point.harmonics;
+  motion.error = std::nan("");
+  const auto count = static_cast<Eigen::Index>(sections_->sections().size());
+  for (Vector* values : {&motion.maximum, &motion.minimum, &motion.mean, &motion.twist_mean,
+                         &motion.twist_maximum, &motion.twist_minimum, &motion.heat})
+    values->setConstant(count, std::nan(""));
+  motion.amplitude.setConstant(static_cast<Eigen::Index>(of.lines.size()), count, std::nan(""));
+  if (sections_->find(*of.balance, point.x, point.speed, of.lines, figures)) put(figures, motion);
+  of.balance->set_harmonics(of.harmonics);
+  return motion;
+}
+
+/// The motion with twice as many harmonics until its error is small enough.
+SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
+  Family& of = family(cycles);
+  LawBalance& balance = *of.balance;
+  SweptMotion motion = motion_of(cycles, point);
+  motion.asked = true;
+  balance.set_harmonics(point.harmonics);
+  Vector x = point.x;
+  MotionSections::Figures coarse, fine;
+  if (!sections_->find(balance, x, point.speed, of.lines, coarse)) return motion;
+  BranchTracer tracer(balance, stability_.get(), {.low = low_, .high = high_});
+  while (true) {
+    const int before = balance.harmonics();
+    Vector wide = x;
+    if (!balance.double_harmonics(point.speed, wide)) {
+      balance.set_harmonics(2 * before);
+      wide = balance.resized(x, before, 2 * before);
+      if (2 * balance.size() > 2 * kMostRows || !tracer.solve(point.speed, wide)) break;
+    }
+    if (!sections_->find(balance, wide, point.speed, of.lines, fine)) break;
+    const BranchPoint judged = tracer.judged(point.speed, wide);
+    put(fine, motion);
+    motion.error = largest_difference(coarse, fine);
+    motion.harmonics = judged.harmonics;
+    motion.multiplier = judged.multiplier;
+    motion.stable = judged.stable;
+    if (motion.error <= options_.tolerance || 2 * balance.size() > kMostRows) break;
+    x = wide;
+    if (!tracer.solve(point.speed, x) || !sections_->find(balance, x, point.speed, of.lines, coarse)) break;
+  }
+  balance.set_harmonics(of.harmonics);
+  return motion;
+}
+
+void Sweeper::collect(std::size_t number) {
+  const Traced& traced = traced_[number];
+  SweptBranch branch;
+  branch.turns = traced.cycles * sweep_.turns;
+  branch.whole = traced.branch.whole;
+  BranchTracer tracer = this->tracer(traced.cycles);
+  const auto& points = traced.branch.points;
+  const int harmonics = family(traced.cycles).harmonics;
+  const auto at_base = [&](BranchPoint point) {
+    if (point.harmonics != harmonics)
+      point.x = family(traced.cycles).balance->resized(point.x, point.harmonics, harmonics);
+    point.harmonics = harmonics;
+    return point;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    bool asked = false;
+    for (const double speed : options_.speeds)
+      asked = asked || std::abs(points[i].speed - speed) <= kSameSpeed * speed;
+    branch.motions.push_back(asked ? asked_for(traced.cycles, at_base(points[i]))
+                                   : motion_of(traced.cycles, points[i]));
+    if (i + 1 == points.size()) break;
+    const BranchPoint from = at_base(points[i]), to = at_base(points[i + 1]);
+    std::vector<double> between;
+    for (const double speed : options_.speeds)
+      if ((speed - from.speed) * (speed - to.speed) < 0.0 &&
+          std::min(std::abs(speed - from.speed), std::abs(speed - to.speed)) > kSameSpeed * speed)
+        between.push_back(speed);
+    if (from.speed > to.speed) std::reverse(between.begin(), between.end());
+    for (const double speed : between) {
+      family(traced.cycles);
+      if (const auto point = tracer.between(from, to, speed))
+        branch.motions.push_back(asked_for(traced.cycles, *point));
+    }
+  }
+  const int place = static_cast<int>(sweep_.branches.size());
+  for (const BranchEvent& event : traced.branch.events) {
+    const BranchChange kind = event.kind == Kind::fold              ? BranchChange::fold
+                              : event.kind == Kind::contact         ? BranchChange::contact
+                              : event.kind == Kind::period_doubling ? BranchChange::period_doubling
+                                                                    : BranchChange::torus;
+    sweep_.changes.push_back(
+        {kind, place, event.speed, event.error, motion_of(traced.cycles, event.point), {}});
+  }
+  sweep_.branches.push_back(std::move(branch));
+}
+
+const SweptMotion* Sweeper::nearest(double speed) const {
+  const SweptMotion* best = nullptr;
+  for (const SweptBranch& branch : sweep_.branches)
+    for (const SweptMotion& motion : branch.motions)
+      if (motion.z.size() > 0 &&
+          (best == nullptr || std::abs(motion.speed - speed) < std::abs(best->speed - speed)))
+        best = &motion;
+  return best;
+}
+
+bool Sweeper::any_at(double speed) const {
+  for (const SweptBranch& branch : sweep_.branches)
+    for (const SweptMotion& motion : branch.motions)
+      if (motion.asked && std::abs(motion.speed - speed) <= kSameSpeed * speed) return true;
+  return false;
+}
+
+bool Sweeper::stable_at(double speed) const {
+  for (const SweptBranch& branch : sweep_.branches)
+    for (const SweptMotion& motion : branch.motions)
+      if (motion.asked && std::abs(motion.speed - speed) <= kSameSpeed * speed &&
+          (motion.stable || !motion.judged))
+        return true;
+  return false;
+}
+
+/// A run at a speed. True: it settled on a motion whose curve was new.
+bool Sweeper::run_at(double speed) {
+  SweptRun result;
+  result.speed = speed;
+  const System system = at_speed(system_, reference_direction(system_) * speed);
+  const SweptMotion* near = nearest(speed);
+  State state = State::initial(system);
+  if (near != nullptr) {
+    state.z = (1.0 + kPerturbation) * near->z;
+    state.v = (1.0 + kPerturbation) * near->v;
+    if (near->left_over.size() > 0 && near->left_over.cwiseAbs().maxCoeff() > kBalanced) {
+      result.reason = "the mean torque does not balance: the train would run away";
+      sweep_.runs.push_back(std::move(result));
+      return false;
+    }
+  }
+  const double period = sweep_.turns * kTwoPi / speed;
+  const auto count = static_cast<Eigen::Index>(sections_->sections().size());
+  try {
+    CycleRun run(system, period, std::move(state));
+    run.advance(options_.run_cycles / 2);
+    int cycles = run.repeats();
+    if (cycles == 0) {
+      run.advance(options_.run_cycles / 2);
+      cycles = run.repeats();
+    }
+    if (cycles > 0) {
+      Family& of = family(cycles);
+      LawBalance& balance = *of.balance;
+      const int samples = 4 * of.harmonics / cycles;
+      std::vector<Vector> motion;
+      run.sample(cycles, samples, [&](const State& at, int) { motion.push_back(at.z); });
+      // The run begins where phi is a whole number of cycles.
+      Vector x = Vector::Zero(balance.size());
+      const auto all = static_cast<int>(motion.size());
+      const Eigen::Index block = 2 * of.harmonics + 1;
+      for (int s = 0; s < all; ++s) {
+        const double psi = balance.direction() * kTwoPi * s / all;
+        const Vector inputs = balance.inputs_of(motion[static_cast<std::size_t>(s)]);
+        for (int i = 0; i < balance.inputs(); ++i) {
+          x[i * block] += inputs[i] / all;
+          for (int n = 1; n <= of.harmonics; ++n) {
+            x[i * block + 2 * n - 1] += 2.0 / all * inputs[i] * std::cos(n * psi);
+            x[i * block + 2 * n] -= 2.0 / all * inputs[i] * std::sin(n * psi);
+          }
+        }
+      }
+      BranchTracer tracer = this->tracer(cycles);
+      if (tracer.solve(speed, x)) {
+        const std::size_t before = traced_.size();
+        trace(cycles, speed, x);
+        if (traced_.size() > before && stable_at(speed)) return true;
+      }
+    }
+    const std::vector<SectionRows>& rows = sections_->sections();
+    std::vector<Channel> channels;
+    for (const SectionRows& row : rows) channels.push_back(find_channel(system, row.name));
+    result.cycles = options_.run_cycles / 2;
+    result.mean = result.mean_error = result.deviation = Vector::Zero(count);
+    result.lowest = Vector::Constant(count, INFINITY);
+    result.highest = Vector::Constant(count, -INFINITY);
+    Eigen::MatrixXd batches = Eigen::MatrixXd::Zero(count, kBatches);
+    const int all = result.cycles * kRunSamples, batch = std::max(1, all / kBatches);
+    Vector squares = Vector::Zero(count), values(count);
+    Assembler assembler(system);
+    run.sample(result.cycles, kRunSamples, [&](const State& at, int i) {
+      assembler.set_time(at.t);
+      for (Eigen::Index c = 0; c < count; ++c)
+        values[c] = channels[static_cast<std::size_t>(c)].evaluate(assembler, at);
+      result.mean += values / all;
+      squares += values.cwiseAbs2() / all;
+      batches.col(std::min(i / batch, kBatches - 1)) += values;
+      result.lowest = result.lowest.cwiseMin(values);
+      result.highest = result.highest.cwiseMax(values);
+    });
+    result.deviation = (squares - result.mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+    for (int b = 0; b < kBatches; ++b) {
+      const int size = b + 1 < kBatches ? batch : all - batch * (kBatches - 1);
+      result.mean_error += (batches.col(b) / size - result.mean).cwiseAbs2();
+    }
+    result.mean_error = kStudent * (result.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
+  } catch (const SolverError& error) {
+    result.reason = error.what();
+  }
+  sweep_.runs.push_back(std::move(result));
+  return false;
+}
+
+void Sweeper::fill_with_runs() {
+  for (std::size_t i = 0; i < options_.speeds.size(); ++i) {
+    if (!tell(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(options_.speeds.size()))) return;
+    if (!stable_at(options_.speeds[i])) run_at(options_.speeds[i]);
+  }
+}
+
+void Sweeper::find_jumps() {
+  for (SweptChange& change : sweep_.changes) {
+    if (change.kind != BranchChange::fold) continue;
+    std::vector<Vector> others;
+    bool ends_stable = false;
+    for (std::size_t b = 0; b < traced_.size(); ++b) {
+      const auto& points = traced_[b].branch.points;
+      BranchTracer tracer = this->tracer(traced_[b].cycles);
+      const int harmonics = family(traced_[b].cycles).harmonics;
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        BranchPoint from = points[i], to = points[i + 1];
+        const auto is_fold = [&](const BranchPoint& point) {
+          return std::abs(point.speed - change.speed) <= kSameFold * change.speed;
+        };
+        const bool own = static_cast<int>(b) == change.branch && (is_fold(from) || is_fold(to));
+        if (own) ends_stable = ends_stable || (is_fold(from) ? to : from).stable;
+        if (own || (from.speed - change.speed) * (to.speed - change.speed) >= 0.0) continue;
+        for (BranchPoint* point : {&from, &to})
+          if (point->harmonics != harmonics) {
+            point->x = family(traced_[b].cycles).balance->resized(point->x, point->harmonics, harmonics);
+            point->harmonics = harmonics;
+          }
+        family(traced_[b].cycles);
+        const auto here = tracer.between(from, to, change.speed);
+        if (here && here->stable) others.push_back(motion_of(traced_[b].cycles, *here).half_range());
+      }
+    }
+    if (ends_stable && others.size() == 1) change.jumps_to = others.front();
+  }
+}
+
+NonlinearSweep Sweeper::run() {
+  start_at(high_);
+  if (tell(0.25)) start_at(low_);
+  for (const double speed : options_.speeds) {
+    if (!any_at(speed) && tell(0.4)) start_at(speed);
+  }
+  if (options_.runs && (stability_ != nullptr || sweep_.branches.empty())) fill_with_runs();
+  for (const double speed : options_.speeds)
+    if (!any_at(speed)) sweep_.unsolved.push_back(speed);
+  // Speeds of runs that had not settled may have got a curve from another run.
+  std::erase_if(sweep_.runs, [&](const SweptRun& run) { return stable_at(run.speed); });
+  find_jumps();
+  return std::move(sweep_);
+}
+
+}  // namespace
+
+NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options) {
+  return Sweeper(system, options).run();
+}
+
+}  // namespace drev

@@ -1,0 +1,118 @@
+#pragma once
+/// Steady periodic vibration over speed of a drivetrain with laws that are no straight lines: meshes with
+/// backlash or a stiffness that follows the phase, polyline springs, laws of one's own.
+///
+/// Motions of a cycle of `turns` turns of the reference shaft, in which everything that acts repeats, by harmonic
+/// balance (Galerkin's, solvers/periodic/law_balance.hpp); curves of motions over the speed by steps along their
+/// arc, through folds (branch_tracer.hpp); stability by the Floquet multipliers of each motion (floquet.hpp). The
+/// curves start at the motion with closed contacts, from the last speed, the first and those between that no
+/// curve has reached. Where no motion that was found is stable, a run in time from the nearest shows what the train does:
+/// a motion of several cycles, which then gets a curve of its own, or none that repeats, whose statistics are
+/// given.
+///
+/// What is not sought: curves that neither closed contacts nor a run leads to. Motions between whole numbers of
+/// cycles do not repeat; they are described by statistics.
+///
+/// Free parts: as in linear_sweep.hpp, what is left over of mean torque is reported, and taken up by `balance` or
+/// by the acceleration of the part.
+///
+/// Refused: loads in time, given motions, general elements.
+///
+/// Errors: of a motion, difference from that with half the harmonics, largest over the cycle and the sections,
+/// beside each section's largest value. Of the speed of a fold or a change of stability, the same difference.
+#include <drev/core/system.hpp>
+
+#include <complex>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace drev {
+
+struct NonlinearSweepOptions {
+  std::vector<double> speeds = {};  ///< of the reference shaft, > 0, ascending, at least two [rad/s]
+  /// Orders whose amplitudes are given, a revolution of the reference shaft; empty: the first 12 of the cycle.
+  std::vector<double> orders = {};
+  std::vector<std::string> sections = {};  ///< as in LinearSweepOptions
+  std::string balance = {};                ///< as in LinearSweepOptions
+  double turns = 0.0;       ///< of the reference shaft in a cycle; 0: the fewest in which everything repeats
+  double tolerance = 1e-5;  ///< of the error at the speeds asked for; 1e-12 to 0.1; missed: the error says so
+  bool runs = true;         ///< runs in time where nothing stable was found
+  int run_cycles = 400;     ///< of a run, half of it for statistics; >= 40
+  std::function<bool(double part)> progress = {};  ///< false: stop
+};
+
+/// One periodic motion. Vectors over the sections.
+struct SweptMotion {
+  double speed = 0.0;   ///< rad/s
+  bool asked = false;   ///< at one of the speeds of the options; else a point of the curve between
+  bool judged = false;  ///< multipliers were computed: models of up to 200 unknowns
+  bool stable = false;
+  double multiplier = 0.0;  ///< largest |Floquet multiplier| over the cycle
+  bool separates = false;   ///< a contact opens in the cycle
+  int harmonics = 0;
+  double error = 0.0;                               ///< relative; NaN at points that were not asked for
+  Vector maximum, minimum, mean;                    ///< maximum and minimum with the mean
+  Vector twist_mean, twist_maximum, twist_minimum;  ///< a law's: of its deflection
+  Vector heat;                                      ///< W
+  Eigen::MatrixXcd amplitude;                       ///< orders x sections, of exp(i order phi)
+  Vector z, v;                                      ///< unknowns and rates where phi = 0, to start a run from
+  Vector left_over;  ///< mean torque, of each part that floats [N m at the reference shaft]
+  Vector half_range() const { return 0.5 * (maximum - minimum); }
+};
+
+struct SweptBranch {
+  double turns = 0.0;                ///< of the reference shaft in the motion's cycle
+  std::vector<SweptMotion> motions;  ///< along the arc
+  bool whole = false;                ///< followed to both ends of the speeds, or closed in itself
+};
+
+enum class BranchChange {
+  fold,             ///< the curve turns back: a train that follows it jumps
+  contact,          ///< contacts begin to open
+  period_doubling,  ///< a curve of motions of twice the cycle branches off
+  torus             ///< a pair of multipliers leaves the unit circle: motions that do not repeat
+};
+const char* to_text(BranchChange change);
+
+struct SweptChange {
+  BranchChange kind = BranchChange::fold;
+  int branch = 0;
+  double speed = 0.0, error = 0.0;  ///< rad/s
+  SweptMotion motion;
+  /// Of a fold at which a stable motion ends: half ranges of the one stable motion at that speed; empty: there is
+  /// none, or more than one.
+  Vector jumps_to;
+};
+
+/// A run in time where no motion that was found is stable. Vectors over the sections, over the last half.
+struct SweptRun {
+  double speed = 0.0;  ///< rad/s
+  int cycles = 0;
+  std::string reason;       ///< why there is none; empty: there is
+  Vector mean, mean_error;  ///< half of the 95 % interval, by batch means
+  Vector deviation, lowest, highest;
+};
+
+struct NonlinearSweep {
+  std::vector<double> speeds, orders;
+  double turns = 0.0;
+  struct Section {
+    std::string name, unit, twist_unit;
+    bool contact = false;
+  };
+  std::vector<Section> sections;
+  std::vector<SweptBranch> branches;
+  std::vector<SweptChange> changes;         ///< by branch, along its arc
+  std::vector<SweptRun> runs;               ///< by speed
+  std::vector<double> unsolved;             ///< speeds at which no periodic motion was found [rad/s]
+  std::vector<std::string> floating_parts;  ///< a node of each
+};
+
+/// Throws ModelError with everything wrong with options and model; SolverError where a static stiffness is singular.
+NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options);
+
+/// The fewest turns of the reference shaft, 20 or a part of them, in which all laws and loads repeat; 0: none.
+double cycle_turns(const System& system);
+
+}  // namespace drev

@@ -1,0 +1,157 @@
+#pragma once
+/// Harmonic balance of a drivetrain in the inputs of its laws alone, over the angle psi = phi/turns of a cycle:
+///
+///   x(psi) = Re sum_n X_n exp(i n psi), n = 0..H        W = w/turns, d/dt = W d/dpsi
+///   R_n = X_n - B_x' S_n^-1 (p_n - B_y Y_n[x]) = 0      S_n = K + i n W C - (n W)^2 M
+///
+/// x: deflections of the laws that are no straight lines, twists of nodes whose loads follow them, deviations of
+/// nodes that a mesh stiffness follows. Everything linear is eliminated, one sparse factorisation a harmonic
+/// (complex_elimination.hpp), so that Newton's matrix has (2H + 1) rows a law, whatever the size of the train.
+/// S_n holds each law at its closed stiffness with a loss factor kLoss, which Y_n is free of again: no harmonic
+/// is at an undamped resonance of the mesh.
+///
+/// Y_n is Galerkin's integral 1/pi int y exp(-i n psi) dpsi, by Gauss's rule of 8 points over panels that end
+/// where a law kinks or jumps: no aliasing, and errors of the low harmonics fall like H^-4 where forces kink,
+/// H^-3 where they jump (sampling leaves N^-2 and N^-1). Tangents: slopes of the laws, the same integrals.
+///
+/// Parts that float: mean_equilibrium.hpp. Source: M. Krack, J. Gross, Harmonic Balance for Nonlinear Vibration
+/// Problems, Springer, 2019, chapters 2 and 3.
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <optional>
+
+#include "solvers/periodic/mean_equilibrium.hpp"
+#include "solvers/periodic/order_content.hpp"
+
+namespace drev {
+
+class LawBalance {
+ public:
+  static constexpr double kLoss = 0.2;
+  static constexpr int kPoints = 8;
+  using Complex = std::complex<double>;
+
+  /// turns: of the reference shaft in a cycle. What cannot be taken goes to findings.
+  LawBalance(const System& system, double turns, const std::string& balance, std::vector<Finding>& findings);
+
+  const System& system() const { return system_; }
+  double turns() const { return turns_; }
+  int inputs() const { return static_cast<int>(inputs_.size()); }
+  int harmonics() const { return harmonics_; }
+  /// Number of unknowns: of each input X_0, Re X_1, Im X_1, ...
+  Eigen::Index size() const { return inputs() * (2 * harmonics_ + 1); }
+  void set_harmonics(int harmonics);
+  /// X of another number of harmonics: cut, or with zeros.
+  Vector resized(const Vector& x, int from, int to) const;
+
+  /// X where every contact is closed on the flank that the mean load asks for. False: S is singular.
+  bool linear_start(double speed, Vector& x);
+  /// R at the speed [rad/s, of the reference shaft]. False: S is singular, or a force is not finite.
+  bool residual(const Vector& x, double speed, Vector& r);
+  /// dR/dX, of the point at which residual() was last. dR/dw by differences.
+  const Eigen::MatrixXd& tangent();
+  bool speed_slope(const Vector& x, double speed, Vector& r_w);
+  /// From a solution with H harmonics, in place one with 2 H: the upper half harmonic by harmonic, the lower by
+  /// the tangent. False: that does not settle. harmonics() is 2 H then.
+  bool double_harmonics(double speed, Vector& x);
+
+  /// A stretch of the cycle, between two kinks at most, and the slopes of the terms at its points.
+  struct Panel {
+    double from = 0.0, to = 0.0;
+    bool constant = false;  ///< every slope is, and all terms' slopes are the same as at the first point
+  };
+  struct Slopes {
+    double x = 0.0, rate = 0.0, angle = 0.0;
+    bool operator==(const Slopes&) const = default;
+  };
+  /// Of the point at which residual() was last.
+  const std::vector<Panel>& panels() const { return panels_; }
+  /// Of a term at a point of a panel: dy/dx, dy/dx', dy/dangle.
+  const Slopes& slopes(std::size_t panel, int point, std::size_t term) const {
+    return slopes_[(panel * kPoints + static_cast<std::size_t>(point)) * terms_.size() + term];
+  }
+  /// A law, or a load that follows its node.
+  struct Term {
+    const ScalarTerm* law = nullptr;
+    const LoadTerm* load = nullptr;
+    int x = 0, angle = -1;         ///< inputs; -1: none, or it does not deviate
+    std::vector<Entry> row;        ///< of x and of the force over the unknowns
+    std::vector<Entry> angle_row;  ///< of the node that it follows
+    double stiffness = 0.0;        ///< closed, in S
+    std::vector<double> kinks;
+    std::optional<Gap> gap;
+  };
+  const std::vector<Term>& terms() const { return terms_; }
+  /// No law with a gap leaves its flank, in the point at which residual() was last.
+  bool closed() const { return closed_; }
+
+  /// The whole motion: unknowns x (H + 1).
+  bool motion(const Vector& x, double speed, Eigen::MatrixXcd& z);
+  /// What is left over of mean torque, of each floating part, in the point at which motion() was last.
+  const Vector& left_over() const { return left_over_; }
+  const MeanEquilibrium& mean() const { return *mean_; }
+  /// A term's law where its input and angle are those of X at psi.
+  ScalarResponse respond(const Term& term, const Vector& x, double speed, double psi) const;
+  /// x of a law at psi, less its offset e.
+  double deflection(const Term& term, const Vector& x, double speed, double psi) const {
+    return value(x, term.x, speed, psi).x - offset(term, psi);
+  }
+  /// The inputs' values in a state z.
+  Vector inputs_of(const Vector& z) const;
+  /// Y_n of a term, in the point at which residual() was last.
+  Complex force_line(std::size_t term, const Vector& x, int n) const;
+  /// Re sum_n X_n exp(i n psi) of an input, and its rate.
+  struct Value {
+    double x = 0.0, rate = 0.0;
+  };
+  Value value(const Vector& x, int input, double speed, double psi) const;
+  /// Mean power that a law turns into heat, in the point at which residual() was last [W].
+  double heat(std::size_t term) const { return heat_[static_cast<Eigen::Index>(term)]; }
+  /// -1 where the reference shaft turns backwards, else 1.
+  double direction() const { return direction_; }
+
+ private:
+  double offset(const Term& term, double psi) const;
+  void find_terms(std::vector<Finding>& findings);
+  bool set_speed(double speed);
+  ScalarResponse respond(const Term& term, double x, double rate, double angle, double speed,
+                         double psi) const;
+  void find_panels(const Vector& x, double speed);
+  void add_kinks(const Vector& x, double speed, std::vector<double>& cuts) const;
+  void add_knots(const Vector& x, double speed, std::vector<double>& cuts) const;
+  void known_knots();
+  void find_forces(const Vector& x, double speed);
+  Complex line(const Vector& x, int input, int n) const;
+  void law_slopes_over(std::size_t term, Eigen::MatrixXcd& lines) const;
+  bool stiffness(int n, double speed);
+
+  const System& system_;
+  double turns_, direction_ = 1.0;
+  Assembler assembler_;
+  std::optional<OrderContent> content_;
+  std::vector<std::vector<Entry>> load_rows_;
+  std::vector<Term> terms_;
+  std::vector<std::vector<Entry>> inputs_;
+  int harmonics_ = 0;
+  Vector mass_, damping_, stiffness_, loss_, damping_here_, stiffness_here_;
+  ComplexElimination elimination_;
+  std::optional<MeanEquilibrium> mean_;
+  std::vector<double> fixed_knots_;  // psi at which an offset kinks
+  // Of the speed at which set_speed() was last: B_x' S^-1 p and B_x' S^-1 B_y of each harmonic.
+  double speed_ = 0.0;
+  int known_harmonics_ = -1;
+  std::vector<Eigen::VectorXcd> known_;
+  std::vector<Eigen::MatrixXcd> compliance_;
+  // Of the point at which residual() was last.
+  std::vector<Panel> panels_;
+  std::vector<Slopes> slopes_;
+  Eigen::MatrixXcd forces_;  // terms x (H + 1), without the closed stiffness
+  Vector heat_, left_over_;
+  bool closed_ = true;
+  Eigen::MatrixXd tangent_;
+  Eigen::MatrixXd table_;  // cosines and sines at the points of even panels
+  int even_ = 0;           // panels of the table
+};
+
+}  // namespace drev

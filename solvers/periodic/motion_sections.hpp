@@ -1,0 +1,37 @@
+#pragma once
+/// What a periodic motion of LawBalance comes to in sections: extremes over the cycle, means, orders, heat.
+#include <functional>
+
+#include "solvers/periodic/law_balance.hpp"
+#include "solvers/periodic/section_rows.hpp"
+
+namespace drev {
+
+class MotionSections {
+ public:
+  static constexpr int kSamples = 256;  ///< of a cycle, at which two motions are compared
+
+  explicit MotionSections(std::vector<SectionRows> sections) : sections_(std::move(sections)) {}
+  const std::vector<SectionRows>& sections() const { return sections_; }
+
+  /// Over sections. maximum, minimum: with the mean, as those of the twist (the
+  /// deflection of a law).
+  struct Figures {
+    Vector maximum, minimum, mean, twist_mean, twist_maximum, twist_minimum, heat;
+    Eigen::MatrixXcd amplitude;  ///< lines x sections
+    Eigen::MatrixXd samples;     ///< kSamples x sections, evenly over the cycle
+    Vector z, v, left_over;      ///< where psi = 0
+    bool separates = false;
+  };
+  /// lines: numbers of harmonics whose amplitudes are wanted. False: no motion.
+  bool find(LawBalance& balance, const Vector& x, double speed, const std::vector<int>& lines,
+            Figures& figures) const;
+
+ private:
+  std::vector<SectionRows> sections_;
+};
+
+/// Largest difference of two motions, over the cycle and the sections, beside each section's largest value.
+double largest_difference(const MotionSections::Figures& a, const MotionSections::Figures& b);
+
+}  // namespace drev

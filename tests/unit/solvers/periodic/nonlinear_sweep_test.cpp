@@ -1,0 +1,281 @@
+// Sweeps of nonlinear models: branches, folds, stability, tongues, runs, free trains. Expected values come from
+// programs that put closed-form pieces together (shooting, saltation), to 1e-10.
+// Covers solvers/periodic/law_balance.hpp, mean_equilibrium.hpp, motion_sections.hpp, section_rows.hpp,
+// branch_tracer.hpp, floquet.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and solvers/at_speed.hpp.
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/at_speed.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// x'' + c x' + k(t) dz(x) = mean + error w^2 cos w t, half gap 1, x = wheel - error cos w t.
+struct Pair {
+  double damping = 0.1, mean = 0.1, error = 0.05, backlash = 2.0;
+  MeshStiffness stiffness = 1.0;
+
+  GearMesh::Params mesh() const {
+    GearMesh::Params p{.base_radius_1 = 1.0,
+                       .base_radius_2 = 1.0,
+                       .teeth_1 = 1,
+                       .teeth_2 = 1,
+                       .stiffness = stiffness,
+                       .normal_backlash = backlash,
+                       .damping = damping,
+                       .damping_law = MeshDamping::always};
+    if (error != 0.0) p.transmission_error = std::vector<Harmonic>{{1.0, error, 0.0}};
+    return p;
+  }
+  System build() const {
+    Model m("gear pair");
+    m.add_node("pinion");
+    m.add_node("wheel");
+    m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
+    m.add<GearMesh>("mesh", {"pinion", "wheel"}, mesh());
+    m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = mean, .twist_feedback = false});
+    m.constant_speed("pinion", 1.0);
+    return m.build();
+  }
+  /// The same relative motion of two free inertias 2, torques `driving` and `mean`.
+  System free(double driving) const {
+    Model m("free pair");
+    m.add_node("pinion");
+    m.add_node("wheel");
+    m.add<Inertia>("J_1", {"pinion"}, {.inertia = 2.0});
+    m.add<Inertia>("J_2", {"wheel"}, {.inertia = 2.0});
+    m.add<GearMesh>("mesh", {"pinion", "wheel"}, mesh());
+    m.add<EngineOrderTorque>("engine", {"pinion"}, {.mean = driving, .twist_feedback = false});
+    m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = mean, .twist_feedback = false});
+    m.set_reference("pinion", constant_speed(1.0));
+    return m.build();
+  }
+};
+
+std::vector<double> even(double low, double high, int count) {
+  std::vector<double> all;
+  for (int i = 0; i < count; ++i) all.push_back(low + (high - low) * i / (count - 1));
+  return all;
+}
+
+std::vector<SweptChange> changes_of(const NonlinearSweep& sweep, BranchChange kind) {
+  std::vector<SweptChange> found;
+  for (const SweptChange& change : sweep.changes)
+    if (change.kind == kind) found.push_back(change);
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  return found;
+}
+
+/// Motions at a speed that was asked for.
+std::vector<SweptMotion> motions_at(const NonlinearSweep& sweep, double speed) {
+  std::vector<SweptMotion> found;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions)
+      if (motion.asked && std::abs(motion.speed - speed) < 1e-12) found.push_back(motion);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stability", "[nonlinear_sweep]") {
+  struct Row {
+    double speed, x, v, multiplier, low, high;
+  };
+  std::vector<Row> rows;
+  std::set<double> speeds{0.62, 1.58};
+  std::ifstream file(DREV_SOURCE_DIR "/tests/published/data/gear_pair_branch.csv");
+  std::string line;
+  std::getline(file, line);
+  for (int i = 0; std::getline(file, line); ++i) {
+    if (i % 6 != 0) continue;
+    for (char& c : line)
+      if (c == ',') c = ' ';
+    std::istringstream words(line);
+    Row row{};
+    std::string contact;
+    words >> row.speed >> row.x >> row.v >> row.multiplier >> contact >> row.low >> row.high;
+    if (row.speed < 0.62 || row.speed > 1.58) continue;
+    rows.push_back(row);
+    speeds.insert(row.speed);
+  }
+  REQUIRE(rows.size() > 25);
+  const NonlinearSweep sweep =
+      sweep_nonlinear(Pair{}.build(), {.speeds = {speeds.begin(), speeds.end()}, .tolerance = 1e-5});
+  CHECK(sweep.turns == 1.0);
+  CHECK(sweep.unsolved.empty());
+  REQUIRE(sweep.branches.size() == 1);
+  CHECK(sweep.branches[0].whole);
+  int unstable = 0;
+  for (const Row& row : rows) {
+    INFO("w = " << row.speed << ", x = " << row.x);
+    const SweptMotion* nearest = nullptr;
+    const std::vector<SweptMotion> here = motions_at(sweep, row.speed);
+    for (const SweptMotion& motion : here)
+      if (nearest == nullptr || std::abs(motion.z[0] - 0.05 - row.x) < std::abs(nearest->z[0] - 0.05 - row.x))
+        nearest = &motion;
+    REQUIRE(nearest != nullptr);
+    // Stated errors hold: of the mesh force, here as large as the penetration. The table has 11 digits.
+    const double error = nearest->error * std::max(nearest->maximum[0], -nearest->minimum[0]) + 2e-10;
+    CHECK(nearest->error < 1e-5);
+    CHECK(std::abs(nearest->z[0] - 0.05 - row.x) <= error);
+    CHECK(std::abs(nearest->v[0] - row.v) <= 10.0 * error);
+    // The table's extremes are of samples, inside the true ones.
+    CHECK(nearest->twist_maximum[0] >= row.high - error);
+    CHECK(nearest->twist_minimum[0] <= row.low + error);
+    CHECK(nearest->twist_maximum[0] - row.high < 5e-4);
+    CHECK(row.low - nearest->twist_minimum[0] < 5e-4);
+    CHECK(nearest->multiplier == Approx(row.multiplier).margin(1e-4));
+    CHECK(nearest->stable == (row.multiplier < 1.0));
+    CHECK(nearest->separates == (row.low < 1.0));
+    unstable += nearest->stable ? 0 : 1;
+  }
+  CHECK(unstable > 3);
+  const std::vector<SweptChange> folds = changes_of(sweep, BranchChange::fold);
+  REQUIRE(folds.size() == 2);
+  CHECK(folds[0].speed == Approx(0.7080316187).margin(1e-9));
+  CHECK(folds[1].speed == Approx(0.8284639844).margin(1e-9));
+  for (const SweptChange& fold : folds) CHECK(fold.error < 1e-8);
+  // A train that speeds up jumps from a swing of .112 to .268, one that slows down from .321 to .050.
+  REQUIRE(folds[1].jumps_to.size() == 1);
+  const double swing = 0.5 * (folds[1].motion.twist_maximum[0] - folds[1].motion.twist_minimum[0]);
+  CHECK(swing > 0.112);  // at .8280, below the fold
+  CHECK(swing < 0.12);
+  const std::vector<SweptChange> opens = changes_of(sweep, BranchChange::contact);
+  REQUIRE(opens.size() == 2);
+  // Where the linear amplitude is the mean deflection: 0.75 u^2 - 1.99 u + 1 = 0, u = w^2.
+  const double root = std::sqrt(1.99 * 1.99 - 3.0);
+  CHECK(opens[0].speed == Approx(std::sqrt((1.99 - root) / 1.5)).margin(1e-7));
+  CHECK(opens[1].speed == Approx(std::sqrt((1.99 + root) / 1.5)).margin(1e-7));
+}
+
+TEST_CASE("Gear pair, 60 speeds: every one is solved", "[nonlinear_sweep]") {
+  const NonlinearSweep sweep =
+      sweep_nonlinear(Pair{.damping = 0.06, .mean = 0.2, .error = 0.08}.build(),
+                      {.speeds = even(0.7, 1.1, 60), .tolerance = 1e-3, .runs = false});
+  CHECK(sweep.unsolved.empty());
+  for (const double speed : sweep.speeds) CHECK_FALSE(motions_at(sweep, speed).empty());
+}
+
+TEST_CASE("Meissner's equation: tongues are located", "[nonlinear_sweep]") {
+  struct Row {
+    double damping, low, high;
+  };
+  for (const Row& row :
+       {Row{0.0, 1.8710541957855, 2.1252722146407}, {0.04, 1.8770879929279, 2.1184359568012}}) {
+    const Pair pair{.damping = row.damping,
+                    .mean = 1.0,
+                    .error = 0.0,
+                    .backlash = 0.0,
+                    .stiffness = MeshStiffness::step(0.8, 1.2, 1.5)};
+    const NonlinearSweep sweep =
+        sweep_nonlinear(pair.build(), {.speeds = {1.8, 2.0, 2.2}, .tolerance = 1e-3, .runs = false});
+    const std::vector<SweptChange> ends = changes_of(sweep, BranchChange::period_doubling);
+    INFO("damping " << row.damping);
+    REQUIRE(ends.size() == 2);
+    CHECK(ends[0].speed == Approx(row.low).margin(1e-9));
+    CHECK(ends[1].speed == Approx(row.high).margin(1e-9));
+    REQUIRE(motions_at(sweep, 2.0).size() == 1);
+    CHECK_FALSE(motions_at(sweep, 2.0)[0].stable);
+    // The product of exponentials, by a separate program.
+    if (row.damping == 0.0)
+      CHECK(motions_at(sweep, 2.0)[0].multiplier == Approx(1.22089514416751).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("Where single periods are unstable a run finds the motion of two", "[nonlinear_sweep]") {
+  const Pair pair{.damping = 0.06,
+                  .mean = 1.0,
+                  .error = 0.0,
+                  .stiffness = MeshStiffness::step(1.0 / 1.3, 1.5 / 1.3, 1.6)};
+  const NonlinearSweep sweep =
+      sweep_nonlinear(pair.build(), {.speeds = {1.98, 2.0, 2.15}, .tolerance = 1e-4});
+  REQUIRE(sweep.branches.size() == 2);
+  CHECK(sweep.branches[1].turns == 2.0);
+  CHECK(sweep.runs.empty());
+  const std::vector<SweptMotion> here = motions_at(sweep, 2.0);
+  REQUIRE(here.size() >= 2);
+  CHECK_FALSE(here[0].stable);
+  CHECK(here[1].stable);
+  // At the start of either of the two periods.
+  CHECK(here[1].twist_maximum[0] == Approx(3.3878499575).margin(4e-4));
+  const std::vector<SweptChange> doubles = changes_of(sweep, BranchChange::period_doubling);
+  REQUIRE_FALSE(doubles.empty());
+  CHECK(doubles.back().speed == Approx(2.096347210241158).margin(1e-9));
+}
+
+TEST_CASE("Where nothing periodic is stable a run's statistics are given", "[nonlinear_sweep]") {
+  // Lyapunov exponent 0.109; mean of the deflection .3926 +- .0039, of the load .1 exactly.
+  const NonlinearSweep sweep = sweep_nonlinear(
+      Pair{.error = 0.5}.build(),
+      {.speeds = {1.0, 1.001}, .sections = {"mesh.force_N", "wheel.angle_rad"}, .tolerance = 1e-2});
+  REQUIRE(sweep.runs.size() == 2);
+  const SweptRun& run = sweep.runs.front();
+  CHECK(run.reason.empty());
+  CHECK(run.cycles == 200);
+  CHECK(std::abs(run.mean[0] - 0.1) <= 2.0 * run.mean_error[0]);
+  CHECK(std::abs(run.mean[1] - 0.3926) <= 2.0 * run.mean_error[1] + 0.0039);
+  CHECK(run.mean_error[1] < 0.2);
+  CHECK(run.highest[0] > 0.5);
+}
+
+TEST_CASE("Free pair: the same folds; torque that does not balance is told", "[nonlinear_sweep]") {
+  const Pair pair;
+  const std::vector<double> speeds{0.80, 0.84};
+  const NonlinearSweep balanced = sweep_nonlinear(pair.free(0.1), {.speeds = speeds, .tolerance = 1e-3});
+  const std::vector<SweptChange> folds = changes_of(balanced, BranchChange::fold);
+  REQUIRE(folds.size() == 1);
+  CHECK(folds[0].speed == Approx(0.8284639844).margin(1e-9));
+  REQUIRE(motions_at(balanced, 0.80).size() >= 2);
+  CHECK(std::abs(motions_at(balanced, 0.80)[0].left_over[0]) < 1e-12);
+  CHECK(motions_at(balanced, 0.80)[0].mean[0] == Approx(0.1).margin(1e-9));
+  // 0.3 against 0.1: 0.2 is left over, and half of it goes through the mesh.
+  const NonlinearSweep off = sweep_nonlinear(pair.free(0.3), {.speeds = {1.5, 1.6}, .tolerance = 1e-3});
+  REQUIRE_FALSE(motions_at(off, 1.5).empty());
+  CHECK(motions_at(off, 1.5)[0].left_over[0] == Approx(0.2).epsilon(1e-9));
+  CHECK(motions_at(off, 1.5)[0].mean[0] == Approx(0.2).epsilon(1e-9));
+  const NonlinearSweep held =
+      sweep_nonlinear(pair.free(0.3), {.speeds = {1.5, 1.6}, .balance = "wheel", .tolerance = 1e-3});
+  CHECK(motions_at(held, 1.5)[0].mean[0] == Approx(0.3).epsilon(1e-9));
+}
+
+TEST_CASE("A motion of the sweep is a start from which a run repeats", "[nonlinear_sweep]") {
+  const System system = Pair{}.build();
+  const NonlinearSweep sweep = sweep_nonlinear(system, {.speeds = {0.8, 0.85}, .tolerance = 1e-8});
+  for (const SweptMotion& motion : motions_at(sweep, 0.8)) {
+    const System here = at_speed(system, 0.8);
+    State state = State::initial(here);
+    state.z = motion.z;
+    state.v = motion.v;
+    REQUIRE(propagate(here, {.tolerance = 1e-12, .t_end = kTwoPi / 0.8}, state).ok());
+    CHECK(state.z[0] == Approx(motion.z[0]).margin(5e-8));
+    CHECK(state.v[0] == Approx(motion.v[0]).margin(5e-8));
+  }
+}
+
+TEST_CASE("Faults of a nonlinear sweep are listed at once", "[nonlinear_sweep]") {
+  try {
+    sweep_nonlinear(Pair{}.build(), {.speeds = {2.0}, .sections = {"mess.force_N"}, .tolerance = 2.0});
+    FAIL("was taken");
+  } catch (const ModelError& error) {
+    CHECK(error.findings().size() == 3);
+  }
+  Model m("linear");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  m.add<GroundSpring>("k", {"a"}, {.stiffness = 1.0});
+  m.set_reference("a", constant_speed(1.0));
+  CHECK_THROWS_AS(sweep_nonlinear(m.build(), {.speeds = {1.0, 2.0}}), ModelError);
+  CHECK_THROWS_AS(at_speed(m.build(), 0.0), ModelError);
+  CHECK(cycle_turns(Pair{}.build()) == 1.0);
+}
