@@ -19,6 +19,9 @@ const std::vector<CommandEntry>& commands() {
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
   static const OptionEntry sections{"--record", "CHANNEL,...",
                                     "Sections; default: every torque and force of an element", commas};
+  static const OptionEntry sweep_report{
+      "--report", "FILE",
+      "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, criticals, Campbell diagram"};
   static const std::vector<CommandEntry> table{
       {.name = "run",
        .summary = "Simulates a model in time, or several, and prints what it found",
@@ -78,6 +81,7 @@ const std::vector<CommandEntry>& commands() {
                     "Where the mean torque that is left over is taken up; default: nowhere"},
                    {"--absolute-sum", "", "Sums of the orders' amplitudes without their phases, too", none},
                    {"--out", "DIR", "Creates DIR with sweep.csv, orders.csv, criticals.csv and summary.json"},
+                   sweep_report,
                    run,
                    plugin},
        .footer = kSweepExamples,
@@ -89,6 +93,7 @@ const std::vector<CommandEntry>& commands() {
                    linear,
                    sections,
                    {"--out", "DIR", "Creates DIR with modes.csv, criticals.csv and summary.json"},
+                   sweep_report,
                    run,
                    plugin},
        .footer = kCampbellExamples,

@@ -1,12 +1,16 @@
 #include <drev/core/units.hpp>
 
 #include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
+#include "app/report/report_file.hpp"
+#include "app/report/report_page.hpp"
+#include "app/report/sweep_report.hpp"
 
 namespace drev::app {
 
@@ -29,14 +33,32 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
   if (const auto out = line.option("--out"); out && model)
     for (const std::string& name : written)
       check_output("--out", *out + name, model->model_case.files, findings);
+  if (const auto report = line.option("--report")) {
+    if (const auto why = why_no_report(*report))
+      findings.push_back({kCommandLine, "--report", *report, "", *why});
+    if (model) check_output("--report", *report, model->model_case.files, findings);
+  }
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), std::move(options), std::move(speeds_rpm),
           line.options.contains("--absolute-sum")};
 }
 
+std::string words_of(const CommandLine& line) {
+  std::string words = std::string("drev ") + line.command->name + " " + line.model;
+  for (const auto& [option, values] : line.options) {
+    if (option == "--out" || option == "--report" || option == "--plugin") continue;
+    words += " " + option;
+    for (const OptionEntry& entry : line.command->options)
+      if (entry.name == option && entry.values != OptionEntry::Values::none) words += " " + join(values, ",");
+  }
+  return words;
+}
+
 int sweep_command(const CommandLine& line) {
   const SweepRequest request =
       request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
+  std::optional<ReportFile> report;
+  if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (const auto out = line.option("--out")) {
     create_directory(*out);
@@ -45,6 +67,10 @@ int sweep_command(const CommandLine& line) {
     write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
     write_file(*out, "summary", "json", json_text(sweep_object(request, sweep)));
   }
+  if (report)
+    report->commit(report_page(
+        {block_text(sweep_report_data(request, sweep, "vibration by orders over speed", words_of(line)))},
+        ReportPage::sweep));
   print(line.json ? json_text(sweep_object(request, sweep)) : sweep_as_text(request, sweep));
   return kSuccess;
 }
