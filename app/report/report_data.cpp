@@ -25,6 +25,7 @@ constexpr double kAboveSpeed = 40.0;  // or to this order, where that is higher
 std::string command_of(const RunRequest& request, const RunResult& result) {
   const Method& method = result.method;
   std::string text = "drev run " + request.words + model_options(request.model.parameters);
+  if (request.duration) text += " --duration " + to_text(*request.duration);
   if (request.start != Start::rest) text += std::string(" --start ") + to_text(request.start);
   if (request.settle) text += " --settle " + (request.settle->time ? to_text(*request.settle->time) : "auto");
   text += " --method " + method.name;

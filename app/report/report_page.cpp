@@ -11,7 +11,7 @@ namespace drev::data {
 extern const std::string_view report_html, report_css, dygraph_css, dygraph_js, report_js_data,
     report_js_format, report_js_page, report_js_train, report_js_charts, report_js_save, report_js_bars,
     report_js_tables, report_js_modes, report_js_time, report_js_spectra, report_js_main, report_js_sweep,
-    report_js_sweep_main;
+    report_js_sweep_main, report_js_class;
 }  // namespace drev::data
 
 namespace drev::app {
@@ -29,6 +29,17 @@ struct PageParts {
 };
 
 PageParts parts_of(ReportPage kind) {
+  if (kind == ReportPage::judged)
+    return {{{"judgement", "Judgement"},
+             {"masselastic", "Mass-elastic system"},
+             {"figures", "Vibration"},
+             {"speeds", "Vibration over speed"},
+             {"orders", "Orders at a speed"},
+             {"campbell", "Campbell diagram"},
+             {"rules", "Rules, and what is not judged"},
+             {"inputs", "Inputs"}},
+            {data::report_js_format, data::report_js_page, data::report_js_train, data::report_js_save,
+             data::report_js_charts, data::report_js_bars, data::report_js_sweep, data::report_js_class}};
   if (kind == ReportPage::sweep)
     return {
         {{"figures", "Results"},
@@ -51,8 +62,8 @@ PageParts parts_of(ReportPage kind) {
            {"method", "Method"},
            {"inputs", "Inputs"}},
           {data::report_js_format, data::report_js_data, data::report_js_page, data::report_js_train,
-           data::report_js_save, data::report_js_charts, data::report_js_tables, data::report_js_modes,
-           data::report_js_time, data::report_js_spectra, data::report_js_main}};
+           data::report_js_save, data::report_js_charts, data::report_js_bars, data::report_js_tables,
+           data::report_js_modes, data::report_js_time, data::report_js_spectra, data::report_js_main}};
 }
 
 /// Replaces the first marker {{name}} of the page's text.

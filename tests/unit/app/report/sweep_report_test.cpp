@@ -11,16 +11,15 @@
 using drev::test::contains;
 using drev::test::drev_command;
 using drev::test::read_file;
-using Json = nlohmann::json;
 
 namespace {
 
 const std::string kEngineFile = DREV_SOURCE_DIR "/models/engine/engine.toml";
 
 /// The base64 text of numbers, as the page holds them.
-std::string as_floats(const Json& values) {
+std::string as_floats(const nlohmann::json& values) {
   std::vector<float> list;
-  for (const Json& value : values) list.push_back(value.get<float>());
+  for (const nlohmann::json& value : values) list.push_back(value.get<float>());
   return drev::app::base64(list);
 }
 
@@ -38,24 +37,25 @@ TEST_CASE("The report of a sweep holds what its JSON says", "[sweep][report]") {
       CHECK_FALSE(contains(page, marker));
     const std::vector<std::string> blocks = drev::app::blocks_of(page);
     REQUIRE(blocks.size() == 1);
-    const Json data = Json::parse(blocks.front());
-    const Json json =
-        Json::parse(drev_command({"sweep", kEngineFile, "--speeds", "600:50:1000", "--json"}).out);
-    const Json& sweep = data.at("sweeps").at(0);
+    const nlohmann::json data = nlohmann::json::parse(blocks.front());
+    const nlohmann::json json =
+        nlohmann::json::parse(drev_command({"sweep", kEngineFile, "--speeds", "600:50:1000", "--json"}).out);
+    const nlohmann::json& sweep = data.at("sweeps").at(0);
     CHECK(data.at("command") == "drev " + command + " " + kEngineFile + " --speeds 600:50:1000");
     CHECK(sweep.at("speeds_rpm") == json.at("speeds_rpm"));
     CHECK(sweep.at("criticals") == json.at("criticals"));
     REQUIRE(sweep.at("sections").size() == json.at("sections").size());
     for (std::size_t s = 0; s < json.at("sections").size(); ++s) {
-      const Json &drawn = sweep["sections"][s], &section = json["sections"][s];
+      const nlohmann::json &drawn = sweep["sections"][s], &section = json["sections"][s];
       CHECK(drawn.at("name") == section.at("name"));
       CHECK(drawn.at("half_range") == as_floats(section.at("half_range")));
-      Json amplitudes = Json::array();
-      for (const Json& order : section.at("amplitude"))
-        for (const Json& value : order) amplitudes.push_back(value);
+      nlohmann::json amplitudes = nlohmann::json::array();
+      for (const nlohmann::json& order : section.at("amplitude"))
+        for (const nlohmann::json& value : order) amplitudes.push_back(value);
       CHECK(drawn.at("amplitude") == as_floats(amplitudes));
       double largest = 0.0;
-      for (const Json& value : section.at("half_range")) largest = std::max(largest, value.get<double>());
+      for (const nlohmann::json& value : section.at("half_range"))
+        largest = std::max(largest, value.get<double>());
       CHECK(drawn.at("peaks").at(0).at("half_range").get<double>() >= largest);
     }
     CHECK(data.at("campbell").at("modes").size() == 6);
