@@ -5,12 +5,15 @@
 #include <drev/solvers/start.hpp>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace drev {
+
+struct Strength;
 
 /// From when on figures are taken.
 struct Settle {
@@ -35,6 +38,9 @@ struct ModelCase {
   /// asked for.
   Start start = Start::rest;
   std::optional<Settle> settle = {};
+  /// What its sections may carry (drev/solvers/strength/section_strength.hpp), for `drev class` and load cycles;
+  /// null: not known.
+  std::shared_ptr<const Strength> strength = {};
 };
 
 struct ModelEntry {

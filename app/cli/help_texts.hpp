@@ -75,6 +75,20 @@ inline constexpr const char* kCampbellExamples =
     "\n"
     "relative: amplitude of the order in that section over that of the largest critical.\n";
 
+inline constexpr const char* kClassExamples =
+    "Examples:\n"
+    "  drev class genset.toml --speeds 600:10:1800\n"
+    "  drev class genset.toml --speeds 600:10:1800 --report tvc.pdf --out result\n"
+    "\n"
+    "What sections may carry stands in the model file, [class]: docs/class_report.md.\n";
+
+inline constexpr const char* kImportExamples =
+    "Examples:\n"
+    "  drev import assembly.json --out train.toml\n"
+    "  drev import mass_elastic.csv --out train.toml\n"
+    "\n"
+    "What could not be taken over is said on standard error and in the file's note.\n";
+
 inline constexpr const char* kChartExamples =
     "Examples:\n"
     "  drev chart camshaft --set drive=held\n"

@@ -9,12 +9,17 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
+#include "app/report/report_file.hpp"
+#include "app/report/report_page.hpp"
+#include "app/report/sweep_report.hpp"
 #include "app/results/campbell_result.hpp"
 
 namespace drev::app {
 
 int campbell_command(const CommandLine& line) {
   const SweepRequest request = request_sweep(line, {"/modes.csv", "/criticals.csv", "/summary.json"});
+  std::optional<ReportFile> report;
+  if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (!sweep.modes_note.empty())
     throw SolverError("campbell of " + request.model.entry->name + ": " + sweep.modes_note);
@@ -24,6 +29,10 @@ int campbell_command(const CommandLine& line) {
     write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
     write_file(*out, "summary", "json", json_text(campbell_object(request, sweep)));
   }
+  if (report)
+    report->commit(report_page(
+        {block_text(sweep_report_data(request, sweep, "Campbell diagram and criticals", words_of(line)))},
+        ReportPage::sweep));
   print(line.json ? json_text(campbell_object(request, sweep)) : campbell_as_text(request, sweep));
   return kSuccess;
 }

@@ -12,6 +12,8 @@ int run_command(const CommandLine& line);
 int modes_command(const CommandLine& line);
 int sweep_command(const CommandLine& line);
 int campbell_command(const CommandLine& line);
+int class_command(const CommandLine& line);
+int import_command(const CommandLine& line);
 int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
 int study_command(const CommandLine& line);

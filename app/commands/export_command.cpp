@@ -6,7 +6,7 @@
 #include "app/cli/model_option.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
-#include "app/model_file/export.hpp"
+#include "app/model_file/writing/export.hpp"
 
 namespace drev::app {
 

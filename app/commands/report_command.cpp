@@ -38,6 +38,11 @@ std::string run_page(const std::string& run) {
   return std::filesystem::is_directory(run) ? run + "/report.html" : run;
 }
 
+bool is_sweep(const std::string& block) {
+  const Json data = Json::parse(block, nullptr, false);
+  return data.is_object() && data.value("kind", "") == "sweep";
+}
+
 /// The data block of one run, written anew; empty, and a finding, if there is none.
 std::string block_of(const std::string& named, std::vector<Finding>& findings) {
   const std::string run = run_page(named), partial = run != named ? partial_run(named) : "";
@@ -53,6 +58,8 @@ std::string block_of(const std::string& named, std::vector<Finding>& findings) {
                       !readable && !partial.empty() ? "does not exist: " + partial
                       : !readable                   ? "is no file that can be read"
                       : blocks.size() > 1           ? "compares two runs already; give each run's own report"
+                      : blocks.size() == 1 && is_sweep(blocks.front())
+                          ? "is the report of a sweep; print it from the browser, or write it to a .pdf"
                       : blocks.size() == 1 ? "is damaged: the data of its run are cut off or changed; write "
                                              "the report anew with drev run"
                                            : "is no report of drev run"});

@@ -38,13 +38,15 @@ double round_number(double x) {
 
 void check_channels(const ModelRequest& model, const CommandLine& line, bool all_parameters_right,
                     std::vector<Finding>& findings) {
-  if (!line.list("--record")) return;
-  try {
-    find_channels(model.system, *line.list("--record"));
-  } catch (const ModelError& error) {
-    for (Finding finding : error.findings()) {
-      if (!all_parameters_right) finding.range += " (with the parameters that are right)";
-      findings.push_back(std::move(finding));
+  for (const char* option : {"--record", "--rainflow"}) {
+    if (!line.list(option)) continue;
+    try {
+      find_channels(model.system, *line.list(option));
+    } catch (const ModelError& error) {
+      for (Finding finding : error.findings()) {
+        if (!all_parameters_right) finding.range += " (with the parameters that are right)";
+        findings.push_back(std::move(finding));
+      }
     }
   }
 }
@@ -215,6 +217,11 @@ RunRequest request_run(const CommandLine& given) {
   if (model && model->file) take_file_options(*model, line);
   const bool parameters_right = findings.size() == before;
 
+  if (const auto text = line.option("--duration")) {
+    constexpr Range kDuration{1e-12, 1e12};
+    const double asked = read_time("--duration", *text, kDuration, "", findings);
+    if (model && kDuration.holds(asked)) model->model_case.duration = asked;
+  }
   const double duration = model ? model->model_case.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
@@ -253,7 +260,9 @@ RunRequest request_run(const CommandLine& given) {
           line.option("--every") ? std::optional(every) : std::nullopt,
           line.model + (line.option("--run") ? " --run " + *line.option("--run") : ""),
           start,
-          settle};
+          settle,
+          line.option("--duration") ? std::optional(duration) : std::nullopt,
+          line.list("--rainflow").value_or(std::vector<std::string>{})};
 }
 
 }  // namespace drev::app

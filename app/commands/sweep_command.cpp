@@ -1,6 +1,7 @@
 #include <drev/core/units.hpp>
 
 #include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
@@ -8,6 +9,9 @@
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
 #include "app/results/branches_result.hpp"
+#include "app/report/report_file.hpp"
+#include "app/report/report_page.hpp"
+#include "app/report/sweep_report.hpp"
 
 namespace drev::app {
 
@@ -30,9 +34,25 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
   if (const auto out = line.option("--out"); out && model)
     for (const std::string& name : written)
       check_output("--out", *out + name, model->model_case.files, findings);
+  if (const auto report = line.option("--report")) {
+    if (const auto why = why_no_report(*report))
+      findings.push_back({kCommandLine, "--report", *report, "", *why});
+    if (model) check_output("--report", *report, model->model_case.files, findings);
+  }
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), std::move(options), std::move(speeds_rpm),
           line.options.contains("--absolute-sum")};
+}
+
+std::string words_of(const CommandLine& line) {
+  std::string words = std::string("drev ") + line.command->name + " " + line.model;
+  for (const auto& [option, values] : line.options) {
+    if (option == "--out" || option == "--report" || option == "--plugin") continue;
+    words += " " + option;
+    for (const OptionEntry& entry : line.command->options)
+      if (entry.name == option && entry.values != OptionEntry::Values::none) words += " " + join(values, ",");
+  }
+  return words;
 }
 
 namespace {
@@ -52,6 +72,8 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
   if (request.absolute_sum)
     findings.push_back(
         {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
+  if (line.option("--report"))
+    findings.push_back({kCommandLine, "--report", "", "", "is for linear models (or --contact closed); take --out"});
   const auto out = line.option("--out");
   if (out)
     for (const char* name : {"/branches.csv", "/orders.csv", "/changes.csv", "/summary.json"})
@@ -82,6 +104,8 @@ int sweep_command(const CommandLine& line) {
     if (line.option(option))
       findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
   if (!findings.empty()) throw ModelError(std::move(findings));
+  std::optional<ReportFile> report;
+  if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (const auto out = line.option("--out")) {
     create_directory(*out);
@@ -90,6 +114,10 @@ int sweep_command(const CommandLine& line) {
     write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
     write_file(*out, "summary", "json", json_text(sweep_object(request, sweep)));
   }
+  if (report)
+    report->commit(report_page(
+        {block_text(sweep_report_data(request, sweep, "vibration by orders over speed", words_of(line)))},
+        ReportPage::sweep));
   print(line.json ? json_text(sweep_object(request, sweep)) : sweep_as_text(request, sweep));
   return kSuccess;
 }

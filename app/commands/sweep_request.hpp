@@ -8,7 +8,11 @@
 
 namespace drev::app {
 
-/// written: files in the directory of --out, each with a leading '/'. Throws ModelError with everything wrong.
+/// written: files in the directory of --out, each with a leading '/'. --report, too, is checked. Throws
+/// ModelError with everything wrong.
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written);
+
+/// "drev sweep engine.toml --speeds 300:10:1800": the words of the line without --out, --report and --set.
+std::string words_of(const CommandLine& line);
 
 }  // namespace drev::app

@@ -15,25 +15,30 @@ namespace {
 
 constexpr double kMostVariants = 10000;
 
+constexpr const char* kForm = "must be NAME=A,B,C, NAME=FIRST:STEP:LAST, or both mixed";
+
 /// What is wrong with the values; empty: nothing.
 std::string read_values(const std::string& text, std::vector<std::string>& values) {
-  const std::vector<std::string> range = split(text, ':');
-  if (range.size() == 1) {
-    for (const std::string& value : split(text, ',')) {
-      if (value.empty() || value.find('/') != value.npos) return "must be NAME=A,B,C or NAME=FIRST:STEP:LAST";
+  for (const std::string& part : split(text, ',')) {
+    std::vector<std::string> found{part};
+    if (part.find(':') != part.npos) {
+      std::vector<double> numbers;
+      const std::string wrong = read_steps(part, kMostVariants, numbers);
+      if (!wrong.empty()) return wrong.starts_with("must be") ? kForm : wrong;
+      found.clear();
+      for (const double number : numbers) {
+        const std::string value = short_digits(number, 12);
+        if (!found.empty() && found.back() == value) return "has a STEP too small for 12 digits";
+        found.push_back(value);
+      }
+    }
+    for (const std::string& value : found) {
+      if (value.empty() || value.find('/') != value.npos) return kForm;
       if (std::count(values.begin(), values.end(), value) > 0) return "has " + value + " twice";
       values.push_back(value);
     }
-    return {};
-  }
-  std::vector<double> numbers;
-  const std::string wrong = read_steps(text, kMostVariants, numbers);
-  if (!wrong.empty())
-    return wrong.starts_with("must be") ? "must be NAME=A,B,C or NAME=FIRST:STEP:LAST" : wrong;
-  for (const double number : numbers) {
-    const std::string value = short_digits(number, 12);
-    if (!values.empty() && values.back() == value) return "has a STEP too small for 12 digits";
-    values.push_back(value);
+    if (static_cast<double>(values.size()) > kMostVariants)
+      return "has more values than " + short_digits(kMostVariants, 5);
   }
   return {};
 }
@@ -58,7 +63,7 @@ std::vector<Variant> read_variants(const std::vector<std::string>& words, std::v
     const std::string wrong = read_values(word.substr(std::min(equals + 1, word.size())), values);
     const auto& parameters = variants.front().parameters;
     if (name.empty() || !wrong.empty()) {
-      refuse(wrong.empty() ? "must be NAME=A,B,C or NAME=FIRST:STEP:LAST" : wrong);
+      refuse(wrong.empty() ? kForm : wrong);
     } else if (std::any_of(parameters.begin(), parameters.end(),
                            [&](const auto& s) { return s.first == name; })) {
       refuse(name + " is varied already");

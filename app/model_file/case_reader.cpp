@@ -12,6 +12,7 @@
 #include "app/model_file/node_fields.hpp"
 #include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
+#include "app/model_file/strength_section.hpp"
 
 namespace drev::app {
 
@@ -45,6 +46,7 @@ class CaseReader {
       const System system = model_.build();
       ModelCase model_case{.model = std::move(model_), .note = doc_.note};
       run.complete(model_case, system, context_);
+      if (doc_.strength != nullptr) read_strength(*doc_.strength, system, model_case, context_);
       return model_case;
     } catch (const ModelError& error) {
       for (Finding& finding : placed(error, doc_.name, doc_.at, nodes_, elements_))
@@ -92,13 +94,31 @@ class CaseReader {
           break;
         }
         try {
-          use(entry, expand(entry.key, context_.scope));
+          const Entry* when = entry.value.is(Value::Kind::table) ? entry.value.find("when") : nullptr;
+          if (when == nullptr || is_wanted(*when, entry.key)) use(entry, expand(entry.key, context_.scope));
         } catch (const ExpressionError& error) {
           refuse(entry.at, entry.key, error.sentence);
         }
       }
     }
     if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
+  }
+
+  /// Whether the condition of a node or element holds. One that is wrong is a finding, and holds.
+  bool is_wanted(const Entry& when, const std::string& name) {
+    const Value& value = when.value;
+    if (value.is(Value::Kind::boolean)) return value.flag;
+    if (!value.is(Value::Kind::text)) {
+      refuse(value.at, name + ".when",
+             "must be a condition in quotes, true or false, not " + kind_name(value));
+      return true;
+    }
+    try {
+      return holds(value.text, context_.scope);
+    } catch (const ExpressionError& error) {
+      refuse(value.at, name + ".when", error.sentence);
+      return true;
+    }
   }
 
   /// Then the rest of the nodes and elements is not read.
@@ -130,7 +150,8 @@ class CaseReader {
     model_.add_node(name, part.kind);
     NodeParams p;
     if (read_fields(
-            entry.value, where, part.kind, {}, [&](Fields& f) { list_fields(f, p); }, context_, &part.fields))
+            entry.value, where, part.kind, {"when"}, [&](Fields& f) { list_fields(f, p); }, context_,
+            &part.fields))
       add_motion(name, p, part);
   }
 
@@ -182,7 +203,8 @@ class CaseReader {
     bool right = false;
     try {
       const std::shared_ptr<const Element> element = type->make([&](const ListFields& list) {
-        right = read_fields(table, where, part.kind, {"type", "node", "nodes"}, list, context_, &part.fields);
+        right = read_fields(table, where, part.kind, {"type", "node", "nodes", "when"}, list, context_,
+                            &part.fields);
       });
       for (const char* key : {"node", "nodes"})
         if (const Entry* e = table.find(key)) part.fields[key] = e->value.at;
@@ -253,7 +275,10 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
                    bool options_only) {
   ReadContext context;
   for (const Parameter& parameter : parameters.known())
-    context.scope.numbers[parameter.name] = parameters.number(parameter.name);
+    if (parameter.kind == Parameter::Kind::choice)
+      context.scope.texts[parameter.name] = parameters.text(parameter.name);
+    else
+      context.scope.numbers[parameter.name] = parameters.number(parameter.name);
   context.scope.lists = document.lists;
   context.tables = document.tables;
   FileCase result;
@@ -292,10 +317,14 @@ void set_run_parameters(const Document& document, const std::string& run, std::v
     }
     Parameter& parameter = parameters[static_cast<std::size_t>(found - names.begin())];
     Parameters probe(document.name, {parameter});
-    probe.set(entry.key, entry.value.numeric() ? to_text(entry.value.number) : kind_name(entry.value));
+    const bool text = parameter.kind == Parameter::Kind::choice && entry.value.is(Value::Kind::text);
+    const std::string given_text = entry.value.numeric() ? to_text(entry.value.number)
+                                   : text                ? entry.value.text
+                                                         : kind_name(entry.value);
+    probe.set(entry.key, given_text);
     try {
       probe.check();
-      parameter.default_text = to_text(entry.value.number);
+      parameter.default_text = given_text;
     } catch (const ModelError& error) {
       for (Finding finding : error.findings()) {
         finding.place = entry.value.at.text() + ": " + where;

@@ -25,19 +25,20 @@ class DocumentReader {
 
   void read(Value root, const std::string& path, int depth) {
     doc_.roots.push_back(std::move(root));
-    const Value& table = doc_.roots.back();
-    const bool main = depth == 0;
+    Value& table = doc_.roots.back();
+    const std::size_t first_included = doc_.blocks.size();
     stack_.push_back(path);
     ++files_;
     check_format(table);
-    check_keys(table, main);
+    check_keys(table);
     if (const Entry* include = table.find("include")) read_includes(include->value, path, depth);
-    if (main) {
-      read_text_key(table, "name", doc_.name);
-      read_text_key(table, "summary", doc_.summary);
-      read_text_key(table, "note", doc_.note);
-      if (const Value* run = section(table, "run")) doc_.run = run;
-    }
+    // The file that includes another has the last word.
+    read_text_key(table, "name", doc_.name);
+    read_text_key(table, "summary", doc_.summary);
+    read_text_key(table, "note", doc_.note);
+    lay_section(table, "run", doc_.run);
+    lay_section(table, "class", doc_.strength);
+    for (const char* parts : {"nodes", "elements"}) override_included(table, parts, first_included);
     if (const Value* parameters = section(table, "parameters")) read_parameters(*parameters);
     if (const Value* lists = section(table, "lists")) read_lists(*lists);
     if (const Value* tables = section(table, "tables")) read_tables(*tables);
@@ -66,17 +67,87 @@ class DocumentReader {
       refuse(format->value.at, "format", "is " + kind_name(format->value) + "; " + known);
   }
 
-  void check_keys(const Value& table, bool main) {
-    const std::vector<std::string> of_main{"name", "summary", "note", "run"};
-    std::vector<std::string> known{"format", "include", "parameters", "lists",
-                                   "tables", "nodes",   "elements",   "repeat"};
-    if (main) known.insert(known.end(), of_main.begin(), of_main.end());
-    for (const Entry& entry : table.entries) {
-      if (std::count(known.begin(), known.end(), entry.key) > 0) continue;
-      if (std::count(of_main.begin(), of_main.end(), entry.key) > 0)
-        refuse(entry.at, entry.key, "can stand in the main file only, not in one that is included");
-      else
+  void check_keys(const Value& table) {
+    const std::vector<std::string> known{"format", "include", "parameters", "lists",    "tables",
+                                         "nodes",  "repeat",  "name",       "elements", "summary",
+                                         "note",   "run",     "class"};
+    for (const Entry& entry : table.entries)
+      if (std::count(known.begin(), known.end(), entry.key) == 0)
         refuse(entry.at, entry.key, "is unknown at the top of a model file" + did_you_mean(entry.key, known));
+  }
+
+  /// Lays a section of a file over what included files say in it.
+  void lay_section(const Value& table, const char* name, const Value*& target) {
+    const Value* given = section(table, name);
+    if (given == nullptr) return;
+    if (target == nullptr) {
+      target = given;
+      return;
+    }
+    Value merged = *target;
+    lay_over(merged, *given);
+    doc_.roots.push_back(std::move(merged));
+    target = &doc_.roots.back();
+  }
+
+  /// Nodes and elements of this file that included files have, too, change those: keys are laid over theirs; with a
+  /// type of its own an element takes the place of the other.
+  void override_included(Value& table, const char* parts, std::size_t first_included) {
+    Entry* own = entry_of(table, parts);
+    if (own == nullptr || !own->value.is(Value::Kind::table)) return;
+    std::erase_if(own->value.entries, [&](const Entry& entry) {
+      for (std::size_t b = first_included; b < doc_.blocks.size(); ++b) {
+        const Block& block = doc_.blocks[b];
+        const Value* other = std::string(parts) == "nodes" ? block.nodes : block.elements;
+        if (other == nullptr) continue;
+        for (Value& root : doc_.roots)
+          if (Entry* same = find_entry(root, other, entry.key)) {
+            if (entry.value.find("type") != nullptr || !entry.value.is(Value::Kind::table))
+              same->value = entry.value;
+            else
+              lay_over(same->value, entry.value);
+            same->at = entry.at;
+            return true;
+          }
+      }
+      return false;
+    });
+  }
+
+  static Entry* entry_of(Value& table, const std::string& key) {
+    for (Entry& entry : table.entries)
+      if (entry.key == key) return &entry;
+    return nullptr;
+  }
+  /// The entry of a key in the table `wanted`, if that is a part of the root; null: none.
+  static Entry* find_entry(Value& root, const Value* wanted, const std::string& key) {
+    if (&root == wanted) return entry_of(root, key);
+    for (Entry& entry : root.entries)
+      if (entry.value.is(Value::Kind::table) && &entry.value == wanted) return entry_of(entry.value, key);
+    for (Entry& entry : root.entries)
+      if (entry.key == "repeat")
+        for (Value& item : entry.value.items)
+          for (Entry& inner : item.entries)
+            if (&inner.value == wanted) return entry_of(inner.value, key);
+    return nullptr;
+  }
+
+  /// A key without its unit, for those of one table that say the same.
+  static std::string stem_of(const std::string& key) {
+    const std::string suffix = unit_suffix(key);
+    const std::string stem = suffix.empty() ? key : key.substr(0, key.size() - suffix.size() - 1);
+    return stem == "node" ? "nodes" : stem;
+  }
+
+  static void lay_over(Value& base, const Value& over) {
+    for (const Entry& entry : over.entries) {
+      Entry* same = entry_of(base, entry.key);
+      if (same != nullptr && same->value.is(Value::Kind::table) && entry.value.is(Value::Kind::table)) {
+        lay_over(same->value, entry.value);
+        continue;
+      }
+      std::erase_if(base.entries, [&](const Entry& old) { return stem_of(old.key) == stem_of(entry.key); });
+      base.entries.push_back(entry);
     }
   }
 
@@ -170,7 +241,8 @@ class DocumentReader {
   }
 
   void read_parameter_table(const Value& table, const std::string& where, Parameter& parameter) {
-    const std::vector<std::string> known{"default", "min", "max", "whole", "meaning"};
+    const std::vector<std::string> known{"default", "min", "max", "whole", "choices", "meaning"};
+    if (table.find("choices") != nullptr) return read_choice(table, where, parameter);
     const Value* given = nullptr;
     for (const Entry& entry : table.entries) {
       Parameter bound;
@@ -201,6 +273,37 @@ class DocumentReader {
       refuse(given->at, where + ".default", to_text(number) + " is not between min and max");
     if (parameter.kind == Parameter::Kind::integer && number != std::floor(number))
       refuse(given->at, where + ".default", to_text(number) + " is no whole number");
+  }
+
+  /// A parameter that is one of several texts.
+  void read_choice(const Value& table, const std::string& where, Parameter& parameter) {
+    parameter.kind = Parameter::Kind::choice;
+    parameter.unit.clear();
+    for (const Entry& entry : table.entries) {
+      const Value& value = entry.value;
+      const std::string place = where + "." + entry.key;
+      if (entry.key == "choices") {
+        if (!value.is(Value::Kind::array) || value.items.empty())
+          refuse(value.at, place, "must be an array of texts, not " + kind_name(value));
+        for (const Value& item : value.items)
+          if (item.is(Value::Kind::text))
+            parameter.choices.push_back(item.text);
+          else
+            refuse(item.at, place, "must hold texts in quotes, not " + kind_name(item));
+      } else if (entry.key == "meaning" && value.is(Value::Kind::text)) {
+        parameter.meaning = value.text;
+      } else if (entry.key != "default") {
+        refuse(entry.at, place,
+               "is unknown beside choices" + did_you_mean(entry.key, {"default", "meaning"}));
+      }
+    }
+    const Entry* given = table.find("default");
+    const bool right = given != nullptr && given->value.is(Value::Kind::text) &&
+                       std::count(parameter.choices.begin(), parameter.choices.end(), given->value.text) > 0;
+    if (!right)
+      return refuse(given != nullptr ? given->value.at : table.at, where + ".default",
+                    "must be one of " + parameter.range());
+    parameter.default_text = given->value.text;
   }
 
   void read_lists(const Value& table) {

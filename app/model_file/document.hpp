@@ -25,8 +25,9 @@ struct Document {
   std::vector<Parameter> parameters;
   std::map<std::string, std::vector<double>> lists;
   std::map<std::string, const Value*> tables;
-  std::vector<Block> blocks;  ///< in the order in which they count: what is included comes first
-  const Value* run = nullptr;
+  std::vector<Block> blocks;        ///< in the order in which they count: what is included comes first
+  const Value* run = nullptr;       ///< [run], that of the main file laid over those included
+  const Value* strength = nullptr;  ///< [class], likewise
   std::vector<Finding> findings;
   std::deque<Value> roots = {};  ///< keeps what the pointers above point to
 

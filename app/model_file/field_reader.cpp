@@ -88,15 +88,16 @@ class FieldReader final : public Fields {
     const Value* source = &found->entry->value;
     std::string where = place(*found);
     if (source->is(Value::Kind::text)) {
-      const auto named = context_.tables.find(source->text);
+      const std::optional<std::string> table = read_text(*source, where, context_);
+      if (!table) return true;
+      const auto named = context_.tables.find(*table);
       if (named == context_.tables.end()) {
         std::vector<std::string> names;
         for (const auto& [known, table] : context_.tables) names.push_back(known);
-        blame(*found, "names " + kind_name(*source) + ", which is none of [tables]" +
-                          did_you_mean(source->text, names));
+        blame(*found, "names \"" + *table + "\", which is none of [tables]" + did_you_mean(*table, names));
         return true;
       }
-      where = "tables." + source->text;
+      where = "tables." + *table;
       source = named->second;
     }
     if (!source->is(Value::Kind::table)) {

@@ -20,9 +20,10 @@ std::optional<double> read_number(const Value& value, const std::string& unit, c
     return refuse("must be a number, or an expression in quotes, not " + kind_name(value));
   try {
     const Quantified result = evaluate(value.text, context.scope);
-    if (!result.unit.empty() && result.unit_followed && result.unit != unit)
+    if (!result.fits(unit))
       return refuse("the expression \"" + value.text + "\" is in " + result.unit + ", the key " +
-                    (unit.empty() ? "has no unit" : "in " + unit));
+                    (unit.empty() ? "has no unit" : "in " + unit) +
+                    (result.combined ? "; si(...) gives it in SI, plain(...) without a unit" : ""));
     return result.value;
   } catch (const ExpressionError& error) {
     return refuse(error.sentence);

@@ -16,23 +16,6 @@ using D = Dimension;
 
 constexpr std::size_t kMostNodesRecorded = 20;
 
-/// '*' stands for any characters.
-bool matches(const std::string& pattern, const std::string& name) {
-  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*')
-      star = p++, mark = n;
-    else if (p < pattern.size() && pattern[p] == name[n])
-      ++p, ++n;
-    else if (star != std::string::npos)
-      p = star + 1, n = ++mark;
-    else
-      return false;
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
 /// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques.
 std::vector<std::string> carried(const System& system) {
   std::unordered_map<std::string, std::string_view> types;
@@ -66,6 +49,22 @@ std::vector<std::string> node_motions(const System& system) {
 }
 
 }  // namespace
+
+bool fits_pattern(const std::string& pattern, const std::string& name) {
+  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*')
+      star = p++, mark = n;
+    else if (p < pattern.size() && pattern[p] == name[n])
+      ++p, ++n;
+    else if (star != std::string::npos)
+      p = star + 1, n = ++mark;
+    else
+      return false;
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
 
 RunSection::Params::Params()
     : every(kNotGiven), tolerance(kNotGiven), accuracy(kNotGiven), settle_time(kNotGiven) {}
@@ -153,7 +152,7 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
     if (all.empty()) all = all_channels(system);
     const std::size_t before = found.size();
     for (const Channel& channel : all)
-      if (matches(asked[i], channel.name())) found.push_back(channel.name());
+      if (fits_pattern(asked[i], channel.name())) found.push_back(channel.name());
     if (found.size() == before)
       context.findings.push_back(fault_at(place(i), "run." + key, "\"" + asked[i] + "\" fits no channel"));
   }

@@ -26,8 +26,9 @@ constexpr Unit kPressureUnits[] = {{"Pa", 1.0}, {"MPa", 1e6}, {"GPa", 1e9}, {"ba
 constexpr Unit kDensityUnits[] = {{"kg_per_m3", 1.0}};
 constexpr Unit kRateUnits[] = {{"per_s", 1.0}};
 constexpr Unit kMeshPeriodsUnits[] = {{"periods", 1.0}};
+constexpr Unit kPowerUnits[] = {{"W", 1.0}, {"kW", 1e3}, {"MW", 1e6}};
 
-constexpr std::array<NamedDimension, 18> kDimensions{{{"angle", Dimension::angle},
+constexpr std::array<NamedDimension, 19> kDimensions{{{"angle", Dimension::angle},
                                                       {"length", Dimension::length},
                                                       {"time", Dimension::time},
                                                       {"angular speed", Dimension::angular_speed},
@@ -44,7 +45,50 @@ constexpr std::array<NamedDimension, 18> kDimensions{{{"angle", Dimension::angle
                                                       {"pressure", Dimension::pressure},
                                                       {"density", Dimension::density},
                                                       {"rate", Dimension::rate},
-                                                      {"mesh phase", Dimension::mesh_periods}}};
+                                                      {"mesh phase", Dimension::mesh_periods},
+                                                      {"power", Dimension::power}}};
+
+/// Powers of kg, m and s.
+UnitParts powers_of(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::none:
+    case Dimension::angle:
+    case Dimension::mesh_periods:
+      return {};
+    case Dimension::length:
+      return {0, 1, 0};
+    case Dimension::time:
+      return {0, 0, 1};
+    case Dimension::angular_speed:
+    case Dimension::frequency:
+    case Dimension::rate:
+      return {0, 0, -1};
+    case Dimension::speed:
+      return {0, 1, -1};
+    case Dimension::inertia:
+      return {1, 2, 0};
+    case Dimension::mass:
+      return {1, 0, 0};
+    case Dimension::torsional_stiffness:
+    case Dimension::torque:
+      return {1, 2, -2};
+    case Dimension::stiffness:
+      return {1, 0, -2};
+    case Dimension::torsional_damping:
+      return {1, 2, -1};
+    case Dimension::damping:
+      return {1, 0, -1};
+    case Dimension::force:
+      return {1, 1, -2};
+    case Dimension::pressure:
+      return {1, -1, -2};
+    case Dimension::density:
+      return {1, -3, 0};
+    case Dimension::power:
+      return {1, 2, -3};
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -88,6 +132,8 @@ std::span<const Unit> units_of(Dimension dimension) {
       return kRateUnits;
     case Dimension::mesh_periods:
       return kMeshPeriodsUnits;
+    case Dimension::power:
+      return kPowerUnits;
   }
   return {};
 }
@@ -103,6 +149,17 @@ std::string unit_suffix(std::string_view name) {
         longest = unit.suffix;
     }
   return longest;
+}
+
+UnitParts unit_parts(std::string_view suffix) {
+  for (const NamedDimension& d : kDimensions)
+    for (const Unit& unit : units_of(d.dimension))
+      if (suffix == unit.suffix) {
+        UnitParts parts = powers_of(d.dimension);
+        parts.factor = unit.factor;
+        return parts;
+      }
+  return {};
 }
 
 std::string spellings(const std::string& name, Dimension dimension) {

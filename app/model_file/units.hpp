@@ -26,7 +26,8 @@ enum class Dimension {
   pressure,
   density,
   rate,
-  mesh_periods
+  mesh_periods,
+  power
 };
 
 struct Unit {
@@ -39,6 +40,14 @@ std::span<const Unit> units_of(Dimension dimension);
 
 /// Unit that a name ends in, "backlash_mm" -> "mm"; empty if it ends in none.
 std::string unit_suffix(std::string_view name);
+
+/// What a unit is made of: powers of kg, m and s, and its size in SI. Angles have none.
+struct UnitParts {
+  double kg = 0.0, m = 0.0, s = 0.0;
+  double factor = 1.0;
+};
+/// Of a suffix such as "kNm"; all zero and 1 of one that is none.
+UnitParts unit_parts(std::string_view suffix);
 
 /// "stiffness_Nm_per_rad, stiffness_kNm_per_rad or ...": the spellings of a key.
 std::string spellings(const std::string& name, Dimension dimension);

@@ -14,14 +14,6 @@ namespace {
 constexpr std::size_t kCrossings = 400;
 constexpr double kFarthest = 4.0;  // crossings up to as many times the fastest speed of the run
 
-/// Name of the node through which the reference motion was given.
-std::string reference_name(const Model& model) {
-  if (!model.references().empty()) return model.name_of(model.references().front().first);
-  for (const Model::Prescription& p : model.prescriptions())
-    if (p.omega) return model.name_of(p.node);
-  return "reference shaft";
-}
-
 /// One node for each speed there is.
 Json shafts_object(const System& system, const std::string& reference) {
   const auto key_of = [](double ratio) { return std::lround(ratio * 1e6); };
@@ -38,6 +30,13 @@ Json shafts_object(const System& system, const std::string& reference) {
 }
 
 }  // namespace
+
+std::string reference_name(const Model& model) {
+  if (!model.references().empty()) return model.name_of(model.references().front().first);
+  for (const Model::Prescription& p : model.prescriptions())
+    if (p.omega) return model.name_of(p.node);
+  return "reference shaft";
+}
 
 Json campbell_object(const Model& model, const System& system, const ModeSet& modes, double duration) {
   const SpeedRange range = speed_range(system, duration);

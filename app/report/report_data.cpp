@@ -1,16 +1,13 @@
 #include "app/report/report_data.hpp"
 
-#include <drev/app/model_file/load_plugin.hpp>
 #include <drev/core/units.hpp>
-#include <drev/core/version.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 
 #include "app/report/report_campbell.hpp"
 #include "app/report/report_model.hpp"
+#include "app/report/report_origin.hpp"
 #include "app/report/report_spectra.hpp"
 #include "app/results/run_json.hpp"
 #include "app/results/run_text.hpp"
@@ -24,24 +21,11 @@ constexpr double kRunSamples = 1e5;   // of a run, unless --every says otherwise
 constexpr double kAboveModes = 3.0;   // spectra go so far beyond the highest mode listed
 constexpr double kAboveSpeed = 40.0;  // or to this order, where that is higher
 
-std::string now() {
-  const std::time_t time = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  ::gmtime_r(&time, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
-  return text;
-}
-
 /// The command that gives this run again.
 std::string command_of(const RunRequest& request, const RunResult& result) {
   const Method& method = result.method;
-  const Parameters& parameters = request.model.parameters;
-  std::string text = "drev run " + request.words;
-  for (std::size_t i = 0; i < parameters.known().size(); ++i)
-    if (parameters.values()[i] != parameters.known()[i].default_text)
-      text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
-  for (const std::string& plugin : loaded_plugins()) text += " --plugin " + plugin;
+  std::string text = "drev run " + request.words + model_options(request.model.parameters);
+  if (request.duration) text += " --duration " + to_text(*request.duration);
   if (request.start != Start::rest) text += std::string(" --start ") + to_text(request.start);
   if (request.settle) text += " --settle " + (request.settle->time ? to_text(*request.settle->time) : "auto");
   text += " --method " + method.name;
@@ -50,20 +34,6 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
   if (method.tolerance > 0.0) text += " --tolerance " + to_text(method.tolerance);
   if (result.reduction.used) text += " --reduce " + to_text(*request.reduce);
   return text;
-}
-
-Json inputs_array(const Parameters& parameters) {
-  Json inputs = Json::array();
-  for (std::size_t i = 0; i < parameters.known().size(); ++i) {
-    const Parameter& parameter = parameters.known()[i];
-    inputs.push_back({{"name", parameter.name},
-                      {"value", parameters.values()[i]},
-                      {"default", parameter.default_text},
-                      {"unit", parameter.unit},
-                      {"range", parameter.range()},
-                      {"meaning", parameter.meaning}});
-  }
-  return inputs;
 }
 
 /// Share of each group's time, a byte each: 255 is all of it.
@@ -121,8 +91,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   const ModelRequest& m = request.model;
   Json data;
   data["format"] = 2;
-  data["version"] = DREV_VERSION;
-  data["made"] = now();
+  add_origin(data);
   data["command"] = command_of(request, result);
   data["about"] = m.entry->summary;
   data["warning"] = warning_of(result);

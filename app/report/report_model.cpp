@@ -44,7 +44,7 @@ class Drawing {
     nodes_ = &nodes;
     const int n = static_cast<int>(nodes.size());
     for (int i = 0; i < n; ++i) inertia_[place(i)] += terms.mass.row(i).sum();
-    add_matrix(terms.stiffness, "shaft", "stiffness");
+    add_matrix(terms.stiffness, "shaft", "stiffness", &terms.damping);
     if (terms.stiffness.isZero(0.0)) add_matrix(terms.damping, "damper", "damping");
     for (const ScalarSpec& spec : terms.scalars) add_law(spec);
     for (const LocalRow& row : terms.constraints) add_gear(row);
@@ -65,10 +65,16 @@ class Drawing {
     return joints.back();
   }
 
-  void add_matrix(const Eigen::MatrixXd& k, const char* kind, const char* value) {
+  /// damping: of a shaft beside its stiffness.
+  void add_matrix(const Eigen::MatrixXd& k, const char* kind, const char* value,
+                  const Eigen::MatrixXd* damping = nullptr) {
     for (Eigen::Index i = 0; i < k.rows(); ++i) {
       for (Eigen::Index j = 0; j < i; ++j)
-        if (k(i, j) != 0.0) joint(kind, {static_cast<int>(j), static_cast<int>(i)})[value] = -k(i, j);
+        if (k(i, j) != 0.0) {
+          Json& found = joint(kind, {static_cast<int>(j), static_cast<int>(i)});
+          found[value] = -k(i, j);
+          if (damping != nullptr && (*damping)(i, j) != 0.0) found["damping"] = -(*damping)(i, j);
+        }
       const double to_ground = k.row(i).sum();
       if (std::abs(to_ground) > kSumRounding * std::abs(k(i, i)))
         joint(kind, {static_cast<int>(i)})[value] = to_ground;

@@ -9,8 +9,9 @@
 
 namespace drev::data {
 extern const std::string_view report_html, report_css, dygraph_css, dygraph_js, report_js_data,
-    report_js_format, report_js_train, report_js_charts, report_js_tables, report_js_modes, report_js_time,
-    report_js_spectra, report_js_main;
+    report_js_format, report_js_page, report_js_train, report_js_charts, report_js_save, report_js_bars,
+    report_js_tables, report_js_modes, report_js_time, report_js_spectra, report_js_main, report_js_sweep,
+    report_js_sweep_main, report_js_class;
 }  // namespace drev::data
 
 namespace drev::app {
@@ -20,6 +21,50 @@ namespace {
 constexpr std::string_view kBlockBegin = "<script type=\"application/json\" class=\"run\">";
 constexpr std::size_t kMostGroups = std::size_t{1} << 28;  // of a history: more than a page can hold
 constexpr std::string_view kEnd = "</script>";
+
+/// What pages differ in: their sections, and the parts of their program.
+struct PageParts {
+  std::vector<std::pair<const char*, const char*>> sections;  ///< id and heading
+  std::vector<std::string_view> program;
+};
+
+PageParts parts_of(ReportPage kind) {
+  if (kind == ReportPage::judged)
+    return {{{"judgement", "Judgement"},
+             {"masselastic", "Mass-elastic system"},
+             {"figures", "Vibration"},
+             {"speeds", "Vibration over speed"},
+             {"orders", "Orders at a speed"},
+             {"campbell", "Campbell diagram"},
+             {"rules", "Rules, and what is not judged"},
+             {"inputs", "Inputs"}},
+            {data::report_js_format, data::report_js_page, data::report_js_train, data::report_js_save,
+             data::report_js_charts, data::report_js_bars, data::report_js_sweep, data::report_js_class}};
+  if (kind == ReportPage::sweep)
+    return {
+        {{"figures", "Results"},
+         {"model", "Model"},
+         {"speeds", "Vibration over speed"},
+         {"orders", "Orders at a speed"},
+         {"campbell", "Campbell diagram"},
+         {"inputs", "Inputs"}},
+        {data::report_js_format, data::report_js_page, data::report_js_train, data::report_js_save,
+         data::report_js_charts, data::report_js_bars, data::report_js_sweep, data::report_js_sweep_main}};
+  return {{{"figures", "Results"},
+           {"model", "Model"},
+           {"modes", "Modes"},
+           {"campbell", "Campbell diagram"},
+           {"histories", "Time histories"},
+           {"contacts", "Meshes and contacts"},
+           {"spectra", "Spectra and orders"},
+           {"energy", "Energy balance"},
+           {"accuracy", "Accuracy"},
+           {"method", "Method"},
+           {"inputs", "Inputs"}},
+          {data::report_js_format, data::report_js_data, data::report_js_page, data::report_js_train,
+           data::report_js_save, data::report_js_charts, data::report_js_bars, data::report_js_tables,
+           data::report_js_modes, data::report_js_time, data::report_js_spectra, data::report_js_main}};
+}
 
 /// Replaces the first marker {{name}} of the page's text.
 void fill(std::string& page, const std::string& name, const std::string& text) {
@@ -94,17 +139,18 @@ bool is_history(const Json& history) {
 
 }  // namespace
 
-std::string report_page(const std::vector<std::string>& blocks) {
-  std::string page(data::report_html), style, program, runs;
+std::string report_page(const std::vector<std::string>& blocks, ReportPage kind) {
+  std::string page(data::report_html), style, program, runs, sections;
+  const PageParts parts = parts_of(kind);
   for (const std::string_view part : {data::dygraph_css, data::report_css}) style += std::string(part) + "\n";
-  for (const std::string_view part : {data::report_js_format, data::report_js_data, data::report_js_train,
-                                      data::report_js_charts, data::report_js_tables, data::report_js_modes,
-                                      data::report_js_time, data::report_js_spectra, data::report_js_main})
-    program += part;
+  for (const std::string_view part : parts.program) program += part;
+  for (const auto& [id, heading] : parts.sections)
+    sections += std::string("  <section id=\"") + id + "\"><h2>" + heading + "</h2></section>\n";
   for (const std::string& block : blocks) runs += std::string(kBlockBegin) + block + std::string(kEnd) + "\n";
   const std::string nonce = new_nonce();
   fill(page, "policy", policy(nonce));
   for (int program_number = 0; program_number < 2; ++program_number) fill(page, "nonce", nonce);
+  fill(page, "sections", sections);
   fill(page, "style", style);
   fill(page, "library", std::string(data::dygraph_js));
   fill(page, "program", program);

@@ -1,6 +1,6 @@
 #pragma once
-/// report.html: one self-contained page, without network, made of the data blocks of one run or of two, the
-/// page's text, style and program (app/report/) and the chart library (dygraphs).
+/// report.html: one self-contained page, without network, made of the data blocks of one run or of two, or of one
+/// sweep, the page's text, style and program (app/report/page/) and the chart library (dygraphs).
 #include <string>
 #include <vector>
 
@@ -8,8 +8,10 @@
 
 namespace drev::app {
 
-/// blocks: the text of one or two data blocks (report_data.hpp).
-std::string report_page(const std::vector<std::string>& blocks);
+enum class ReportPage { run, sweep, judged };
+
+/// blocks: the text of one or two data blocks of runs (report_data.hpp), or of one sweep (sweep_report.hpp).
+std::string report_page(const std::vector<std::string>& blocks, ReportPage kind = ReportPage::run);
 
 /// A data block as text that may stand in a page.
 std::string block_text(const Json& data);

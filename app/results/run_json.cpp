@@ -101,6 +101,41 @@ void add_contacts(Json& results, const RunResult& r) {
   results["contacts"] = std::move(list);
 }
 
+Json sections_array(const RunResult& r) {
+  Json list = Json::array();
+  for (const SectionPeaks& s : r.sections)
+    list.push_back({{"channel", s.channel},
+                    {"unit", s.unit},
+                    {"peak_maximum", number(s.whole.max)},
+                    {"peak_minimum", number(s.whole.min)},
+                    {"maximum", number(s.settled.max)},
+                    {"minimum", number(s.settled.min)},
+                    {"half_range", number(s.half_range())},
+                    {"permissible", number(s.permissible)}});
+  return list;
+}
+
+Json rainflow_array(const RunResult& r) {
+  Json list = Json::array();
+  for (const RainflowWatch::Result& counted : r.rainflow) {
+    Json classes = Json::array();
+    for (const RainflowHistogram::Class& c : counted.histogram.classes())
+      classes.push_back({{"cycles", c.count}, {"mean_range", c.mean_range()}, {"largest_range", c.largest}});
+    const bool line = counted.of.line.given();
+    list.push_back(
+        {{"channel", counted.of.channel.name()},
+         {"unit", counted.of.channel.unit()},
+         {"cycles", counted.histogram.cycles()},
+         {"largest_range", number(counted.histogram.largest())},
+         {"stress_per_unit_Pa", number(counted.of.stress_per_unit)},
+         {"damage", line ? number(counted.damage) : Json()},
+         {"hours_to_failure",
+          line && counted.damage > 0.0 ? number(r.span_length() / counted.damage / 3600.0) : Json()},
+         {"classes", std::move(classes)}});
+  }
+  return list;
+}
+
 Json span_object(const RunResult& r) {
   return {{"from_s", number(r.span.from)},
           {"to_s", number(r.summary.t_end)},
@@ -155,6 +190,8 @@ bool all_checked(const RunResult& r) {
 Json results_object(const RunResult& r) {
   Json results;
   results["of"] = span_object(r);
+  results["sections"] = sections_array(r);
+  results["rainflow"] = rainflow_array(r);
   results["checked"] = all_checked(r);
   results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
   results["deflection_m"] = in_unit(r.deflection, "m");

@@ -263,6 +263,23 @@ std::string accuracy_rows(double asked, const AccuracyResult& a) {
   return text;
 }
 
+/// Load cycles, and Miner's sum where there is an S-N line.
+std::string rainflow_rows(const RunResult& r) {
+  std::string text;
+  for (const RainflowWatch::Result& counted : r.rainflow) {
+    std::string row = counted.of.channel.name() + ": " + short_digits(counted.histogram.cycles(), 8) +
+                      " cycles, largest range " + digits(counted.histogram.largest(), 6) + " " +
+                      counted.of.channel.unit();
+    if (counted.of.line.given())
+      row += "; Miner's sum " + digits(counted.damage, 4) + " in " + short_digits(r.span_length(), 4) + " s" +
+             (counted.damage > 0.0
+                  ? ", 1 after " + digits(r.span_length() / counted.damage / 3600.0, 3) + " h of the same"
+                  : "");
+    text += labelled(text.empty() ? "Rainflow counts" : "", row);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string warning_of(const RunResult& r) {
@@ -303,6 +320,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
     text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.model_case, r) + contact_rows(r);
   if (r.run_up) text += run_up_rows(*r.run_up);
+  text += rainflow_rows(r);
   text += energy_row(s.energy);
   text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
   text += labelled("Why this method", r.method_reason);

@@ -75,36 +75,6 @@ std::string criticals_text(const LinearSweep& sweep) {
   return text;
 }
 
-std::string notes_text(const SweepRequest& request, const LinearSweep& sweep) {
-  std::string text;
-  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
-    if (const double left = largest(sweep.unbalanced[f]); left > kBalanced * sweep.unbalanced_scale[f])
-      text +=
-          wrap("Mean torque does not balance: up to " + digits(left, kDigits) + " N m are left over of " +
-                   digits(sweep.unbalanced_scale[f], kDigits) + " N m on the part of " +
-                   sweep.floating_parts[f] + " (referred to the reference shaft). " +
-                   (request.options.balance.empty()
-                        ? "Means are those of the train that this speeds up; --balance NODE takes it up at "
-                          "a node. Vibration does not depend on it."
-                        : "It is taken up at " + request.options.balance + "."),
-               0);
-  for (const LinearSweep::LeftOut& load : sweep.left_out)
-    text += wrap(load.load + ": " + digits(100.0 * load.share, 3) +
-                     " % of what alternates in it (rms) is in none of the orders",
-                 0);
-  for (const SweepSection& section : sweep.sections) {
-    Eigen::Index count = 0;
-    for (Eigen::Index i = 0; i < section.mean.size(); ++i) count += section.separates(i) ? 1 : 0;
-    if (count > 0)
-      text += wrap(section.name + ": changes its sign at " + std::to_string(count) + " of " +
-                       std::to_string(section.mean.size()) +
-                       " speeds: the teeth separate there, and what is said of these speeds does not hold; "
-                       "'drev run --start periodic' follows them",
-                   0);
-  }
-  return text;
-}
-
 Json numbers(const Vector& values, double factor = 1.0) {
   Json list = Json::array();
   for (const double value : values) list.push_back(number(factor * value));
@@ -146,6 +116,33 @@ std::string cell(double value) { return std::isfinite(value) ? to_text(value) : 
 
 }  // namespace
 
+std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
+  std::vector<std::string> notes;
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    if (const double left = largest(sweep.unbalanced[f]); left > kBalanced * sweep.unbalanced_scale[f])
+      notes.push_back(
+          "Mean torque does not balance: up to " + digits(left, kDigits) + " N m are left over of " +
+          digits(sweep.unbalanced_scale[f], kDigits) + " N m on the part of " + sweep.floating_parts[f] +
+          " (referred to the reference shaft). " +
+          (request.options.balance.empty()
+               ? "Means are those of the train that this speeds up; --balance NODE takes it up at "
+                 "a node. Vibration does not depend on it."
+               : "It is taken up at " + request.options.balance + "."));
+  for (const LinearSweep::LeftOut& load : sweep.left_out)
+    notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
+                    " % of what alternates in it (rms) is in none of the orders");
+  for (const SweepSection& section : sweep.sections) {
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < section.mean.size(); ++i) count += section.separates(i) ? 1 : 0;
+    if (count > 0)
+      notes.push_back(section.name + ": changes its sign at " + std::to_string(count) + " of " +
+                      std::to_string(section.mean.size()) +
+                      " speeds: the teeth separate there, and what is said of these speeds does not hold; "
+                      "'drev run --start periodic' follows them");
+  }
+  return notes;
+}
+
 Json critical_object(const LinearSweep& sweep, const SweepCritical& c) {
   return {{"speed_rpm", number(to_rpm(c.speed))},
           {"order", number(c.order)},
@@ -166,8 +163,9 @@ std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep)
           short_digits(request.speeds_rpm.back(), kDigits) + " rpm" +
           (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
   text += sections_text(request, sweep) + "\n" + criticals_text(sweep);
-  const std::string notes = notes_text(request, sweep);
-  if (!notes.empty()) text += "\n" + notes;
+  const std::vector<std::string> notes = sweep_notes(request, sweep);
+  if (!notes.empty()) text += "\n";
+  for (const std::string& note : notes) text += wrap(note, 0);
   if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
   return text;
 }

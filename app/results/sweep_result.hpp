@@ -17,6 +17,8 @@ struct SweepRequest {
   bool absolute_sum = false;       ///< the sum of the orders' amplitudes, too
 };
 
+/// Sentences on what a reader must know: mean torque that does not balance, orders left out, contacts that open.
+std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep);
 std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep);
 /// As docs/results.schema.json describes it, kind "sweep".
 Json sweep_object(const SweepRequest& request, const LinearSweep& sweep);

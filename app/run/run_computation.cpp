@@ -8,6 +8,7 @@
 #include <drev/solvers/run/after_time.hpp>
 #include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peaks.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -167,12 +168,48 @@ std::vector<std::string> tracked_channels(const RunRequest& request) {
   return names;
 }
 
+/// What the model's sections may carry; empty: not known.
+const Strength& strength_of(const RunRequest& request) {
+  static const Strength none;
+  return request.model.model_case.strength ? *request.model.model_case.strength : none;
+}
+
+/// The sections with an S-N line, and the channels asked for.
+std::vector<RainflowChannel> rainflow_channels(const RunRequest& request, const System& system) {
+  std::vector<RainflowChannel> counted;
+  for (const SectionStrength& s : strength_of(request).sections)
+    if (s.sn.given())
+      counted.push_back({find_channel(system, s.element + ".torque_Nm"),
+                         s.stress_concentration / polar_section_modulus(s.diameter, s.bore), s.sn});
+  for (const std::string& name : request.rainflow)
+    if (std::none_of(counted.begin(), counted.end(), [&](const auto& c) { return c.channel.name() == name; }))
+      counted.push_back({find_channel(system, name)});
+  return counted;
+}
+
+std::vector<SectionPeaks> sections_of(const RunRequest& request, const System& system, const Peaks& settled,
+                                      const Peaks& whole) {
+  const Strength& strength = strength_of(request);
+  std::vector<SectionPeaks> sections;
+  for (std::size_t c = 0; c < settled.channels().size(); ++c) {
+    const Channel& channel = settled.channels()[c];
+    sections.push_back({channel.name(), channel.unit(), whole.peaks()[c], settled.peaks()[c]});
+    for (const SectionStrength& s : strength.sections)
+      if (channel.name() == s.element + ".torque_Nm")
+        sections.back().permissible =
+            torque_limit(s, std::abs(system.reference_speed()) / strength.rated_speed).continuous;
+  }
+  return sections;
+}
+
 /// What is shown of the run: a reduction keeps the error of each of them.
 std::vector<std::string> shown_channels(const RunRequest& request) {
   const ModelCase& model_case = request.model.model_case;
   std::vector<std::string> names = model_case.torques;
   if (!model_case.deflection.empty()) names.push_back(model_case.deflection);
   for (const Channel& c : mesh_channels(request.model.system)) names.push_back(c.name());
+  for (const RainflowChannel& c : rainflow_channels(request, request.model.system))
+    names.push_back(c.channel.name());
   if (request.out || request.report) names.insert(names.end(), request.record.begin(), request.record.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
@@ -270,7 +307,13 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   Peaks torque_peaks(torques), deflection_peaks(deflections), mesh_peaks(mesh_channels(system));
   ContactStatistics contacts(system);
   MeanSpeed speeds(system, result.span.from, duration);
-  AfterTime figures(result.span.from, {&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts, &speeds});
+  std::vector<Observer*> of_span{&torque_peaks, &deflection_peaks, &mesh_peaks, &contacts, &speeds};
+  std::optional<RainflowWatch> rainflow;
+  if (std::vector<RainflowChannel> counted = rainflow_channels(request, system); !counted.empty())
+    of_span.push_back(&rainflow.emplace(std::move(counted)));
+  AfterTime figures(result.span.from, std::move(of_span));
+  std::optional<Peaks> whole;  // where the figures are of a part of the run
+  if (result.span.from > 0.0) observers.insert(observers.begin(), &whole.emplace(torques));
   std::optional<RunUpWatch> run_up;
   if (speed_range(full, duration).changes()) {
     run_up.emplace(full, result.modes ? &*result.modes : nullptr, system, duration, tracked_channels(request),
@@ -311,6 +354,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     result.contacts = contacts_of(system, contacts);
     result.speeds = speeds.parts();
     if (run_up) result.run_up = run_up->result();
+    result.sections = sections_of(request, full, torque_peaks, whole ? *whole : torque_peaks);
+    if (rainflow) result.rainflow = rainflow->finish();
     if (result.accuracy) {
       take_figure(*result.accuracy, "peak torque", result.force);
       take_figure(*result.accuracy, "peak deflection", result.deflection);

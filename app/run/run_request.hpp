@@ -26,7 +26,9 @@ struct RunRequest {
   std::optional<double> report_every = {};  ///< s, asked for
   std::string words = {};                   ///< MODEL, and --run of a file
   Start start = Start::rest;
-  std::optional<Settle> settle = {};  ///< none: figures are of the whole run
+  std::optional<Settle> settle = {};       ///< none: figures are of the whole run
+  std::optional<double> duration = {};     ///< s, asked for in place of the model's
+  std::vector<std::string> rainflow = {};  ///< channels counted beside the sections with an S-N line
 };
 
 }  // namespace drev::app

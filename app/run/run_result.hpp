@@ -5,7 +5,9 @@
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/mean_speed.hpp>
+#include <drev/solvers/run/peak.hpp>
 #include <drev/solvers/run/run_summary.hpp>
+#include <drev/solvers/strength/rainflow.hpp>
 
 #include <cmath>
 #include <optional>
@@ -34,6 +36,16 @@ struct Contacts {
   /// With their errors, of which some may be infinite: unknown; none: unchecked.
   std::optional<ContactFigures> known = {};
   std::string speed_unit() const { return force_unit == "N" ? "m/s" : "rad/s"; }
+};
+
+/// What a section carried.
+struct SectionPeaks {
+  std::string channel, unit;
+  Peak whole;    ///< of the whole run
+  Peak settled;  ///< of the span that figures are of
+  /// Permissible half range in continuous running at the nominal speed, where the model says so; not a number: none.
+  double permissible = SectionStrength::kNone;
+  double half_range() const { return 0.5 * (settled.max - settled.min); }
 };
 
 /// Of a run in fewer coordinates, or why it is not.
@@ -67,6 +79,8 @@ struct RunResult {
   std::optional<Largest> mesh_force;  ///< over meshes and whatever else has a gap [N]
   std::string static_reason;          ///< why there is no static force
   std::vector<Contacts> contacts;
+  std::vector<SectionPeaks> sections;           ///< of the model's torques
+  std::vector<RainflowWatch::Result> rainflow;  ///< load cycles over the span
   double modes_time = 0.0, static_time = 0.0, reduction_time = 0.0, accuracy_time = 0.0,
          run_time = 0.0;  ///< s of wall time
 

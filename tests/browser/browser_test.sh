@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# browser_test.sh DREV [--break|--hostile|--hostile-break]: opens reports in Chromium, without a window, and does there what a reader
+# browser_test.sh DREV [--break|--hostile|--hostile-break|--sweep MODELS]: opens reports in Chromium, without a window, and does there what a reader
 # does (probe.html). --break: with a page that loses peaks and has an error, which must be found.
 # --hostile: with 200 names that are attacks (hostile_model.sh, hostile_probe.html), with the page's policy and
 # without it, alone and compared, and printed. --hostile-break: with a page that takes them for markup.
 #
+# --sweep: the reports of a sweep and of a class calculation of the models in that folder
+# (sweep_probe.html).
 # Checked: no error, no request, all charts with the right number of points, none of which loses a peak, zoom
 # by mouse, wheel, keys and buttons, choice of a mode, themes, paper; sizes below 5 MB; a comparison; a PDF.
 # Prints how long the page took until it could be used, and checks nothing of that.
@@ -80,6 +82,13 @@ if [[ ${2:-} = --hostile* ]]; then
   "$drev" report hostile.html --out hostile.pdf --quiet
   [ "$(head -c 5 hostile.pdf)" = "%PDF-" ] || fail "hostile.pdf is no PDF"
   [ -z "$(ls | grep -E "partial|print" || true)" ] || fail "files of printing are left: $(ls)"
+  exit $failed
+fi
+if [ "${2:-}" = --sweep ]; then
+  "$drev" sweep "$3/engine/engine.toml" --speeds 600:10:2000 --report sweep.html --quiet
+  probe sweep.html sweep sweep_probe.html
+  "$drev" class "$3/genset/genset.toml" --speeds 1200:20:1700 --contact closed --report class.html --quiet
+  probe class.html class sweep_probe.html
   exit $failed
 fi
 every=5e-6  # a million samples

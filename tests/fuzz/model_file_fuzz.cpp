@@ -18,7 +18,7 @@
 #include <sys/resource.h>
 #include <vector>
 
-#include "app/model_file/export.hpp"
+#include "app/model_file/writing/export.hpp"
 
 namespace {
 

@@ -87,6 +87,23 @@ with open("turning.toml") as file, open("many_segments.toml", "w") as copied:
                                      'outer_diameter_mm = 100, length_m = 5')
                  .replace('"shaft_spring"', '"distributed_shaft"'))
 
+with open("class.toml", "w") as file:
+    file.write('format = 1\nnote = "shaft and mesh"\n[parameters]\nfires = 1\n'
+               '[nodes]\na = { nominal_speed_rpm = 900 }\nb = {}\nc = {}\n[elements]\n'
+               'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n'
+               'Jb = { type = "inertia", node = "b", inertia_kg_m2 = 1 }\n'
+               'Jc = { type = "inertia", node = "c", inertia_kg_m2 = 1 }\n'
+               's = { type = "shaft_spring", nodes = ["a", "b"], stiffness_Nm_per_rad = 9000, '
+               'damping_Nms_per_rad = 2 }\n'
+               'z = { type = "gear_mesh", nodes = ["b", "c"], base_radius_1_mm = 50, base_radius_2_mm = 50, '
+               'stiffness_N_per_um = 50, damping_Ns_per_m = 2000 }\n'
+               'drag = { type = "dashpot", node = "c", damping_Nms_per_rad = 0.2 }\n'
+               'pulse = { type = "engine_order_torque", node = "a", mean_Nm = "20 * fires", '
+               'harmonics = { order = [2], amplitude_Nm = ["300 * fires + 5"] } }\n'
+               '[run]\nduration_s = 0.5\n[class]\nrated_speed_rpm = 1500\nmisfire = { fires = 0 }\n'
+               '[class.sections]\ns = { diameter_mm = 25, tensile_strength_MPa = 500, shape_factor = 0.6, '
+               'permissible_heat_W = 50, sn_range_MPa = 100 }\n')
+
 with open("spline.toml", "w") as file:  # a contact in N m
     file.write('format = 1\n[nodes]\na = { initial_speed_rad_per_s = 2 }\nb = {}\n[elements]\n'
                'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n'
@@ -129,6 +146,8 @@ results = {
                         "--balance", "b"),
     "statistics of runs": printed("sweep", "chaos.toml", "--speeds", "9.549,9.55", "--orders", "1", "--tolerance",
                                   "1e-2"),
+    "class": printed("class", "class.toml", "--speeds", "300:10:1000", "--orders", "2", "--contact", "closed"),
+    "counted": printed("run", "class.toml", "--rainflow", "z.force_N"),
     "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
     "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "2"),
     "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",

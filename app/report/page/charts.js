@@ -146,19 +146,19 @@ function toolbar(group, ...more) {
 const curveName = (label) => `\u200b${label}`;
 
 /// One chart. options: {group, title, caption, labels, rows(from, to, columns) -> {rows, sparse}, xName, xLabel; and
-/// where they are not the usual: yLabel, valueRange, log, tall, colors(), series(label, i), underlay}.
+/// where they are not the usual: yLabel, valueRange, log, tall, middle, colors(), series(label, i), underlay}.
 class Chart {
   constructor(parent, options) {
     this.options = options;
     this.element = make("div", {
-      class: options.tall ? "chart tall" : "chart",
+      class: options.tall ? "chart tall" : options.middle ? "chart middle" : "chart",
       tabindex: "0",
       role: "img",
       "aria-label": `${options.title}; zoom with + and −, move with the arrow keys`,
       keydown: keys(options.group),
     });
     this.caption = make("figcaption", {}, options.caption || make("b", {}, options.title));
-    parent.append(make("figure", {}, this.caption, this.element));
+    parent.append(make("figure", {}, saveButtons(this), this.caption, this.element));
     options.group.add(this);
   }
   columns() {

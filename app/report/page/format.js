@@ -39,6 +39,7 @@ function tidy(x) {
 }
 
 const integer = (n) => String(n).replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f");
+const orderText = (order) => tidy(Number(order.toPrecision(4)));
 const percent = (x, digits = 3) => (Number.isFinite(x) ? `${sig(100 * x, digits)}\u00a0%` : "–");
 
 /// "rad/s^2" -> "rad/s²", blanks kept together.

@@ -1,8 +1,6 @@
 // Modes, and the speeds at which they resonate.
 
 const stillness = matchMedia("(prefers-reduced-motion: reduce)");
-const stopAnimations = [],
-  startAnimations = [];
 
 function showModes() {
   const section = byId("modes");
@@ -108,7 +106,6 @@ function showModes() {
   }
 }
 
-const orderText = (order) => tidy(Number(order.toPrecision(4)));
 const CAMPBELL_MODES = 4; // shown unless zoomed out
 
 function showCampbell() {

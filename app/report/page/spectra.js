@@ -144,6 +144,7 @@ function showSpectra() {
   }
   group.window = [0, Math.min(full, busy || full)];
   group.describe(group.window);
+  if (base) showOrderBars(section, withSpectra[0], base, channels);
   section.append(
     make(
       "details",
@@ -171,6 +172,33 @@ function showSpectra() {
       ),
     ),
   );
+}
+
+/// Amplitudes at half orders of the reference shaft, as bars: the highest line within a quarter of an order.
+function showOrderBars(section, run, base, channels) {
+  const { spectra } = run,
+    lines = spectra.channels[0]?.amplitude.length ?? 0;
+  const most = Math.min(24, Math.floor((2 * lines * spectra.line_Hz) / base));
+  if (most < 2 || spectra.line_Hz > 0.2 * base) return;
+  const orders = Array.from({ length: most }, (_, k) => 0.5 * (k + 1));
+  const holder = make("div", {});
+  const show = () => {
+    const channel = channels[Number(which.value)],
+      { amplitude } = channel.of[0].series;
+    const values = orders.map((order) => {
+      const from = Math.max(0, Math.ceil(((order - 0.2) * base) / spectra.line_Hz) - 1),
+        to = Math.min(amplitude.length, Math.floor(((order + 0.2) * base) / spectra.line_Hz));
+      return amplitude.subarray(from, Math.max(to, from + 1)).reduce((a, b) => Math.max(a, b), 0);
+    });
+    holder.replaceChildren(barChart(headed(run, `Orders of ${channel.name}`), channel.unit, orders, values));
+  };
+  const which = make(
+    "select",
+    { "aria-label": "Channel", change: show },
+    channels.map((channel, i) => make("option", { value: i }, channel.name)),
+  );
+  section.append(make("div", { class: "toolbar" }, make("label", {}, "Orders of ", which)), holder);
+  show();
 }
 
 /// A spectrum's lines between two frequencies, the highest of each of `columns` parts.

@@ -137,8 +137,72 @@ function showFigures() {
   for (const run of runs)
     if (run.result.results.of?.start)
       section.append(make("p", { class: "note" }, prefixed(run, spanText(run))));
+  for (const run of runs) showSections(section, run);
   for (const run of runs)
     if (run.result.note) section.append(make("p", { class: "note" }, prefixed(run, run.result.note)));
+}
+
+/// What each section carried, beside what it may carry; and its load cycles.
+function showSections(section, run) {
+  const carried = run.result.results.sections ?? [],
+    counted = run.result.results.rainflow ?? [];
+  if (carried.length) {
+    const limited = carried.some((s) => s.permissible !== null);
+    const settled = run.result.results.of.from_s > 0;
+    section.append(
+      make("h3", {}, headed(run, "What sections carry")),
+      table(
+        [
+          "section",
+          "unit",
+          "largest",
+          "smallest",
+          ...(settled ? ["settled largest", "settled smallest"] : []),
+          settled ? "settled half range" : "half range",
+          ...(limited ? ["permissible half range", "used"] : []),
+        ],
+        carried.map((s) => [
+          s.channel,
+          s.unit,
+          sig(s.peak_maximum, 5),
+          sig(s.peak_minimum, 5),
+          ...(settled ? [sig(s.maximum, 5), sig(s.minimum, 5)] : []),
+          sig(s.half_range, 5),
+          ...(limited
+            ? [
+                s.permissible === null ? "–" : sig(s.permissible, 5),
+                s.permissible === null ? "–" : percent(s.half_range / s.permissible),
+              ]
+            : []),
+        ]),
+      ),
+    );
+  }
+  if (!counted.length) return;
+  section.append(
+    make("h3", {}, headed(run, "Load cycles (rainflow, ASTM E1049)")),
+    table(
+      ["section", "cycles", "largest range", "Miner's sum", "until 1 [h]"],
+      counted.map((c) => [
+        c.channel,
+        sig(c.cycles, 6),
+        quantity(c.largest_range, c.unit),
+        c.damage === null ? "no S-N line" : sig(c.damage),
+        c.hours_to_failure === null ? "–" : sig(c.hours_to_failure, 3),
+      ]),
+    ),
+    ...counted.map((c) =>
+      make(
+        "details",
+        {},
+        make("summary", {}, `Classes of ${c.channel}`),
+        table(
+          [`range, mean of the class [${unitText(c.unit)}]`, "cycles"],
+          c.classes.map((one) => [sig(one.mean_range), sig(one.cycles, 6)]),
+        ),
+      ),
+    ),
+  );
 }
 
 /// "Run A: " where there are two.

@@ -104,6 +104,24 @@ function place(plan, pitch, gap) {
   return { x, offset, order };
 }
 
+/// A dashpot: a rod with its piston in a cylinder that is open towards it.
+function dashpot(x0, y0, x1, y1) {
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1,
+    [ux, uy] = [(x1 - x0) / length, (y1 - y0) / length];
+  const wide = 5,
+    half = Math.min(7, 0.25 * length);
+  const at = (along, across) =>
+    `${(x0 + along * ux - across * uy).toFixed(1)} ${(y0 + along * uy + across * ux).toFixed(1)}`;
+  const middle = length / 2;
+  return draw("path", {
+    class: "law dashpot",
+    d:
+      `M${at(0, 0)}L${at(middle, 0)}M${at(middle, -wide + 1.5)}L${at(middle, wide - 1.5)}` +
+      `M${at(middle - half, -wide)}L${at(middle + half, -wide)}L${at(middle + half, wide)}` +
+      `L${at(middle - half, wide)}M${at(middle + half, 0)}L${at(length, 0)}`,
+  });
+}
+
 /// A zigzag between two points.
 function zigzag(x0, y0, x1, y1, size = 4) {
   const points = [];
@@ -207,7 +225,7 @@ function drawTrain(model) {
           "g",
           {},
           draw("title", {}, jointText(joint)),
-          zigzag(x0, foot - 20, x0, foot, 4),
+          joint.kind === "damper" ? dashpot(x0, foot - 20, x0, foot) : zigzag(x0, foot - 20, x0, foot, 4),
           ground(x0, foot),
         ),
       );
@@ -232,6 +250,7 @@ function drawTrain(model) {
           }),
         ),
       );
+    else if (joint.kind === "damper") svg.append(draw("g", {}, title, dashpot(x0, y0, x1, y1)));
     else svg.append(draw("g", {}, title, zigzag(x0, y0, x1, y1, joint.kind === "spring" ? 6 : 3)));
   }
   const grounded = new Set(
@@ -315,6 +334,13 @@ function drawTrain(model) {
       );
     }
   });
+  // Names of meshes, beside their contact where no name of a node stands.
+  const boxOf = (text, x, y) => ({ left: x - 2, right: x + 6.3 * text.length + 2, top: y - 10, bottom: y + 3 });
+  const taken = [...svg.querySelectorAll("text:not([transform])")].map((label) => {
+    const box = boxOf(label.textContent, Number(label.getAttribute("x")), Number(label.getAttribute("y")));
+    const shift = label.getAttribute("text-anchor") === "middle" ? 3.15 * label.textContent.length : 0;
+    return { ...box, left: box.left - shift, right: box.right - shift };
+  });
   for (const tie of plan.ties) {
     const [a, b] = tie.nodes;
     const [xa, ya] = at(a),
@@ -322,12 +348,21 @@ function drawTrain(model) {
     const ga = gearRadius(tie, a),
       contact = ya + (yb > ya ? ga : -ga);
     const tx = Math.max(xa + offset(a, tie), xb + offset(b, tie)) + 10;
+    const text = tie.name + (tie.gap ? " (backlash)" : "");
+    const free = (y) => {
+      const box = boxOf(text, tx, y);
+      return taken.every(
+        (b) => b.left > box.right || b.right < box.left || b.top > box.bottom || b.bottom < box.top,
+      );
+    };
+    const ty = [4, -9, 17, -22, 30].map((d) => contact + d).find(free) ?? contact + 4;
+    taken.push(boxOf(text, tx, ty));
     svg.append(
       draw(
         "g",
         {},
         draw("title", {}, jointText(tie)),
-        draw("text", { x: tx, y: contact + 4, class: "quiet" }, tie.name + (tie.gap ? " (backlash)" : "")),
+        draw("text", { x: tx, y: ty, class: "quiet" }, text),
       ),
     );
   }

@@ -16,7 +16,7 @@ struct OptionFault {
 const std::vector<OptionFault>& faults() {
   static const std::vector<OptionFault> all{
       // commands and models
-      {{}, {"no command", "run, modes, sweep, campbell, list"}},
+      {{}, {"no command", "run, modes, sweep, campbell, class"}},
       {{"rnu", "camshaft"}, {"rnu", "did you mean 'run'?"}},
       {{"camshaft"}, {"did you mean 'drev run camshaft'?"}},
       {{"--verison"}, {"--verison", "did you mean '--version'?"}},

@@ -262,14 +262,26 @@ TEST_CASE("Table of several runs that cannot be written: what became of them is 
   CHECK(contains(run.err, "runs.csv"));
 }
 
+TEST_CASE("Values of --vary may mix lists and ranges") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run =
+      drev_command({"run", "two_inertia", "--vary", "duration_s=0.01,0.02:0.01:0.04,0.1", "--out", out});
+  CHECK(run.exit_code == 0);
+  for (const char* value : {"0.01", "0.02", "0.03", "0.04", "0.1"})
+    CHECK(std::filesystem::exists(folder / (std::string("r/duration_s=") + value + "/summary.json")));
+}
+
 TEST_CASE("What is wrong with --vary is said once, before anything is run") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const std::vector<std::pair<std::vector<std::string>, std::string>> faults{
       {{"two_inertia", "--vary", "stiffnes_Nm_per_rad=1,2"}, "did you mean 'stiffness_Nm_per_rad'?"},
-      {{"two_inertia", "--vary", "duration_s"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
-      {{"two_inertia", "--vary", "duration_s=1,,2"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
-      {{"two_inertia", "--vary", "duration_s=1:2"}, "must be NAME=A,B,C or NAME=FIRST:STEP:LAST"},
+      {{"two_inertia", "--vary", "duration_s"}, "must be NAME=A,B,C, NAME=FIRST:STEP:LAST, or both mixed"},
+      {{"two_inertia", "--vary", "duration_s=1,,2"},
+       "must be NAME=A,B,C, NAME=FIRST:STEP:LAST, or both mixed"},
+      {{"two_inertia", "--vary", "duration_s=1:2"},
+       "must be NAME=A,B,C, NAME=FIRST:STEP:LAST, or both mixed"},
       {{"two_inertia", "--vary", "duration_s=1:0:2"}, "does not lead from FIRST to LAST"},
       {{"two_inertia", "--vary", "duration_s=1:-1:2"}, "does not lead from FIRST to LAST"},
       {{"two_inertia", "--vary", "duration_s=1:1e-9:2"}, "more values than 10000"},

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kSettledPi = 3.14159265358979323846;
 
 /// A disc on a shaft from a node at constant speed, 100 rad/s; order 0.5 and a mean torque.
 std::string disc(const std::string& damping, const std::string& run) {
@@ -170,8 +170,8 @@ TEST_CASE("A model that does not turn at its nominal speed says so before its fi
   };
   const Ran off = run_of(drive("10"));
   REQUIRE(off.exit_code == 0);
-  CHECK(std::abs(off.json["speed"]["nominal_rpm"].get<double>() - 120.0 * 30.0 / kPi) < 1e-6);
-  CHECK(std::abs(off.json["speed"]["actual_rpm"].get<double>() - 100.0 * 30.0 / kPi) < 0.5);
+  CHECK(std::abs(off.json["speed"]["nominal_rpm"].get<double>() - 120.0 * 30.0 / kSettledPi) < 1e-6);
+  CHECK(std::abs(off.json["speed"]["actual_rpm"].get<double>() - 100.0 * 30.0 / kSettledPi) < 0.5);
   REQUIRE(off.json["notes"].size() == 1);
   CHECK(off.text.starts_with("*** NOTE: the model turns at 954.9"));
   CHECK(contains(off.text, "not at the nominal 1145.9 rpm (-16.7 %)"));
@@ -190,7 +190,8 @@ TEST_CASE("A run-up lists the criticals that it passes and tracks the orders ove
       "order = "
       "[2], amplitude_Nm = [10] } }\n[run]\nduration_s = 10\nrecord = [\"shaft.torque_Nm\"]\n");
   REQUIRE(run.exit_code == 0);
-  const double critical = std::sqrt(12279.0) / 2.0 * 30.0 / kPi;  // 529 rpm, below half of the top speed
+  const double critical =
+      std::sqrt(12279.0) / 2.0 * 30.0 / kSettledPi;  // 529 rpm, below half of the top speed
   const Json& up = run.json["run_up"];
   CHECK(up["slowest_rpm"].get<double>() == Approx(300.0));
   CHECK(up["fastest_rpm"].get<double>() == Approx(1800.0));

@@ -1,5 +1,5 @@
 // A built-in model, written as a file and read back, is the same model to the last bit.
-#include "app/model_file/export.hpp"
+#include "app/model_file/writing/export.hpp"
 
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/channel.hpp>

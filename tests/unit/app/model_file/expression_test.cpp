@@ -16,8 +16,10 @@ const Scope kScope{{{"n", 9.0},
                     {"play_mm", 0.05},
                     {"gap_m", 1.0},
                     {"f_Hz", 40.0},
+                    {"one_deg", 1.0},
                     {"x_2", 7.0}},
-                   {{"order", {1, 4, 8, 2, 6, 9, 3, 5, 7}}, {"J_kg_m2", {0.5, 0.25}}}};
+                   {{"order", {1, 4, 8, 2, 6, 9, 3, 5, 7}}, {"J_kg_m2", {0.5, 0.25}}},
+                   {{"drive", "gears"}}};
 
 std::string refused(const std::string& text) {
   try {
@@ -53,12 +55,59 @@ TEST_CASE("Units go with the values") {
   CHECK(unit("gap_mm/play_mm").empty());
   CHECK(unit("n*i").empty());
   CHECK(unit("J_kg_m2[2]").compare("kg_m2") == 0);
-  CHECK_FALSE(evaluate("gap_mm*f_Hz", kScope).unit_followed);
-  CHECK_FALSE(evaluate("1/f_Hz", kScope).unit_followed);
+  // Products and quotients are known by their powers of kg, m, s and by their size.
+  CHECK(evaluate("gap_mm*f_Hz", kScope).fits("mm_per_s"));
+  CHECK_FALSE(evaluate("gap_mm*f_Hz", kScope).fits("m_per_s"));
+  CHECK(evaluate("1/f_Hz", kScope).fits("s"));
+  CHECK_FALSE(evaluate("1/f_Hz", kScope).fits("ms"));
+  CHECK(evaluate("J_kg_m2[1]*f_Hz^2", kScope).fits("Nm"));
+  CHECK(evaluate("sqrt(gap_mm^2 + play_mm^2)", kScope).fits("mm"));
+  CHECK_FALSE(evaluate("gap_mm^2", kScope).fits("mm"));
+  CHECK(evaluate("si(gap_mm)*f_Hz", kScope).fits("m_per_s"));
+  CHECK(evaluate("si(gap_mm)", kScope).value == Approx(0.15e-3).epsilon(1e-14));
+  CHECK(evaluate("plain(gap_mm)", kScope).plain());
+  CHECK(evaluate("gap_mm*f_Hz/(play_mm*f_Hz)", kScope).plain());
   CHECK(unit_suffix("stiffness_Nm_per_rad") == "Nm_per_rad");
   CHECK(unit_suffix("speed_rad_per_s") == "rad_per_s");
   CHECK(unit_suffix("cylinders").empty());
   CHECK(unit_suffix("_mm").empty());
+}
+
+TEST_CASE("Powers, roots and functions") {
+  const auto value = [](const char* text) { return evaluate(text, kScope).value; };
+  CHECK(value("2^3") == 8.0);
+  CHECK(value("2^3^2") == 512.0);
+  CHECK(value("-2^2") == -4.0);
+  CHECK(value("2*3^2") == 18.0);
+  CHECK(value("4^-0.5") == 0.5);
+  CHECK(value("sqrt(n)") == 3.0);
+  CHECK(value("sin(pi/6)") == Approx(0.5).epsilon(1e-15));
+  CHECK(value("sin(30*one_deg)") == Approx(0.5).epsilon(1e-15));
+  CHECK(value("cos(0) + tan(0) + exp(0) + log(exp(2)) + abs(-3)") == Approx(7.0).epsilon(1e-15));
+  CHECK(value("max(1, n, i) - min(gap_mm, play_mm)") == Approx(8.95).epsilon(1e-15));
+}
+
+TEST_CASE("Conditions compare numbers and texts") {
+  for (const char* right :
+       {"n == 9", "n != i", "i < n and n > i", "drive == 'gears'", "'held' != drive", "not drive == 'held'",
+        "(n < 1 or i == 3) and gap_mm <= 0.15", "(n + 1) == 10", "n >= 9 or i == 1 and drive == 'held'"})
+    CHECK(holds(right, kScope));
+  for (const char* wrong : {"n == 8", "drive == 'held'", "n < 1 or i > 3", "not n == 9"})
+    CHECK_FALSE(holds(wrong, kScope));
+  const auto said = [](const char* text) {
+    try {
+      holds(text, kScope);
+    } catch (const ExpressionError& error) {
+      return error.sentence;
+    }
+    return std::string("accepted");
+  };
+  CHECK(said("n").find("is no condition") != std::string::npos);
+  CHECK(said("drive == 3").find("compares a text with a number") != std::string::npos);
+  CHECK(said("drive < 'x'").find("compares texts by <") != std::string::npos);
+  CHECK(said("drive == 'x").find("lacks a '") != std::string::npos);
+  CHECK(said("gap_mm == gap_m").find("compares mm and m") != std::string::npos);
+  CHECK(said("n == 9 n").find("cannot stand") != std::string::npos);
 }
 
 TEST_CASE("Faults of expressions are named") {
@@ -80,7 +129,13 @@ TEST_CASE("Faults of expressions are named") {
       {"position(order, 10)", "seeks 10, which the list does not hold"},
       {"position(order)", "lacks a ','"},
       {"1e999", "has '1' in column 1"},
-      {".", "has '.' in column 1"}};
+      {".", "has '.' in column 1"},
+      {"gap_mm*f_Hz + gap_mm", "adds mm*Hz and mm"},
+      {"sqrt(-1)", "takes the root of -1"},
+      {"sin(gap_mm)", "takes sin of mm"},
+      {"2^gap_mm", "has an exponent in mm"},
+      {"sinus(1)", "calls sinus(), which is no function"},
+      {"drive + 1", "takes drive for a number"}};
   for (const auto& [text, said] : faults) {
     INFO(text << ": " << refused(text));
     CHECK(refused(text).find(said) != std::string::npos);
@@ -94,6 +149,8 @@ TEST_CASE("Names are filled in") {
   CHECK(expand("fuel_{i}", kScope) == "fuel_3");
   CHECK(expand("{i-1}-{i + 1}", kScope) == "2-4");
   CHECK(expand("plain", kScope) == "plain");
+  CHECK(expand("on_{drive}", kScope) == "on_gears");
+  CHECK(expand("nested_{x_{1+1}}", kScope) == "nested_7");
   for (const char* text : {"fuel_{", "fuel_{i/2}", "fuel_{}", "fuel_{j}", "{1e12}"})
     CHECK_THROWS_AS(expand(text, kScope), ExpressionError);
 }

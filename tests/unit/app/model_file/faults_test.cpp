@@ -253,7 +253,7 @@ TEST_CASE("Faults of files that are included or read are named in those") {
   const test::TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
   write("gears.toml",
-        "format = 1\nname = \"no\"\n[nodes]\nidler = {}\n[elements]\nJ = { type = \"inertia\", node = "
+        "format = 1\nnames = \"no\"\n[nodes]\nidler = {}\n[elements]\nJ = { type = \"inertia\", node = "
         "\"idler\" }\n");
   write("lift.csv", "angle_deg,torque_Nm\n0,1\n90,x\n180\n");
   write("broken.toml", "format = \n");
@@ -263,7 +263,8 @@ TEST_CASE("Faults of files that are included or read are named in those") {
   const auto run = test::drev_command({"check", (folder / "main.toml").string()});
   INFO(run.err);
   CHECK(run.exit_code == 2);
-  CHECK(contains(run.err, "gears.toml:2:1: name, can stand in the main file only"));
+  CHECK(contains(run.err,
+                 "gears.toml:2:1: names, is unknown at the top of a model file; did you mean 'name'?"));
   CHECK(contains(run.err, "gears.toml:6:5: elements.J, lacks inertia_kg_m2"));
   CHECK(contains(run.err, "broken.toml:1:"));
   CHECK(contains(run.err, "lift.csv:3:4: row, the cell of column 2 is no finite number"));

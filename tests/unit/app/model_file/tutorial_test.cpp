@@ -10,6 +10,7 @@ using drev::test::read_file;
 TEST_CASE("The commands of the tutorial print what it says", "[once]") {
   const drev::test::TemporaryFolder folder;
   std::filesystem::copy_file(DREV_SOURCE_DIR "/models/tutorial/train.toml", folder / "train.toml");
+  std::filesystem::copy(DREV_SOURCE_DIR "/models/genset", folder / "genset");
   const auto printed_by = [&](const std::string& command) {
     std::ofstream(folder / "command") << command << "\n";
     const std::string line = "cd '" + (folder / "").string() +

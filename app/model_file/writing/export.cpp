@@ -1,4 +1,4 @@
-#include "app/model_file/export.hpp"
+#include "app/model_file/writing/export.hpp"
 
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/elements/applied_torque.hpp>
@@ -7,8 +7,9 @@
 #include <map>
 
 #include "app/model_file/document.hpp"
-#include "app/model_file/field_writer.hpp"
 #include "app/model_file/node_fields.hpp"
+#include "app/model_file/strength_section.hpp"
+#include "app/model_file/writing/field_writer.hpp"
 
 namespace drev::app {
 
@@ -24,7 +25,8 @@ class CaseWriter {
     head += "format = " + std::to_string(kFormat) + "\nname = " + toml_text(model_.name()) + "\n";
     if (!entry.summary.empty()) head += "summary = " + toml_text(entry.summary) + "\n";
     if (!model_case_.note.empty()) head += "note = " + toml_text(model_case_.note) + "\n";
-    std::string all = head + "\n" + nodes + "\n" + store_.text() + elements + "\n" + write_run();
+    std::string all =
+        head + "\n" + nodes + "\n" + store_.text() + elements + "\n" + write_run() + write_strength();
     if (!findings_.empty()) throw ModelError(std::move(findings_));
     return all;
   }
@@ -150,6 +152,26 @@ class CaseWriter {
     else if (settle)
       add("settle", toml_text("auto"));
     add("record", toml_texts(model_case_.channels));
+    return text;
+  }
+
+  /// [class], without its misfire case: the file has no parameters.
+  std::string write_strength() {
+    if (!model_case_.strength) return {};
+    const Strength& strength = *model_case_.strength;
+    std::string text = "\n[class]\n";
+    if (!std::isnan(strength.rated_speed))
+      text += "rated_speed_rad_per_s = " + toml_number(strength.rated_speed) + "\n";
+    text += "[class.sections]\n";
+    for (SectionStrength section : strength.sections) {
+      FieldKeys defaults(NodeKind::rotational, [](Fields& f) {
+        SectionStrength plain;
+        list_section(f, plain);
+      });
+      FieldWriter writer(NodeKind::rotational, defaults, store_, section.element);
+      list_section(writer, section);
+      text += toml_key(section.element) + " = " + writer.inline_table() + "\n";
+    }
     return text;
   }
 

@@ -1,4 +1,4 @@
-#include "app/model_file/field_writer.hpp"
+#include "app/model_file/writing/field_writer.hpp"
 
 #include <drev/core/error.hpp>
 

@@ -1,0 +1,187 @@
+#include <drev/app/model_file/units.hpp>
+#include <drev/core/error.hpp>
+#include <drev/models/parameters.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "app/base/text_layout.hpp"
+#include "app/import/imported.hpp"
+#include "app/model_file/writing/field_writer.hpp"
+
+namespace drev::app {
+
+namespace {
+
+struct MassElasticColumn {
+  const char* name;
+  Dimension dimension;
+  double low;
+};
+constexpr MassElasticColumn kColumns[] = {{"inertia", Dimension::inertia, 0.0},
+                                          {"stiffness", Dimension::torsional_stiffness, 0.0},
+                                          {"damping", Dimension::torsional_damping, 0.0},
+                                          {"ground_damping", Dimension::torsional_damping, 0.0},
+                                          {"ratio", Dimension::none, -HUGE_VAL},
+                                          {"diameter", Dimension::length, 0.0},
+                                          {"bore", Dimension::length, 0.0}};
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\"");
+  return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\"") + 1 - first);
+}
+
+class MassElasticReader {
+ public:
+  MassElasticReader(const std::string& text, std::string file)
+      : text_(text), file_(std::move(file)), model_(stem()) {}
+
+  ImportedModel read() {
+    std::istringstream lines(text_);
+    int number = 0;
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+      if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
+      std::vector<std::string> cells = split(line, line.find(';') != line.npos ? ';' : ',');
+      for (std::string& cell : cells) cell = trimmed(cell);
+      headers_.empty() ? read_head(cells, number) : read_row(cells, number);
+    }
+    if (headers_.empty()) fault(0, "has no line with the names of its columns");
+    if (findings_.empty() && rows_.size() < 2) fault(number, "has fewer than two masses");
+    if (findings_.empty()) build();
+    if (!findings_.empty()) throw ModelError(std::move(findings_));
+    return std::move(model_);
+  }
+
+ private:
+  struct Row {
+    int line = 0;
+    std::string node;
+    std::map<std::string, double> values;  ///< in SI
+    std::optional<double> get(const std::string& name) const {
+      const auto found = values.find(name);
+      return found == values.end() ? std::nullopt : std::optional(found->second);
+    }
+  };
+  struct Header {
+    std::string name;  ///< empty: not taken
+    double factor = 1.0, low = 0.0;
+  };
+
+  std::string stem() const {
+    const std::size_t slash = file_.rfind('/');
+    const std::string name = slash == file_.npos ? file_ : file_.substr(slash + 1);
+    return name.substr(0, name.rfind('.'));
+  }
+  void fault(int line, const std::string& what) {
+    findings_.push_back({file_ + (line > 0 ? ":" + std::to_string(line) : ""), "", "", "", what});
+  }
+
+  void read_head(const std::vector<std::string>& cells, int line) {
+    std::vector<std::string> known{"node"};
+    for (const MassElasticColumn& column : kColumns)
+      known.push_back(spellings(column.name, column.dimension));
+    for (const std::string& cell : cells) {
+      Header header;
+      if (cell == "node" || cell == "name") header.name = "node";
+      for (const MassElasticColumn& column : kColumns) {
+        if (column.dimension == Dimension::none && cell == column.name)
+          header = {column.name, 1.0, column.low};
+        for (const Unit& unit : units_of(column.dimension))
+          if (cell == std::string(column.name) + "_" + unit.suffix)
+            header = {column.name, unit.factor, column.low};
+      }
+      if (header.name.empty())
+        for (const MassElasticColumn& column : kColumns)
+          if (cell == column.name)
+            fault(line,
+                  "the column " + cell + " has no unit; write " + spellings(column.name, column.dimension));
+      if (header.name.empty())
+        model_.not_taken("the column \"" + cell + "\"; there are " + join(known, "; "));
+      headers_.push_back(header);
+    }
+    for (const char* needed : {"inertia"})
+      if (std::none_of(headers_.begin(), headers_.end(), [&](const Header& h) { return h.name == needed; }))
+        fault(line, "lacks the column " + spellings("inertia", Dimension::inertia));
+  }
+
+  void read_row(const std::vector<std::string>& cells, int line) {
+    if (cells.size() > headers_.size()) return fault(line, "has more cells than the line of names");
+    Row row{line, "mass_" + std::to_string(rows_.size() + 1), {}};
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const Header& header = headers_[c];
+      if (cells[c].empty() || header.name.empty()) continue;
+      if (header.name == "node") {
+        row.node = cells[c];
+        continue;
+      }
+      double value = 0.0;
+      if (!read_number(cells[c], value) || !std::isfinite(value) || value < header.low)
+        fault(line, header.name + " is " + cells[c] + "; it must be a number" +
+                        (header.low == 0.0 ? " >= 0" : "") + ", with a point");
+      row.values[header.name] = value * header.factor;
+    }
+    for (const Row& other : rows_)
+      if (other.node == row.node)
+        fault(line, "the node " + row.node + " is there already, in line " + std::to_string(other.line));
+    rows_.push_back(std::move(row));
+  }
+
+  void build() {
+    for (const Row& row : rows_) model_.add_node(row.node);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const Row& row = rows_[r];
+      const std::string at = "node = " + toml_text(row.node);
+      if (const auto inertia = row.get("inertia"); inertia && *inertia > 0.0)
+        model_.add_element("J_" + row.node,
+                           "type = \"inertia\", " + at + ", inertia_kg_m2 = " + toml_number(*inertia));
+      if (const auto damping = row.get("ground_damping"); damping && *damping > 0.0)
+        model_.add_element("c_" + row.node,
+                           "type = \"dashpot\", " + at + ", damping_Nms_per_rad = " + toml_number(*damping));
+      if (r + 1 < rows_.size()) join_next(row, rows_[r + 1]);
+      if (r + 1 == rows_.size() && (row.get("stiffness") || row.get("ratio")))
+        model_.not_taken("the shaft behind the last mass, " + row.node);
+    }
+  }
+
+  void join_next(const Row& row, const Row& next) {
+    const std::string nodes = "nodes = " + toml_texts({row.node, next.node}),
+                      name = row.node + "_" + next.node;
+    const auto stiffness = row.get("stiffness"), ratio = row.get("ratio"), damping = row.get("damping");
+    if (stiffness && ratio)
+      return fault(row.line, "has a stiffness and a ratio; a gear is a line of its own");
+    if (ratio && *ratio != 0.0)
+      model_.add_element(name, "type = \"ideal_gear\", " + nodes + ", ratio = " + toml_number(*ratio));
+    else if (stiffness && *stiffness > 0.0)
+      model_.add_element(name, "type = \"shaft_spring\", " + nodes +
+                                   ", stiffness_Nm_per_rad = " + toml_number(*stiffness) +
+                                   (damping ? ", damping_Nms_per_rad = " + toml_number(*damping) : ""));
+    else if (damping && *damping > 0.0)
+      model_.add_element(name,
+                         "type = \"dashpot\", " + nodes + ", damping_Nms_per_rad = " + toml_number(*damping));
+    else
+      return fault(row.line, "has neither stiffness, ratio nor damping to the next mass, " + next.node);
+    if (const auto diameter = row.get("diameter"))
+      model_.add_section(name, "diameter_m = " + toml_number(*diameter) +
+                                   (row.get("bore") ? ", bore_m = " + toml_number(*row.get("bore")) : ""));
+  }
+
+  const std::string& text_;
+  std::string file_;
+  ImportedModel model_;
+  std::vector<Header> headers_;
+  std::vector<Row> rows_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+ImportedModel import_mass_elastic(const std::string& text, const std::string& file) {
+  return MassElasticReader(text, file).read();
+}
+
+}  // namespace drev::app

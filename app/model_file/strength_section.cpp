@@ -1,0 +1,115 @@
+#include "app/model_file/strength_section.hpp"
+
+#include <drev/core/channel.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
+
+#include <algorithm>
+#include <map>
+
+#include "app/model_file/run_section.hpp"
+
+namespace drev::app {
+
+namespace {
+
+using D = Dimension;
+
+/// Elements that carry a torque.
+std::vector<std::string> torque_elements(const System& system) {
+  constexpr std::string_view kEnd = ".torque_Nm";
+  std::vector<std::string> names;
+  for (const Channel& channel : all_channels(system))
+    if (channel.name().ends_with(kEnd))
+      names.push_back(channel.name().substr(0, channel.name().size() - kEnd.size()));
+  return names;
+}
+
+void read_misfire(const Value& table, Strength& strength, ReadContext& context) {
+  if (!table.is(Value::Kind::table)) {
+    context.findings.push_back(fault_at(table.at, "class.misfire",
+                                        "must be a table, { parameter = value }, not " + kind_name(table)));
+    return;
+  }
+  for (const Entry& entry : table.entries) {
+    const std::string where = "class.misfire." + entry.key;
+    if (!context.scope.numbers.contains(entry.key))
+      context.findings.push_back(fault_at(
+          entry.at, where,
+          "is none of [parameters] that are numbers" + did_you_mean(entry.key, context.scope.names())));
+    else if (const auto value = read_number(entry.value, unit_suffix(entry.key), where, context))
+      strength.misfire.emplace_back(entry.key, *value);
+  }
+}
+
+}  // namespace
+
+void list_section(Fields& f, SectionStrength& s) {
+  f.number({"diameter", D::length}, s.diameter);
+  f.number({"bore", D::length}, s.bore);
+  f.number({"stress_concentration", D::none}, s.stress_concentration);
+  f.number({"tensile_strength", D::pressure}, s.tensile_strength);
+  f.number({"shape_factor", D::none}, s.shape_factor);
+  f.number({"permissible_stress", D::pressure}, s.permissible_stress);
+  f.number({"transient_stress", D::pressure}, s.transient_stress);
+  f.number({"permissible_torque", D::torque}, s.permissible_torque);
+  f.number({"transient_torque", D::torque}, s.transient_torque);
+  f.number({"permissible_heat", D::power}, s.permissible_heat);
+  f.number({"sn_range", D::pressure}, s.sn.reference);
+  f.number({"sn_cycles", D::none}, s.sn.cycles);
+  f.number({"sn_slope", D::none}, s.sn.slope);
+}
+
+void read_strength(const Value& table, const System& system, ModelCase& model_case, ReadContext& context) {
+  Strength strength;
+  const std::size_t before = context.findings.size();
+  read_fields(
+      table, "class", NodeKind::rotational, {"sections", "misfire"},
+      [&](Fields& f) {
+        f.number({"rated_speed", D::angular_speed}, strength.rated_speed);
+      },
+      context);
+  if (const Entry* misfire = table.find("misfire")) read_misfire(misfire->value, strength, context);
+  std::map<std::string, const Entry*> places;
+  const std::vector<std::string> known = torque_elements(system);
+  if (const Entry* sections = table.find("sections")) {
+    if (!sections->value.is(Value::Kind::table))
+      context.findings.push_back(
+          fault_at(sections->value.at, "class.sections",
+                   "must be a table, [class.sections.NAME], not " + kind_name(sections->value)));
+    for (const Entry& entry : sections->value.entries) {
+      const std::string where = "class.sections." + entry.key;
+      if (!entry.value.is(Value::Kind::table)) {
+        context.findings.push_back(
+            fault_at(entry.value.at, where, "must be a table, { ... }, not " + kind_name(entry.value)));
+        continue;
+      }
+      SectionStrength section;
+      read_fields(
+          entry.value, where, NodeKind::rotational, {}, [&](Fields& f) { list_section(f, section); },
+          context);
+      bool fits = false;
+      for (const std::string& name : known) {
+        if (!fits_pattern(entry.key, name)) continue;
+        fits = true;
+        section.element = name;
+        places[name] = &entry;
+        // What is said of one element alone counts beside what is said of many.
+        std::erase_if(strength.sections, [&](const auto& other) { return other.element == name; });
+        strength.sections.push_back(section);
+      }
+      if (!fits)
+        context.findings.push_back(fault_at(
+            entry.at, where, "is the name of no element with a torque" + did_you_mean(entry.key, known)));
+    }
+  }
+  if (context.findings.size() == before)
+    for (Finding finding : check_strength(strength)) {
+      const auto place = places.find(finding.place.substr(std::min(finding.place.size(), std::size_t{15})));
+      const Position at = place != places.end() ? place->second->at : table.at;
+      finding.place = at.text() + ": " + finding.place;
+      context.findings.push_back(std::move(finding));
+    }
+  model_case.strength = std::make_shared<const Strength>(std::move(strength));
+}
+
+}  // namespace drev::app

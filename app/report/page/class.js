@@ -1,0 +1,135 @@
+// The page of a class calculation: judgement, mass-elastic system, rules; the rest is the page of the sweep.
+
+const judged = page.class;
+const caseTitle = (one) => (one.name === "normal" ? "Normal firing" : "One cylinder misfiring");
+
+function showJudgement() {
+  const section = byId("judgement");
+  for (const one of judged.cases) {
+    section.append(
+      make("h3", {}, `${caseTitle(one)}: ${one.accepted ? "within all limits that are given" : "limits exceeded"}`),
+      table(
+        [
+          "section",
+          "d [mm]",
+          "half range [N m]",
+          "stress [MPa]",
+          "permissible [N m]",
+          "used",
+          "at [rpm]",
+          "heat [W]",
+          "by",
+        ],
+        one.sections.map((s) => {
+          const i = s.half_range_Nm.indexOf(Math.max(...s.half_range_Nm));
+          const half = Math.max(...s.half_range_Nm);
+          const heat = sig(s.heat_W) + (s.permissible_heat_W === null ? "" : ` of ${sig(s.permissible_heat_W)}`);
+          return [
+            s.section,
+            s.diameter_m === null ? "–" : sig(1e3 * s.diameter_m) + (s.bore_m ? ` / ${sig(1e3 * s.bore_m)}` : ""),
+            sig(half, 5),
+            s.stress_Pa === null ? "–" : sig(s.stress_Pa[i] / 1e6),
+            s.utilisation === null ? "–" : sig(s.permissible_Nm[i]),
+            s.utilisation === null ? "–" : percent(s.utilisation),
+            s.utilisation === null ? "–" : sig(s.utilisation_at_rpm, 5),
+            heat,
+            s.rule ?? "not judged",
+          ];
+        }),
+      ),
+    );
+    const exceeded = one.sections.flatMap((s) =>
+      s.exceeded.map((r) => [
+        s.section,
+        `${r.open_from ? "≤ " : ""}${sig(r.from_rpm, 5)}`,
+        `${r.open_to ? "≥ " : ""}${sig(r.to_rpm, 5)}`,
+        percent(r.worst),
+        sig(r.worst_rpm, 5),
+        r.may_be_passed ? "may be barred and passed" : "may not be barred: it reaches 0.8 of the rated speed, or exceeds the transient limit",
+      ]),
+    );
+    if (exceeded.length)
+      section.append(
+        make("p", {}, "Ranges of speed in which the limit for continuous running is exceeded:"),
+        table(["section", "from [rpm]", "to [rpm]", "used", "at [rpm]", ""], exceeded),
+      );
+    const barred = one.sections.flatMap((s) =>
+      s.barred_by_rule.map((b) => [
+        s.section,
+        sig(b.critical_rpm, 6),
+        orderText(b.order),
+        b.mode,
+        sig(b.speed_ratio, 3),
+        b.from_rpm === null ? "none permitted" : `${sig(b.from_rpm, 5)} to ${sig(b.to_rpm, 5)}`,
+      ]),
+    );
+    if (barred.length)
+      section.append(
+        make("p", {}, "Barred ranges by IACS UR M68.5, about the criticals in these ranges:"),
+        table(["section", "critical [rpm]", "order", "mode", "speed ratio", "barred [rpm]"], barred),
+      );
+    if (one.chatter.length)
+      section.append(
+        make("p", {}, "Chatter: vibratory over mean force in a mesh above 1"),
+        table(
+          ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", "speeds at which teeth would separate"],
+          one.chatter.map((r) => [
+            r.section,
+            sig(r.from_rpm, 5),
+            sig(r.to_rpm, 5),
+            sig(r.worst, 3),
+            sig(r.worst_rpm, 5),
+            r.separated_speeds,
+          ]),
+        ),
+      );
+    if (one.not_judged.length)
+      section.append(make("p", { class: "note" }, `Without a limit, not judged: ${one.not_judged.join(", ")}.`));
+  }
+}
+
+function showMassElastic() {
+  const section = byId("masselastic"),
+    m = judged.mass_elastic;
+  section.append(
+    trainFigure(page.model),
+    table(
+      ["node", "speed ratio", "inertia [kg m²], as it stands", "referred to the reference shaft"],
+      m.nodes.map((n) => [n.name, sig(n.ratio, 5), sig(n.inertia, 6), sig(n.inertia * n.ratio * n.ratio, 6)]),
+    ),
+    table(
+      ["joint", "between", "kind", "stiffness [N m/rad; mesh N/m]", "damping [N m s/rad]"],
+      m.joints.map((j) => [
+        j.name,
+        j.nodes.join(" – "),
+        j.kind,
+        j.stiffness === null ? "–" : sig(j.stiffness, 6),
+        j.damping === null ? "–" : sig(j.damping, 4),
+      ]),
+    ),
+  );
+}
+
+function showRules() {
+  const list = (title, texts) => [
+    make("h3", {}, title),
+    make(
+      "ul",
+      {},
+      texts.map((text) => make("li", {}, text)),
+    ),
+  ];
+  byId("rules").append(...list("Formulas", judged.rules), ...list("Not judged", judged.not_covered));
+}
+
+showAll(
+  showHead,
+  showJudgement,
+  showMassElastic,
+  showFigures,
+  showCharts,
+  showBars,
+  showDiagram,
+  showRules,
+  showParameters,
+);

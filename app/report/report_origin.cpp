@@ -1,0 +1,52 @@
+#include "app/report/report_origin.hpp"
+
+#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/core/version.hpp>
+
+#include <chrono>
+#include <ctime>
+
+namespace drev::app {
+
+namespace {
+
+std::string now() {
+  const std::time_t time = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  ::gmtime_r(&time, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+}  // namespace
+
+void add_origin(Json& data) {
+  data["version"] = DREV_VERSION;
+  data["made"] = now();
+}
+
+Json inputs_array(const Parameters& parameters) {
+  Json inputs = Json::array();
+  for (std::size_t i = 0; i < parameters.known().size(); ++i) {
+    const Parameter& parameter = parameters.known()[i];
+    inputs.push_back({{"name", parameter.name},
+                      {"value", parameters.values()[i]},
+                      {"default", parameter.default_text},
+                      {"unit", parameter.unit},
+                      {"range", parameter.range()},
+                      {"meaning", parameter.meaning}});
+  }
+  return inputs;
+}
+
+std::string model_options(const Parameters& parameters) {
+  std::string text;
+  for (std::size_t i = 0; i < parameters.known().size(); ++i)
+    if (parameters.values()[i] != parameters.known()[i].default_text)
+      text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
+  for (const std::string& plugin : loaded_plugins()) text += " --plugin " + plugin;
+  return text;
+}
+
+}  // namespace drev::app

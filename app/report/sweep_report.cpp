@@ -1,0 +1,117 @@
+#include "app/report/sweep_report.hpp"
+
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/report_campbell.hpp"
+#include "app/report/report_model.hpp"
+#include "app/report/report_origin.hpp"
+#include "app/report/report_spectra.hpp"
+#include "app/results/campbell_result.hpp"
+
+namespace drev::app {
+
+namespace {
+
+std::string floats(const Vector& values) {
+  std::vector<float> list;
+  for (const double value : values) list.push_back(static_cast<float>(value));
+  return base64(list);
+}
+
+/// Order by order, each over all speeds.
+std::string amplitudes(const SweepSection& section) {
+  std::vector<float> list;
+  for (Eigen::Index k = 0; k < section.amplitude.rows(); ++k)
+    for (Eigen::Index i = 0; i < section.amplitude.cols(); ++i)
+      list.push_back(static_cast<float>(std::abs(section.amplitude(k, i))));
+  return base64(list);
+}
+
+/// Local maxima of the half range, those between the speeds among them; the largest first.
+Json peaks_of(const LinearSweep& sweep, int number_of_section) {
+  const Vector half = sweep.sections[static_cast<std::size_t>(number_of_section)].half_range();
+  Eigen::Index at = 0;
+  const double largest = half.maxCoeff(&at), speed = sweep.speeds[static_cast<std::size_t>(at)];
+  Json list = Json::array();
+  for (const SweepPeak& peak : sweep.peaks)
+    if (peak.section == number_of_section)
+      list.push_back({{"speed_rpm", number(to_rpm(peak.speed))}, {"half_range", number(peak.half_range)}});
+  const double first = list.empty()                      ? 0.0
+                       : list[0]["half_range"].is_null() ? HUGE_VAL
+                                                         : list[0]["half_range"].get<double>();
+  if (list.empty() || first < largest)
+    list.insert(list.begin(), Json{{"speed_rpm", number(to_rpm(speed))}, {"half_range", number(largest)}});
+  return list;
+}
+
+/// Means that are rounding beside the largest are zero.
+Vector rounded_means(const SweepSection& section, double largest) {
+  constexpr double kRounding = 1e-12;
+  Vector mean = section.mean;
+  for (double& value : mean)
+    if (std::abs(value) <= kRounding * largest) value = 0.0;
+  return mean;
+}
+
+Json sweep_data(const std::string& name, const std::vector<double>& speeds_rpm, const LinearSweep& sweep,
+                const std::vector<DrawnLimit>& limits) {
+  Json sections = Json::array(), criticals = Json::array();
+  double largest_mean = 0.0;
+  for (const SweepSection& s : sweep.sections)
+    largest_mean = std::max(largest_mean, s.mean.cwiseAbs().maxCoeff());
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    const SweepSection& s = sweep.sections[c];
+    Json drawn = Json::array();
+    for (const DrawnLimit& limit : limits)
+      if (limit.section == static_cast<int>(c))
+        drawn.push_back({{"name", limit.name}, {"values", floats(limit.values)}});
+    sections.push_back({{"name", s.name},
+                        {"unit", s.unit},
+                        {"half_range", floats(s.half_range())},
+                        {"maximum", floats(s.maximum)},
+                        {"minimum", floats(s.minimum)},
+                        {"mean", floats(rounded_means(s, largest_mean))},
+                        {"heat", floats(s.heat)},
+                        {"amplitude", amplitudes(s)},
+                        {"unbounded", !s.half_range().allFinite()},
+                        {"peaks", peaks_of(sweep, static_cast<int>(c))},
+                        {"limits", std::move(drawn)}});
+  }
+  for (const SweepCritical& critical : sweep.criticals) criticals.push_back(critical_object(sweep, critical));
+  return {{"name", name},
+          {"speeds_rpm", speeds_rpm},
+          {"orders", sweep.orders},
+          {"sections", std::move(sections)},
+          {"criticals", std::move(criticals)}};
+}
+
+}  // namespace
+
+Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, const std::string& title,
+                       const std::string& words, const std::vector<DrawnLimit>& limits,
+                       const std::vector<SweepBeside>& beside) {
+  const ModelRequest& m = request.model;
+  Json data;
+  data["kind"] = "sweep";
+  add_origin(data);
+  data["command"] = words + model_options(m.parameters);
+  data["title"] = title;
+  data["about"] = m.entry->summary.empty() ? m.model_case.note : m.entry->summary;
+  data["model_name"] = m.entry->name;
+  data["contact"] = request.options.close_contacts ? Json("closed") : Json();
+  data["notes"] = sweep_notes(request, sweep);
+  data["inputs"] = inputs_array(m.parameters);
+  data["model"] = model_object(m.model_case.model, m.system);
+  data["shaft"] = reference_name(m.model_case.model);
+  data["criticals_note"] = text_or_null(sweep.modes_note);
+  data["campbell"] = sweep.modes_note.empty() ? campbell_object(request, sweep) : Json();
+  data["sweeps"] = Json::array({sweep_data("", request.speeds_rpm, sweep, limits)});
+  for (const SweepBeside& other : beside)
+    data["sweeps"].push_back(sweep_data(other.name, request.speeds_rpm, *other.sweep, {}));
+  return data;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,245 @@
+#include "app/results/class_result.hpp"
+
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/parameter_text.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/results/run_json.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kShown = 6;
+constexpr double kMega = 1e6;
+
+Json class_numbers(const Vector& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
+std::string rpm_range(double from, double to) {
+  return digits(to_rpm(from), 4) + " to " + digits(to_rpm(to), 4) + " rpm";
+}
+
+std::string exceeded_text(const ExceededRange& range) {
+  return rpm_range(range.from, range.to) + (range.open_from || range.open_to ? " (and perhaps beyond)" : "") +
+         ", " + digits(100.0 * range.worst, 4) + " % at " + digits(to_rpm(range.worst_speed), 5) + " rpm" +
+         (range.may_be_passed ? "; may be barred and passed quickly"
+                              : "; must not be passed: no barred range");
+}
+
+Json range_object(const ExceededRange& range) {
+  return {{"from_rpm", number(to_rpm(range.from))}, {"to_rpm", number(to_rpm(range.to))},
+          {"open_from", range.open_from},           {"open_to", range.open_to},
+          {"worst", number(range.worst)},           {"worst_rpm", number(to_rpm(range.worst_speed))},
+          {"may_be_passed", range.may_be_passed}};
+}
+
+Json barred_object(const LinearSweep& sweep, const RuleBarredRange& barred) {
+  const SweepCritical& critical = sweep.criticals[static_cast<std::size_t>(barred.critical)];
+  const bool permitted = barred.to > 0.0;
+  return {{"critical_rpm", number(to_rpm(critical.speed))},
+          {"order", number(critical.order)},
+          {"mode", critical.mode + 1},
+          {"speed_ratio", number(barred.speed_ratio)},
+          {"from_rpm", permitted ? number(to_rpm(barred.from)) : Json()},
+          {"to_rpm", permitted ? number(to_rpm(barred.to)) : Json()}};
+}
+
+Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
+  const SectionStrength& data =
+      c.request.model.model_case.strength->sections[static_cast<std::size_t>(judged.strength)];
+  const SweepSection& section = c.sweep.sections[static_cast<std::size_t>(judged.section)];
+  Json permissible = Json::array(), transient = Json::array(), exceeded = Json::array(),
+       barred = Json::array();
+  for (const TorqueLimit& limit : judged.limits) {
+    permissible.push_back(number(limit.continuous));
+    transient.push_back(number(limit.transient));
+  }
+  for (const ExceededRange& range : judged.exceeded) exceeded.push_back(range_object(range));
+  for (const RuleBarredRange& range : judged.barred) barred.push_back(barred_object(c.sweep, range));
+  return {{"section", section.name},
+          {"diameter_m", number(data.diameter)},
+          {"bore_m", number(data.bore)},
+          {"modulus_m3", number(judged.modulus)},
+          {"stress_concentration", number(data.stress_concentration)},
+          {"half_range_Nm", class_numbers(section.half_range())},
+          {"stress_Pa", judged.stress.size() > 0 ? class_numbers(judged.stress) : Json()},
+          {"permissible_Nm", std::move(permissible)},
+          {"transient_Nm", std::move(transient)},
+          {"utilisation", judged.judged() ? number(judged.utilisation) : Json()},
+          {"utilisation_at_rpm", judged.judged() ? number(to_rpm(judged.utilisation_speed)) : Json()},
+          {"rule", text_or_null(judged.rule)},
+          {"exceeded", std::move(exceeded)},
+          {"barred_by_rule", std::move(barred)},
+          {"heat_W", number(judged.heat)},
+          {"heat_at_rpm", number(to_rpm(judged.heat_speed))},
+          {"permissible_heat_W", number(data.permissible_heat)}};
+}
+
+Json case_object(const ClassCase& c) {
+  Json sections = Json::array(), chatter = Json::array();
+  for (const SectionJudgement& judged : c.judgement.sections) sections.push_back(judged_object(c, judged));
+  for (const ChatterRange& range : c.judgement.chatter) {
+    Json object = range_object(range.range);
+    object.erase("may_be_passed");
+    object["section"] = c.sweep.sections[static_cast<std::size_t>(range.section)].name;
+    object["separated_speeds"] = range.separated;
+    chatter.push_back(std::move(object));
+  }
+  return {{"name", c.name},
+          {"parameters", parameters_object(c.request.model.parameters)},
+          {"sections", std::move(sections)},
+          {"chatter", std::move(chatter)},
+          {"accepted", c.judgement.accepted()},
+          {"not_judged", c.judgement.not_judged}};
+}
+
+std::string case_text(const ClassCase& c) {
+  std::vector<std::vector<std::string>> rows{
+      {"section", "half range", "stress [MPa]", "permissible", "used", "at [rpm]", "heat [W]", "by"}};
+  std::string ranges;
+  for (const SectionJudgement& j : c.judgement.sections) {
+    const SectionStrength& data =
+        c.request.model.model_case.strength->sections[static_cast<std::size_t>(j.strength)];
+    const SweepSection& s = c.sweep.sections[static_cast<std::size_t>(j.section)];
+    const double limit =
+        torque_limit(data, j.utilisation_speed / c.request.model.model_case.strength->rated_speed).continuous;
+    const double half = j.judged() ? j.utilisation * limit : s.half_range().maxCoeff();
+    rows.push_back(
+        {s.name, digits(half, kShown),
+         std::isnan(j.modulus) ? "" : digits(half * data.stress_concentration / j.modulus / kMega, 4),
+         j.judged() ? digits(limit, kShown) : "", j.judged() ? digits(100.0 * j.utilisation, 3) + " %" : "",
+         j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
+         digits(j.heat, 4) +
+             (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
+         j.rule.empty() ? "not judged" : j.rule});
+    for (const ExceededRange& range : j.exceeded)
+      ranges += wrap(s.name + ": exceeded from " + exceeded_text(range), 2);
+    for (const RuleBarredRange& b : j.barred)
+      ranges += wrap(s.name + ": critical at " +
+                         digits(to_rpm(c.sweep.criticals[static_cast<std::size_t>(b.critical)].speed), 5) +
+                         " rpm, speed ratio " + digits(b.speed_ratio, 3) +
+                         (b.to > 0.0 ? ": barred by IACS UR M68.5 from " + rpm_range(b.from, b.to)
+                                     : ": IACS UR M68.5 permits no barred range from a ratio of 0.8 on"),
+                     2);
+    if (j.heat > data.permissible_heat)
+      ranges += wrap(
+          s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);
+  }
+  for (const ChatterRange& range : c.judgement.chatter)
+    ranges +=
+        wrap(c.sweep.sections[static_cast<std::size_t>(range.section)].name +
+                 ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
+                 ", up to " + digits(range.range.worst, 3) + " times at " +
+                 digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer; " +
+                 "'drev run --start periodic' follows the teeth",
+             2);
+  std::string text = columns_text(rows);
+  if (!ranges.empty()) text += "\n" + ranges;
+  if (!c.judgement.not_judged.empty())
+    text += "\n" + wrap("Without a limit, not judged: " + join(c.judgement.not_judged) + ".", 0);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> class_rules(const Strength& strength) {
+  std::vector<std::string> rules{
+      "Vibratory torque: (maximum - minimum)/2 of the synthesis of all orders with their phases over the "
+      "cycle. "
+      "Nominal stress: torque over the polar section modulus pi (d^4 - b^4)/(16 d)."};
+  const auto any = [&](auto has) {
+    return std::any_of(strength.sections.begin(), strength.sections.end(), has);
+  };
+  if (any([](const auto& s) { return !std::isnan(s.tensile_strength); }))
+    rules.push_back(
+        "IACS UR M68 (Rev.2 April 2015, Rev.3 February 2021), clause M68.5: nominal stress in continuous "
+        "running "
+        "tau_C = (sigma_B + 160)/18 C_K C_D (3 - 2 lambda^2) for lambda < 0.9, (sigma_B + 160)/18 C_K C_D "
+        "1.38 for "
+        "0.9 <= lambda <= 1.05; while a barred range is passed tau_T = 1.7 tau_C / sqrt(C_K); C_D = 0.35 + "
+        "0.93 "
+        "d^-0.2; N/mm2, mm. Barred range 16 n_c/(18 - lambda) to (18 - lambda) n_c/16, none from lambda = "
+        "0.8 on.");
+  if (any([](const auto& s) { return !std::isnan(s.permissible_stress); }))
+    rules.push_back("Permissible stress by number: local stress, stress concentration times nominal stress.");
+  if (any([](const auto& s) { return !std::isnan(s.permissible_torque); }))
+    rules.push_back("Permissible vibratory torque by number, as makers of couplings give it.");
+  if (!strength.misfire.empty())
+    rules.push_back("Misfire: the same calculation with the model's parameters of [class] misfire.");
+  return rules;
+}
+
+std::vector<std::string> class_limits() {
+  return {
+      "Tensile strengths are taken as given: which may enter by shaft and material (M68.3) is not judged.",
+      "IACS UR M68 is not for crankshafts (UR M53), gearing shafts, shafts of generators, motors and "
+      "turbines, "
+      "nor for ice (M68.1): a section is judged by it only where shape_factor and tensile_strength are "
+      "given.",
+      "Not judged: minimum diameters (M68.4), crankshaft fatigue (M53), bending and axial vibration, shock, "
+      "slots and keyways beyond C_K, how fast a barred range is passed.",
+      "Chatter is vibratory over mean force of a contact taken as closed; how far teeth separate is "
+      "not in it."};
+}
+
+std::string class_as_text(const std::vector<ClassCase>& cases) {
+  const SweepRequest& request = cases.front().request;
+  const std::string& name = request.model.entry->name;
+  const double rated = request.model.model_case.strength->rated_speed;
+  std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
+  text += std::to_string(request.speeds_rpm.size()) + " speeds " +
+          short_digits(request.speeds_rpm.front(), kShown) + " to " +
+          short_digits(request.speeds_rpm.back(), kShown) + " rpm" +
+          (std::isnan(rated) ? "" : ", rated speed " + short_digits(to_rpm(rated), kShown) + " rpm") + "\n";
+  for (const ClassCase& c : cases) {
+    text += "\n" + std::string(c.name == "normal" ? "Normal firing" : "Misfire") + ": " +
+            (c.judgement.accepted() ? "within all limits that are given\n" : "LIMITS EXCEEDED\n") +
+            case_text(c);
+  }
+  text += "\n";
+  for (const std::string& rule : class_rules(*request.model.model_case.strength))
+    text += wrap("- " + rule, 2);
+  for (const std::string& limit : class_limits()) text += wrap("- " + limit, 2);
+  if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
+  return text;
+}
+
+Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic) {
+  const SweepRequest& request = cases.front().request;
+  const Strength& strength = *request.model.model_case.strength;
+  Json object = result_object("class");
+  object["model"] = request.model.entry->name;
+  object["contact"] = request.options.close_contacts ? Json("closed") : Json();
+  object["rated_rpm"] = number(to_rpm(strength.rated_speed));
+  object["speeds_rpm"] = request.speeds_rpm;
+  object["cases"] = Json::array();
+  for (const ClassCase& c : cases) object["cases"].push_back(case_object(c));
+  object["rules"] = class_rules(strength);
+  object["not_covered"] = class_limits();
+  Json nodes = Json::array(), joints = Json::array();
+  for (const Json& node : mass_elastic.at("nodes"))
+    nodes.push_back(
+        {{"name", node.at("name")}, {"ratio", node.at("ratio")}, {"inertia", node.at("inertia")}});
+  for (const Json& joint : mass_elastic.at("joints")) {
+    Json between = Json::array();
+    for (const Json& node : joint.at("nodes"))
+      between.push_back(mass_elastic.at("nodes")[node.get<std::size_t>()].at("name"));
+    joints.push_back({{"name", joint.at("name")},
+                      {"kind", joint.at("kind")},
+                      {"nodes", std::move(between)},
+                      {"stiffness", joint.value("stiffness", Json())},
+                      {"damping", joint.value("damping", Json())}});
+  }
+  object["mass_elastic"] = {{"nodes", std::move(nodes)}, {"joints", std::move(joints)}};
+  object["note"] = text_or_null(request.model.model_case.note);
+  return object;
+}
+
+}  // namespace drev::app

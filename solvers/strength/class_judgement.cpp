@@ -1,0 +1,245 @@
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
+#include <drev/solvers/strength/iacs_m68.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace drev {
+
+namespace {
+
+/// A speed and what is there [rad/s; unit of the section].
+struct CurvePoint {
+  double speed = 0.0, half_range = 0.0;
+};
+
+/// Half ranges of a section at the speeds of the sweep and at its peaks, ascending.
+std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section) {
+  const Vector half = sweep.sections[static_cast<std::size_t>(section)].half_range();
+  std::vector<CurvePoint> curve;
+  for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
+    curve.push_back({sweep.speeds[i], half[static_cast<Eigen::Index>(i)]});
+  for (const SweepPeak& peak : sweep.peaks)
+    if (peak.section == section && !std::count(sweep.speeds.begin(), sweep.speeds.end(), peak.speed))
+      curve.push_back({peak.speed, peak.half_range});
+  std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  return curve;
+}
+
+/// Where ratio(speed, half range) > 1, ends by a straight line between points; not a number: there is no limit.
+std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
+                                           const std::function<double(const CurvePoint&)>& ratio) {
+  std::vector<ExceededRange> ranges;
+  const CurvePoint* before = nullptr;
+  double last = 0.0;
+  bool inside = false;
+  const auto crossing = [&](const CurvePoint& p, double now) {
+    if (!std::isfinite(last) || !std::isfinite(now)) return std::isfinite(last) ? before->speed : p.speed;
+    return before->speed + (p.speed - before->speed) * (1.0 - last) / (now - last);
+  };
+  for (const CurvePoint& p : curve) {
+    const double now = ratio(p);
+    const bool over = now > 1.0;
+    if (over && !inside) {
+      const bool open = before == nullptr || std::isnan(last);
+      ranges.push_back({open ? p.speed : crossing(p, now), p.speed, open, false, 0.0, 0.0, false});
+    }
+    if (!over && inside) {
+      ranges.back().open_to = std::isnan(now);
+      ranges.back().to = std::isnan(now) ? before->speed : crossing(p, now);
+    }
+    if (over) {
+      ExceededRange& range = ranges.back();
+      if (now > range.worst) range.worst = now, range.worst_speed = p.speed;
+      range.to = p.speed;
+    }
+    inside = over;
+    before = &p;
+    last = now;
+  }
+  if (inside) ranges.back().open_to = true;
+  return ranges;
+}
+
+void take_lower(TorqueLimit& limit, double continuous, double transient, const char* rule) {
+  if (!std::isnan(continuous) && !(limit.continuous <= continuous)) {
+    limit.continuous = continuous;
+    limit.rule = rule;
+  }
+  if (!std::isnan(transient) && !(limit.transient <= transient)) limit.transient = transient;
+}
+
+class Judge {
+ public:
+  Judge(const LinearSweep& sweep, const Strength& strength) : sweep_(sweep), strength_(strength) {}
+
+  SectionJudgement section(int section, int number) const {
+    const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
+    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
+    SectionJudgement found;
+    found.section = section, found.strength = number;
+    if (!std::isnan(data.diameter)) {
+      found.modulus = polar_section_modulus(data.diameter, data.bore);
+      found.stress = data.stress_concentration / found.modulus * s.half_range();
+    }
+    for (const double speed : sweep_.speeds) found.limits.push_back(limit(data, speed));
+    const std::vector<CurvePoint> curve = curve_of(sweep_, section);
+    for (const CurvePoint& p : curve) {
+      const TorqueLimit at = limit(data, p.speed);
+      const double used = p.half_range / at.continuous;
+      if (!(used > found.utilisation)) continue;
+      found.utilisation = used, found.utilisation_speed = p.speed, found.rule = at.rule;
+    }
+    found.exceeded = exceeded_ranges(
+        curve, [&](const CurvePoint& p) { return p.half_range / limit(data, p.speed).continuous; });
+    for (ExceededRange& range : found.exceeded) {
+      range.may_be_passed = range.to / strength_.rated_speed < iacs_m68::kNoBarredRange;
+      for (const CurvePoint& p : curve)
+        if (p.speed >= range.from && p.speed <= range.to)
+          range.may_be_passed = range.may_be_passed && p.half_range <= limit(data, p.speed).transient;
+    }
+    add_barred(data, section, found);
+    Eigen::Index hottest = 0;
+    found.heat = s.heat.maxCoeff(&hottest);
+    found.heat_speed = sweep_.speeds[static_cast<std::size_t>(hottest)];
+    return found;
+  }
+
+  void add_chatter(int section, std::vector<ChatterRange>& chatter) const {
+    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
+    std::vector<CurvePoint> curve;  // of the ratio itself, at the speeds, where the mean is known
+    for (std::size_t i = 0; i < sweep_.speeds.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      curve.push_back({sweep_.speeds[i], s.half_range()[at] / std::abs(s.mean[at])});
+    }
+    for (const ExceededRange& range :
+         exceeded_ranges(curve, [](const CurvePoint& p) { return p.half_range; })) {
+      ChatterRange found{section, range, 0};
+      for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
+        if (sweep_.speeds[i] >= range.from && sweep_.speeds[i] <= range.to &&
+            s.separates(static_cast<Eigen::Index>(i)))
+          ++found.separated;
+      chatter.push_back(found);
+    }
+  }
+
+ private:
+  TorqueLimit limit(const SectionStrength& data, double speed) const {
+    return torque_limit(data, speed / strength_.rated_speed);
+  }
+
+  void add_barred(const SectionStrength& data, int section, SectionJudgement& found) const {
+    if (std::isnan(data.tensile_strength) || std::isnan(strength_.rated_speed)) return;
+    for (std::size_t c = 0; c < sweep_.criticals.size(); ++c) {
+      const SweepCritical& critical = sweep_.criticals[c];
+      // The critical belongs to a range in which this section's limit is exceeded.
+      const bool inside = std::any_of(found.exceeded.begin(), found.exceeded.end(), [&](const auto& range) {
+        return critical.speed >= range.from && critical.speed <= range.to;
+      });
+      if (!inside || section < 0) continue;
+      const double ratio = critical.speed / strength_.rated_speed;
+      const iacs_m68::BarredRange by_rule = ratio < iacs_m68::kNoBarredRange
+                                                ? iacs_m68::barred_range(critical.speed, ratio)
+                                                : iacs_m68::BarredRange{};
+      found.barred.push_back({static_cast<int>(c), ratio, by_rule.from, by_rule.to});
+    }
+  }
+
+  const LinearSweep& sweep_;
+  const Strength& strength_;
+};
+
+}  // namespace
+
+bool ClassJudgement::accepted() const {
+  return std::all_of(sections.begin(), sections.end(), [](const auto& s) { return s.exceeded.empty(); });
+}
+
+TorqueLimit torque_limit(const SectionStrength& s, double speed_ratio) {
+  TorqueLimit limit;
+  const double modulus = polar_section_modulus(s.diameter, s.bore);
+  if (!std::isnan(s.tensile_strength) && !std::isnan(s.shape_factor)) {
+    const iacs_m68::Permissible stress =
+        iacs_m68::permissible_stress(s.tensile_strength, s.shape_factor, s.diameter, speed_ratio);
+    take_lower(limit, stress.continuous * modulus, stress.transient * modulus, "IACS UR M68.5");
+  }
+  const double per_stress = modulus / s.stress_concentration;
+  take_lower(limit, s.permissible_stress * per_stress, s.transient_stress * per_stress, "permissible stress");
+  take_lower(limit, s.permissible_torque, s.transient_torque, "permissible torque");
+  return limit;
+}
+
+std::vector<Finding> check_strength(const Strength& strength) {
+  std::vector<Finding> findings;
+  const double none = SectionStrength::kNone;
+  for (const SectionStrength& s : strength.sections) {
+    const std::string place = "class.sections." + s.element;
+    const auto check = [&](const char* parameter, double value, double low, double high, const char* unit,
+                           const char* range) {
+      if (!std::isnan(value) && !(value >= low && value <= high))
+        findings.push_back({place, parameter, to_text(value), unit, range});
+    };
+    constexpr double kLeast = 1e-300, kMost = 1e300;
+    check("diameter", s.diameter, kLeast, kMost, "m", "> 0");
+    check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
+          "0 <= bore < diameter");
+    check("stress_concentration", s.stress_concentration, 1.0, kMost, "", ">= 1");
+    check("tensile_strength", s.tensile_strength, 400e6, 800e6, "Pa", "400 to 800 MPa (IACS UR M68.3)");
+    check("shape_factor", s.shape_factor, kLeast, 1.0, "", "0 < C_K <= 1");
+    for (const auto& [name, value] :
+         {std::pair{"permissible_stress", s.permissible_stress}, {"transient_stress", s.transient_stress}})
+      check(name, value, kLeast, kMost, "Pa", "> 0");
+    for (const auto& [name, value] :
+         {std::pair{"permissible_torque", s.permissible_torque}, {"transient_torque", s.transient_torque}})
+      check(name, value, kLeast, kMost, "N m", "> 0");
+    check("permissible_heat", s.permissible_heat, kLeast, kMost, "W", "> 0");
+    check("sn_range", s.sn.reference, kLeast, kMost, "Pa", "> 0");
+    check("sn_cycles", s.sn.cycles, kLeast, kMost, "", "> 0");
+    check("sn_slope", s.sn.slope, 1.0, 100.0, "", "1 to 100");
+    const bool rule = !std::isnan(s.tensile_strength) || !std::isnan(s.shape_factor);
+    if (rule && (std::isnan(s.tensile_strength) || std::isnan(s.shape_factor)))
+      findings.push_back(
+          {place, "tensile_strength", "", "Pa", "IACS UR M68 needs it together with shape_factor"});
+    if (rule && std::isnan(strength.rated_speed))
+      findings.push_back({"class", "rated_speed", "", "rad/s", "is missing: IACS UR M68 needs it"});
+    const bool by_stress =
+        rule || !std::isnan(s.permissible_stress) || !std::isnan(s.transient_stress) || s.sn.given();
+    if (by_stress && std::isnan(s.diameter))
+      findings.push_back({place, "diameter", "", "m", "is missing: stresses need it"});
+  }
+  const double rated = std::isnan(strength.rated_speed) ? 1.0 : strength.rated_speed;
+  if (!(rated > 0.0) || rated == none)
+    findings.push_back({"class", "rated_speed", to_text(rated), "rad/s", "> 0"});
+  return findings;
+}
+
+ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength) {
+  std::vector<Finding> findings = check_strength(strength);
+  ClassJudgement found;
+  const Judge judge(sweep, strength);
+  std::vector<bool> used(strength.sections.size(), false);
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    const SweepSection& s = sweep.sections[c];
+    bool judged = false;
+    for (std::size_t k = 0; k < strength.sections.size(); ++k) {
+      if (s.unit != "N m" || s.name != strength.sections[k].element + ".torque_Nm") continue;
+      used[k] = true;
+      if (!findings.empty()) continue;
+      found.sections.push_back(judge.section(static_cast<int>(c), static_cast<int>(k)));
+      judged = judged || found.sections.back().judged();
+    }
+    if (s.contact) judge.add_chatter(static_cast<int>(c), found.chatter);
+    if (!judged) found.not_judged.push_back(s.name);
+  }
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (!used[k])
+      findings.push_back({"class.sections", "section", strength.sections[k].element, "",
+                          "is the name of no section of the sweep that carries a torque"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return found;
+}
+
+}  // namespace drev

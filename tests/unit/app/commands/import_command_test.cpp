@@ -1,0 +1,112 @@
+// drev import: trains of openTorsion and mass-elastic tables, against their natural frequencies.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+
+namespace {
+
+double first_frequency(const std::string& file) {
+  const auto outcome = drev_command({"modes", file, "--json"});
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  return nlohmann::json::parse(outcome.out).at("frequencies_Hz")[0];
+}
+
+}  // namespace
+
+TEST_CASE("openTorsion's JSON: discs, shafts, gear; what cannot be taken is said", "[import]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "train.json")
+      << R"({"structure": [["motor.shaft", "box.pinion"], ["box.wheel", "mill.tail"]],
+    "components": [
+      {"name": "mill", "elements": [{"name": "tail", "type": "ShaftDiscrete", "stiffness": 5e4, "damping": 3},
+                                    {"name": "drum", "type": "Disk", "inertia": 8, "damping": 0.5}]},
+      {"name": "motor", "colour": "red", "elements": [
+        {"name": "rotor", "type": "Disk", "inertia": 0.5, "damping": 0, "excitation": {"values": [1]}},
+        {"name": "shaft", "type": "ShaftDiscrete", "stiffness": 2e4, "damping": 1}]},
+      {"name": "box", "elements": [
+        {"name": "pinion", "type": "GearElement", "inertia": 0.01, "teeth": 20},
+        {"name": "wheel", "type": "GearElement", "inertia": 0.2, "teeth": 60, "parent": "pinion", "finish": "ground"},
+        {"name": "brake", "type": "Brake"}]}]})";
+  const std::string in = (folder / "train.json").string(), out = (folder / "train.toml").string();
+  const auto done = drev_command({"import", in, "--out", out});
+  INFO(done.err);
+  REQUIRE(done.exit_code == 0);
+  for (const char* part :
+       {"the excitation of motor.rotor", "\"finish\" of box.wheel", "the element box.brake of type Brake"})
+    CHECK(contains(done.err, part));
+  CHECK(contains(read_file(out), "# Not taken over: the element box.brake"));
+  // Referred to the motor: J_1 0.5 - 2e4 - 0.01 + 0.2/9 - 5e4/9 - 8/9.
+  const double j_1 = 0.5, j_2 = 0.01 + 0.2 / 9.0, j_3 = 8.0 / 9.0, k_1 = 2e4, k_2 = 5e4 / 9.0;
+  const double a = k_1 / j_1 + (k_1 + k_2) / j_2 + k_2 / j_3;
+  const double b = k_1 * k_2 * (j_1 + j_2 + j_3) / (j_1 * j_2 * j_3);
+  const double w = std::sqrt(0.5 * (a - std::sqrt(a * a - 4.0 * b)));
+  CHECK(first_frequency(out) == Approx(w / 6.283185307179586).epsilon(1e-10));
+}
+
+TEST_CASE("A continuous shaft of openTorsion has its stiffness and mass", "[import]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "bar.json") << R"({"components": [{"name": "c", "elements": [
+      {"name": "a", "type": "Disk", "inertia": 1, "damping": 0},
+      {"name": "s", "type": "ShaftContinuous", "length": 1000, "innerDiameter": 0, "outerDiameter": 50},
+      {"name": "b", "type": "Disk", "inertia": 1, "damping": 0}]}]})";
+  const std::string out = (folder / "bar.toml").string();
+  REQUIRE(drev_command({"import", (folder / "bar.json").string(), "--out", out}).exit_code == 0);
+  // Consistent mass rho J L / 6 (2 1; 1 2): the discs against each other have 1 + m each, m = rho J L / 6.
+  const double polar = 3.141592653589793 * std::pow(0.05, 4) / 32.0, k = 80e9 * polar,
+               m = 8000.0 * polar / 6.0;
+  CHECK(first_frequency(out) == Approx(std::sqrt(2.0 * k / (1.0 + m)) / 6.283185307179586).epsilon(1e-10));
+}
+
+TEST_CASE("A mass-elastic table: masses, shafts, gear, diameters", "[import]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "table.csv")
+      << "# a train\nnode,inertia_kg_m2,stiffness_MNm_per_rad,damping_Nms_per_rad,ratio,"
+         "diameter_mm,remark\n"
+         "motor,0.5,0.02,1,,45,new\n"
+         "pinion,0.01,,,-0.333333333333333333,,\n"
+         "wheel,0.2,0.05,3,,60,\n"
+         "drum,8,,,,,\n";
+  const std::string out = (folder / "table.toml").string();
+  const auto done = drev_command({"import", (folder / "table.csv").string(), "--out", out, "--json"});
+  INFO(done.err);
+  REQUIRE(done.exit_code == 0);
+  CHECK(nlohmann::json::parse(done.out).at("nodes") == 4);
+  CHECK(contains(done.err, "the column \"remark\""));
+  CHECK(contains(read_file(out), "motor_pinion = { diameter_m = 0.045 }"));
+  const double j_1 = 0.5, j_2 = 0.01 + 0.2 / 9.0, j_3 = 8.0 / 9.0, k_1 = 2e4, k_2 = 5e4 / 9.0;
+  const double a = k_1 / j_1 + (k_1 + k_2) / j_2 + k_2 / j_3;
+  const double b = k_1 * k_2 * (j_1 + j_2 + j_3) / (j_1 * j_2 * j_3);
+  CHECK(first_frequency(out) ==
+        Approx(std::sqrt(0.5 * (a - std::sqrt(a * a - 4.0 * b))) / 6.283185307179586).epsilon(1e-10));
+}
+
+TEST_CASE("Faults of what is imported are named, all at once", "[import]") {
+  const drev::test::TemporaryFolder folder;
+  const auto said = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    const auto outcome = drev_command({"import", (folder / name).string()});
+    CHECK(outcome.exit_code == 2);
+    return outcome.err;
+  };
+  const std::string table = said("t.csv", "node,inertia,stiffness_Nm_per_rad\na,1,-3\na,x,\n");
+  for (const char* part : {"the column inertia has no unit", "lacks the column inertia_kg_m2",
+                           "stiffness is -3", "the node a is there already, in line 2"})
+    CHECK(contains(table, part));
+  CHECK(contains(said("u.csv", "inertia_kg_m2\n1\n2\n"), "has neither stiffness, ratio nor damping"));
+  CHECK(contains(said("v.csv", ""), "has no line with the names"));
+  CHECK(contains(said("a.json", "{"), "is no JSON"));
+  CHECK(contains(said("b.json", "[]"), "no JSON of openTorsion"));
+  const std::string train =
+      said("c.json", R"({"structure": [["a.x", "z.y"]], "components": [{"name": "a", "elements": [
+      {"name": "x", "type": "Disk", "inertia": "much"}]}, {"name": "b", "elements": []}]})");
+  for (const char* part : {"z.y, which is none", "must connect all components"}) CHECK(contains(train, part));
+  CHECK(drev_command({"import"}).exit_code == 2);
+  CHECK(drev_command({"import", "train.xml"}).exit_code == 2);
+}

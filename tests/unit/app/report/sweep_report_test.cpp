@@ -1,0 +1,71 @@
+// Reports of sweeps: the page holds the numbers of the JSON, in the frame that reports of runs have.
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "app/report/report_page.hpp"
+#include "app/report/report_spectra.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+
+namespace {
+
+const std::string kEngineFile = DREV_SOURCE_DIR "/models/engine/engine.toml";
+
+/// The base64 text of numbers, as the page holds them.
+std::string as_floats(const nlohmann::json& values) {
+  std::vector<float> list;
+  for (const nlohmann::json& value : values) list.push_back(value.get<float>());
+  return drev::app::base64(list);
+}
+
+}  // namespace
+
+TEST_CASE("The report of a sweep holds what its JSON says", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  for (const std::string command : {"sweep", "campbell"}) {
+    const std::string file = (folder / (command + ".html")).string();
+    REQUIRE(drev_command({command, kEngineFile, "--speeds", "600:50:1000", "--report", file, "--quiet"})
+                .exit_code == 0);
+    const std::string page = read_file(file);
+    CHECK(contains(page, "default-src 'none'; script-src 'nonce-"));
+    for (const char* marker : {"{{policy", "{{sections", "{{nonce", "{{runs"})
+      CHECK_FALSE(contains(page, marker));
+    const std::vector<std::string> blocks = drev::app::blocks_of(page);
+    REQUIRE(blocks.size() == 1);
+    const nlohmann::json data = nlohmann::json::parse(blocks.front());
+    const nlohmann::json json =
+        nlohmann::json::parse(drev_command({"sweep", kEngineFile, "--speeds", "600:50:1000", "--json"}).out);
+    const nlohmann::json& sweep = data.at("sweeps").at(0);
+    CHECK(data.at("command") == "drev " + command + " " + kEngineFile + " --speeds 600:50:1000");
+    CHECK(sweep.at("speeds_rpm") == json.at("speeds_rpm"));
+    CHECK(sweep.at("criticals") == json.at("criticals"));
+    REQUIRE(sweep.at("sections").size() == json.at("sections").size());
+    for (std::size_t s = 0; s < json.at("sections").size(); ++s) {
+      const nlohmann::json &drawn = sweep["sections"][s], &section = json["sections"][s];
+      CHECK(drawn.at("name") == section.at("name"));
+      CHECK(drawn.at("half_range") == as_floats(section.at("half_range")));
+      nlohmann::json amplitudes = nlohmann::json::array();
+      for (const nlohmann::json& order : section.at("amplitude"))
+        for (const nlohmann::json& value : order) amplitudes.push_back(value);
+      CHECK(drawn.at("amplitude") == as_floats(amplitudes));
+      double largest = 0.0;
+      for (const nlohmann::json& value : section.at("half_range"))
+        largest = std::max(largest, value.get<double>());
+      CHECK(drawn.at("peaks").at(0).at("half_range").get<double>() >= largest);
+    }
+    CHECK(data.at("campbell").at("modes").size() == 6);
+    CHECK(data.at("model").at("nodes").size() == 8);
+    // It is no report of a run, and drev report says so.
+    const auto refused = drev_command({"report", file, "--out", (folder / "again.html").string()});
+    CHECK(refused.exit_code == 2);
+    CHECK(contains(refused.err, "is the report of a sweep"));
+  }
+  const auto refused = drev_command({"sweep", kEngineFile, "--speeds", "900", "--report", "sweep.txt"});
+  CHECK(refused.exit_code == 2);
+  CHECK(contains(refused.err, "--report"));
+}
