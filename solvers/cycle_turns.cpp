@@ -44,7 +44,10 @@ double cycle_turns(const System& system) {
   for (const LoadTerm& load : system.loads()) {
     const double ratio = system.ratio(load.node);
     acts.emplace_back([&load, ratio, w](double phi) {
-      return load.load->evaluate({.t = phi / w, .nominal_angle = ratio * phi, .speed = ratio * w}).torque;
+      return load.load
+          ->evaluate(
+              {.t = phi / w, .nominal_angle = ratio * phi, .speed = ratio * w, .nominal_speed = ratio * w})
+          .torque;
     });
   }
   // Evenly over the longest cycle, so that no step of a stiffness is passed over.

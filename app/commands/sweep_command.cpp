@@ -8,10 +8,10 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
-#include "app/results/branches_result.hpp"
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/sweep_report.hpp"
+#include "app/results/branches_result.hpp"
 
 namespace drev::app {
 
@@ -73,7 +73,8 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
     findings.push_back(
         {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
   if (line.option("--report"))
-    findings.push_back({kCommandLine, "--report", "", "", "is for linear models (or --contact closed); take --out"});
+    findings.push_back(
+        {kCommandLine, "--report", "", "", "is for linear models (or --contact closed); take --out"});
   const auto out = line.option("--out");
   if (out)
     for (const char* name : {"/branches.csv", "/orders.csv", "/changes.csv", "/summary.json"})

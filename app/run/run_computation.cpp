@@ -126,7 +126,8 @@ void take_figure(const AccuracyResult& accuracy, const std::string& name, std::o
 /// The error that rounding leaves of the torque of a stiff element.
 void take_rounding(const RunSummary& summary, std::optional<Largest>& largest) {
   for (const auto& [channel, error] : summary.rounding)
-    if (largest && largest->channel == channel) largest->error = std::max(largest->error.value_or(0.0), error);
+    if (largest && largest->channel == channel)
+      largest->error = std::max(largest->error.value_or(0.0), error);
 }
 
 /// The figures of contacts that the accuracy found.

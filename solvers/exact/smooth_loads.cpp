@@ -102,9 +102,12 @@ double SmoothLoads::differ_called(const Place& l, NodeForces& forces) const {
     const double s = rule.s[q], turn = (phi_[1] + phi_[2] * s) * s;
     const std::size_t at = q * idx(stride_) + idx(l.row);
     const double deviation = l.coeff * path_[at];
-    const LoadResponse r =
-        l.term->load->evaluate({t_ + h_ * s, l.ratio * (nominal_ + turn), deviation,
-                                l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_ + l.coeff * rate_[at]});
+    const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
+    const LoadResponse r = l.term->load->evaluate({.t = t_ + h_ * s,
+                                                   .nominal_angle = l.ratio * (nominal_ + turn),
+                                                   .deviation = deviation,
+                                                   .speed = nominal_speed + l.coeff * rate_[at],
+                                                   .nominal_speed = nominal_speed});
     const double nonlinear = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
     forces.at(q, l.row) += l.coeff * (r.torque - l.torque - nonlinear);
     if (l.feedback)

@@ -10,7 +10,8 @@ using drev::test::drev_command;
 using drev::test::read_file;
 using Json = nlohmann::json;
 
-TEST_CASE("A run says that another method took the place of one far too dear, in text, JSON and report", "[once]") {
+TEST_CASE("A run says that another method took the place of one far too dear, in text, JSON and report",
+          "[once]") {
   const drev::test::TemporaryFolder folder;
   const std::string path = (folder / "stiff.toml").string(), report = (folder / "r.html").string();
   std::ofstream(path)

@@ -54,7 +54,7 @@ TEST_CASE("A plugin's element is listed, checked, linearised and run") {
   CHECK(contains(all, "hardening_coupling   stiffness_Nm_per_rad*, cubic_Nm_per_rad3, of"));
   CHECK(!contains(drev_command({"list", "--elements"}).out, "hardening_coupling"));
   const Json elements = json_of({"list", "--elements", "--json", "--plugin", kHardening}).at("elements");
-  CHECK(elements.size() == 13);
+  CHECK(elements.size() == json_of({"list", "--elements", "--json"}).at("elements").size() + 1);
   CHECK(elements.front().at("plugin").is_null());
   CHECK(elements.back().at("type") == "hardening_coupling");
   CHECK(elements.back().at("plugin") == kHardening);

@@ -63,7 +63,8 @@ std::optional<State> closed_orbit(const System& system, State start, double peri
 
 }  // namespace
 
-TEST_CASE("The error that a periodic response states holds, and says no more than it must", "[periodic][once]") {
+TEST_CASE("The error that a periodic response states holds, and says no more than it must",
+          "[periodic][once]") {
   int settings = 0, within_100 = 0;
   for (const int kind : {0, 1, 2, 3})
     for (const double damping : {0.02, 0.3})
