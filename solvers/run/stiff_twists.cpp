@@ -14,18 +14,21 @@ namespace drev {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kStiff = 1e9;     // N m/rad or N/m: softer elements lose nothing at any angle in use
-constexpr double kPrinted = 1e-5;  // of the largest torque: five digits
-constexpr long kOfEach = 256;      // steps looked at before only every other one of them is
+constexpr double kStiff = 1e9;       // N m/rad or N/m: softer elements lose nothing at any angle in use
+constexpr double kPrinted = 1e-5;    // of the largest torque: five digits
+constexpr double kDeviations = 4.0;  // standard deviations of the walk that are stated
+constexpr long kOfEach = 256;        // steps looked at before only every other one of them is
 
-}  // namespace
-
+/// The rounding that one evaluation of a linear channel carries at a state, of the channel's unit: epsilon times the
+/// sum of the sizes of its terms; 0 for channels that are not linear.
 double rounding_of(const Channel& channel, const State& state) {
   if (!channel.is_linear()) return 0.0;
   double sum = 0.0;
   for (const Entry& e : channel.z_row()) sum += std::abs(e.coeff * state.z[e.index]);
   return kEpsilon * sum;
 }
+
+}  // namespace
 
 StiffTwists::StiffTwists(const System& system) {
   for (Channel& channel : all_channels(system)) {
@@ -53,12 +56,6 @@ void StiffTwists::look(const Assembler& assembler, const EvaluatedState& point) 
   }
 }
 
-double StiffTwists::error(const std::string& channel, long steps) const {
-  for (const Watched& w : watched_)
-    if (w.channel.name() == channel) return w.rounding * std::sqrt(static_cast<double>(steps));
-  return 0.0;
-}
-
 void StiffTwists::warn(RunSummary& summary) const {
   const double walk = std::sqrt(static_cast<double>(std::max(1L, summary.steps)));
   const Watched* worst = nullptr;
@@ -66,7 +63,7 @@ void StiffTwists::warn(RunSummary& summary) const {
   for (const Watched& w : watched_) {
     if (!(w.rounding * walk > kPrinted * w.largest)) continue;
     ++others;
-    summary.rounding.emplace_back(w.channel.name(), w.rounding * walk);
+    summary.rounding.emplace_back(w.channel.name(), kDeviations * w.rounding * walk);
     if (!worst || w.rounding * worst->largest > worst->rounding * w.largest) worst = &w;
   }
   if (!worst) return;
@@ -74,8 +71,9 @@ void StiffTwists::warn(RunSummary& summary) const {
   std::ostringstream text;
   text.precision(2);
   text << name.substr(0, name.find('.'))
-       << " is so stiff that rounding of its angles leaves an error of up to " << worst->rounding * walk
-       << " " << worst->channel.unit() << " in its " << worst->largest << " " << worst->channel.unit();
+       << " is so stiff that rounding of its angles leaves an error of up to "
+       << kDeviations * worst->rounding * walk << " " << worst->channel.unit() << " in its " << worst->largest
+       << " " << worst->channel.unit();
   if (others > 0) text << ", and so are " << others << " more elements";
   text << "; make it an ideal coupling (one node, or ideal_gear), or take a stiffness that matters";
   summary.warnings.push_back(text.str());

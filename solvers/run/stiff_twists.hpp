@@ -3,9 +3,9 @@
 /// angles, each of which carries a rounding of epsilon |angle|. The errors of the steps add like a random walk,
 /// which shakes the stiff mode:
 ///
-///   error = epsilon (k |q_a| + k |q_b|) sqrt(steps)
+///   error = 4 epsilon (k |q_a| + k |q_b|) sqrt(steps)
 ///
-/// An estimate, no bound; methods that damp leave less.
+/// four standard deviations of such a walk: an estimate, no bound; methods that damp leave less.
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/run_summary.hpp>
@@ -15,10 +15,6 @@
 namespace drev {
 
 class System;
-
-/// The rounding that one evaluation of a linear channel carries at a state, of the channel's unit: epsilon times
-/// the sum of the sizes of its terms; 0 for channels that are not linear.
-double rounding_of(const Channel& channel, const State& state);
 
 class StiffTwists final : public Observer {
  public:
@@ -34,8 +30,6 @@ class StiffTwists final : public Observer {
   /// Adds a warning for the element of which rounding leaves least, and the error of each of which it leaves less than
   /// the digits printed.
   void warn(RunSummary& summary) const;
-  /// The error that rounding leaves of a channel after so many steps, of its unit; 0 where it is not watched.
-  double error(const std::string& channel, long steps) const;
 
  private:
   struct Watched {
