@@ -6,6 +6,7 @@
 /// lowest holds, as a torque: tau W by IACS UR M68 (nominal stress), tau W / K of a stress by number (local stress, K
 /// the stress concentration), a torque by number. Between speeds of the sweep and its located peaks, torque is taken
 /// as straight.
+#include <drev/core/error.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 

@@ -94,7 +94,7 @@ fi
 "$drev" run camshaft --every 5e-6 --report main.html --quiet  # a million samples
 if [ "${2:-}" = --break ]; then
   sed -i -e 's/if (series.high\[i\] > high) high = series.high\[i\];/if (series.low[i] > high) high = series.low[i];/' \
-    -e 's/^window.drevCharts/setTimeout(() => nothing.at.all); &/' main.html
+    -e 's/^ *window.drevCharts/setTimeout(() => nothing.at.all); &/' main.html
   probe main.html broken
   exit $failed
 fi
