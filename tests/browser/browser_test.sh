@@ -44,7 +44,9 @@ probe() {
   nonce=$(grep -om1 "'nonce-[^']*'" "$1" | sed "s/'nonce-//; s/'//" || true)
   sed "/<meta charset/r $here/collect.html" "$1" >"$page"
   sed "s|^<script>|<script nonce=\"$nonce\">|" "$here/${3:-probe.html}" >>"$page"
-  headless --window-size=1280,1000 --virtual-time-budget=60000 --dump-dom "file://$page" \
+  local budget=60000  # ms of the page's time; what waits for pictures polls
+  [ "${3:-}" != sweep_probe.html ] || budget=1200000
+  headless --window-size=1280,1000 --virtual-time-budget=$budget --dump-dom "file://$page" \
     >"$folder/dom.html" 2>"$log" || {
     fail "$2: the browser ended with an error"
     tail -n 5 "$log"
