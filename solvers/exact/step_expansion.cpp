@@ -10,7 +10,7 @@ namespace {
 constexpr double kShorten = 0.9;      // of the step at which the loads' rest is just small enough
 constexpr double kLoosest = 1e-3;     // tolerance of a pass that is not the last
 constexpr double kSettled = 1e-15;    // of the motion: rounding of what is projected
-constexpr double kInside = 0.1;       // of the tolerance: what the motion inside the step may be off by
+constexpr double kInside = 0.01;      // of the tolerance: what the motion inside the step may be off by
 constexpr double kJump = 1e-4;        // of the tolerance: error allowed per undeclared discontinuity
 constexpr double kBehindKnot = 1e-3;  // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;   // of the step: a knot that its nodes see

@@ -108,7 +108,7 @@ TEST_CASE("Exact propagation under engine orders: as under a function of which n
     CHECK(std::abs(with.energy.relative_error()) < 1e-11);
     CHECK(with.steps <= without.steps);
     // The fastest mode, 2,501 rad/s, bounds the steps, and not the orders: 20 x 80 rad/s at most.
-    CHECK(with.steps <= 600);
+    CHECK(with.steps <= 750);
   }
 }
 
