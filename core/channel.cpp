@@ -1,6 +1,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 
 #include <algorithm>
 #include <set>
@@ -37,6 +38,7 @@ class ChannelFinder {
       add(element(load.element) + (load.suffix.empty() ? "" : "_" + load.suffix) + force_name(turns),
           force_unit(turns), Channel::Kind::load, static_cast<int>(l));
     }
+    for (std::size_t j = 0; j < system.frictions().size(); ++j) add_friction(static_cast<int>(j));
     for (std::size_t r = 0; r < system.ideal_ratios().size(); ++r) {
       const bool turns = rotational(system.ideal_ratios()[r].second);
       add(element(system.ideal_ratios()[r].element) + force_name(turns), force_unit(turns),
@@ -125,6 +127,20 @@ class ChannelFinder {
     if (map.prescribed >= 0 && system_.prescribed_node(map.prescribed) == i)
       add(name + (turns ? ".reaction_Nm" : ".reaction_N"), force_unit(turns), Kind::reaction, map.prescribed);
   }
+  void add_friction(int number) {
+    using History = FrictionHistory;
+    const FrictionTerm& term = system_.frictions()[idx(number)];
+    const bool turns = rotational(term.nodes);
+    const std::string name = element(term.element);
+    const auto of_history = [&](const std::string& what, const std::string& unit, int which) {
+      add(name + what, unit, Channel::Kind::friction, term.history_begin + which);
+    };
+    of_history(force_name(turns), force_unit(turns), History::kTorque);
+    of_history(".state", "-", History::kState);
+    of_history(".heat_J", "J", History::kHeat);
+    add(name + (turns ? ".slip_speed_rad_per_s" : ".slip_speed_m_per_s"), turns ? "rad/s" : "m/s",
+        Channel::Kind::slip, number);
+  }
   static std::string force_name(bool turns) { return turns ? ".torque_Nm" : ".force_N"; }
   static std::string force_unit(bool turns) { return turns ? "N m" : "N"; }
   static std::string deflection_name(bool turns) { return turns ? ".deflection_rad" : ".deflection_m"; }
@@ -165,6 +181,9 @@ Vector node_residual(const Assembler& assembler, const State& s) {
     for (const Entry& e : term.nodes) r[e.index] += e.coeff * y;
   }
   for (const LoadTerm& term : system.loads()) r[term.node] -= assembler.load(term, s.z, s.v).torque;
+  for (const FrictionTerm& term : system.frictions())
+    for (const Entry& e : term.nodes)
+      r[e.index] += e.coeff * s.history[term.history_begin + FrictionHistory::kTorque];
   assembler.add_general_node_forces(s, r);
   return r;
 }
@@ -220,6 +239,10 @@ double reaction(const Assembler& assembler, const State& s, int k) {
   for (const ScalarTerm& term : system.scalars())
     for (const Entry& e : term.u)
       if (e.index == k) r += e.coeff * assembler.respond(term, s.z, s.v).y;
+  for (const FrictionTerm& term : system.frictions())
+    for (const Entry& e : term.nodes)
+      if (const NodeMap& map = system.node_map(e.index); map.prescribed == k)
+        r += map.coeff * e.coeff * s.history[term.history_begin + FrictionHistory::kTorque];
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
     if (map.prescribed == k) r -= map.coeff * assembler.load(term, s.z, s.v).torque;
@@ -302,6 +325,15 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
       return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x;
     case Kind::load:
       return assembler.load(system.loads()[idx(index_)], state.z, state.v).torque;
+    case Kind::friction:
+      return state.history[index_];
+    case Kind::slip: {
+      double w = 0.0;
+      for (const Entry& e : system.frictions()[idx(index_)].nodes)
+        w += e.coeff *
+             (assembler.node_motion(e.index, state).rate + system.ratio(e.index) * assembler.nominal().rate);
+      return w;
+    }
     case Kind::ideal_ratio:
       return ideal_ratio_torque(assembler, state, index_);
   }

@@ -6,6 +6,7 @@
 ///   NODE_A-NODE_B.twist_rad (.distance_m)                                   q_A - q_B
 ///   NODE.reaction_Nm (.reaction_N)                                          prescribed nodes
 ///   ELEMENT.torque_Nm, ELEMENT.force_N                                      force the element carries
+///   ELEMENT.slip_speed_rad_per_s (_m_per_s), ELEMENT.state, ELEMENT.heat_J    dry friction (friction.hpp)
 ///   ELEMENT.deflection_m (_rad)                                             x of a scalar element
 ///
 /// Signs: a shaft's or spring's torque is k (q_b - q_a) + c (q_b' - q_a'), Rayleigh damping not included; a
@@ -35,7 +36,9 @@ class Channel {
   /// Whether evaluate() reads the state's accelerations, or rate() does.
   bool value_needs_acceleration() const;
   /// Whether the value jumps or kinks where a load does.
-  bool follows_loads() const { return kind_ == Kind::load || value_needs_acceleration(); }
+  bool follows_loads() const {
+    return kind_ == Kind::load || kind_ == Kind::friction || value_needs_acceleration();
+  }
   bool rate_needs_acceleration() const { return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty(); }
 
   /// For a value that is sum z_row z + sum v_row v and nothing else.
@@ -61,7 +64,9 @@ class Channel {
     force,
     deflection,
     load,
-    ideal_ratio
+    ideal_ratio,
+    friction,
+    slip
   };
   std::string name_, unit_;
   Kind kind_ = Kind::value;

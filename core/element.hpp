@@ -12,6 +12,7 @@
 namespace drev {
 
 class FrequencyStiffness;
+class Friction;
 class GeneralForce;
 class Load;
 class ScalarForce;
@@ -60,6 +61,12 @@ struct FrequencySpec {
   const FrequencyStiffness* stiffness = nullptr;  ///< owned by the element
 };
 
+/// Dry friction along b (friction.hpp): b lambda on the left side, lambda opposing b^T v.
+struct FrictionSpec {
+  LocalRow b;
+  const Friction* friction = nullptr;  ///< owned by the element
+};
+
 /// What an element adds to the equation of motion. The matrices come zeroed, n x n over its nodes.
 struct Terms {
   explicit Terms(int nodes)
@@ -76,6 +83,7 @@ struct Terms {
   std::vector<FrequencySpec> frequency_stiffnesses;
   std::vector<LoadSpec> loads;
   std::vector<const GeneralForce*> generals;
+  std::vector<FrictionSpec> frictions;
   std::vector<SpeedRatioConstraint> speed_ratio_constraints;
   /// Rows with b^T q = 0 exactly, eliminated, for the nominal speeds too. Two entries: an ideal ratio. More (a
   /// planetary set): the last node of the row that is free follows the others.

@@ -7,7 +7,7 @@ namespace drev {
 struct State {
   double t = 0.0;  ///< s
   Vector z, v, a;  ///< unknown deviations [rad or m], rates, accelerations
-  Vector history;  ///< of the general elements
+  Vector history;  ///< of the general elements and of dry friction
 
   /// At rest or as the model's initial conditions say; a is zero until a solver makes it consistent.
   static State initial(const System& system, double t = 0.0);

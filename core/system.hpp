@@ -20,6 +20,7 @@
 namespace drev {
 
 class FrequencyStiffness;
+class Friction;
 class GeneralForce;
 class Load;
 class ScalarForce;
@@ -81,6 +82,14 @@ struct GeneralTerm {
   std::vector<int> nodes;
   int history_begin = 0;
   std::vector<int> slots;  ///< -1 where a node is prescribed
+};
+
+/// Dry friction, over nodes before elimination.
+struct FrictionTerm {
+  ElementId element{};
+  const Friction* friction = nullptr;
+  std::vector<Entry> nodes;
+  int history_begin = 0;
 };
 
 /// A force or torque to report, or the deflection of a law that is a straight line, over nodes.
@@ -176,6 +185,7 @@ class System {
   const std::vector<int>& known_loads() const { return known_loads_; }
   const std::vector<FrequencyTerm>& frequency_terms() const { return frequency_terms_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
+  const std::vector<FrictionTerm>& frictions() const { return frictions_; }
   const std::vector<IdealRatio>& ideal_ratios() const { return ideal_ratios_; }
   bool loads_depend_on_motion() const { return loads_depend_on_motion_; }
   bool symmetric_tangent() const { return symmetric_tangent_; }
@@ -233,6 +243,7 @@ class System {
   std::vector<int> moving_loads_, known_loads_;
   std::vector<FrequencyTerm> frequency_terms_;
   std::vector<GeneralTerm> generals_;
+  std::vector<FrictionTerm> frictions_;
   std::vector<IdealRatio> ideal_ratios_;
   std::vector<double> breakpoints_;
   std::vector<int> diagonal_slots_;

@@ -1,5 +1,6 @@
 #include "core/system_builder.hpp"
 
+#include <drev/core/law/friction.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/ritz_projection.hpp>
 
@@ -292,6 +293,7 @@ void SystemBuilder::finish() {
     all.insert(all.end(), more.begin(), more.end());
   };
   for (const LoadTerm& load : system_.loads_) append(load.load->breakpoints());
+  for (const FrictionTerm& term : system_.frictions_) append(term.friction->breakpoints());
   for (const Motion& motion : system_.prescribed_) append(motion.breakpoints);
   if (system_.reference_) append(system_.reference_->breakpoints);
   std::sort(all.begin(), all.end());

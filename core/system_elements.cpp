@@ -1,5 +1,6 @@
 // The first part of SystemBuilder: the elements, each by itself. And what they report.
 #include <drev/core/general_force.hpp>
+#include <drev/core/law/friction.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -171,6 +172,10 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
     system_.history_size_ += g->history_size();
     system_.symmetric_tangent_ &= g->symmetric_tangent();
   }
+  for (const FrictionSpec& f : terms.frictions) {
+    system_.frictions_.push_back({id, f.friction, over_nodes(f.b, nodes), system_.history_size_});
+    system_.history_size_ += FrictionHistory::kSize;
+  }
 }
 
 std::vector<OutputTerm> System::outputs() const {
@@ -200,6 +205,23 @@ std::vector<OutputTerm> System::outputs() const {
   }
   return outputs;
 }
+
+namespace {
+
+/// What an element of one's own may get wrong.
+void check_friction(const Friction& friction, ParameterCheck check) {
+  const std::vector<double>&speeds = friction.slip_speeds(), &torques = friction.sliding_torques();
+  check.increasing("slip speeds", speeds, "rad/s");
+  if (speeds.empty() || speeds.front() != 0.0 || speeds.size() != torques.size())
+    check.fail("slip speeds", std::to_string(speeds.size()), "points",
+               "must begin at 0, with a sliding torque for each");
+  for (const double torque : torques) check.non_negative("sliding torque", torque, "N m");
+  check.all_finite("breakpoints", friction.breakpoints(), "s");
+  if (!(friction.break_away() >= 1.0))
+    check.fail("break-away ratio", to_text(friction.break_away()), "", "must be >= 1");
+}
+
+}  // namespace
 
 bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& nodes, const ElementInstance& p) {
   const std::size_t before = findings_.size();
@@ -272,6 +294,13 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
     if (n > kMaxLocalDofs)
       fail("general force", std::to_string(n) + " nodes",
            "must have at most " + std::to_string(kMaxLocalDofs));
+  }
+  for (const FrictionSpec& f : terms.frictions) {
+    if (row("friction b", f.b, false) == 0) fail("friction b", "0", "must have an entry that is not 0");
+    if (!f.friction)
+      fail("friction", "", "is missing (a null pointer)");
+    else
+      check_friction(*f.friction, ParameterCheck(place(p.name), findings_));
   }
   for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) row("closure", c.b, false);
   for (const LocalRow& b : terms.constraints) {

@@ -9,6 +9,11 @@
 #include <drev/elements/distributed_shaft.hpp>
 #include <drev/elements/engine/engine_cylinders.hpp>
 #include <drev/elements/engine_order_torque.hpp>
+#include <drev/elements/friction/bearing_friction.hpp>
+#include <drev/elements/friction/brake.hpp>
+#include <drev/elements/friction/clutch.hpp>
+#include <drev/elements/friction/coulomb_joint.hpp>
+#include <drev/elements/friction/freewheel.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/ground_spring.hpp>

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "elements/segment_chain.hpp"
+
 namespace drev {
 
 namespace {
@@ -45,47 +47,12 @@ double DistributedShaft::segment_inertia() const {
   return params_.density * polar_area_moment(params_) * params_.length / params_.segments;
 }
 
-// Positions along the shaft 0..n in the element's node order: a, b, internal.
-std::vector<int> DistributedShaft::part_nodes(int part) const {
-  const auto local = [n = params_.segments](int position) {
-    return position == 0 ? 0 : position == n ? 1 : position + 1;
-  };
-  return {local(part), local(part + 1)};
-}
+std::vector<int> DistributedShaft::part_nodes(int part) const { return chain_nodes(part, params_.segments); }
 
 void DistributedShaft::describe_part(int part, Terms& terms) const {
-  const double k = segment_stiffness(), j = segment_inertia();
-  const double coupled = params_.mass == SegmentMass::lumped       ? 0.0
-                         : params_.mass == SegmentMass::consistent ? j / 6.0
-                                                                   : j / 12.0;
-  const LocalRow b = relative_motion(2);
-  terms.mass.diagonal().setConstant(0.5 * j - coupled);
-  terms.mass(0, 1) = terms.mass(1, 0) = coupled;
-  terms.stiffness = k * b * b.transpose();
-  terms.outputs.push_back(
-      {.suffix = std::to_string(part + 1), .stiffness = k * b, .damping = LocalRow::Zero(2)});
-  terms.speed_ratio_constraints.push_back({.b = b});
-  terms.rayleigh = true;
+  describe_segment(part, segment_stiffness(), segment_inertia(), params_.mass, terms);
 }
 
-void DistributedShaft::describe(int nodes, Terms& terms) const {
-  for (int part = 0; part < params_.segments; ++part) {
-    const std::vector<int> own = part_nodes(part);
-    const auto spread = [&](const LocalRow& row) {
-      LocalRow wide = LocalRow::Zero(nodes);
-      wide(own) = row;
-      return wide;
-    };
-    Terms segment(2);
-    describe_part(part, segment);
-    terms.mass(own, own) += segment.mass;
-    terms.stiffness(own, own) += segment.stiffness;
-    for (OutputSpec& o : segment.outputs)
-      terms.outputs.push_back({std::move(o.suffix), spread(o.stiffness), spread(o.damping)});
-    for (const SpeedRatioConstraint& c : segment.speed_ratio_constraints)
-      terms.speed_ratio_constraints.push_back({.b = spread(c.b)});
-  }
-  terms.rayleigh = true;
-}
+void DistributedShaft::describe(int nodes, Terms& terms) const { describe_chain(*this, nodes, terms); }
 
 }  // namespace drev

@@ -2,7 +2,7 @@
 # Installs Debian packages only, asks for nothing, and does nothing where all of it is there.
 
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libarpack2-dev
-          libcli11-dev nlohmann-json3-dev libhdf5-dev libtomlplusplus-dev libjs-dygraphs
+          libcli11-dev nlohmann-json3-dev libhdf5-dev libminizip-dev libtomlplusplus-dev libjs-dygraphs
           catch2)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 
@@ -53,6 +53,9 @@ build() {
   shift
   if [ -n "${DREV_WARNINGS_AS_ERRORS:-}" ] && [ "$preset" != asan-ubsan ]; then
     options+=("-DDREV_WARNINGS_AS_ERRORS=$DREV_WARNINGS_AS_ERRORS")
+  fi
+  if [ "$preset" = release ] && [ -n "${DREV_PYTHON_PACKAGE+given}" ]; then
+    options+=("-DDREV_PYTHON_PACKAGE=$DREV_PYTHON_PACKAGE")
   fi
   echo "Building preset $preset"
   # --fresh needs CMake 3.24; a tree that was moved or made by another generator is configured anew.

@@ -12,7 +12,7 @@ mkdir -p "$site"
 cp -r docs/pictures "$site/"
 
 # In the order of reading; what is not named comes after.
-order=(README tutorial model_file conventions catalogue adding_an_element plugins results report theory
+order=(README tutorial model_file conventions catalogue adding_an_element plugins python results report theory
        which_method sweep parameter_study fidelity study validation performance gallery coming_from architecture)
 pages=()
 for name in "${order[@]}"; do

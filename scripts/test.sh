@@ -5,13 +5,15 @@
 #   scripts/test.sh            everything
 #   scripts/test.sh --quick    without the sanitizers
 #
-# Its last line is what CTest ran. DREV_WARNINGS_AS_ERRORS=ON in the environment makes warnings errors.
+# The Python package is built and tested with tools from PyPI, in an environment of its own (build/venv); where PyPI
+# cannot be reached, that is left out. The last line is what CTest ran. DREV_WARNINGS_AS_ERRORS=ON in the environment
+# makes warnings errors.
 set -euo pipefail
 quick=0
 for argument in "$@"; do
   case $argument in
     --quick) quick=1 ;;
-    *) sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    *) sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
   esac
 done
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -20,9 +22,9 @@ cd "$root"
 ran=""
 finish() {
   local status=$?
-  if [ -n "${building:-}" ]; then kill "$building" 2>/dev/null || true; fi
+  for job in "${building:-}" "${peers:-}"; do [ -z "$job" ] || kill "$job" 2>/dev/null || true; done
   if [ $status != 0 ] && [ -z "${failed:-}" ]; then ran="${ran:+$ran; the rest }not run"; fi
-  echo "CTest: $ran"
+  echo "CTest: $ran${skipped_python:-}"
   exit $status
 }
 trap finish EXIT
@@ -46,12 +48,26 @@ packages+=(valgrind python3-h5py python3-jsonschema)  # count instructions; read
 packages+=(clang-format-14 clang-tidy-14)             # this release alone formats as the tree is formatted
 # Opens reports. Ubuntu's is a snap, which could not: that test is skipped there.
 if grep -qx ID=debian /etc/os-release 2>/dev/null; then packages+=(chromium fonts-dejavu-core); fi
+packages+=(python3-dev python3-venv)  # the Python package; its own tools come from PyPI
 install_packages
+source "$root/scripts/python_env.sh"
+export DREV_PYTHON_PACKAGE=""
+if make_python_env; then
+  DREV_PYTHON_PACKAGE=$python_env/bin/python
+  install_into_python_env tests/python/peers.txt &  # while the rest is built
+  peers=$!
+else
+  skipped_python="; the Python package is not built or tested: $(cat build/venv-requirements.why)"
+fi
 build release
 if [ $quick = 0 ]; then  # Tests leave part of the processors unused: the next build takes it.
   (renice -n 19 $BASHPID >/dev/null; build asan-ubsan) >build/asan-ubsan-build.log 2>&1 &
   building=$!
 fi
+if [ -n "${peers:-}" ] && ! wait "$peers"; then
+  skipped_python="; Python tests that need more are skipped: $(cat build/venv-peers.why)"
+fi
+peers=""
 run_tests release "" || failed=1
 if [ $quick = 0 ]; then
   wait "$building" || { cat build/asan-ubsan-build.log >&2; fail "the build under sanitizers failed"; }

@@ -10,22 +10,16 @@
 
 #include "solvers/linear/extreme_eigenvalue.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/method_costs.hpp"
 
 namespace drev {
 
 namespace {
 
 constexpr int kPowerSteps = 20;
-constexpr double kRipple = 0.3;  // of the start of the power iteration
-// Measured on chains of 2 to 1000 unknowns: 24 products in a step of 3/omega (as many more for each contact
-// change, which no one knows before), 1.2 to 3.2 ns each times unknowns and contacts; an evaluation of
-// dormand_prince costs about 10. Where the fastest modes are excited, accuracy bounds its steps instead.
-constexpr double kRateTimesStep = 3.0;      // of exact propagation, and where dormand_prince is stable
-constexpr double kProductsInStep = 25.0;    // of exact propagation
-constexpr double kProductsOfStages = 70.0;  // what 7 evaluations of dormand_prince cost
-constexpr double kMostWork = 1.5e10;        // products times what one costs: half a minute
-constexpr double kUnknownsOfStep = 20.0;    // what a step costs beside its products
-constexpr double kUnknownsOfContact = 10.0;
+constexpr double kRipple = 0.3;         // of the start of the power iteration
+constexpr double kRateTimesStep = 3.0;  // of exact propagation, and where dormand_prince is stable
+constexpr double kMostWork = 1.5e10;    // products times what one costs: half a minute
 
 /// Size of the largest eigenvalue of M^-1 A, A on the system's pattern.
 double largest_of(const Assembler& assembler, SparseCholesky& mass, const Vector& values) {
@@ -85,6 +79,13 @@ MethodChoice choose_method(const System& system, double duration, double step) {
   const Method constant{.step = step};
   const std::optional<std::string> why_not = why_not_exact(system);
   const std::string refused = why_not ? "exact propagation cannot be used: " + *why_not : "";
+  if (!system.frictions().empty()) {
+    if (why_not)
+      throw ModelError(
+          {{system.name(), "method", "", "", "dry friction needs exact propagation, but " + *why_not}});
+    return {{.name = kExact, .tolerance = ExactOptions{}.tolerance},
+            "the model has dry friction, whose sticking only exact propagation locates"};
+  }
   if (system.history_size() > 0)
     return {constant, refused + "; no estimate of an error sees a history: constant steps"};
   double rate = 0.0;

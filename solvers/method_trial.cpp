@@ -11,6 +11,8 @@
 #include <optional>
 #include <sstream>
 
+#include "solvers/method_costs.hpp"
+
 namespace drev {
 
 namespace {
@@ -28,12 +30,11 @@ constexpr double kAffordable = 2e9, kFirstTrial = 0.2e9, kOtherTrial = 0.5e9;  /
 // Measured on gensets, camshafts and chains (ns).
 constexpr double kOfStep = 8000.0, kOfProduct = 2.0, kOfLoad = 100.0, kProductsOfSolve = 10.0,
                  kLoadsOfStep = 48.0;
-constexpr double kProductsOfStep = 25.0, kProductsOfStages = 70.0;  // as in method_choice.cpp
-constexpr double kUnknowns = 20.0, kContacts = 10.0;
 
 /// ns, of a product with the step's matrices.
 double product_cost(const System& system) {
-  return kOfProduct * (kUnknowns + system.size() + kContacts * static_cast<double>(contact_count(system)));
+  return kOfProduct *
+         (kUnknownsOfStep + system.size() + kUnknownsOfContact * static_cast<double>(contact_count(system)));
 }
 
 double cost(const System& system, const Method& method, const RunSummary& run) {
@@ -70,7 +71,7 @@ class Trial {
   MethodTrial run() {
     MethodTrial trial{.choice = chosen_};
     if (!(chosen_.method.tolerance > 0.0)) return trial;  // constant steps: no other is fit for the system
-    const auto first = paced(chosen_.method, within(kFirstTrial, kProductsOfStep, kFirstSteps));
+    const auto first = paced(chosen_.method, within(kFirstTrial, kProductsInStep, kFirstSteps));
     if (!first || first->status != RunStatus::interrupted || stopped_) return trial;
     span_ = first->t_end;
     if (!(span_ > 0.0) || !(passed(half_, 0) > 0.0)) return trial;

@@ -1,6 +1,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/solvers/statics.hpp>
 
 #include <cmath>
@@ -22,6 +23,7 @@ StaticSolver::StaticSolver(const System& system)
     : system_(system),
       assembler_(std::make_unique<Assembler>(system)),
       newton_(std::make_unique<SparseNewton>(system)) {
+  refuse_friction(system, "the static equilibrium");
   const std::vector<std::string> floating = system.floating_parts(Contact::closed);
   if (!floating.empty()) {
     std::string names;

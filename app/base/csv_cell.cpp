@@ -2,6 +2,8 @@
 
 #include <drev/models/parameters.hpp>
 
+#include <cstdio>
+
 namespace drev::app {
 
 std::string csv_cell(const std::string& text) {
@@ -14,6 +16,12 @@ std::string csv_cell(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : cell) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';
+}
+
+void append_digits(std::string& line, double value) {
+  char text[32];
+  const int length = std::snprintf(text, sizeof text, "%.17g", value);
+  line.append(text, static_cast<std::size_t>(length));
 }
 
 }  // namespace drev::app

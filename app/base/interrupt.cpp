@@ -2,12 +2,14 @@
 
 #include <csignal>
 #include <unistd.h>
+#include <utility>
 
 namespace drev::app {
 
 namespace {
 
 volatile std::sig_atomic_t caught = 0;
+thread_local std::function<bool()>* source = nullptr;
 
 constexpr unsigned kPatience = 10;  // s
 
@@ -27,6 +29,7 @@ void give_up(int /*signal*/) {
 }  // namespace
 
 void watch_signals() {
+  if (source != nullptr) return;
   struct sigaction action {};
   action.sa_handler = remember;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
@@ -40,7 +43,12 @@ void watch_signals() {
 
 bool interrupted() {
   if (caught != 0) ::alarm(kPatience);
-  return caught != 0;
+  return caught != 0 || (source != nullptr && (*source)());
 }
+
+InterruptSource::InterruptSource(std::function<bool()> asked) : asked_(std::move(asked)), before_(source) {
+  source = &asked_;
+}
+InterruptSource::~InterruptSource() { source = before_; }
 
 }  // namespace drev::app

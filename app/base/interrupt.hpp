@@ -1,11 +1,27 @@
 #pragma once
-/// SIGINT and SIGTERM, remembered until the computation asks.
+/// SIGINT and SIGTERM, remembered until the computation asks; or what a program that has signals of its own says.
+#include <functional>
+
 namespace drev::app {
 
 /// From here on the first SIGINT or SIGTERM is remembered; a second one of its kind ends the process, and so does
 /// the first where no one asks for 10 s: exit code 130, files as they are when a process is killed. A
-/// file that outgrows its limit is a failed write, not a signal.
+/// file that outgrows its limit is a failed write, not a signal. Where an InterruptSource lives, nothing: the
+/// program has signals of its own.
 void watch_signals();
 bool interrupted();
+
+/// While it lives, interrupted() asks `asked` too in the thread that made it.
+class InterruptSource {
+ public:
+  explicit InterruptSource(std::function<bool()> asked);
+  ~InterruptSource();
+  InterruptSource(const InterruptSource&) = delete;
+  InterruptSource& operator=(const InterruptSource&) = delete;
+
+ private:
+  std::function<bool()> asked_;
+  std::function<bool()>* before_;
+};
 
 }  // namespace drev::app

@@ -11,6 +11,8 @@ namespace {
 constexpr double kAnnounced = 120.0;                         // s left: said before
 constexpr auto kMeasured = std::chrono::milliseconds(2000);  // after which what is left is estimated
 
+thread_local ProgressListener::Told* listener = nullptr;
+
 /// "40 s", "3 min", "2.5 h", "more than 1000 h"
 std::string time_text(double seconds) {
   if (!(seconds < 3.6e6)) return "more than 1000 h";
@@ -25,6 +27,11 @@ std::string time_text(double seconds) {
 }
 
 }  // namespace
+
+ProgressListener::ProgressListener(Told told) : told_(std::move(told)), before_(listener) {
+  listener = &told_;
+}
+ProgressListener::~ProgressListener() { listener = before_; }
 
 Progress::Progress(std::function<std::string()> why_long)
     : terminal_(::isatty(STDERR_FILENO) != 0),
@@ -57,6 +64,12 @@ void Progress::draw(const std::string& text) {
 void Progress::update(double part) {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   const double left = elapsed * (1.0 - part) / part;
+  if (listener != nullptr) {
+    if (!(part > 0.0) || Clock::now() - drawn_ < std::chrono::milliseconds(100)) return;
+    drawn_ = Clock::now();
+    (*listener)(part, left);
+    return;
+  }
   if (why_long_ && part > 0.0 && Clock::now() - start_ >= kMeasured) announce(left);
   if (!due() || !(part > 0.0)) return;
   char text[32];
@@ -74,7 +87,7 @@ void Progress::announce(double left) {
 
 void Progress::show(const std::string& text) {
   constexpr std::size_t kColumns = 79;
-  if (!due()) return;
+  if (!due() || listener != nullptr) return;
   const auto elapsed = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start_);
   const std::string line = std::to_string(elapsed.count()) + " s: " + text;
   draw(line.size() <= kColumns ? line : line.substr(0, kColumns - 3) + "...");

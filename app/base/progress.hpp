@@ -7,6 +7,21 @@
 
 namespace drev::app {
 
+/// While it lives, computations of the thread that made it tell `told` how far they are in place of stderr: the
+/// part that is done, 0..1, and the seconds that are left; not more often than every 0.1 s.
+class ProgressListener {
+ public:
+  using Told = std::function<void(double part, double left)>;
+  explicit ProgressListener(Told told);
+  ~ProgressListener();
+  ProgressListener(const ProgressListener&) = delete;
+  ProgressListener& operator=(const ProgressListener&) = delete;
+
+ private:
+  Told told_;
+  Told* before_;
+};
+
 class Progress {
  public:
   /// why_long: what makes a computation take long, a sentence without full stop; asked at most once.

@@ -1,8 +1,6 @@
 #include "app/chart/chart_computation.hpp"
 
-#include <drev/core/scalar_force.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
-#include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,32 +8,41 @@
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
+#include "solvers/run/processor_time.hpp"
 
 namespace drev::app {
 
 namespace {
 
-constexpr double kPeriods = 20.0;       // of the lowest elastic mode
 constexpr double kMostGrowth = 1000.0;  // of a small difference
 constexpr int kLeastSamples = 64;
-constexpr double kSameSpan = 1.01;  // whole samples may leave a little of the duration
 constexpr double kGrowthTolerance = 1e-13;
+constexpr double kOfLimit = 0.5;   // what the chosen method may take of the limit, so that others have room
+constexpr int kFirstParts = 1024;  // of the duration, with which its pace is sought
 
-/// Duration, cut to a number of periods of the lowest mode; with gaps modes say little.
-double periods_of(const ModelRequest& model, std::string& reason) {
-  const double duration = model.model_case.duration;
-  for (const ScalarTerm& term : model.system.scalars())
-    if (term.force->gap()) return duration;
-  try {
-    const ModeSet modes = solve_modes(model.system, {});
-    if (modes.frequency_Hz.empty()) return duration;
-    const double wanted = kPeriods / modes.frequency_Hz.front();
-    if (wanted >= duration) return duration;
-    reason = short_digits(kPeriods, 3) + " periods of the lowest mode, " +
-             digits(modes.frequency_Hz.front(), 4) + " Hz";
-    return wanted;
-  } catch (const SolverError&) {
-    return duration;  // no modes to go by
+/// The span over which the method stays within its part of the limit: the duration, or less of it by the pace of
+/// longer and longer runs, each four times the one before; what any run takes however short it is no pace.
+double affordable_span(const System& system, const Method& method, double duration, double limit) {
+  const double most = kOfLimit * limit;
+  double span_before = 0.0, seconds_before = 0.0;
+  for (double span = duration / kFirstParts;; span = std::min(duration, 4.0 * span)) {
+    const double start = processor_time();
+    const auto goes_on = [&](double) { return !interrupted() && processor_time() < start + limit; };
+    try {
+      const RunSummary run =
+          run_method(system, method, {.t_end = span, .energy_tolerance = 1e300, .progress = goes_on});
+      if (!run.ok()) return span_before > 0.0 ? span_before : duration;
+    } catch (const std::runtime_error&) {
+      return span;  // what comes next says why
+    }
+    const double seconds = processor_time() - start;
+    if (span_before > 0.0 && (span == duration || seconds > 0.25 * most)) {
+      const double pace = std::max(seconds - seconds_before, 0.0) / (span - span_before);
+      const double affordable = pace > 0.0 ? span + (most - seconds) / pace : duration;
+      return std::clamp(affordable, std::min(span_before, duration), duration);
+    }
+    span_before = span;
+    seconds_before = seconds;
   }
 }
 
@@ -45,22 +52,27 @@ ChartResult compute_chart(const ChartRequest& request) {
   const System& system = request.model.system;
   const ModelCase& model_case = request.model.model_case;
   ChartResult result;
-  double horizon = periods_of(request.model, result.horizon_reason);
   Progress shown;
   const auto progress = [&](double part) {
     shown.update(part);
     return !interrupted();
   };
+  double horizon = model_case.duration;
   Method method = choose_method(system, horizon, std::min(model_case.default_step, horizon)).method;
   if (method.exact()) method.tolerance = kGrowthTolerance;
+  if (const double span = affordable_span(system, method, horizon, request.limit); span < horizon) {
+    result.horizon_reason = "longer runs pass half of the --limit, " + short_digits(request.limit, 3) +
+                            " s; the whole " + short_digits(horizon, 4) + " s take --limit " +
+                            short_digits(request.limit * horizon / span, 2);
+    horizon = span;
+  }
   const ErrorGrowth growth = measure_error_growth(
       system, {.method = method, .t_end = horizon, .progress = [&](double) { return !interrupted(); }});
   if (interrupted()) {
     result.data.interrupted = true;
     return result;
   }
-  const bool grows = growth.time_of(kMostGrowth) < horizon;
-  if (const double comparable = growth.time_of(kMostGrowth); grows) {
+  if (const double comparable = growth.time_of(kMostGrowth); comparable < horizon) {
     horizon = comparable;
     result.horizon_reason =
         "later, a small difference has grown by more than a factor of " + short_digits(kMostGrowth, 3);
@@ -81,9 +93,6 @@ ChartResult compute_chart(const ChartRequest& request) {
     result.quantity = model_case.deflection;
   }
   result.data = work_precision(system, options);
-  const double measured = result.data.t_end;
-  const bool whole = grows || model_case.duration < kSameSpan * measured;
-  result.advice_for = whole ? measured : model_case.duration;
   return result;
 }
 

@@ -1,14 +1,9 @@
 #pragma once
 /// `drev chart`: error against run time and work of the methods on one model.
 ///
-/// The runs last the model's duration, but without gaps not more than 20 periods of its lowest elastic mode,
-/// and not past the time at which a small difference of the state has grown by a factor of 1000:
-/// beyond, every error is mostly growth, and the methods cannot be told apart.
-///
-/// The advice is for the model's duration all the same, but where growth has ended the runs: where what was measured
-/// is a part 1/f of it, processor times are taken f times as large, and an error measured as f times as large, too
-/// (what steps are off in phase grows with the time; what is off at its start does not, so that this errs to the safe
-/// side).
+/// The runs last the model's duration, less of it where the method that is chosen for it would take more than half of the
+/// limit, and not past the time at which a small difference of the state has grown by a factor of 1000: beyond, every
+/// error is mostly growth, and the methods cannot be told apart. The advice is for what was measured.
 #include <drev/solvers/accuracy/work_precision.hpp>
 
 #include <optional>
@@ -28,10 +23,7 @@ struct ChartRequest {
 
 struct ChartResult {
   std::string quantity;        ///< what the error is of
-  std::string horizon_reason;  ///< what ended the runs, "" where it is the duration
-  double advice_for = 0.0;     ///< s: the run that the advice is for
-  /// advice_for over what was measured: f above.
-  double factor() const { return advice_for / data.t_end; }
+  std::string horizon_reason;  ///< why they end before the model's duration; else empty
   WorkPrecision data;
 };
 

@@ -35,31 +35,25 @@ std::string source_step_text(const WorkCurve& curve) {
   return "-";
 }
 
-/// What keeps the accuracy over the run that the advice is for.
+/// The cheapest that keeps the accuracy, and the next.
 std::string conclusion(const ChartResult& r, double accuracy) {
-  const double measured = accuracy / r.factor();
-  const auto best = r.data.cheapest(measured);
+  const auto best = r.data.cheapest(accuracy);
   if (!best) return "no method reaches it, or the reference is not known so well.";
-  std::string text = to_text(best->point->method) + ": " + time_text(r.factor() * best->point->seconds) +
-                     " of processor time";
+  std::string text =
+      to_text(best->point->method) + ": " + time_text(best->point->seconds) + " of processor time";
   const WorkPoint* next = nullptr;
   for (const WorkCurve& curve : r.data.curves)
     if (&curve != best->curve)
-      if (const WorkPoint* p = r.data.cheapest(curve, measured))
+      if (const WorkPoint* p = r.data.cheapest(curve, accuracy))
         if (next == nullptr || p->seconds < next->seconds) next = p;
   if (next == nullptr) return text + "; no other method reaches it within the limit.";
   return text + "; next " + to_text(next->method) + " with " +
          digits(next->seconds / std::max(best->point->seconds, 1e-9), 2) + " times as much.";
 }
 
-/// What the advice is for, and how it follows from what was measured.
+/// What the advice is for.
 std::string advice_heading(const ChartResult& r) {
-  const double factor = r.factor();
-  std::string text = "Which method should I use? From 0 to " + short_digits(r.advice_for, 4) + " s";
-  if (factor > 1.01)
-    text += ", " + digits(factor, 3) + " times what was measured: times and errors are taken as " +
-            digits(factor, 3) + " times those above";
-  return wrap(text + ":", 0);
+  return wrap("Which method should I use? From 0 to " + short_digits(r.data.t_end, 4) + " s:", 0);
 }
 
 /// The parameters that are not the default: "drive held, ...".
@@ -129,17 +123,16 @@ std::string chart_as_json(const ChartRequest& request, const ChartResult& r) {
                         {"reason", text_or_null(p.reason)}});
     object["curves"].push_back({{"method", curve.name}, {"points", std::move(points)}});
   }
-  object["advice_for_s"] = number(r.advice_for);
   object["cheapest"] = Json::array();
   for (const double accuracy : kAccuracies) {
-    const auto best = data.cheapest(accuracy / r.factor());
+    const auto best = data.cheapest(accuracy);
     object["cheapest"].push_back(
         {{"accuracy", accuracy},
          {"method", best ? Json(best->point->method.name) : Json()},
          {"step_s", best && best->point->method.step > 0.0 ? number(best->point->method.step) : Json()},
          {"tolerance",
           best && best->point->method.tolerance > 0.0 ? number(best->point->method.tolerance) : Json()},
-         {"processor_time_s", best ? number(r.factor() * best->point->seconds) : Json()}});
+         {"processor_time_s", best ? number(best->point->seconds) : Json()}});
   }
   return json_text(object);
 }

@@ -18,11 +18,14 @@ inline constexpr const char* kCommandLine = "command line";  ///< the place that
 struct CommandLine {
   const CommandEntry* command = nullptr;
   std::string model = {};  ///< name or file, the first of several; empty: not given
+  /// The model file itself, of a program that has made it; `model` is then its name. None: it is read.
+  std::optional<std::string> text = {};
   std::vector<std::pair<std::string, std::string>> parameters = {};  ///< of --set name=value
   std::map<std::string, std::vector<std::string>> options = {};      ///< those given, with their values
   std::map<std::string, std::string> from_file = {};  ///< options that a model file gave: where it says so
   bool json = false;
-  bool quiet = false;  ///< nothing to standard output; what is wrong still goes to standard error
+  bool keeps_history = false;  ///< a program keeps the recorded channels: --record and --every need no file
+  bool quiet = false;          ///< nothing to standard output; what is wrong still goes to standard error
   std::vector<Finding> findings = {};  ///< options that do not exist, --set without '=', ...
 
   /// The value of an option such as "--step"; nullopt if it was not given.

@@ -82,12 +82,24 @@ inline constexpr const char* kClassExamples =
     "\n"
     "What sections may carry stands in the model file, [class]: docs/class_report.md.\n";
 
+inline constexpr const char* kShaftExamples =
+    "Examples:\n"
+    "  drev shaft camshaft_drawing.toml\n"
+    "  drev shaft camshaft_drawing.toml --report shaft.html\n"
+    "\n"
+    "A shaft by its contour is an element of type contour_shaft: docs/shafts.md.\n";
+
 inline constexpr const char* kImportExamples =
     "Examples:\n"
     "  drev import assembly.json --out train.toml\n"
     "  drev import mass_elastic.csv --out train.toml\n"
     "\n"
     "What could not be taken over is said on standard error and in the file's note.\n";
+
+inline constexpr const char* kGearExamples =
+    "Examples:\n"
+    "  drev gear models/camshaft_gears/camshaft_gears.toml\n"
+    "  drev gear pair.toml --report pair.html\n";
 
 inline constexpr const char* kChartExamples =
     "Examples:\n"
@@ -134,6 +146,7 @@ inline constexpr const char* kExportExamples =
     "Examples:\n"
     "  drev export two_inertia\n"
     "  drev export camshaft --set cylinders=6 --out camshaft_6.toml\n"
+    "  drev export drive.toml --fmu drive.fmu --torque load --record load.actual_speed_rad_per_s\n"
     "\n"
     "The file holds the model as the parameters make it, in SI units with every digit: running it gives\n"
     "the same results to the last bit.\n";

@@ -61,6 +61,12 @@ bool is_built_in(const std::string& model) {
   return std::find(names.begin(), names.end(), model) != names.end();
 }
 
+std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const std::string& run) {
+  if (line.text) return std::make_shared<const ModelFile>(*line.text, line.model, run);
+  if (is_model_file(line.model)) return std::make_shared<const ModelFile>(line.model, run);
+  return nullptr;
+}
+
 std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings) {
   if (line.model.empty()) {
     // An option that does not exist may have taken the model's name.
@@ -72,8 +78,7 @@ std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Fin
   try {
     std::shared_ptr<const ModelFile> file;
     std::shared_ptr<const ModelEntry> entry;
-    if (is_model_file(line.model)) {
-      file = std::make_shared<const ModelFile>(line.model, line.option("--run").value_or(""));
+    if ((file = open_model_file(line, line.option("--run").value_or("")))) {
       entry = {file, &file->entry()};
     } else {
       entry = {std::shared_ptr<const void>(), find_built_in(line.model, findings)};

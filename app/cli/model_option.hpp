@@ -1,5 +1,6 @@
 #pragma once
 /// The MODEL of a command line with its --set and --run, built.
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ namespace drev::app {
 std::vector<std::string> built_in_names();
 bool is_built_in(const std::string& model);
 
+/// The model file that is meant; null: a built-in model. Throws ModelError with everything wrong with the file.
+std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const std::string& run);
 /// The model as far as it can be built; nothing if it cannot. What is wrong goes to findings.
 std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings);
 /// A finding if the file, or the partial one that becomes it, is one of those that are read.

@@ -5,6 +5,7 @@
 #include "app/base/json_values.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/run_request.hpp"
@@ -18,9 +19,10 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 /// The runs that a file names; none where it cannot be read, which is said elsewhere.
-std::vector<std::string> run_names(const std::string& path) {
+std::vector<std::string> run_names(const CommandLine& line) {
   try {
-    return ModelFile(path, "").run_names();
+    const std::shared_ptr<const ModelFile> file = open_model_file(line, "");
+    return file ? file->run_names() : std::vector<std::string>();
   } catch (const ModelError&) {
     return {};
   }
@@ -31,7 +33,7 @@ std::vector<std::string> run_names(const std::string& path) {
 int check_command(const CommandLine& line) {
   std::vector<CommandLine> runs{line};
   std::vector<std::string> names;
-  if (is_model_file(line.model) && !line.options.contains("--run")) names = run_names(line.model);
+  if (!line.options.contains("--run")) names = run_names(line);
   for (const std::string& name : names) {
     runs.push_back(line);
     runs.back().options["--run"] = {name};

@@ -11,10 +11,23 @@ namespace drev::app {
 
 namespace {
 
-std::vector<FieldKeys::Key> keys_of(const ElementType& type) {
-  FieldKeys keys(NodeKind::rotational);
-  type.make([&](const ListFields& list) { list(keys); });
-  return keys.keys();
+/// The keys of a type, and an element of their defaults.
+struct ListedType {
+  FieldKeys keys{NodeKind::rotational};
+  std::shared_ptr<const Element> element;
+};
+
+ListedType listed(const ElementType& type) {
+  ListedType found;
+  found.element = type.make([&](const ListFields& list) { list(found.keys); });
+  return found;
+}
+
+std::vector<FieldKeys::Key> keys_of(const ElementType& type) { return listed(type).keys.keys(); }
+
+Json default_of(const FieldKeys::Key& key) {
+  if (!key.default_text.empty()) return key.default_text;
+  return key.need == Need::required ? Json() : number(key.default_number);
 }
 
 std::string key_of(const FieldKeys::Key& key) { return si_key(key.name, key.dimension); }
@@ -48,12 +61,18 @@ std::string elements_as_json() {
   Json list = Json::array();
   for (const ElementType& type : element_types()) {
     Json keys = Json::array();
-    for (const FieldKeys::Key& key : keys_of(type))
+    const ListedType found = listed(type);
+    for (const FieldKeys::Key& key : found.keys.keys())
       keys.push_back({{"name", key.name},
                       {"key", key_of(key)},
                       {"needed", key.need == Need::required},
+                      {"default", default_of(key)},
                       {"translational_key", translational_key_of(key)}});
-    list.push_back({{"type", type.name}, {"plugin", text_or_null(type.plugin)}, {"keys", std::move(keys)}});
+    list.push_back({{"type", type.name},
+                    {"plugin", text_or_null(type.plugin)},
+                    {"least_nodes", found.element->min_nodes()},
+                    {"most_nodes", found.element->max_nodes()},
+                    {"keys", std::move(keys)}});
   }
   return json_text({{"elements", std::move(list)}});
 }

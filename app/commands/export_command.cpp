@@ -6,12 +6,44 @@
 #include "app/cli/model_option.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
+#include "app/fmi/export_fmu.hpp"
 #include "app/model_file/writing/export.hpp"
 
 namespace drev::app {
 
+namespace {
+
+/// drev export MODEL --fmu FILE.
+int export_as_fmu(const CommandLine& line, const ModelRequest& model) {
+  FmuRequest request{.file = *line.option("--fmu"),
+                     .model = model.file ? line.model : "",
+                     .run = line.option("--run").value_or(""),
+                     .torques = line.list("--torque").value_or(std::vector<std::string>{}),
+                     .speeds = line.list("--speed").value_or(std::vector<std::string>{}),
+                     .outputs = line.list("--record").value_or(model.model_case.channels),
+                     .fmi = line.option("--fmi").value_or("3") == "2" ? 2 : 3};
+  std::vector<Finding> findings;
+  const std::filesystem::path path(request.file);
+  if (!path.has_stem() || path.extension() != ".fmu")
+    findings.push_back(
+        {kCommandLine, "--fmu", request.file, "", "must be the name of a file that ends in .fmu"});
+  if (line.option("--out"))
+    findings.push_back({kCommandLine, "--out", *line.option("--out"), "", "is there beside --fmu"});
+  if (line.list("--plugin"))
+    findings.push_back({kCommandLine, "--plugin", "", "", "is there beside --fmu: an FMU holds no plugins"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  export_fmu(model, request);
+  return kSuccess;
+}
+
+}  // namespace
+
 int export_command(const CommandLine& line) {
   const ModelRequest model = request_model(line);
+  if (line.option("--fmu")) return export_as_fmu(line, model);
+  for (const char* option : {"--torque", "--speed", "--record", "--fmi"})
+    if (line.options.count(option) > 0)
+      throw ModelError({{kCommandLine, option, "", "", "is for --fmu, which is not there"}});
   const std::string text = export_model(*model.entry, model.parameters, model.model_case);
   const std::optional<std::string> out = line.option("--out");
   if (!out) {

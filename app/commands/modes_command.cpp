@@ -1,6 +1,4 @@
 #include <drev/core/units.hpp>
-#include <drev/solvers/modes/mode_energy.hpp>
-#include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
@@ -16,23 +14,17 @@
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
+#include "app/commands/modes_request.hpp"
 #include "app/results/run_json.hpp"
 
 namespace drev::app {
 
 namespace {
 
-struct ModesRequest {
-  ModelRequest model;
-  ModesOptions options;
-  bool damped = false;
-  double speed = 0.0;  ///< rad/s, at which loads that follow it act as dampers; 0: without them
-  std::optional<int> count = {};
-  std::optional<std::string> out = {};  ///< directory for tables
-};
-
 constexpr Range kSpeed{1e-6, 1e7};  // rpm
 constexpr int kCount = 10;          // damped modes shown unless told otherwise
+
+}  // namespace
 
 ModesRequest request_modes(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
@@ -60,6 +52,17 @@ ModesRequest request_modes(const CommandLine& line) {
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), options, damped, speed, options.count, out};
 }
+
+DampedModes find_damped_modes(const ModesRequest& request) {
+  DampedModesOptions options{.contact = request.options.contact};
+  if (request.speed > 0.0) options.damping = load_damping(request.model.system, request.speed);
+  DampedModes found{solve_damped_modes(request.model.system, options)};
+  found.energy = mode_energy(request.model.system, found.set);
+  found.count = std::min<std::size_t>(idx(request.count.value_or(kCount)), found.set.modes.size());
+  return found;
+}
+
+namespace {
 
 /// Seven digits, or those that rounding leaves and its error.
 std::string frequency_text(double frequency, double error) {
@@ -222,11 +225,7 @@ std::string energy_as_csv(const ModeEnergy& energy, std::size_t count) {
 }
 
 int damped_command(const ModesRequest& request, bool json) {
-  DampedModesOptions options{.contact = request.options.contact};
-  if (request.speed > 0.0) options.damping = load_damping(request.model.system, request.speed);
-  const DampedModeSet set = solve_damped_modes(request.model.system, options);
-  const ModeEnergy energy = mode_energy(request.model.system, set);
-  const std::size_t count = std::min<std::size_t>(idx(request.count.value_or(kCount)), set.modes.size());
+  const auto& [set, energy, count] = find_damped_modes(request);
   if (request.out) {
     create_directory(*request.out);
     write_file(*request.out, "modes", "csv", damped_modes_as_csv(set, count));

@@ -232,6 +232,8 @@ int run_many(const CommandLine& line) {
   if (const auto report = line.option("--report"))
     findings.push_back(
         {kCommandLine, "--report", *report, "", "is for one run; of several, each folder has a report"});
+  if (const auto events = line.option("--events"))
+    findings.push_back({kCommandLine, "--events", *events, "", "is for one run"});
   int at_once = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (const auto jobs = line.option("--jobs")) at_once = read_count("--jobs", *jobs, kMostJobs, "", findings);
   if (!findings.empty()) throw ModelError(std::move(findings));

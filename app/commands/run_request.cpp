@@ -168,7 +168,7 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
     for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
   for (const char* option : {"--start", "--settle", "--out"}) take(option);
-  if (given("--out") || given("--report")) take("--every");
+  if (given("--out") || given("--report") || line.keeps_history) take("--every");
 }
 
 /// What is wrong with such an option is wrong in the file.
@@ -185,7 +185,8 @@ void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
 void check_outputs(const CommandLine& line, const std::vector<std::string>& read,
                    std::vector<Finding>& findings) {
   for (const char* option : {"--record", "--every", "--format"})
-    if (!line.option("--out") && !line.option("--report") && line.list(option))
+    if (!line.option("--out") && !line.option("--report") && line.list(option) &&
+        (!line.keeps_history || option == std::string("--format")))
       findings.push_back(
           {kCommandLine, option, "", "", "needs --out DIR or --report FILE, where to write the channels"});
   if (const auto jobs = line.option("--jobs"))
@@ -195,6 +196,11 @@ void check_outputs(const CommandLine& line, const std::vector<std::string>& read
   if (const auto out = line.option("--out"))
     for (const char* name : {"/history.csv", "/history.h5", "/summary.json", "/report.html"})
       check_output("--out", *out + name, read, findings);
+  if (const auto events = line.option("--events")) {
+    check_output("--events", *events, read, findings);
+    if (!events->ends_with(".csv"))
+      findings.push_back({kCommandLine, "--events", *events, "", "must be the name of a .csv file"});
+  }
   if (const auto report = line.option("--report")) {
     check_output("--report", *report, read, findings);
     namespace fs = std::filesystem;
@@ -262,6 +268,8 @@ RunRequest request_run(const CommandLine& given) {
           start,
           settle,
           line.option("--duration") ? std::optional(duration) : std::nullopt,
+          line.option("--events"),
+          line.keeps_history,
           line.list("--rainflow").value_or(std::vector<std::string>{})};
 }
 

@@ -1,6 +1,8 @@
 #include <drev/core/units.hpp>
 
+#include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
+#include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/model_option.hpp"
@@ -80,6 +82,11 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
     for (const char* name : {"/branches.csv", "/orders.csv", "/changes.csv", "/summary.json"})
       check_output("--out", *out + name, request.model.model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
+  Progress shown;
+  options.progress = [&](double part) {
+    shown.update(part);
+    return !interrupted();
+  };
   const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
   const Json object = line.json || out ? branches_object(request.model, options, sweep) : Json();
   if (out) {

@@ -271,8 +271,7 @@ class CaseReader {
 
 }  // namespace
 
-FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
-                   bool options_only) {
+ReadContext context_of(const Document& document, const Parameters& parameters) {
   ReadContext context;
   for (const Parameter& parameter : parameters.known())
     if (parameter.kind == Parameter::Kind::choice)
@@ -281,6 +280,12 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
       context.scope.numbers[parameter.name] = parameters.number(parameter.name);
   context.scope.lists = document.lists;
   context.tables = document.tables;
+  return context;
+}
+
+FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
+                   bool options_only) {
+  ReadContext context = context_of(document, parameters);
   FileCase result;
   const RunSection section(document, run, context);
   result.options = section.options();

@@ -3,6 +3,7 @@
 #include <drev/app/model_file/model_file.hpp>
 
 #include "app/model_file/document.hpp"
+#include "app/model_file/read_values.hpp"
 
 namespace drev::app {
 
@@ -11,6 +12,9 @@ struct FileCase {
   RunOptions options;
   std::vector<Finding> findings;
 };
+
+/// What values of the file are read with.
+ReadContext context_of(const Document& document, const Parameters& parameters);
 
 /// `run` as in ModelFile. With options_only, nodes and elements are passed over and there is no model case.
 FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,

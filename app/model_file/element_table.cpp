@@ -1,6 +1,7 @@
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/models/shafts/contour_shaft.hpp>
 
 #include <cmath>
 #include <set>
@@ -138,6 +139,7 @@ std::vector<ElementType>& table() {
   static std::vector<ElementType> types{row<Inertia>("inertia"),
                                         row<ShaftSpring>("shaft_spring"),
                                         row<DistributedShaft>("distributed_shaft"),
+                                        row<ContourShaft>("contour_shaft"),
                                         row<Dashpot>("dashpot"),
                                         row<GroundSpring>("ground_spring"),
                                         row<RayleighDamping>("rayleigh_damping"),
@@ -155,7 +157,12 @@ std::vector<ElementType>& table() {
                                         row<TorqueCurve>("torque_curve"),
                                         row<Generator>("generator"),
                                         row<SpeedGovernor>("speed_governor"),
-                                        row<PlanetarySet>("planetary_set")};
+                                        row<PlanetarySet>("planetary_set"),
+                                        row<Clutch>("clutch"),
+                                        row<Brake>("brake"),
+                                        row<CoulombJoint>("coulomb_joint"),
+                                        row<BearingFriction>("bearing_friction"),
+                                        row<Freewheel>("freewheel")};
   return types;
 }
 

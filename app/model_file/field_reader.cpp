@@ -82,6 +82,31 @@ class FieldReader final : public Fields {
     }
     return read_fields(found->entry->value, place(*found), kind, {}, list, context_);
   }
+  bool rows(const std::string& name, std::size_t /*count*/, const std::function<void(std::size_t)>& resize,
+            const std::function<void(Fields&, std::size_t)>& list) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return false;
+    const Value& value = found->entry->value;
+    if (!value.is(Value::Kind::array)) {
+      blame(*found, "must be an array of tables, [{ ... }, ...], not " + kind_name(value));
+      return false;
+    }
+    resize(value.items.size());
+    bool right = true;
+    for (std::size_t i = 0; i < value.items.size(); ++i) {
+      const std::string where = place(*found) + "[" + std::to_string(i + 1) + "]";
+      if (value.items[i].is(Value::Kind::table)) {
+        right = read_fields(
+                    value.items[i], where, kind, {}, [&](Fields& f) { list(f, i); }, context_) &&
+                right;
+      } else {
+        context_.findings.push_back(
+            fault_at(value.items[i].at, where, "must be a table, { ... }, not " + kind_name(value.items[i])));
+        right = false;
+      }
+    }
+    return right;
+  }
   bool columns(const std::string& name, const std::vector<Column>& columns) override {
     const Found* found = keys_.find(name);
     if (found == nullptr) return false;

@@ -53,5 +53,11 @@ bool FieldKeys::group(const std::string& name, const std::function<void(Fields&)
   plain(name);
   return false;
 }
+bool FieldKeys::rows(const std::string& name, std::size_t /*count*/,
+                     const std::function<void(std::size_t)>& /*resize*/,
+                     const std::function<void(Fields&, std::size_t)>& /*list*/) {
+  plain(name);
+  return false;
+}
 
 }  // namespace drev::app

@@ -54,6 +54,11 @@ class Fields {
   virtual bool columns(const std::string& name, const std::vector<Column>& columns) = 0;
   /// A table of its own inside this one; true where it was given and its fields are right.
   virtual bool group(const std::string& name, const std::function<void(Fields&)>& list) = 0;
+  /// An array of tables: resize(n) makes room for them, then list() has each by its number; true where it was given and
+  /// all are right. Written are `count` of them.
+  virtual bool rows(const std::string& name, std::size_t count,
+                    const std::function<void(std::size_t)>& resize,
+                    const std::function<void(Fields&, std::size_t)>& list) = 0;
   /// What is wrong with the table as a whole.
   virtual void fault(const std::string& sentence) = 0;
   /// Calls make(); what it throws is a fault.
@@ -88,6 +93,8 @@ class FieldKeys final : public Fields {
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;
   bool group(const std::string& name, const std::function<void(Fields&)>& list) override;
+  bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,
+            const std::function<void(Fields&, std::size_t)>& list) override;
   void fault(const std::string&) override {}
 
   const std::vector<Key>& keys() const { return keys_; }

@@ -1,9 +1,12 @@
 #include <drev/elements/involute.hpp>
 #include <drev/elements/not_given.hpp>
+#include <drev/models/gears/gear_drawing.hpp>
 
 #include <cmath>
+#include <optional>
 
 #include "app/model_file/shared_fields.hpp"
+#include "models/gears/gear_element.hpp"
 
 namespace drev::app {
 
@@ -42,7 +45,8 @@ void list_contact_ratio(Fields& f, double& ratio) {
   if (given != 1) f.fault("needs exactly one of contact_ratio, gears and standard_gears");
 }
 
-void list_stiffness(Fields& f, MeshStiffness& stiffness) {
+/// drawn: a geometry gives the stiffness.
+void list_stiffness(Fields& f, MeshStiffness& stiffness, bool drawn) {
   const Quantity along("stiffness", D::stiffness), mean("mean", D::stiffness);
   const Quantity single("single", D::stiffness), both("double", D::stiffness);
   const Quantity amplitude("amplitude", D::stiffness), phase("phase", D::mesh_periods);
@@ -61,7 +65,7 @@ void list_stiffness(Fields& f, MeshStiffness& stiffness) {
     g.number(both, step.both, Need::required);
     list_contact_ratio(g, step.contact_ratio);
   };
-  int given = 0;
+  int given = drawn ? 1 : 0;
   if (read || std::holds_alternative<double>(law)) {
     f.number(along, k);
     if (!std::isnan(k)) ++given, stiffness = MeshStiffness(k);
@@ -87,7 +91,7 @@ void list_stiffness(Fields& f, MeshStiffness& stiffness) {
     ++given, stiffness = MeshStiffness::table(table.arguments(), table.values());
   if (read && given != 1)
     f.fault("needs exactly one of " + spellings("stiffness", D::stiffness) +
-            ", stiffness_step, stiffness_fourier, stiffness_fourier_of_step and stiffness_table");
+            ", stiffness_step, stiffness_fourier, stiffness_fourier_of_step, stiffness_table and geometry");
 }
 
 void list_error(Fields& f, TransmissionError& error) {
@@ -106,9 +110,71 @@ void list_error(Fields& f, TransmissionError& error) {
   }
 }
 
+void list_gear(Fields& f, GearDrawing& drawing, std::size_t i) {
+  GearData& g = i == 0 ? drawing.geometry.gear_1 : drawing.geometry.gear_2;
+  f.whole("teeth", g.teeth, Need::required);
+  f.number({"profile_shift", D::none}, g.profile_shift);
+  f.number({"tip_diameter", D::length}, g.tip_diameter);
+  f.number({"tip_alteration", D::none}, g.tip_alteration);
+  f.number({"tip_chamfer", D::length}, g.tip_chamfer);
+  f.number({"width", D::length}, g.width);
+  f.number({"bore_diameter", D::length}, g.bore_diameter);
+  f.number({"rim_inner_diameter", D::length}, g.rim_inner_diameter);
+  f.number({"hub_diameter", D::length}, g.hub_diameter);
+  f.number({"web_thickness", D::length}, g.web_thickness);
+  f.number({"youngs_modulus", D::pressure}, g.material.youngs_modulus);
+  f.number({"poisson_ratio", D::none}, g.material.poisson_ratio);
+  f.number({"density", D::density}, g.material.density);
+  f.number({"upper_allowance", D::length}, drawing.tolerances.thickness[i].upper_allowance);
+  f.number({"thickness_tolerance", D::length}, drawing.tolerances.thickness[i].tolerance);
+  f.number({"temperature_rise_K", D::none}, drawing.tolerances.temperature_rise[i]);
+  f.number({"expansion_per_K", D::none}, drawing.tolerances.expansion[i]);
+  f.number({"tip_relief", D::length}, drawing.cycle.tip_relief[i].depth);
+  f.number({"tip_relief_length", D::length}, drawing.cycle.tip_relief[i].length);
+}
+
 }  // namespace
 
+void list(Fields& f, GearDrawing& drawing) {
+  GearGeometry& g = drawing.geometry;
+  f.number({"module", D::length}, g.module, Need::required);
+  f.number({"pressure_angle", D::angle}, g.pressure_angle);
+  f.number({"helix_angle", D::angle}, g.helix_angle);
+  f.number({"centre_distance", D::length}, g.centre_distance);
+  f.flag("internal", g.internal);
+  f.group("rack", [&](Fields& r) {
+    r.number({"addendum", D::none}, g.rack.addendum);
+    r.number({"dedendum", D::none}, g.rack.dedendum);
+    r.number({"root_radius", D::none}, g.rack.root_radius);
+  });
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+    const std::string name = i == 0 ? "gear_1" : "gear_2";
+    if (!f.group(name, [&](Fields& r) { list_gear(r, drawing, i); }) && f.reading() &&
+        (i == 0 ? g.gear_1 : g.gear_2).teeth == 0)
+      f.fault("needs " + name + " = { teeth = ... }, in order");
+  }
+  f.number({"load", D::stiffness}, drawing.cycle.load);
+  f.number({"torque_1", D::torque}, drawing.torque_1);
+  f.number({"centre_distance_tolerance", D::length}, drawing.tolerances.centre_distance);
+  f.number({"housing_temperature_rise_K", D::none}, drawing.tolerances.housing_temperature_rise);
+  f.number({"housing_expansion_per_K", D::none}, drawing.tolerances.housing_expansion);
+  f.number({"backlash_percentile", D::none}, drawing.backlash_percentile);
+  f.flag("tangent", drawing.tangent);
+  f.flag("corner_contact", drawing.cycle.corner_contact);
+  f.flag("windup", drawing.cycle.windup);
+  f.whole("points", drawing.cycle.points);
+  f.whole("level", drawing.cycle.level);
+  f.columns("pitch_deviations", {{{"deviation", D::length}, &drawing.cycle.pitch_deviations}});
+}
+
 void list(Fields& f, GearMesh::Params& p) {
+  GearDrawing drawing;
+  std::optional<GearMesh::Params> drawn;
+  if (f.reading() && f.group("geometry", [&](Fields& g) { list(g, drawing); })) {
+    f.guarded([&] { drawn = gear_mesh_params(drawing); });
+    if (!drawn) drawn.emplace();  // what is wrong has been said
+    p.normal_backlash = drawn->normal_backlash;
+  }
   static const std::vector<std::string> laws{"proportional", "limited", "contact_only", "always"};
   f.number({"base_radius_1", D::length}, p.base_radius_1);
   f.number({"base_radius_2", D::length}, p.base_radius_2);
@@ -117,7 +183,7 @@ void list(Fields& f, GearMesh::Params& p) {
   f.whole("teeth_2", p.teeth_2);
   f.number({"pressure_angle", D::angle}, p.pressure_angle);
   f.flag("internal", p.internal);
-  list_stiffness(f, p.stiffness);
+  list_stiffness(f, p.stiffness, drawn.has_value());
   f.number({"normal_backlash", D::length}, p.normal_backlash);
   f.number({"damping", D::damping}, p.damping);
   int law = static_cast<int>(p.damping_law);
@@ -126,6 +192,18 @@ void list(Fields& f, GearMesh::Params& p) {
   f.number({"reference_penetration", D::length}, p.reference_penetration);
   list_error(f, p.transmission_error);
   f.number({"mesh_phase", D::mesh_periods}, p.mesh_phase);
+  if (!drawn) return;
+  if (!std::isnan(p.base_radius_1) || !std::isnan(p.base_radius_2) || !std::isnan(p.module) ||
+      !std::isnan(p.pressure_angle) || p.teeth_1 != 0 || p.teeth_2 != 0)
+    f.fault("has geometry beside base radii, module, teeth or pressure_angle; the geometry alone says them");
+  if (p.transmission_error.varies() && drawn->transmission_error.varies())
+    f.fault("has a transmission error beside the tip relief of its geometry; give one of them");
+  p.base_radius_1 = drawn->base_radius_1;
+  p.base_radius_2 = drawn->base_radius_2;
+  p.teeth_1 = drawn->teeth_1;
+  p.teeth_2 = drawn->teeth_2;
+  p.stiffness = drawn->stiffness;
+  if (drawn->transmission_error.varies()) p.transmission_error = drawn->transmission_error;
 }
 
 }  // namespace drev::app

@@ -5,6 +5,8 @@
 #include <drev/elements/couplings/elastic_coupling.hpp>
 #include <drev/elements/couplings/torsional_damper.hpp>
 #include <drev/elements/engine/engine_cylinders.hpp>
+#include <drev/elements/friction/dry_friction.hpp>
+#include <drev/elements/friction/freewheel.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/machines/generator.hpp>
@@ -12,6 +14,11 @@
 #include <drev/elements/machines/speed_governor.hpp>
 #include <drev/elements/machines/torque_curve.hpp>
 #include <drev/elements/periodic_curve.hpp>
+#include <drev/models/shafts/shaft_contour.hpp>
+
+namespace drev {
+struct GearDrawing;
+}
 
 namespace drev::app {
 
@@ -27,6 +34,8 @@ bool list_periodic(Fields& f, const char* name, const Quantity& argument, const 
 /// linear or cubic between the points of a table.
 void list_interpolation(Fields& f, Interpolation& interpolation);
 
+/// The drawing of a gear pair: `geometry` of a gear mesh, or of a file of drev gear (docs/gears.md).
+void list(Fields& f, GearDrawing& drawing);
 void list(Fields& f, GearMesh::Params& p);
 void list(Fields& f, EngineCylinders::Params& p);
 void list(Fields& f, ElasticCoupling::Params& p);
@@ -37,5 +46,8 @@ void list(Fields& f, TorqueCurve::Params& p);
 void list(Fields& f, Generator::Params& p);
 void list(Fields& f, SpeedGovernor::Params& p);
 void list(Fields& f, PlanetarySet::Params& p);
+void list(Fields& f, ShaftContour& p);
+void list(Fields& f, DryFriction::Params& p);
+void list(Fields& f, Freewheel::Params& p);
 
 }  // namespace drev::app

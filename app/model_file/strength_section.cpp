@@ -1,9 +1,11 @@
 #include "app/model_file/strength_section.hpp"
 
 #include <drev/core/channel.hpp>
+#include <drev/models/shafts/contour_shaft.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "app/model_file/run_section.hpp"
@@ -22,6 +24,29 @@ std::vector<std::string> torque_elements(const System& system) {
     if (channel.name().ends_with(kEnd))
       names.push_back(channel.name().substr(0, channel.name().size() - kEnd.size()));
   return names;
+}
+
+/// Where the torque of a segment of a contour shaft is meant, diameter, bore and stress concentration that are not given
+/// are those of its contour; what cannot be taken from there is said.
+std::string take_from_contour(const Model& model, const std::string& name, SectionStrength& section) {
+  for (const ElementInstance& placement : model.element_instances()) {
+    const auto* shaft = dynamic_cast<const ContourShaft*>(placement.element.get());
+    if (shaft == nullptr || shaft->sections() == nullptr) continue;
+    const ShaftSections& found = *shaft->sections();
+    for (std::size_t k = 0; k < found.segment_station.size(); ++k) {
+      if (name != placement.name + "_" + std::to_string(k + 1)) continue;
+      const ShaftSection& station = found.sections[static_cast<std::size_t>(found.segment_station[k])];
+      if (std::isnan(section.diameter)) section.diameter = station.diameter, section.bore = station.bore;
+      if (section.stress_concentration != 1.0) return {};
+      if (std::isinf(station.stress_factor.value))
+        return "station " + station.name +
+               " has a sharp shoulder, at which stress has no limit: give it a fillet, or the section a "
+               "stress_concentration";
+      section.stress_concentration = std::max(1.0, station.stress_factor.value);
+      return {};
+    }
+  }
+  return {};
 }
 
 void read_misfire(const Value& table, Strength& strength, ReadContext& context) {
@@ -92,10 +117,13 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
         if (!fits_pattern(entry.key, name)) continue;
         fits = true;
         section.element = name;
+        SectionStrength own = section;
+        if (const std::string why = take_from_contour(model_case.model, name, own); !why.empty())
+          context.findings.push_back(fault_at(entry.at, where, why));
         places[name] = &entry;
         // What is said of one element alone counts beside what is said of many.
         std::erase_if(strength.sections, [&](const auto& other) { return other.element == name; });
-        strength.sections.push_back(section);
+        strength.sections.push_back(own);
       }
       if (!fits)
         context.findings.push_back(fault_at(

@@ -1,4 +1,6 @@
 // Fields of the elements that real trains are made of: engines, couplings and dampers, machines, gear sets.
+#include <cmath>
+
 #include "app/model_file/shared_fields.hpp"
 
 namespace drev::app {
@@ -157,5 +159,98 @@ void list(Fields& f, PlanetarySet::Params& p) {
   f.whole("teeth_ring", p.teeth_ring);
   f.flag("together", p.together);
 }
+
+namespace {
+
+void list_groove(Fields& f, ShaftGroove& g) {
+  f.number({"position", D::length}, g.position, Need::required);
+  f.number({"depth", D::length}, g.depth, Need::required);
+  f.number({"radius", D::length}, g.radius, Need::required);
+}
+
+void list_keyway(Fields& f, ShaftKeyway& k) {
+  f.number({"width", D::length}, k.width, Need::required);
+  f.number({"depth", D::length}, k.depth, Need::required);
+  f.number({"corner_radius", D::length}, k.corner_radius, Need::required);
+}
+
+void list_spline(Fields& f, ShaftSpline& s) {
+  f.whole("teeth", s.teeth, Need::required);
+  f.number({"minor_diameter", D::length}, s.minor_diameter, Need::required);
+  f.number({"tooth_width", D::length}, s.tooth_width, Need::required);
+  f.number({"root_radius", D::length}, s.root_radius, Need::required);
+}
+
+void list_cam(Fields& f, ShaftCam& c) {
+  constexpr double kTurn = 6.283185307179586;
+  if (!list_periodic(f, "lift", {"angle", D::angle}, {"lift", D::length}, kTurn, c.lift) && f.reading())
+    f.fault("lacks lift");
+  list_interpolation(f, c.interpolation);
+}
+
+/// A feature that a station may have: read where it is given, written where it is there.
+template <class Feature, class List>
+void list_feature(Fields& f, const char* name, std::optional<Feature>& feature, const List& list) {
+  if (!f.reading() && !feature) return;
+  Feature held = feature.value_or(Feature{});
+  if (f.group(name, [&](Fields& g) { list(g, held); })) feature = held;
+}
+
+void list_station(Fields& f, ShaftStation& s) {
+  f.text("name", s.name);
+  f.number({"length", D::length}, s.length, Need::required);
+  f.number({"outer_diameter", D::length}, s.outer_diameter, Need::required);
+  f.number({"end_diameter", D::length}, s.end_diameter);
+  f.number({"inner_diameter", D::length}, s.inner_diameter);
+  f.number({"fillet_start", D::length}, s.fillet_start);
+  f.number({"fillet_end", D::length}, s.fillet_end);
+  f.number({"hub_diameter", D::length}, s.hub_diameter);
+  list_feature(f, "groove", s.groove, list_groove);
+  list_feature(f, "keyway", s.keyway, list_keyway);
+  list_feature(f, "spline", s.spline, list_spline);
+  list_feature(f, "cam", s.cam, list_cam);
+}
+
+}  // namespace
+
+void list(Fields& f, ShaftContour& p) {
+  f.number({"shear_modulus", D::pressure}, p.shear_modulus, Need::required);
+  f.number({"density", D::density}, p.density, Need::required);
+  const bool given = f.rows(
+      "stations", p.stations.size(), [&](std::size_t count) { p.stations.resize(count); },
+      [&](Fields& g, std::size_t i) { list_station(g, p.stations[i]); });
+  if (f.reading() && !given) f.fault("lacks stations, an array of tables");
+  f.number({"accuracy", D::none}, p.accuracy);
+  f.number({"up_to_frequency", D::frequency}, p.up_to_frequency);
+  f.number({"frequency_accuracy", D::none}, p.frequency_accuracy);
+  int mass = static_cast<int>(p.mass);
+  f.choice("mass", {"lumped", "consistent", "averaged"}, mass);
+  p.mass = static_cast<SegmentMass>(mass);
+}
+
+void list(Fields& f, DryFriction::Params& p) {
+  const Quantity slip("slip_speed", D::angular_speed, D::speed),
+      torque("torque", D::torque, "force", D::force);
+  const bool read = f.reading();
+  if (read || !std::isnan(p.torque)) f.number(torque, p.torque);
+  if (read || !p.sliding_torques.empty())
+    f.columns("sliding", {{slip, &p.slip_speeds}, {torque, &p.sliding_torques}});
+  if (read || !std::isnan(p.normal_force)) {
+    f.number({"normal_force", D::force}, p.normal_force);
+    f.number({"geometry", D::length}, p.geometry);
+  }
+  if (read || !std::isnan(p.friction_coefficient))
+    f.number({"friction_coefficient", D::none}, p.friction_coefficient);
+  if (read || !p.friction_coefficients.empty())
+    f.columns("coefficients", {{slip, &p.slip_speeds}, {{"coefficient", D::none}, &p.friction_coefficients}});
+  f.number({"break_away_ratio", D::none}, p.break_away_ratio);
+  std::vector<double> times, values;
+  if (p.engagement) times = p.engagement->times(), values = p.engagement->values();
+  if ((read || p.engagement) &&
+      f.columns("engagement", {{{"time", D::time}, &times}, {{"part", D::none}, &values}}))
+    p.engagement = TimeTable(times, values);
+}
+
+void list(Fields& /*f*/, Freewheel::Params& /*p*/) {}
 
 }  // namespace drev::app

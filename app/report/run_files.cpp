@@ -36,6 +36,7 @@ RunFiles::RunFiles(const RunRequest& request) : request_(request) {
     summary_.emplace(*request.out, "summary", "json");
     summary_->replace(running_as_json(request));
   }
+  if (request.events) events_.emplace(*request.events);
   if (request.report) report_.emplace(*request.report);
 }
 
@@ -47,6 +48,11 @@ std::vector<Observer*> RunFiles::observers(const RunPlan& plan) {
     recorder_->set_sink([this](double /*t*/, const std::vector<double>& row) { history_->add(row); });
     all.push_back(&*recorder_);
   }
+  if (events_) {
+    events_->follow(system);
+    passed_.emplace(system, [this](const ContactEvent& event) { events_->add(event); });
+    all.push_back(&*passed_);
+  }
   if (history_ || report_) {
     shown_.emplace(system, report_channels(request_), report_interval(request_, plan.method));
     all.push_back(&*shown_);
@@ -55,17 +61,28 @@ std::vector<Observer*> RunFiles::observers(const RunPlan& plan) {
 }
 
 bool RunFiles::close(const RunResult& result) {
-  if (!shown_) return true;
   const bool complete = result.ok() || result.status == "energy_error";
-  if (history_) history_->close(complete);
-  bool written = !history_ || history_->error().empty();
-  if (!written) notes_.push_back(history_->error());
+  bool written = true;
+  const auto note = [&](const std::string& error) {
+    if (error.empty()) return;
+    notes_.push_back(error);
+    written = false;
+  };
+  if (events_) {
+    events_->close(complete);
+    note(events_->error());
+    if (!complete) notes_.push_back("what there is of the contact events is in " + events_->partial_path());
+  }
+  if (!shown_) return written;
+  if (history_) {
+    history_->close(complete);
+    note(history_->error());
+  }
   try {
     if (summary_) write_summary(result, complete && written);
     if (complete && written) write_reports(result);
   } catch (const OutputError& error) {
-    notes_.push_back(error.what());
-    written = false;
+    note(error.what());
   }
   if (!complete && history_)
     notes_.push_back("what there is of the run is in " + history_->partial_path() + " and " +
@@ -81,6 +98,9 @@ std::string RunFiles::text() const {
             wrap(std::to_string(history_->rows()) + " rows, every " + short_digits(request_.every, 12) +
                      " s, of " + join(request_.record) + " in " + history_->path(),
                  24);
+  if (events_)
+    text +=
+        pad_right("Contact events", 24) + std::to_string(events_->rows()) + " in " + events_->path() + "\n";
   if (shown_) text += pad_right("Report", 24) + join(report_paths_) + "\n";
   return text;
 }
@@ -115,10 +135,13 @@ void RunFiles::write_reports(const RunResult& result) {
   if (report_) commit(*report_);
 }
 
-RunOutcome run_and_write(const RunRequest& request) {
+RunOutcome run_and_write(const RunRequest& request, const Watchers& watchers) {
   RunFiles files(request);
   const RunPlan plan = plan_run(request);
-  const RunResult result = compute_run(request, plan, files.observers(plan), [&] { return files.fault(); });
+  std::vector<Observer*> observers = files.observers(plan);
+  if (watchers)
+    for (Observer* observer : watchers(system_of(request, plan))) observers.push_back(observer);
+  const RunResult result = compute_run(request, plan, observers, [&] { return files.fault(); });
   RunOutcome outcome{.status = result.status};
   if (!result.ok()) outcome.warning = warning_of(result);
   outcome.written = files.close(result);

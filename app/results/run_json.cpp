@@ -115,6 +115,13 @@ Json sections_array(const RunResult& r) {
   return list;
 }
 
+Json friction_object(const RunSummary& s) {
+  Json events = Json::array();
+  for (const FrictionEvent& e : s.friction_events)
+    events.push_back({{"time_s", number(e.t)}, {"element", e.element}, {"becomes", e.becomes}});
+  return {{"changes", s.friction_changes}, {"events", std::move(events)}};
+}
+
 Json rainflow_array(const RunResult& r) {
   Json list = Json::array();
   for (const RainflowWatch::Result& counted : r.rainflow) {
@@ -209,6 +216,7 @@ Json results_object(const RunResult& r) {
   results["static_reason"] = text_or_null(r.static_reason);
   results["dynamic_amplification"] = number(r.amplification());
   add_contacts(results, r);
+  results["friction"] = r.summary.friction_changes > 0 ? friction_object(r.summary) : Json();
   results["frequencies_Hz"] = Json();
   results["rigid_modes"] = Json();
   if (r.modes) {

@@ -301,6 +301,20 @@ std::vector<std::string> notes_of(const RunResult& r) {
   return notes;
 }
 
+/// When contacts of dry friction stick and slide.
+std::string friction_rows(const RunSummary& s) {
+  constexpr std::size_t kEventsShown = 12;
+  if (s.friction_changes == 0) return "";
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kEventsShown, s.friction_events.size()); ++i) {
+    const FrictionEvent& e = s.friction_events[i];
+    text += (i > 0 ? "; " : "") + e.element + " " + e.becomes + " at " + short_digits(e.t, 6) + " s";
+  }
+  const long left_out = s.friction_changes - static_cast<long>(kEventsShown);
+  if (left_out > 0) text += "; and " + std::to_string(left_out) + " more (--json lists the first thousand)";
+  return labelled("Friction", text);
+}
+
 std::string run_as_text(const RunRequest& request, const RunResult& r) {
   const RunSummary& s = r.summary;
   const Model& model = request.model.model_case.model;
@@ -318,7 +332,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
                                                short_digits(r.deflection->at, 4) + " s");
   if (!r.force && !r.ok())
     text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
-  text += force_rows(request.model.model_case, r) + contact_rows(r);
+  text += force_rows(request.model.model_case, r) + contact_rows(r) + friction_rows(s);
   if (r.run_up) text += run_up_rows(*r.run_up);
   text += rainflow_rows(r);
   text += energy_row(s.energy);

@@ -211,7 +211,8 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
   for (const Channel& c : mesh_channels(request.model.system)) names.push_back(c.name());
   for (const RainflowChannel& c : rainflow_channels(request, request.model.system))
     names.push_back(c.channel.name());
-  if (request.out || request.report) names.insert(names.end(), request.record.begin(), request.record.end());
+  if (request.out || request.report || request.keeps_history)
+    names.insert(names.end(), request.record.begin(), request.record.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;

@@ -28,6 +28,8 @@ struct RunRequest {
   Start start = Start::rest;
   std::optional<Settle> settle = {};       ///< none: figures are of the whole run
   std::optional<double> duration = {};     ///< s, asked for in place of the model's
+  std::optional<std::string> events = {};  ///< file of the contact events, .csv
+  bool keeps_history = false;              ///< what runs it keeps the recorded channels, without a file
   std::vector<std::string> rainflow = {};  ///< channels counted beside the sections with an S-N line
 };
 

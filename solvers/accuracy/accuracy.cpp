@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
 
 #include "solvers/accuracy/accuracy_observers.hpp"
+#include "solvers/accuracy/run_statistics.hpp"
+#include "solvers/run/processor_time.hpp"
 
 namespace drev {
 
@@ -27,23 +27,10 @@ constexpr double kTightening = 1e-3;      // of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
 constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
 constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
-constexpr double kOfEnsemble = 1e-6;      // tolerance of exact propagation of runs that are averaged
 constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
 constexpr int kOrders = 5;
 constexpr double kLeastOfCycle = 1024.0;  // samples: kinks fold back into the orders
 constexpr long kMostSamples = 1L << 18, kLeastSamples = 1L << 9;
-
-double quantile(std::vector<double> x, double part) {
-  const auto k = static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1) + 0.5);
-  std::nth_element(x.begin(), x.begin() + k, x.end());
-  return x[static_cast<std::size_t>(k)];
-}
-
-/// Amplitudes of a record of whole cycles; its first and last sample, the same phase, as their mean.
-Spectrum cycle_spectrum(std::vector<double> record, double every) {
-  record.front() = 0.5 * (record.front() + record.back());
-  return spectrum(record, every);
-}
 
 std::vector<double> every_other(const std::vector<double>& record) {
   std::vector<double> kept;
@@ -93,7 +80,8 @@ class AccurateRun {
       coarse = std::move(fine);
     }
     if (!coarse->summary.ok()) result_.summary = coarse->summary;
-    if (result_.summary.ok() && result_.horizon < o_.t_end) add_statistics(*fine);
+    if (result_.summary.ok() && result_.horizon < o_.t_end)
+      add_statistics(system_, o_, *fine, every_, orders_, result_);
     if (result_.summary.ok()) say_why_not();
     return std::move(result_);
   }
@@ -118,12 +106,12 @@ class AccurateRun {
 
   std::unique_ptr<Watched> watch(const Method& method, double begin, double end) {
     auto w = std::make_unique<Watched>(system_, o_, followed_, every_);
-    const std::clock_t start = std::clock();
+    const double start = processor_time();
     w->summary = run_method(
         system_, method,
         {.t_end = o_.t_end, .progress = [&](double part) { return going_on(begin + (end - begin) * part); }},
         w->observers());
-    w->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    w->seconds = processor_time() - start;
     // An energy balance that is off is an error of the figures like any other.
     if (w->summary.status == RunStatus::energy_error) w->summary.status = RunStatus::success;
     return w;
@@ -175,20 +163,26 @@ class AccurateRun {
     if (!b.deflection.empty())
       add("peak deflection", b.deflection.channel().unit(), a.deflection.value(), b.deflection.value(),
           b.deflection.value(), b.deflection.time());
-    if (!b.torque.empty())
-      add("peak torque", b.torque.channel().unit(), a.torque.value(), b.torque.value(), b.torque.value(),
-          b.torque.time());
+    if (!b.torque.empty()) add_peak_torque(a, b);
     if (!b.mesh.empty())
       add("peak mesh force", b.mesh.channel().unit(), a.mesh.value(), b.mesh.value(), b.mesh.value(),
           b.mesh.time());
     compare_contacts(a.contacts.records(), b.contacts.records());
-    compare_edges(a.edges.passed(), b.edges.passed());
+    compare_edges(a.edges.all(), b.edges.all());
     if (!o_.deflection.empty()) compare_orders(a, b);
     result_.reached = result_.horizon > o_.t_end &&
                       std::all_of(result_.figures.begin(), result_.figures.end(),
                                   [&](const Figure& f) { return f.keeps(o_.accuracy); }) &&
                       std::all_of(result_.contacts.begin(), result_.contacts.end(),
                                   [&](const ContactFigures& c) { return keeps(c); });
+  }
+
+  /// Rounding, which shakes stiff elements in each run anew, is a part of its error that no finer run takes away.
+  void add_peak_torque(const Watched& a, const Watched& b) {
+    const Channel& channel = b.torque.channel();
+    add("peak torque", channel.unit(), a.torque.value(), b.torque.value(), b.torque.value(), b.torque.time());
+    for (const auto& [name, error] : b.summary.rounding)
+      if (name == channel.name()) result_.figures.back().error += error;
   }
 
   /// Relative to the largest force, the span, and the number.
@@ -237,11 +231,11 @@ class AccurateRun {
       }
   }
 
-  void compare_edges(const std::vector<EdgePassed>& a, const std::vector<EdgePassed>& b) {
+  void compare_edges(const std::vector<ContactEvent>& a, const std::vector<ContactEvent>& b) {
     if (b.empty() && a.empty()) return;
     std::size_t same = 0;
     while (same < std::min(a.size(), b.size()) && a[same].law == b[same].law &&
-           a[same].high == b[same].high && a[same].outward == b[same].outward &&
+           a[same].front == b[same].front && a[same].made == b[same].made &&
            error_of(a[same].t, b[same].t, b[same].t, b[same].t) <= o_.accuracy * b[same].t)
       ++same;
     const double count = static_cast<double>(same);
@@ -256,37 +250,21 @@ class AccurateRun {
         {{all, kSafety * std::abs(all - coarse)}, "contact changes", "", std::max(1.0, all)});
   }
 
-  /// Whole cycles at the end of the run, as many as fit behind the part left out or else into the run.
-  struct Record {
-    std::size_t begin = 0, end = 0, cycles = 0;
-  };
-  Record last_cycles(const std::vector<double>& samples, double left_out) const {
-    const auto per_cycle = static_cast<std::size_t>(std::round(o_.cycle / every_));
-    const std::size_t steps = samples.size() - 1;
-    auto cycles = static_cast<std::size_t>((1.0 - left_out) * static_cast<double>(steps / per_cycle));
-    if (cycles == 0) cycles = steps / per_cycle;
-    return {steps - cycles * per_cycle, steps, cycles};
-  }
-
-  static std::vector<double> part(const std::vector<double>& all, std::size_t begin, std::size_t end) {
-    return {all.begin() + static_cast<std::ptrdiff_t>(begin),
-            all.begin() + static_cast<std::ptrdiff_t>(end + 1)};
-  }
-
   void compare_orders(const Watched& a, const Watched& b) {
     const auto &x = a.recorder.samples(0), &y = b.recorder.samples(0);
     if (x.size() != y.size() || y.size() < 16) return;
     const bool ordered = o_.cycle > 0.0;
     if (ordered && o_.cycle > span()) return;
-    const Record r = ordered ? last_cycles(y, 0.5) : Record{y.size() / 2, y.size() - 1, 1};
+    const CycleRecord r = ordered ? last_cycles(y, every_, o_.cycle, 0.5)
+                                  : CycleRecord{.begin = y.size() / 2, .end = y.size() - 1, .cycles = 1};
     if (r.cycles == 0) return;
     const auto of = [&](const std::vector<double>& all) {
-      const std::vector<double> record = part(all, r.begin, r.end);
+      const std::vector<double> record = samples_between(all, r.begin, r.end);
       return ordered ? cycle_spectrum(record, every_) : line_spectrum(record);
     };
     const Spectrum coarse = of(x), fine = of(y);
     // Lines above the sampling fold back: with every other sample, at least twice as much.
-    const std::vector<double> half = every_other(part(y, r.begin, r.end));
+    const std::vector<double> half = every_other(samples_between(y, r.begin, r.end));
     const Spectrum folded = ordered ? cycle_spectrum(half, 2.0 * every_) : fine;
     // One difference may be small by chance.
     const Spectrum twice = ordered ? cycle_spectrum(every_other(half), 4.0 * every_) : fine;
@@ -323,12 +301,12 @@ class AccurateRun {
   }
 
   /// By how much the amplitude at a frequency differs in either half of the record.
-  double spread_over_halves(const std::vector<double>& all, const Record& r, double frequency,
+  double spread_over_halves(const std::vector<double>& all, const CycleRecord& r, double frequency,
                             double amplitude) const {
     double most = 0.0;
     const std::size_t middle = (r.begin + r.end) / 2;
     for (const auto& [begin, end] : {std::pair{r.begin, middle}, {middle, r.end}}) {
-      const Spectrum half = line_spectrum(part(all, begin, end));
+      const Spectrum half = line_spectrum(samples_between(all, begin, end));
       std::size_t nearest = 0;
       for (std::size_t i = 1; i < half.frequency_Hz.size(); ++i)
         if (std::abs(half.frequency_Hz[i] - frequency) < std::abs(half.frequency_Hz[nearest] - frequency))
@@ -343,99 +321,6 @@ class AccurateRun {
   }
 
   std::string unit_of_deflection() const { return find_channel(system_, o_.deflection).unit(); }
-
-  void add_statistic(const std::string& name, const std::string& unit, const Estimate& mean) {
-    result_.figures.push_back({mean, name, unit, std::abs(mean.value)});
-  }
-
-  /// Replaces what cannot be compared by statistics, and adds the time averages.
-  void add_statistics(const Watched& fine) {
-    std::vector<Figure> kept;
-    bool peaks = false;
-    for (const Figure& f : result_.figures) {
-      if (f.keeps(o_.accuracy)) {
-        kept.push_back(f);
-        continue;
-      }
-      peaks |= f.name.starts_with("peak");
-    }
-    std::swap(kept, result_.figures);
-    if (peaks) add_ensemble(kept);
-    add_cycles(kept, fine.recorder.samples(0));
-    for (const BatchWatch::Contact& c : fine.batches.contacts()) {
-      add_statistic(c.element + ": share of time separated", "", batch_mean(c.share_separated, kBatches));
-      add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
-      add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
-      add_statistic(c.element + ": mean force", c.unit, c.mean_force.estimate(kBatches));
-      add_statistic(c.element + ": rms force", c.unit, c.rms_force.estimate(kBatches));
-    }
-    for (const BatchWatch::Average& a : fine.batches.averages()) {
-      add_statistic("mean of " + a.channel, a.unit, a.mean.estimate(kBatches));
-      add_statistic("rms of " + a.channel, a.unit, a.rms.estimate(kBatches));
-    }
-    add_quantiles(fine.recorder.samples(0), fine.batches.averages().front());
-  }
-
-  /// Peaks over runs that start beside the first.
-  void add_ensemble(const std::vector<Figure>& replaced_from) {
-    std::vector<double> deflections, torques, meshes;
-    Method method = result_.coarse;
-    // They differ by much more than a tolerance.
-    if (method.exact()) method.tolerance = std::max(method.tolerance, kOfEnsemble);
-    for (int i = 1; i <= o_.ensemble && going_on(0.7 + 0.3 * i / o_.ensemble); ++i) {
-      PeakWatch deflection(o_.deflection.empty() ? std::vector<Channel>{}
-                                                 : find_channels(system_, {o_.deflection}));
-      PeakWatch torque(find_channels(system_, o_.torques)), mesh(find_channels(system_, o_.meshes));
-      AfterTime span(o_.from, {&deflection, &torque, &mesh});
-      State state = neighbour(system_, i, result_.growth.z_scale, result_.growth.v_scale);
-      const RunSummary run =
-          run_method(system_, method, {.t_end = o_.t_end, .energy_tolerance = 1e300}, state, {&span});
-      if (!run.ok()) continue;
-      deflections.push_back(deflection.value());
-      torques.push_back(torque.value());
-      meshes.push_back(mesh.value());
-    }
-    const std::string of = ", mean of " + std::to_string(deflections.size()) + " runs";
-    for (const Figure& f : replaced_from)
-      if (!f.keeps(o_.accuracy) && f.name.starts_with("peak"))
-        add_statistic(f.name + of, f.unit,
-                      batch_mean(f.name == "peak torque"       ? torques
-                                 : f.name == "peak mesh force" ? meshes
-                                                               : deflections,
-                                 o_.ensemble));
-  }
-
-  /// Order amplitudes of the single cycles.
-  void add_cycles(const std::vector<Figure>& figures, const std::vector<double>& samples) {
-    if (!(o_.cycle > 0.0)) return;
-    for (const Figure& f : figures) {
-      const auto order = orders_.find(f.name);
-      if (f.keeps(o_.accuracy) || order == orders_.end()) continue;
-      const Record r = last_cycles(samples, Watched::left_out(o_));
-      const std::size_t length = (r.end - r.begin) / r.cycles;
-      std::vector<double> amplitudes;
-      for (std::size_t i = 0; i < r.cycles; ++i)
-        amplitudes.push_back(
-            cycle_spectrum(part(samples, r.begin + i * length, r.begin + (i + 1) * length), every_)
-                .amplitude[order->second]);
-      add_statistic(f.name + ", mean of " + std::to_string(r.cycles) + " cycles", f.unit,
-                    batch_mean(amplitudes, kBatches));
-    }
-  }
-
-  void add_quantiles(const std::vector<double>& samples, const BatchWatch::Average& of) {
-    const auto first = static_cast<std::size_t>(Watched::left_out(o_) * static_cast<double>(samples.size()));
-    const std::size_t count = (samples.size() - first) / kBatches;
-    if (count < 100) return;  // a quantile of 1 % means nothing
-    for (const int percent : {1, 99}) {
-      std::vector<double> each;
-      for (std::size_t b = 0; b < kBatches; ++b)
-        each.push_back(
-            quantile(part(samples, first + b * count, first + (b + 1) * count - 1), percent / 100.0));
-      add_statistic(std::to_string(percent) + " % quantile of " + of.channel, of.unit,
-                    batch_mean(each, kBatches));
-    }
-  }
 
   void say_why_not() {
     if (result_.reached) return;
@@ -465,7 +350,7 @@ class AccurateRun {
   double every_ = 0.0;
   AccuracyResult result_;
   std::map<std::string, double> differences_;  // of the last two runs with constant steps, by figure
-  std::map<std::string, std::size_t> orders_;  // figure, line of one cycle's spectrum
+  OrderLines orders_;
 };
 
 }  // namespace

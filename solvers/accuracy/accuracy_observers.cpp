@@ -7,16 +7,8 @@ namespace drev {
 
 namespace {
 
-constexpr int kBisections = 48;     // of a step, for a contact change
 constexpr double kSameTime = 1e-9;  // relative to a batch
 constexpr double kSettled = 0.1;    // of the whole run: left out of time averages
-
-/// Cubic through values and rates at the ends of a step of length h, at s in [0, 1].
-double hermite(double y_0, double r_0, double y_1, double r_1, double h, double s) {
-  const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * y_0 + (s3 - 2 * s2 + s) * h * r_0 + (3 * s2 - 2 * s3) * y_1 +
-         (s3 - s2) * h * r_1;
-}
 
 std::vector<Channel> none_or_one(const System& system, const std::string& name) {
   return name.empty() ? std::vector<Channel>{} : find_channels(system, {name});
@@ -36,44 +28,6 @@ Watched::Watched(const System& system, const AccuracyOptions& o, const std::stri
       contacts(system),
       recorder(system, {followed}, every),
       span_(o.from, {&deflection, &torque, &mesh, &edges, &batches, &contacts, &recorder}) {}
-
-EdgeWatch::EdgeWatch(const System& system) : system_(system), sides_(system.scalars().size()) {}
-
-/// The law is on this side of its gap from t on: which edges it passed to come there.
-void EdgeWatch::note_side(std::size_t law, int side, double t) {
-  const int before = sides_[law].value_or(side);
-  sides_[law] = side;
-  for (int now = before; now != side; now += side > before ? 1 : -1) {
-    const int next = now + (side > before ? 1 : -1);
-    passed_.push_back({t, law, std::max(now, next) > 0, next != 0});
-  }
-}
-
-void EdgeWatch::step(const Assembler& /*assembler*/, const EvaluatedState& from, const EvaluatedState& to) {
-  const double h = to.state.t - from.state.t;
-  for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
-    const auto gap = system_.scalars()[j].force->gap();
-    if (!gap) continue;
-    if (const auto side = motion_ ? motion_->side(static_cast<int>(j)) : std::nullopt) {
-      note_side(j, *side, from.state.t);
-      continue;
-    }
-    const ScalarInput &a = from.inputs[j], &b = to.inputs[j];
-    std::vector<EdgePassed> here;
-    for (const bool high : {false, true}) {
-      const double edge = high ? gap->high : gap->low;
-      if ((a.x > edge) == (b.x > edge)) continue;
-      double low = 0.0, up = 1.0;
-      for (int i = 0; i < kBisections; ++i) {
-        const double s = 0.5 * (low + up);
-        ((hermite(a.x, a.x_dot, b.x, b.x_dot, h, s) > edge) == (a.x > edge) ? low : up) = s;
-      }
-      here.push_back({from.state.t + up * h, j, high, (b.x > edge) == high});
-    }
-    if (here.size() == 2 && here[1].t < here[0].t) std::swap(here[0], here[1]);
-    passed_.insert(passed_.end(), here.begin(), here.end());
-  }
-}
 
 /// Integrals of the cubic and, by the same rule, of its square.
 void BatchWatch::Sum::Pair::add(double y_0, double r_0, double y_1, double r_1, double h) {

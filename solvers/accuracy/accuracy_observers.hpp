@@ -4,6 +4,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/run/after_time.hpp>
+#include <drev/solvers/run/contact_events.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
@@ -38,30 +39,6 @@ class PeakWatch final : public Observer {
 
  private:
   Peaks peaks_;
-};
-
-/// The deflection of a law passed an edge of its gap.
-struct EdgePassed {
-  double t = 0.0;  ///< s; where the method does not locate it, on the cubic through both ends of the step
-  std::size_t law = 0;   ///< of System::scalars()
-  bool high = false;     ///< which edge
-  bool outward = false;  ///< contact made
-};
-
-class EdgeWatch final : public Observer {
- public:
-  explicit EdgeWatch(const System& system);
-  void look_through(StepMotion& motion) override { motion_ = &motion; }
-  void start(const Assembler&, const EvaluatedState&) override {}
-  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
-  const std::vector<EdgePassed>& passed() const { return passed_; }
-
- private:
-  void note_side(std::size_t law, int side, double t);
-  const System& system_;
-  const StepMotion* motion_ = nullptr;
-  std::vector<std::optional<int>> sides_;  // of each law in the last step that knew
-  std::vector<EdgePassed> passed_;
 };
 
 /// Time averages in equal batches over [begin, end]; steps end where batches do.
@@ -144,7 +121,7 @@ struct Watched {
 
   RunSummary summary;
   PeakWatch deflection, torque, mesh;
-  EdgeWatch edges;
+  ContactEvents edges;
   BatchWatch batches;
   ContactStatistics contacts;
   Recorder recorder;

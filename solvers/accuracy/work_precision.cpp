@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
+
+#include "solvers/run/processor_time.hpp"
 
 namespace drev {
 
@@ -21,8 +22,6 @@ constexpr int kMostHalvings = 24;       // of the sample interval
 constexpr double kShortRun = 0.05;      // s: shorter ones are timed several times
 constexpr int kRepetitions = 5;
 constexpr double kHopeless = 10.0;  // relative error: nothing of the motion is left
-
-double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Samples {
   RunSummary summary;

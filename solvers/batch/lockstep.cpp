@@ -30,6 +30,7 @@ std::optional<std::string> why_not_lockstep(const System& system, const Transien
   if (o.scheme.tableau) return "lockstep is for methods of the generalized-alpha family";
   if (o.tolerance > 0.0) return "steps controlled by their error differ between variants";
   if (o.locate_contacts.value_or(false)) return "located contact changes differ between variants";
+  if (!system.frictions().empty()) return "the model has dry friction";
   if (!system.generals().empty()) return "the model has general elements";
   if (system.rows().rows() > 0) return "the model is a projected one";
   if (static_cast<int>(system.scalars().size()) > o.newton.max_dense_contacts)

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/step_expansion.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
-#include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/run/stops.hpp"
 
@@ -44,12 +44,14 @@ class ExactRun final : public StepMotion {
         known_(expansion_.known),
         laws_(system),
         smooth_(expansion_.smooth),
+        friction_(expansion_.friction),
         progress_(options.progress, options.t_start, options.t_end) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
     summary_.scheme = "exact";
     summary_.factorizations = system.mass_is_diagonal() ? 0 : 1;
-    change_limit_ = 20 + 20 * static_cast<int>(system.scalars().size() + system.loads().size());
+    change_limit_ = 20 + 20 * static_cast<int>(system.scalars().size() + system.loads().size() +
+                                               system.frictions().size());
     laws_.add_stiffest(series_);
     fastest_ = series_.bound_rates();
     const double duration = options.t_end - options.t_start;
@@ -60,6 +62,7 @@ class ExactRun final : public StepMotion {
   RunSummary run() {
     evaluate(assembler_, now_, now_.state.t);
     laws_.locate(now_.inputs);
+    locate_friction();
     EnergyMonitor energy(assembler_, now_);
     energy_ = &energy;
     forces_ = std::any_of(observers_.begin(), observers_.end(),
@@ -72,7 +75,8 @@ class ExactRun final : public StepMotion {
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
-    judge_energy(summary_, energy_tolerance());
+    const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
+    if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, energy_tolerance());
     return summary_;
   }
 
@@ -119,15 +123,27 @@ class ExactRun final : public StepMotion {
     next_ = now_;
     evaluate(assembler_, now_, now_.state.t);
     if (system_.any_prescribed_moves()) laws_.locate(now_.inputs);
+    locate_friction();
     energy_->restart(next_, now_);
     for (Observer* o : observers_) o->restart(assembler_, now_);
+  }
+
+  /// What sticks and what slides, by the forces and speeds of now_.
+  void locate_friction() {
+    if (friction_.empty()) return;
+    friction_.locate(assembler_, now_);
+    friction_.hold(assembler_, now_.state.v);
+    evaluate(assembler_, now_, now_.state.t);
   }
 
   /// Where a step ends: s of the series, at a change or knot if there is one.
   struct End {
     double s = 1.0;
     std::optional<LawSeries::Change> change = {};
-    bool at_knot = false;
+    bool at_knot = false;      // of a load
+    bool at_law_knot = false;  // of a law's phase, where its stiffness may jump
+    std::optional<FrictionSeries::Change> friction = {};
+    bool at_change() const { return change || friction; }
   };
 
   /// One step towards the stop; it ends earlier at a change, or where the series ends.
@@ -136,6 +152,7 @@ class ExactRun final : public StepMotion {
     const double remaining = stop.t - from.t;
     const End end = find_end(remaining);
     if (!running()) return;
+    note_friction(from.t);
     const double s = end.s, got = series_.step();
     const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop.t : std::min(from.t + s * got, stop.t);
@@ -145,16 +162,18 @@ class ExactRun final : public StepMotion {
     to.t = t_new;
     to.history = from.history;
     series_.evaluate(s, to.z, to.v);
+    if (!friction_.empty()) friction_.write(s, from.history, to.history);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
-    const bool whole = forces_ || t_new == stop.t;
+    const bool whole = forces_ || t_new == stop.t || end.friction;
     if (whole)
       evaluate(assembler_, next_, evaluated_at);
     else
       evaluate_energies(next_, evaluated_at);
     const ProjectedLaws::Work smooth = smooth_.work(series_, s, next_);
-    if (!energy_->step(next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input,
-                       series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated)) {
+    if (!energy_->step(
+            next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input + friction_.input(s),
+            series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated + friction_.dissipated(s))) {
       evaluate(assembler_, next_, evaluated_at);
       return end_not_finite(summary_, assembler_, now_, next_);
     }
@@ -164,6 +183,7 @@ class ExactRun final : public StepMotion {
       for (Observer* o : observers_) o->step(assembler_, before, next_);
     laws_.forget_roots();
     changed_ = end.change;
+    beside_knot_ = beside_knot(end, t_new);
     if (end.change) pass(*end.change, t_new);
     if (!ahead_of_break) {
       known_.advance(t_new, to.z, to.v, s == 1.0);
@@ -174,8 +194,40 @@ class ExactRun final : public StepMotion {
     }
     std::swap(now_, next_);
     whole_ = whole;
+    if (!friction_.empty()) {
+      friction_.forget_roots();
+      assembler_.set_time(now_.state.t);
+      friction_.hold(assembler_, now_.state.v);
+      if (end.friction) pass_friction(*end.friction);
+    }
     if (!progress_.goes_on(summary_.steps, now_.state.t))
       end_interrupted(summary_, system_.name(), now_.state.t);
+  }
+
+  void pass_friction(const FrictionSeries::Change& change) {
+    const double t = now_.state.t;
+    if (!whole_) evaluate(assembler_, now_, t);
+    whole_ = true;
+    assembler_.set_time(t);
+    const bool jumped = friction_.pass(change, assembler_, now_);
+    count_change(friction_.element(change.contact), t);
+    if (!jumped) return;
+    friction_.hold(assembler_, now_.state.v);
+    evaluate(assembler_, now_, t);
+    for (Observer* o : observers_) o->restart(assembler_, now_);
+  }
+
+  /// Enters what sticks or slides since the last call.
+  void note_friction(double t) {
+    friction_states_.resize(idx(friction_.count()), FrictionState::open);
+    for (int i = 0; i < friction_.count(); ++i) {
+      const FrictionState to = friction_.state(i);
+      if (to == std::exchange(friction_states_[idx(i)], to) || t == options_.t_start) continue;
+      ++summary_.friction_changes;
+      if (summary_.friction_events.size() < RunSummary::kMostFrictionEvents)
+        summary_.friction_events.push_back(
+            {t, system_.element_instances()[idx(index(friction_.element(i)))].name, to_text(to)});
+    }
   }
 
   /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
@@ -183,7 +235,7 @@ class ExactRun final : public StepMotion {
   End find_end(double remaining) {
     double h = std::min(remaining, growing_step_);
     if (h < remaining) h = remaining / std::ceil(remaining / h);
-    std::optional<LawSeries::Change> cut;
+    End cut;
     for (int cuts = 0;; ++cuts) {
       h = expand(h);
       if (!running()) return {};
@@ -191,32 +243,50 @@ class ExactRun final : public StepMotion {
       if (const auto change = laws_.change_at_once()) {
         changed_ = change;
         pass(*change, now_.state.t);
-        cut.reset();
+        cut = {};
         continue;
+      }
+      if (!friction_.empty()) {
+        friction_.expand(series_, now_.state);
+        if (const auto change = friction_.change_at_once()) {
+          pass_friction(*change);
+          known_.locate(now_.state.t, now_.state.z, now_.state.v);
+          cut = {};
+          continue;
+        }
       }
       End end;
       end.change = laws_.first_change(1.0);
       if (end.change) end.s = end.change->s;
-      if (const auto knot = known_.first_knot(series_, end.s)) end = {*knot, {}, true};
-      if (const auto knot = smooth_.first_knot(series_, end.s)) end = {*knot, {}, false};
+      if (const auto change = friction_.first_change(end.s)) end = {.s = change->s, .friction = change};
+      if (const auto knot = known_.first_knot(series_, end.s)) end = {.s = *knot, .at_knot = true};
+      if (const auto knot = smooth_.first_knot(series_, end.s)) end = {.s = *knot, .at_law_knot = true};
       // So close to the start the motion has had no time to differ.
       const bool at_start = end.s < kAtStart || end.s * h < kTimeRounding * std::abs(now_.state.t);
       if (!known_.projected() || cuts > kMaxCuts || at_start) return end;
       double beyond = end.s - 1.0;
       if (end.s == 1.0) {
-        if (!cut) return end;
-        beyond = laws_.beyond_end(*cut);
+        end.at_law_knot |= cut.at_law_knot;
+        if (!cut.at_change()) return end;
+        beyond = cut.change ? laws_.beyond_end(*cut.change) : friction_.beyond_end(*cut.friction);
         if (!(std::abs(beyond) < kNearEnd)) return end;  // it is not crossed after all
-        end.change = cut;
+        end.change = cut.change;
+        end.friction = cut.friction;
       }
-      if (std::abs(beyond) <= kAtEnd || !(h * (1.0 + beyond) > 0.0)) return {1.0, end.change, end.at_knot};
+      if (std::abs(beyond) <= kAtEnd || !(h * (1.0 + beyond) > 0.0))
+        return {1.0, end.change, end.at_knot, end.at_law_knot, end.friction};
       h = std::min(remaining, h * (1.0 + beyond));
-      cut = end.change;
+      cut = end;
     }
   }
 
-  /// Shows the observers points inside a step to t_new: where they asked for one, beside a contact change at
-  /// either end, so that each side of it is seen, and close enough for a cubic between them to be off by at
+  /// Time [s] beside a law's knot at the step's end, for which rounding leaves its side open.
+  double beside_knot(const End& end, double t) const {
+    return end.at_law_knot ? std::max(smooth_.knot_clearance(), kTimeRounding * std::abs(t)) : 0.0;
+  }
+
+  /// Shows the observers points inside a step to t_new: where they asked for one, beside a contact change or a
+  /// law's knot at either end, so that each side of it is seen, and close enough for a cubic between them to be off by at
   /// most 2e-5 of what moves with the fastest mode. Returns the last one.
   const EvaluatedState& watch(double t_new, const End& end) {
     const EvaluatedState* last = &now_;
@@ -225,9 +295,12 @@ class ExactRun final : public StepMotion {
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     double parts = std::ceil(fastest_ * length / kWatchedAngle);
     if (known_.projected()) parts = std::max(parts, kProjectedParts);  // what projection holds swings faster
-    const double behind = changed_ ? t_0 + length * laws_.clear_of_change(*changed_, 0.0) / end.s : t_0;
-    const double ahead =
-        end.change ? t_0 + length * laws_.clear_of_change(*end.change, end.s) / end.s : t_new;
+    const auto clear = [&](const std::optional<LawSeries::Change>& change, double s, double t,
+                           double otherwise) {
+      return change ? t_0 + length * laws_.clear_of_change(*change, s) / end.s : t + otherwise;
+    };
+    const double behind = clear(changed_, 0.0, t_0, beside_knot_);
+    const double ahead = clear(end.change, end.s, t_new, -beside_knot(end, t_new));
     step_ = {t_0, length, end.s};
     find_kinks();
     auto kink = kinks_.begin();
@@ -279,7 +352,9 @@ class ExactRun final : public StepMotion {
   void move_along(double t, EvaluatedState& point) const {
     point.state.t = t;
     point.state.history = now_.state.history;
-    series_.evaluate(step_.s * ((t - step_.t_0) / step_.length), point.state.z, point.state.v);
+    const double s = step_.s * ((t - step_.t_0) / step_.length);
+    series_.evaluate(s, point.state.z, point.state.v);
+    if (!friction_.empty()) friction_.write(s, now_.state.history, point.state.history);
   }
 
   /// The same as exact as the step's end: where kinks are projected, at the end of a series of its own.
@@ -288,8 +363,9 @@ class ExactRun final : public StepMotion {
     const double s = step_.s * ((t - step_.t_0) / step_.length);
     if (!known_.kinked() || !(s > kAtStart && s < 1.0)) return;
     if (!part_) part_.emplace(system_);
-    if (part_->expand_part(expansion_, now_, laws_, s, limits(series_.step())))
-      part_->series.evaluate(1.0, point.state.z, point.state.v);
+    if (!part_->expand_part(expansion_, now_, laws_, s, limits(series_.step()))) return;
+    part_->series.evaluate(1.0, point.state.z, point.state.v);
+    if (!friction_.empty()) part_->friction.write(1.0, now_.state.history, point.state.history);
   }
 
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 where
@@ -364,6 +440,7 @@ class ExactRun final : public StepMotion {
     assembler.multiply_damping(s.v, point.cv);
     point.total = point.kz + point.cv - point.p;
     add_law_forces(system_, point, 1.0, point.total);
+    friction_.add_forces(s.history, point.total);
     rhs_ = -point.total;
     series_.solve_mass(rhs_, point.state.a);
   }
@@ -377,11 +454,14 @@ class ExactRun final : public StepMotion {
   LoadSeries& known_;
   LawSeries laws_;
   ProjectedLaws& smooth_;
+  FrictionSeries& friction_;
   std::optional<StepExpansion> part_;         // of a step, to a point inside
   std::optional<LawSeries::Change> changed_;  // at the start of this step
+  double beside_knot_ = 0.0;  // s: the step starts at a law's knot, which is passed for certain behind it
   struct {
     double t_0 = 0.0, length = 0.0, s = 1.0;
-  } step_;                     // which observers are shown: its end is s of the series
+  } step_;  // which observers are shown: its end is s of the series
+  std::vector<FrictionState> friction_states_;
   std::vector<double> kinks_;  // times of, inside this step
   EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;
@@ -394,22 +474,11 @@ class ExactRun final : public StepMotion {
   bool whole_ = true;    // now_ has them
 };
 
-void check_options(const System& system, const ExactOptions& o, const State& state) {
-  std::vector<Finding> findings;
-  ParameterCheck check(system.name() + "/exact", findings);
-  check.within("tolerance", o.tolerance, o.kTolerance.low, o.kTolerance.high, "");
-  check_span(o.t_start, o.t_end, check);
-  check.non_negative("energy_tolerance", o.energy_tolerance, "");
-  check_state(system, state, check);
-  if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);
-  if (!findings.empty()) throw ModelError(findings);
-}
-
 }  // namespace
 
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers) {
-  check_options(system, options, state);
+  check_propagation(system, options, state);
   ExactRun run(system, options, state, observers);
   try {
     RunSummary summary = run.run();

@@ -55,6 +55,8 @@ struct ExactOptions {
 
 /// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing.
 std::optional<std::string> why_not_exact(const System& system);
+/// Throws ModelError with all that propagate() refuses of a system, its options and its start.
+void check_propagation(const System& system, const ExactOptions& options, const State& state);
 
 /// Runs from the state given and leaves the last state in it. Observers see the end of every step,
 /// contact changes and breakpoints among them, and points between, those they ask for among them: to watch

@@ -9,8 +9,9 @@ namespace drev {
 
 namespace {
 
-constexpr double kOnKnot = 1e-13;   // relative to the angle, at least to 1 rad
-constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
+constexpr double kOnKnot = 1e-13;        // relative to the angle, at least to 1 rad
+constexpr double kTermRounding = 1e-13;  // of the largest term of an angle's series
+constexpr double kMonotone = 0.25;       // of the first rate, what the others may be
 // What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
 // What the step's end is off by, of the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
@@ -95,7 +96,10 @@ void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole)
       l.angle_0 = l.ahead_angle_0;
     }
     const double near = kOnKnot * std::max(1.0, std::abs(l.angle));
-    if (l.speed > 0.0 ? l.stretch.high - l.angle > near : l.angle - l.stretch.low > near) continue;
+    const double above = l.angle - l.stretch.low, below = l.stretch.high - l.angle;
+    if (l.speed > 0.0 ? below > near : above > near) continue;
+    if (l.speed == 0.0 && above >= -near && below >= -near)
+      continue;  // pass_knot() knows where it goes from rest
     look_up(l, l.speed);
   }
 }
@@ -310,8 +314,11 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
       g.assign(1, std::max(0.0, side * (bound - l.angle)));
       for (std::size_t k = 1; k <= degree; ++k)
         g.push_back(-side * angle_term(l, series, static_cast<int>(k)));
+      // On the knot itself, as at rest, the first term that is not rounding tells which way the angle goes.
+      double largest = 0.0;
+      for (const double term : g) largest = std::max(largest, std::abs(term));
       std::size_t lead = 0;
-      while (lead <= degree && g[lead] == 0.0) ++lead;
+      while (lead <= degree && std::abs(g[lead]) <= kTermRounding * largest) g[lead++] = 0.0;
       if (lead > degree) continue;
       const std::optional<double> s = g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
       if (!s) continue;

@@ -64,6 +64,9 @@ class LoadSeries {
   /// Prescribed motion k as a polynomial over the step.
   const std::array<double, 3>& prescribed(int k) const { return u_[idx(k)]; }
 
+  /// The reference shaft's angle as one.
+  const std::array<double, 3>& nominal() const { return phi_; }
+
   /// First s in (0, end] (0 for a load about to leave backwards) at which a load whose angle may turn back
   /// leaves its stretch: the step must end there.
   std::optional<double> first_knot(const TaylorSeries& series, double end);

@@ -10,6 +10,7 @@ namespace drev {
 namespace {
 // What is left of rounding in the last coefficients: of an offset, and of the angle that it is looked up at.
 constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
+constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
 }  // namespace
 
 ProjectedLaws::ProjectedLaws(const System& system)
@@ -177,6 +178,7 @@ std::optional<double> ProjectedLaws::first_knot(const TaylorSeries& series, doub
       if (const auto s = first_crossing(g, end)) {
         first = s;
         end = *s;
+        knot_clearance_ = kAngleClear * std::max(1.0, std::abs(law.angle)) * h_ / std::abs(g_[1]);
       }
     }
   }

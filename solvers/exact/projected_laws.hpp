@@ -46,6 +46,8 @@ class ProjectedLaws {
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
+  /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
+  double knot_clearance() const { return knot_clearance_; }
 
   /// Energy put in by what varies in the laws and their ends, and dissipated in them, from 0 to s [J].
   struct Work {
@@ -78,7 +80,7 @@ class ProjectedLaws {
   std::vector<double> g_;
   NodeForces forces_;
   Vector z_, v_;
-  double t_ = 0.0, h_ = 0.0;
+  double t_ = 0.0, h_ = 0.0, knot_clearance_ = 0.0;
 };
 
 }  // namespace drev

@@ -7,15 +7,15 @@ namespace drev {
 
 namespace {
 
-constexpr double kShorten = 0.9;      // of the step at which the loads' rest is just small enough
-constexpr double kLoosest = 1e-3;     // tolerance of a pass that is not the last
-constexpr double kSettled = 1e-15;    // of the motion: rounding of what is projected
-constexpr double kInside = 0.01;      // of the tolerance: what the motion inside the step may be off by
-constexpr double kJump = 1e-4;        // of the tolerance: error allowed per undeclared discontinuity
-constexpr double kBehindKnot = 1e-3;  // of the step to it: behind the last node of Gauss' rule
-constexpr double kBeforeEnd = 0.98;   // of the step: a knot that its nodes see
-constexpr double kAtStart = 1e-8;     // of the step
-constexpr int kMaxPasses = 20;        // of projected loads
+constexpr double kShorten = 0.9;        // of the step at which the loads' rest is just small enough
+constexpr double kLoosest = 1e-3;       // tolerance of a pass that is not the last
+constexpr double kPassesAgree = 1e-15;  // of the motion: rounding of what is projected
+constexpr double kInside = 0.01;        // of the tolerance: what the motion inside the step may be off by
+constexpr double kJump = 1e-4;          // of the tolerance: error allowed per undeclared discontinuity
+constexpr double kBehindKnot = 1e-3;    // of the step to it: behind the last node of Gauss' rule
+constexpr double kBeforeEnd = 0.98;     // of the step: a knot that its nodes see
+constexpr double kNearStart = 1e-8;     // of the step
+constexpr int kMaxPasses = 20;          // of projected loads
 
 }  // namespace
 
@@ -25,6 +25,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   series.reset();
   known.add_to(series, h);
   laws.add_to(series, known, h);
+  if (!friction.empty()) friction.add_to(series, known, from.state.t, h);
   const double rest = smooth.add_to(series, from, h);
   if (rest > share && h > limits.shortest)
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
@@ -46,12 +47,12 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (excess > 1.0 && h > limits.shortest) {
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);
-      if (knot && *knot > kAtStart) return {h * *knot * (1.0 + kBehindKnot), true};
+      if (knot && *knot > kNearStart) return {h * *knot * (1.0 + kBehindKnot), true};
       return {h * std::max(0.2, kShorten * std::pow(excess, -1.0 / kProjectionTerms))};
     }
     contraction_ = std::max(made.contraction, 1e-300);
     // What this pass was off by comes back in the next one times the contraction factor.
-    settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kSettled);
+    settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
     tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
   }
 }
@@ -62,8 +63,11 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   const double h = s * other.series.step();
   contraction_ = other.contraction_;
   series.scale_as(other.series);
+  friction.locate_as(other.friction);
   const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
-  return !made.to_knot && made.h == h;
+  if (made.to_knot || made.h != h) return false;
+  friction.expand(series, from.state);
+  return true;
 }
 
 }  // namespace drev

@@ -6,6 +6,7 @@
 /// the path settles.
 #include <optional>
 
+#include "solvers/exact/friction_series.hpp"
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/projected_laws.hpp"
@@ -18,7 +19,11 @@ inline constexpr double kFastestTimesStep = 3.0;
 
 class StepExpansion {
  public:
-  explicit StepExpansion(const System& system) : series(system), known(system), smooth(system) {}
+  explicit StepExpansion(const System& system)
+      : series(system), known(system), smooth(system), friction(system) {
+    if (!friction.empty()) series.act_through(&friction);
+  }
+  StepExpansion(const StepExpansion&) = delete;
 
   struct Limits {
     double share = 0.0;      ///< of the tolerance, for this step
@@ -43,6 +48,7 @@ class StepExpansion {
   TaylorSeries series;
   LoadSeries known;
   ProjectedLaws smooth;
+  FrictionSeries friction;
 
  private:
   double contraction_ = 1.0;  // of the last step: how the projection's change came back

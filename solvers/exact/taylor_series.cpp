@@ -16,8 +16,8 @@ namespace drev {
 namespace {
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
 constexpr double kEigenvalueMargin = 1.1;
-constexpr double kEnergyPart = 0.01;  // of the tolerance: terms that energies do without, 1e-13 to 1e-9
-constexpr double kShorten = 0.9;      // of the step at which the last terms are just small enough
+constexpr double kEnergyPart = 0.01;    // of the tolerance: terms that energies do without, 1e-13 to 1e-9
+constexpr double kShortenSeries = 0.9;  // of the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
@@ -248,14 +248,16 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
                                        {block_begin_.data(), whole ? c_views_.data() : nullptr},
                                        main_alone ? c_.data() + diagonals_[idx(main_)].values : nullptr,
                                        c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
+    if (term_forces_) term_forces_->add(*this, k, factor, next);
     rows_of(next);
-    return kinds_.empty() ? Norm{largest, 0.0} : norm(next);
+    return kinds_.empty() && !term_forces_ ? Norm{largest, 0.0} : norm(next);
   }
   std::copy_n(p, n_, solve_in_.data());
   subtract_product(k_, false, x_0, 1.0, solve_in_.data());
   if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
   solve_mass(solve_in_, solve_out_);
   for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
+  if (term_forces_) term_forces_->add(*this, k, factor, next);
   rows_of(next);
   return norm(next);
 }
@@ -301,7 +303,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   double r = 1.0;
   for (const int k : {kMaxDegree - 1, kMaxDegree})
     if (excess(k) > 1.0) r = std::min(r, std::pow(excess(k), -1.0 / (k - 1)));
-  r *= kShorten;
+  r *= kShortenSeries;
   double power = 1.0;
   for (int k = 0; k <= degree_; ++k, power *= r)
     for (int i = 0; i < stride_; ++i) column(k)[i] *= power;

@@ -25,6 +25,18 @@
 
 namespace drev {
 
+class TaylorSeries;
+
+/// Forces whose coefficients follow from the very term that they act on (dry friction).
+class TermForces {
+ public:
+  /// Adds what they make of term k: M^-1 f_{k-2} times factor = h^2/(k (k - 1)).
+  virtual void add(const TaylorSeries& series, int k, double factor, double* term) = 0;
+
+ protected:
+  ~TermForces() = default;
+};
+
 class TaylorSeries {
  public:
   static constexpr int kMaxDegree = 32;
@@ -45,6 +57,10 @@ class TaylorSeries {
   void add_damping(int slot, double value);
   /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
+  /// The same of a damping along any row, as a rate c/m [1/s].
+  void widen_damping(double rate) { c_more_ += rate; }
+  /// Forces that act on every term; null: none. Owned by the caller.
+  void act_through(TermForces* forces) { term_forces_ = forces; }
   /// Estimate from above of the fastest rate |lambda| with those [1/s].
   double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
@@ -120,6 +136,7 @@ class TaylorSeries {
   Norm norm(const double* x) const;
 
   const System& system_;
+  TermForces* term_forces_ = nullptr;
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_

@@ -1,5 +1,7 @@
-// What of a system forbids exact propagation: one sentence each, with what to use instead.
+// What of a system forbids exact propagation: one sentence each, with what to use instead. And what of its options.
 #include <drev/solvers/exact/exact_propagation.hpp>
+
+#include "solvers/run/run_checks.hpp"
 
 namespace drev {
 
@@ -8,6 +10,11 @@ std::optional<std::string> why_not_exact(const System& system) {
   for (const GeneralTerm& g : system.generals())
     return name(g.element) +
            " is a general element, whose force and history the series does not know; take an implicit method";
+  for (const FrictionTerm& f : system.frictions()) {
+    bool moves = false;
+    for (const Entry& e : f.nodes) moves = moves || system.node_map(e.index).prescribed < 0;
+    if (!moves) return name(f.element) + " rubs between nodes whose motion is given: leave it out";
+  }
   if (system.reference() && !system.reference()->piecewise_quadratic)
     return "the reference motion is an unknown function; constant_speed and run_up are known";
   for (int k = 0; k < system.prescribed_count(); ++k)
@@ -16,6 +23,17 @@ std::optional<std::string> why_not_exact(const System& system) {
              " is an unknown function; one with constant acceleration between its breakpoints can "
              "say so (Motion::piecewise_quadratic)";
   return std::nullopt;
+}
+
+void check_propagation(const System& system, const ExactOptions& o, const State& state) {
+  std::vector<Finding> findings;
+  ParameterCheck check(system.name() + "/exact", findings);
+  check.within("tolerance", o.tolerance, o.kTolerance.low, o.kTolerance.high, "");
+  check_span(o.t_start, o.t_end, check);
+  check.non_negative("energy_tolerance", o.energy_tolerance, "");
+  check_state(system, state, check);
+  if (const auto why = why_not_exact(system)) check.fail("model", "", "", *why);
+  if (!findings.empty()) throw ModelError(findings);
 }
 
 }  // namespace drev

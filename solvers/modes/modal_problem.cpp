@@ -18,8 +18,8 @@ namespace drev {
 
 namespace {
 
-constexpr int kStrip = 2048;      // rows whose matrix entries stay in the cache for all vectors
-constexpr int kShortStrip = 512;  // of which all vectors do
+constexpr int kStrip = 2048;     // rows whose matrix entries stay in the cache for all vectors
+constexpr int kStripRows = 512;  // of which all vectors do
 // Times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves.
 constexpr double kRoundings = 16.0;
 constexpr double kOfResidual =
@@ -60,8 +60,8 @@ Eigen::MatrixXd to_dense(const SparseMatrix& pattern, const Vector& values) {
 /// The upper triangle of X' Y.
 void products(const double* x, const double* y, int n, int count, double* g) {
   const std::ptrdiff_t next = n;
-  for (int start = 0; start < n; start += kShortStrip) {
-    const int rows = std::min(kShortStrip, n - start);
+  for (int start = 0; start < n; start += kStripRows) {
+    const int rows = std::min(kStripRows, n - start);
     for (int j = 0; j < count; ++j)
       for (int i = 0; i <= j; ++i) g[i + j * count] += dot(rows, x + i * next + start, y + j * next + start);
   }
@@ -71,25 +71,25 @@ void products(const double* x, const double* y, int n, int count, double* g) {
 DREV_WIDEST void arrange(const double* x, int n, int count, const double* c, const int* place,
                          const double* weight, double* out) {
   const std::ptrdiff_t next = n;
-  std::vector<double> strip(idx(count + 1) * idx(kShortStrip));
-  double* w = strip.data() + count * kShortStrip;
-  for (int start = 0; start < n; start += kShortStrip) {
-    const int rows = std::min(kShortStrip, n - start);
+  std::vector<double> strip(idx(count + 1) * idx(kStripRows));
+  double* w = strip.data() + count * kStripRows;
+  for (int start = 0; start < n; start += kStripRows) {
+    const int rows = std::min(kStripRows, n - start);
     const auto take = [&](const double* from, double* to) {
       for (int k = 0; k < rows; ++k) to[k] = from[place ? place[start + k] : start + k];
     };
-    for (int j = 0; j < count; ++j) take(x + j * next, strip.data() + j * kShortStrip);
+    for (int j = 0; j < count; ++j) take(x + j * next, strip.data() + j * kStripRows);
     if (weight)
       take(weight, w);
     else
       std::fill_n(w, rows, 1.0);
     for (int j = 0; j < count; ++j) {
       double* to = out + j * next + start;
-      const double *column = strip.data() + j * kShortStrip, own = c[j + j * count];
+      const double *column = strip.data() + j * kStripRows, own = c[j + j * count];
       for (int k = 0; k < rows; ++k) to[k] = own * column[k];
       for (int i = 0; i < j; ++i) {
         const double share = c[i + j * count];
-        column = strip.data() + i * kShortStrip;
+        column = strip.data() + i * kStripRows;
         for (int k = 0; k < rows; ++k) to[k] += share * column[k];
       }
       for (int k = 0; k < rows; ++k) to[k] *= w[k];

@@ -92,6 +92,8 @@ void LawBalance::find_terms(std::vector<Finding>& findings) {
     term.x = input(term.row);
     terms_.push_back(std::move(term));
   }
+  for (const FrictionTerm& term : system_.frictions())
+    refuse(term.element, "sticks and slips, which a sweep does not take; run it in time (drev run)");
   for (const GeneralTerm& term : system_.generals())
     refuse(term.element, "is a general element, which a sweep of a nonlinear model does not take");
   for (int k = 0; system_.any_prescribed_moves() && k < system_.prescribed_count(); ++k)

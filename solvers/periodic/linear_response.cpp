@@ -70,6 +70,9 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
         break;
       }
   }
+  for (const FrictionTerm& term : system_.frictions())
+    refuse(element_name(system_, term.element),
+           "sticks and slips, which a sweep does not take; run it in time (drev run)");
   for (const GeneralTerm& term : system_.generals())
     refuse(element_name(system_, term.element),
            "is a general element, which a linear sweep does not take; "

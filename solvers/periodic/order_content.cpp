@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kSameOrder = 1e-9;
+constexpr double kWholeLine = 1e-9;
 constexpr double kSettled = 1e-9;  // of the largest amplitude
 constexpr double kSame = 1e-12;    // of the largest torque: the load is one and the same
 constexpr double kNoLine = 1e-13;  // of the rms: rounding of the transform
@@ -106,7 +106,7 @@ void OrderContent::pick(const std::vector<Complex>& lines, double spacing, bool 
   for (std::size_t k = 0; k < orders_.size(); ++k) {
     const double line = orders_[k] / spacing;
     const double whole = std::round(line);
-    if (whole < 1.0 || std::abs(line - whole) > kSameOrder * line ||
+    if (whole < 1.0 || std::abs(line - whole) > kWholeLine * line ||
         whole >= static_cast<double>(lines.size()))
       continue;
     const Complex c = lines[static_cast<std::size_t>(whole)];
@@ -141,7 +141,7 @@ OrderContent::Content OrderContent::of_table(const LoadTerm& term) const {
   std::vector<Complex> lines;
   for (const double order : orders_) {
     const double line = std::round(order / spacing);
-    if (line < 1.0 || std::abs(order / spacing - line) > kSameOrder * line || line > 1e7) continue;
+    if (line < 1.0 || std::abs(order / spacing - line) > kWholeLine * line || line > 1e7) continue;
     const auto m = static_cast<std::size_t>(line);
     if (lines.size() <= m) lines.resize(m + 1);
     const double wave = kTwoPi * line / table.period;

@@ -23,7 +23,7 @@ constexpr double kUndamped = 1e-9;      // damping ratio that is rounding
 constexpr double kTooDamped = 0.7;      // beyond it an order has no resonance
 constexpr std::size_t kMostPeaks = 10;  // a section
 constexpr double kSmallPeak = 1e-3;     // of the section's largest
-constexpr double kWidth = 1e-7;         // of a peak's speed
+constexpr double kPeakSpeed = 1e-7;     // of a peak's speed
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Which mode of `next` each of `last` has become, by its shape: largest |x' y| / (|x| |y|) first.
@@ -128,7 +128,7 @@ class Search {
         if (!peak.at_end && std::isfinite(here)) {
           const BracketedMaximum found =
               bracketed_maximum(points[i - 1].first, points[i].first, points[i + 1].first,
-                                kWidth * points[i].first, [&](double speed) { return one(speed, c); });
+                                kPeakSpeed * points[i].first, [&](double speed) { return one(speed, c); });
           if (found.value >= here) peak.speed = found.at, peak.half_range = found.value;
         }
         peaks.push_back(peak);
@@ -155,7 +155,7 @@ class Search {
       const double reach = 4.0 * critical.damping_ratio;
       const BracketedMaximum found = bracketed_maximum(
           std::max(low_, critical.speed / (1.0 + reach)), critical.speed,
-          std::min(high_, critical.speed * (1.0 + reach)), kWidth * critical.speed, [&](double speed) {
+          std::min(high_, critical.speed * (1.0 + reach)), kPeakSpeed * critical.speed, [&](double speed) {
             response_.vibration(speed, point_, order);
             return std::abs(point_.amplitude(order, section));
           });

@@ -1,4 +1,5 @@
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
 
 #include <algorithm>
@@ -85,6 +86,7 @@ Reduction craig_bampton(const System& system, const ReductionOptions& o) {
 }  // namespace
 
 Reduction reduce(const System& system, const ReductionOptions& options) {
+  refuse_friction(system, "a reduction");
   check_options(system, options);
   return options.kind == ReductionOptions::Kind::modal ? modal(system, options)
                                                        : craig_bampton(system, options);

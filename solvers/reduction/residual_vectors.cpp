@@ -18,7 +18,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-constexpr int kSamples = 128;
+constexpr int kLoadSamples = 128;
 constexpr double kShift = 1e-3;        // of the first eigenvalue
 constexpr int kRefinements = 5;        // each takes the shift's error down by kShift at least
 constexpr double kSamePattern = 1e-6;  // of the largest load pattern
@@ -176,7 +176,7 @@ ResidualVectors residual_vectors(const System& system, const KeptModes& modes, d
       needed = beside(needed, of_laws.col(j) / std::sqrt(whole_laws[j]));
   Matrix taken = orthonormal_in_energy(needed, kDependent);
 
-  const Matrix loads = patterns(sampled_loads(system, cycle(system), kSamples));
+  const Matrix loads = patterns(sampled_loads(system, cycle(system), kLoadSamples));
   if (loads.cols() > 0) {
     Matrix of_loads = residual.solve(loads);
     const double whole = kept_energies(loads).sum() + loads.cwiseProduct(of_loads).sum();

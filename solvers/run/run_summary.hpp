@@ -18,6 +18,13 @@ enum class RunStatus {
 };
 const char* to_text(RunStatus status);
 
+/// A friction contact sticks, slides or is open from here on.
+struct FrictionEvent {
+  double t = 0.0;       ///< s
+  std::string element;  ///< its name
+  std::string becomes;  ///< to_text(FrictionState)
+};
+
 struct RunSummary {
   RunStatus status = RunStatus::success;
   std::string reason;  ///< a sentence: what went wrong, when and where; empty on success
@@ -43,7 +50,10 @@ struct RunSummary {
   long iterations = 0;  ///< Newton
   long load_passes = 0;
   long factorizations = 0;
-  long contact_changes = 0;  ///< located changes of a law's piece (exact propagation)
+  long contact_changes = 0;   ///< located changes of a law's piece (exact propagation)
+  long friction_changes = 0;  ///< of dry friction, between sticking and sliding either way
+  static constexpr std::size_t kMostFrictionEvents = 1000;
+  std::vector<FrictionEvent> friction_events;  ///< of those, the first kMostFrictionEvents, in time
   /// Seconds by phase, if StepOptions::time_phases asked for them: loads, linear, contacts, balance,
   /// observers.
   std::vector<std::pair<std::string, double>> phases;

@@ -11,7 +11,7 @@ namespace drev {
 
 namespace {
 
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kEdgeRounding = 16 * std::numeric_limits<double>::epsilon();
 constexpr double kOnKnot = 1e-11;  // of an angle: above what next_knot() takes for one with a knot
 using Coefficients = StepPolynomial::Coefficients;
 
@@ -85,7 +85,7 @@ std::optional<ContactLocator::Crossing> ContactLocator::first_of_law(const Law& 
       for (std::size_t k = 1; k < g.size(); ++k) g[k - 1] += b.b_v / h * static_cast<double>(k) * x[k];
     const double seen = g[0] = value(b, from.x, from.x_dot);
     const double rounding =
-        kRounding * (std::abs(b.a) + std::abs(b.b_x * from.x) + std::abs(b.b_v * from.x_dot));
+        kEdgeRounding * (std::abs(b.a) + std::abs(b.b_x * from.x) + std::abs(b.b_v * from.x_dot));
     if (seen <= rounding) {  // on the bound, or beyond: which side it leaves to decides
       if (seen >= -rounding) g[0] = 0.0;
       const auto leading = std::find_if(g.begin(), g.end(), [](double c) { return c != 0.0; });
@@ -102,7 +102,7 @@ std::optional<ContactLocator::Crossing> ContactLocator::first_knot(std::size_t l
                                                                    const Coefficients& angle) const {
   const ScalarForce& force = *system_.scalars()[law].force;
   const double near = kOnKnot * std::max(1.0, std::abs(angle[0]));
-  const double rounding = kRounding * std::max(kOnKnot, std::abs(angle[0]));
+  const double rounding = kEdgeRounding * std::max(kOnKnot, std::abs(angle[0]));
   std::optional<Crossing> best;
   for (const int side : {-1, 1}) {  // it is passed going up from below, or down from above
     // The bound lies beyond the knot by rounding, so that what starts on a knot is led over it.

@@ -1,3 +1,4 @@
+#include <drev/core/law/friction.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/stepping/butcher_tableau.hpp>
 #include <drev/solvers/stepping/transient.hpp>
@@ -363,6 +364,7 @@ void check_options(const System& system, const TransientOptions& o, const State&
     check.fail("max_halvings", std::to_string(o.max_halvings), "", "must be between 0 and 40");
   check.positive("energy_tolerance", o.energy_tolerance, "");
   check_state(system, state, check);
+  if (const auto why = why_not_friction(system, o.scheme.name)) check.fail("method", "", "", *why);
   if (findings.empty() && !controlled) {
     const double limit = stability_limit(system, o.scheme);
     if (o.step > limit * (1.0 + 1e-9))

@@ -292,6 +292,9 @@ int main(int argc, char** argv) {
       if (entry.path().extension() != ".toml") continue;
       std::ifstream file(entry.path(), std::ios::binary);
       seeds.push_back({entry.path().string(), {std::istreambuf_iterator<char>(file), {}}});
+      // A gear pair or shaft from its drawing takes some 0.1 s to compute: tests of their own spoil those.
+      const std::string& text = seeds.back().text;
+      if (text.find(".geometry]") != text.npos || text.find("contour_shaft") != text.npos) seeds.pop_back();
     }
   std::sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.path < b.path; });
   if (seeds.empty()) return std::fprintf(stderr, "no .toml there\n"), 2;

@@ -48,6 +48,8 @@ def ended_by(number, path):
     return read(path + "/summary.partial.json")
 
 
+models = os.path.join(os.path.dirname(schema_path), "..", "models")
+
 with open("torn.toml", "w") as file:
     file.write("format = 1\n[nodes\n")
 os.mkdir("trains")
@@ -123,7 +125,18 @@ with open("pair.toml", "w") as file:  # folds
 with open("pair.toml") as file, open("chaos.toml", "w") as copied:  # no stable motion
     copied.write(file.read().replace("amplitude_m = [0.05]", "amplitude_m = [0.5]"))
 
+with open("gears.toml", "w") as file:
+    file.write('[geometry]\nmodule_mm = 4\nload_N_per_mm = 100\npoints = 10\n'
+               'gear_1 = { teeth = 20, profile_shift = -0.1, width_mm = 30, bore_diameter_mm = 35 }\n'
+               'gear_2 = { teeth = 40, profile_shift = 0.1, width_mm = 30, bore_diameter_mm = 70 }\n')
+with open("shaft.toml", "w") as file:
+    file.write('format = 1\nnote = "one step"\n[nodes]\na = { nominal_speed_rpm = 60 }\nb = {}\n[elements]\n'
+               's = { type = "contour_shaft", nodes = ["a", "b"], shear_modulus_GPa = 80, density_kg_per_m3 = 7850, '
+               'stations = [{ length_mm = 100, outer_diameter_mm = 50, fillet_end_mm = 4 }, '
+               '{ length_mm = 100, outer_diameter_mm = 80 }] }\n')
+
 results = {
+    "gear": printed("gear", "gears.toml"),
     "exact": printed("run", "camshaft", "--set", short),
     "held": printed("run", "camshaft", "--set", "drive=held", short),
     "translational": printed("run", "two_mass_backlash"),
@@ -135,6 +148,7 @@ results = {
     "reduced": printed("run", "long.toml", "--reduce", "5%"),
     "turning": printed("run", "turning.toml"),
     "run_up": printed("run", "run_up.toml"),
+    "friction": printed("run", models + "/vehicle_clutch/vehicle_clutch.toml"),
     "file": printed("run", "trains/at_rest.toml"),
     "modes": printed("modes", "camshaft"),
     "open": printed("modes", "gear_drive", "--contact", "open"),
@@ -147,6 +161,7 @@ results = {
     "statistics of runs": printed("sweep", "chaos.toml", "--speeds", "9.549,9.55", "--orders", "1", "--tolerance",
                                   "1e-2"),
     "class": printed("class", "class.toml", "--speeds", "300:10:1000", "--orders", "2", "--contact", "closed"),
+    "shaft": printed("shaft", "shaft.toml"),
     "counted": printed("run", "class.toml", "--rainflow", "z.force_N"),
     "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
     "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "2"),

@@ -24,7 +24,7 @@ code() {
 case $what in
   format)
     need clang-format-14
-    files=$(code core elements solvers models advice app tests)
+    files=$(code core elements solvers models advice app python tests)
     xargs -P "$jobs" -n 20 clang-format-14 --dry-run --Werror <<<"$files" ||
       { echo "Run clang-format-14 -i on these files."; exit 1; }
     ;;

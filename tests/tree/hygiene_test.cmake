@@ -5,7 +5,7 @@
 #   - headers of solvers/ with neither a test file of their name nor a test file that names them
 cmake_minimum_required(VERSION 3.22)
 include(${CMAKE_CURRENT_LIST_DIR}/project_files.cmake)
-set(at_root CHANGELOG.md CMakeLists.txt CMakePresets.json CONTRIBUTING.md LICENSE README.md
+set(at_root CHANGELOG.md CMakeLists.txt CMakePresets.json CONTRIBUTING.md LICENSE README.md pyproject.toml
     .clang-format .clang-tidy .editorconfig .git-blame-ignore-revs .gitignore)
 set(most_bytes 500000)
 set(most_code_files 45)

@@ -120,6 +120,20 @@ bool FieldWriter::group(const std::string& name, const std::function<void(Fields
   return true;
 }
 
+bool FieldWriter::rows(const std::string& name, std::size_t count,
+                       const std::function<void(std::size_t)>& /*resize*/,
+                       const std::function<void(Fields&, std::size_t)>& list) {
+  std::string body = "[";
+  for (std::size_t i = 0; i < count; ++i) {
+    const FieldKeys none(kind);
+    FieldWriter inner(kind, none, store_, owner_ + "_" + std::to_string(i + 1));
+    list(inner, i);
+    body += (i == 0 ? "" : ", ") + inner.inline_table();
+  }
+  add(name, body + "]");
+  return true;
+}
+
 std::string FieldWriter::inline_table() const {
   std::string all;
   for (const auto& [key, value] : parts_) all += (all.empty() ? "{ " : ", ") + key + " = " + value;

@@ -42,6 +42,8 @@ class FieldWriter final : public Fields {
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;
   bool group(const std::string& name, const std::function<void(Fields&)>& list) override;
+  bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,
+            const std::function<void(Fields&, std::size_t)>& list) override;
   void fault(const std::string&) override {}
 
   void add(const std::string& key, const std::string& value) { parts_.emplace_back(key, value); }

@@ -1,5 +1,5 @@
 // Which method a system is given, and the rate that decides.
-// Covers solvers/method.hpp.
+// Covers solvers/method.hpp, solvers/method_costs.hpp.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method_choice.hpp>

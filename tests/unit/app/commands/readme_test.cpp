@@ -7,7 +7,7 @@
 
 using drev::test::read_file;
 
-TEST_CASE("The commands of the README work as they stand") {
+TEST_CASE("The commands of the README work as they stand", "[once]") {
   const drev::test::TemporaryFolder folder;
   std::filesystem::create_directory_symlink(DREV_SOURCE_DIR "/models", folder / "models");
   std::istringstream page(read_file(DREV_SOURCE_DIR "/README.md"));

@@ -61,6 +61,7 @@ TEST_CASE("A plugin's element is listed, checked, linearised and run") {
   CHECK(elements.back().at("keys")[0] == Json{{"name", "stiffness"},
                                               {"key", "stiffness_Nm_per_rad"},
                                               {"needed", true},
+                                              {"default", nullptr},
                                               {"translational_key", "stiffness_Nm_per_rad"}});
 
   CHECK(contains(drev_command({"check", kDisc, "--plugin", kHardening}).out, "sound; 1 node, 3 elements"));

@@ -1,0 +1,197 @@
+#include "app/fmi/export_fmu.hpp"
+
+#include <drev/core/version.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "app/base/output_file.hpp"
+#include "app/fmi/model_description.hpp"
+#include "app/fmi/zip_file.hpp"
+#include "app/model_file/writing/export.hpp"
+
+namespace drev::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Contents = std::map<std::string, std::string>;  // by name in the archive
+
+constexpr const char* kLibrary = "drev_fmu.so";
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file) throw OutputError("cannot read " + path.string());
+  return text;
+}
+
+/// A folder of its own for as long as it lives.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "drev_fmu_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw OutputError("cannot create the folder " + name);
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code none;
+    fs::remove_all(path, none);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  fs::path path;
+};
+
+/// The deepest folder that holds all of the files.
+fs::path common_folder(const std::vector<fs::path>& files) {
+  fs::path common = files.front().parent_path();
+  for (const fs::path& file : files)
+    for (;;) {
+      const auto [at, other] = std::mismatch(common.begin(), common.end(), file.begin(), file.end());
+      if (at == common.end() || common == common.parent_path()) break;
+      common = common.parent_path();
+    }
+  return common;
+}
+
+/// The model's files in the layout that they have; sets where the model itself is.
+Contents model_files(const ModelRequest& model, const FmuRequest& request, std::string& main) {
+  if (!model.file) {
+    main = "model/model.toml";
+    return {{main, export_model(*model.entry, model.parameters, model.model_case)}};
+  }
+  const auto whole = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
+  std::vector<fs::path> files{whole(request.model)};
+  for (const std::string& file : model.model_case.files) files.push_back(whole(file));
+  const fs::path common = common_folder(files);
+  Contents all;
+  for (const fs::path& file : files)
+    all["model/" + file.lexically_relative(common).generic_string()] = content_of(file);
+  main = "model/" + files.front().lexically_relative(common).generic_string();
+  return all;
+}
+
+/// FNV-1a, twice with different starts, as a GUID: tells one FMU's files from another's.
+std::string token_of(const Contents& contents) {
+  std::uint64_t parts[] = {0xcbf29ce484222325U, 0x84222325cbf29ce4U};
+  for (std::uint64_t& hash : parts) {
+    const auto add = [&](const std::string& text) {
+      for (const char c : text + '\0') hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    };
+    add(DREV_VERSION);
+    for (const auto& [name, content] : contents) add(name), add(content);
+  }
+  char text[40];
+  std::snprintf(text, sizeof text, "{%08x-%04x-%04x-%04x-%012llx}", static_cast<unsigned>(parts[0] >> 32),
+                static_cast<unsigned>(parts[0] >> 16 & 0xffff), static_cast<unsigned>(parts[0] & 0xffff),
+                static_cast<unsigned>(parts[1] >> 48),
+                static_cast<unsigned long long>(parts[1] & 0xffffffffffffU));
+  return text;
+}
+
+/// A C name.
+std::string identifier_of(const std::string& name) {
+  std::string all = "drev_";
+  for (const char c : name) all += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return all;
+}
+
+FmuInterface interface_of(const ModelRequest& model, const FmuRequest& request) {
+  FmuInterface interface {
+    "", request.run, "", request.torques, request.speeds, request.outputs, {}
+  };
+  if (!model.file) return interface;
+  for (std::size_t i = 0; i < model.parameters.known().size(); ++i)
+    if (model.parameters.values()[i] != model.parameters.known()[i].default_text)
+      interface.parameters.emplace_back(model.parameters.known()[i].name, model.parameters.values()[i]);
+  return interface;
+}
+
+/// An instance of resources as the FMU's library will find them.
+class Extracted {
+ public:
+  explicit Extracted(const Contents& resources) {
+    for (const auto& [name, content] : resources) {
+      fs::create_directories((folder_.path / name).parent_path());
+      std::ofstream(folder_.path / name, std::ios::binary) << content;
+    }
+    instance_ = std::make_unique<FmuInstance>(folder_.path.string());
+  }
+
+  FmuInstance& instance() const { return *instance_; }
+
+  void check_paths() const {
+    for (const std::string& file : instance_->model_case().files)
+      if (!fs::path(file).lexically_normal().string().starts_with(folder_.path.string()))
+        throw ModelError(
+            {{file, "", "", "",
+              "is named by its whole path, which an FMU cannot hold; name it relative to the model file"}});
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::unique_ptr<FmuInstance> instance_;
+};
+
+void check_names(const ModelRequest& model) {
+  std::vector<Finding> findings;
+  for (const Parameter& parameter : model.parameters.known())
+    if (model.file && parameter.name == "time")
+      findings.push_back({"command line", "--fmu", "time", "",
+                          "is the name of a parameter, and that of an FMU's independent variable"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+}
+
+}  // namespace
+
+std::string fmu_library_folder() {
+  std::error_code none;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const char* folder : {"../lib/drev", "../" DREV_FMU_FOLDER})
+    if (fs::exists(beside / folder / kLibrary, none)) return (beside / folder).string();
+  return {};
+}
+
+void export_fmu(const ModelRequest& model, const FmuRequest& request) {
+  const std::string library = fmu_library_folder();
+  if (library.empty())
+    throw OutputError(std::string(kLibrary) +
+                      " is not there: it is built with drev and installed to lib/drev");
+  check_names(model);
+  FmuInterface interface = interface_of(model, request);
+  Contents resources = model_files(model, request, interface.model);
+  resources["interface.toml"] = interface_text(interface);
+  {
+    const Extracted first(resources);
+    first.check_paths();
+    interface.tunable = first.instance().find_tunable();
+  }
+  resources["interface.toml"] = interface_text(interface);
+  interface.token = token_of(resources);
+  resources["interface.toml"] = interface_text(interface);
+
+  const std::string identifier = identifier_of(model.model_case.model.name());
+  const std::string description = model_description(Extracted(resources).instance(), request.fmi, identifier);
+  create_directory(folder_of(request.file));
+  ZipFile zip(request.file);
+  zip.add("modelDescription.xml", description);
+  for (const auto& [name, content] : resources) zip.add("resources/" + name, content);
+  const std::string platform = request.fmi == 3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
+  std::vector<fs::path> libraries;
+  for (const auto& entry : fs::directory_iterator(library)) libraries.push_back(entry.path());
+  std::sort(libraries.begin(), libraries.end());
+  for (const fs::path& path : libraries) {
+    const std::string name = path.filename().string();
+    if (name.find(".so") == std::string::npos) continue;
+    zip.add(platform + (name == kLibrary ? identifier + ".so" : name), content_of(path));
+  }
+  zip.commit();
+}
+
+}  // namespace drev::app

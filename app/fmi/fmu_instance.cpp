@@ -1,0 +1,487 @@
+#include "app/fmi/fmu_instance.hpp"
+
+#include <drev/app/model_file/model_file.hpp>
+#include <drev/core/assembler.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/start.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "solvers/linear/sparse_cholesky.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kSameTime = 1e-9;  // relative to the communication step
+constexpr double kDefaultTolerance = 1e-10;
+constexpr double kProbe = 0.01;  // change of a parameter that is tried, relative
+const char* const kActualRate[] = {".actual_speed_rad_per_s", ".actual_velocity_m_per_s"};
+const char* const kActualValue[] = {".actual_angle_rad", ".actual_position_m"};
+
+bool same_motion(const Motion* a, const Motion* b, double t) {
+  const bool moves_a = a != nullptr && a->at, moves_b = b != nullptr && b->at;
+  if (!moves_a || !moves_b) return moves_a == moves_b;
+  const MotionPoint p = a->at(t), q = b->at(t);
+  return p.value == q.value && p.rate == q.rate;
+}
+
+/// Whether a state of one system is one of the other at time t, and means the same motion.
+bool same_unknowns(const System& a, const System& b, double t) {
+  if (a.size() != b.size() || a.history_size() != b.history_size() || a.node_names() != b.node_names() ||
+      a.prescribed_count() != b.prescribed_count())
+    return false;
+  if (!same_motion(a.reference() ? &*a.reference() : nullptr, b.reference() ? &*b.reference() : nullptr, t))
+    return false;
+  for (int i = 0; i < a.node_count(); ++i) {
+    const NodeMap &m = a.node_map(i), &n = b.node_map(i);
+    if (a.ratio(i) != b.ratio(i) || m.unknown != n.unknown || m.prescribed != n.prescribed ||
+        m.coeff != n.coeff)
+      return false;
+  }
+  for (int k = 0; k < a.prescribed_count(); ++k)
+    if (!same_motion(&a.prescribed()[idx(k)], &b.prescribed()[idx(k)], t)) return false;
+  return true;
+}
+
+}  // namespace
+
+/// An output: a channel, or the actual motion of a node, nominal motion and deviation together.
+struct FmuInstance::Output {
+  std::string name, unit;
+  std::optional<Channel> channel = {};
+  int node = -1;
+  bool rate = false;
+};
+
+/// A model with values of its parameters, made ready.
+struct FmuInstance::Built {
+  Built(ModelCase given, const FmuInterface& interface)
+      : torques(interface.torques.size()),
+        speeds(interface.speeds.size()),
+        model_case(std::move(given)),
+        original(model_case.model.build()),
+        system(with_inputs(model_case.model, nodes(interface)).build()),
+        assembler(system) {
+    if (const auto why = why_not_exact(system))
+      throw ModelError({{system.name(), "", "", "", "cannot be an FMU: " + *why}});
+    std::vector<std::string> channels;
+    for (const std::string& name : interface.outputs)
+      if (!find_actual(name)) {
+        outputs.push_back({name, "", {}, -1, false});
+        channels.push_back(name);
+      }
+    std::vector<Channel> found = find_channels(system, channels);
+    auto next = found.begin();
+    for (Output& output : outputs) {
+      if (output.node >= 0) continue;
+      output.unit = next->unit();
+      output.channel = std::move(*next++);
+    }
+    assembler.set_time(0.0);
+    for (const std::string& name : interface.speeds) {
+      Assembler at_start(original);
+      at_start.set_time(0.0);
+      const int node = original.node(name);
+      const MotionPoint q = at_start.node_motion(node, State::initial(original));
+      start_speeds.push_back(q.rate + original.ratio(node) * at_start.nominal().rate);
+      start_deviations.push_back(q.value);
+    }
+  }
+
+  std::vector<InputNode> nodes(const FmuInterface& interface) {
+    std::vector<InputNode> all;
+    for (std::size_t i = 0; i < torques.size(); ++i) {
+      torques[i] = std::make_shared<InputSignal>();
+      all.push_back({interface.torques[i], torques[i], {}});
+    }
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      speeds[i] = std::make_shared<SpeedInput>();
+      all.push_back({interface.speeds[i], {}, speeds[i]});
+    }
+    return all;
+  }
+
+  bool find_actual(const std::string& name) {
+    for (const bool rate : {false, true})
+      for (const bool turns : {true, false}) {
+        const std::string end = (rate ? kActualRate : kActualValue)[turns ? 0 : 1];
+        if (!name.ends_with(end)) continue;
+        const int node = system.node(name.substr(0, name.size() - end.size()));
+        if ((system.node_kind(node) == NodeKind::rotational) != turns) continue;
+        const char* unit = rate ? (turns ? "rad/s" : "m/s") : (turns ? "rad" : "m");
+        outputs.push_back({name, unit, {}, node, rate});
+        return true;
+      }
+    return false;
+  }
+
+  std::vector<NodeKind> input_kinds(const FmuInterface& interface) const {
+    std::vector<NodeKind> all;
+    for (const auto* names : {&interface.torques, &interface.speeds})
+      for (const std::string& name : *names) all.push_back(system.node_kind(system.node(name)));
+    return all;
+  }
+
+  std::vector<std::shared_ptr<InputSignal>> torques;
+  std::vector<std::shared_ptr<SpeedInput>> speeds;
+  ModelCase model_case;
+  System original;  // without the inputs
+  System system;
+  Assembler assembler;
+  std::vector<Output> outputs;
+  std::vector<double> start_speeds, start_deviations;
+  double assembled = std::nan("");
+};
+
+FmuInstance::FmuInstance(const std::string& resources)
+    : folder_(resources),
+      interface_(read_interface((std::filesystem::path(resources) / "interface.toml").string())) {
+  const std::string path = (std::filesystem::path(folder_) / interface_.model).string();
+  file_ = std::make_unique<ModelFile>(path, interface_.run);
+  reset();
+  std::vector<std::string> units;
+  for (const Output& output : built_->outputs) units.push_back(output.unit);
+  variables_ = fmu_variables(interface_, file_->entry().parameters, built_->input_kinds(interface_), units);
+}
+
+FmuInstance::~FmuInstance() = default;
+
+const std::vector<Parameter>& FmuInstance::parameters() const { return file_->entry().parameters; }
+const ModelCase& FmuInstance::model_case() const { return built_->model_case; }
+
+std::vector<std::string> FmuInstance::find_tunable() const {
+  std::vector<std::string> all;
+  const std::vector<Parameter>& known = parameters();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    double value = 0.0;
+    if (known[i].kind != Parameter::Kind::number || !read_number(state_.parameters[i], value)) continue;
+    const double step = value == 0.0 ? kProbe : kProbe * std::abs(value);
+    std::vector<std::string> changed = state_.parameters;
+    changed[i] = to_text(value + step <= known[i].high ? value + step : value - step);
+    try {
+      const std::unique_ptr<Built> built = build(changed);
+      const System &now = built_->original, &other = built->original;
+      if (same_unknowns(now, other, 0.0) && same_unknowns(now, other, model_case().duration) &&
+          now.initial_deviation() == other.initial_deviation() && now.initial_rate() == other.initial_rate())
+        all.push_back(known[i].name);
+    } catch (const ModelError&) {  // the value cannot be: the parameter is left fixed
+    }
+  }
+  return all;
+}
+
+std::unique_ptr<FmuInstance::Built> FmuInstance::build(const std::vector<std::string>& parameters) const {
+  const ModelEntry& entry = file_->entry();
+  Parameters values(entry.name, entry.parameters);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i] != entry.parameters[i].default_text)
+      values.set(entry.parameters[i].name, parameters[i]);
+  values.check();
+  return std::make_unique<Built>(entry.build(std::move(values)), interface_);
+}
+
+void FmuInstance::reset() {
+  FmuState fresh;
+  const ModelEntry& entry = file_->entry();
+  Parameters values = values_of(entry, interface_.parameters);
+  values.check();
+  fresh.parameters = values.values();
+  std::unique_ptr<Built> built = build(fresh.parameters);
+  fresh.torque_values.resize(interface_.torques.size());
+  fresh.torques.resize(interface_.torques.size());
+  for (const double speed : built->start_speeds) fresh.speed_values.push_back({speed, 0.0});
+  fresh.speeds.resize(interface_.speeds.size());
+  state_ = std::move(fresh);
+  built_ = std::move(built);
+}
+
+void FmuInstance::require(bool right, const char* call, const char* when) const {
+  if (!right) throw FmuError(std::string(call) + " " + when);
+}
+
+const FmuVariable& FmuInstance::variable(unsigned reference, FmuVariable::Type type) const {
+  if (reference >= variables_.size())
+    throw FmuError("there is no value reference " + std::to_string(reference) + "; the largest is " +
+                   std::to_string(variables_.size() - 1));
+  const FmuVariable& found = variables_[reference];
+  if (found.type != type) {
+    const char* names[] = {"a real number", "an integer", "a text"};
+    throw FmuError("variable " + found.name + " is " + names[static_cast<int>(found.type)] + ", not " +
+                   names[static_cast<int>(type)]);
+  }
+  return found;
+}
+
+const FmuVariable& FmuInstance::settable(unsigned reference, FmuVariable::Type type) const {
+  const FmuVariable& found = variable(reference, type);
+  using enum FmuVariable::Role;
+  if (found.role == time || found.role == output) throw FmuError("variable " + found.name + " cannot be set");
+  if (state_.mode == FmuMode::terminated) throw FmuError("nothing can be set after termination");
+  if (found.role == parameter && !found.tunable && state_.mode == FmuMode::step)
+    throw FmuError("parameter " + found.name + " is fixed: it can be set before initialization ends");
+  return found;
+}
+
+double FmuInstance::real(unsigned reference) {
+  const FmuVariable& found = variable(reference, FmuVariable::Type::real);
+  switch (found.role) {
+    case FmuVariable::Role::time:
+      return state_.mode == FmuMode::step || state_.mode == FmuMode::terminated ? state_.state.t
+                                                                                : state_.t_start;
+    case FmuVariable::Role::parameter: {
+      double value = 0.0;
+      read_number(state_.parameters[found.place], value);
+      return value;
+    }
+    case FmuVariable::Role::torque:
+      return state_.torque_values[found.place].value;
+    case FmuVariable::Role::speed:
+      return state_.speed_values[found.place].value;
+    case FmuVariable::Role::output:
+      break;
+  }
+  if (state_.mode == FmuMode::instantiated)
+    throw FmuError("output " + found.name + " has no value before initialization");
+  return output(found.place);
+}
+
+int FmuInstance::integer(unsigned reference) const {
+  double value = 0.0;
+  read_number(state_.parameters[variable(reference, FmuVariable::Type::integer).place], value);
+  return static_cast<int>(value);
+}
+
+const std::string& FmuInstance::text(unsigned reference) const {
+  return state_.parameters[variable(reference, FmuVariable::Type::text).place];
+}
+
+void FmuInstance::set_parameters(const std::vector<std::pair<std::size_t, std::string>>& values) {
+  if (values.empty()) return;
+  std::vector<std::string> all = state_.parameters;
+  for (const auto& [place, value] : values) all[place] = value;
+  std::unique_ptr<Built> built = build(all);
+  if (state_.mode == FmuMode::step) {
+    // The motions that are inputs, too, are compared where they have come to.
+    for (std::size_t i = 0; i < state_.speeds.size(); ++i) *built->speeds[i] = state_.speeds[i];
+    if (!same_unknowns(built_->system, built->system, state_.state.t))
+      throw FmuError(
+          "parameter " + file_->entry().parameters[values.front().first].name +
+          " cannot change so while the simulation runs: unknowns or given motions would be others");
+    built_ = std::move(built);
+    state_.parameters = std::move(all);
+    hand_inputs_on();
+    find_acceleration();
+    return;
+  }
+  // A speed that nobody has set follows the parameters.
+  for (std::size_t i = 0; i < state_.speeds.size(); ++i)
+    if (state_.speed_values[i].value == built_->start_speeds[i])
+      state_.speed_values[i].value = built->start_speeds[i];
+  built_ = std::move(built);
+  state_.parameters = std::move(all);
+  state_.started = false;
+}
+
+void FmuInstance::set_reals(const unsigned* references, const double* values, std::size_t count) {
+  std::vector<std::pair<std::size_t, std::string>> parameters;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FmuVariable& found = settable(references[i], FmuVariable::Type::real);
+    if (!std::isfinite(values[i])) throw FmuError("variable " + found.name + " must be a finite number");
+    if (found.role == FmuVariable::Role::parameter) parameters.emplace_back(found.place, to_text(values[i]));
+  }
+  set_parameters(parameters);
+  for (std::size_t i = 0; i < count; ++i) {
+    const FmuVariable& found = variables_[references[i]];
+    if (found.role == FmuVariable::Role::torque)
+      state_.torque_values[found.place].value = values[i];
+    else if (found.role == FmuVariable::Role::speed)
+      state_.speed_values[found.place].value = values[i];
+  }
+  if (state_.mode != FmuMode::step) state_.started = false;
+}
+
+void FmuInstance::set_integers(const unsigned* references, const int* values, std::size_t count) {
+  std::vector<std::pair<std::size_t, std::string>> parameters;
+  for (std::size_t i = 0; i < count; ++i)
+    parameters.emplace_back(settable(references[i], FmuVariable::Type::integer).place,
+                            std::to_string(values[i]));
+  set_parameters(parameters);
+}
+
+void FmuInstance::set_texts(const unsigned* references, const std::vector<std::string>& values) {
+  std::vector<std::pair<std::size_t, std::string>> parameters;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    parameters.emplace_back(settable(references[i], FmuVariable::Type::text).place, values[i]);
+  set_parameters(parameters);
+}
+
+void FmuInstance::set_input_slopes(const unsigned* references, const double* values, std::size_t count) {
+  for (const bool check : {true, false})
+    for (std::size_t i = 0; i < count; ++i) {
+      const FmuVariable& found = settable(references[i], FmuVariable::Type::real);
+      const bool torque = found.role == FmuVariable::Role::torque;
+      if (!torque && found.role != FmuVariable::Role::speed)
+        throw FmuError("variable " + found.name + " is no input");
+      if (!std::isfinite(values[i])) throw FmuError("the derivative of " + found.name + " must be finite");
+      if (check) continue;
+      (torque ? state_.torque_values : state_.speed_values)[found.place].slope = values[i];
+    }
+}
+
+void FmuInstance::enter_initialization(double t_start, double t_stop, double tolerance) {
+  require(state_.mode == FmuMode::instantiated, "initialization",
+          "begins once, after instantiation or reset");
+  if (!std::isfinite(t_start)) throw FmuError("the start time must be finite");
+  if (!(tolerance == 0.0 ||
+        (tolerance >= ExactOptions::kTolerance.low && tolerance <= ExactOptions::kTolerance.high)))
+    throw FmuError("the tolerance is " + to_text(tolerance) + "; it must be " +
+                   to_text(ExactOptions::kTolerance.low) + " to " + to_text(ExactOptions::kTolerance.high));
+  state_.mode = FmuMode::initialization;
+  state_.t_start = t_start;
+  state_.t_stop = std::isfinite(t_stop) ? t_stop : t_start;
+  state_.tolerance = tolerance;
+  state_.started = false;
+}
+
+void FmuInstance::exit_initialization() {
+  require(state_.mode == FmuMode::initialization, "initialization", "has not begun");
+  if (!state_.started) start();
+  state_.mode = FmuMode::step;
+}
+
+void FmuInstance::terminate() {
+  require(state_.mode == FmuMode::step, "termination", "is of a simulation that runs");
+  state_.mode = FmuMode::terminated;
+}
+
+void FmuInstance::hand_inputs_on() {
+  for (std::size_t i = 0; i < state_.torques.size(); ++i) *built_->torques[i] = state_.torques[i];
+  for (std::size_t i = 0; i < state_.speeds.size(); ++i) *built_->speeds[i] = state_.speeds[i];
+  built_->assembled = std::nan("");
+}
+
+void FmuInstance::start() {
+  for (std::size_t i = 0; i < state_.torques.size(); ++i)
+    state_.torques[i] = {state_.t_start, state_.torque_values[i].value, 0.0};
+  for (std::size_t i = 0; i < state_.speeds.size(); ++i)
+    state_.speeds[i] = {{state_.t_start, state_.speed_values[i].value, 0.0}, built_->start_deviations[i]};
+  hand_inputs_on();
+  const ModelCase& model_case = built_->model_case;
+  if (model_case.start == Start::rest) {
+    state_.state = State::initial(built_->system, state_.t_start);
+  } else {
+    const auto& reference = built_->system.reference();
+    const double speed = built_->system.reference_speed();
+    const bool constant =
+        reference && speed > 0.0 && reference->at(model_case.duration).rate == reference->at(0.0).rate;
+    const FoundStart found =
+        find_start(built_->system, model_case.start,
+                   {.cycle = constant && model_case.static_turn > 0.0 ? model_case.static_turn / speed : 0.0,
+                    .duration = model_case.duration,
+                    .method = {.name = "exact"}});
+    state_.state = State::initial(found.system, state_.t_start);
+  }
+  find_acceleration();
+  state_.started = true;
+}
+
+/// a = M^-1 (p - C v - K z - B y).
+void FmuInstance::find_acceleration() {
+  State& s = state_.state;
+  const System& system = built_->system;
+  built_->assembler.set_time(s.t);
+  Vector p, part, rest = Vector::Zero(system.size());
+  p.setZero(system.size());
+  built_->assembler.external(s.z, s.v, p);
+  built_->assembler.add_scalar_forces(s.z, s.v, rest);
+  built_->assembler.multiply_stiffness(s.z, part);
+  rest += part;
+  built_->assembler.multiply_damping(s.v, part);
+  rest = p - rest - part;
+  SparseCholesky mass;
+  mass.factorize(system.pattern(), system.mass_values());
+  if (!mass.ok()) throw SolverError(system.name() + ": a node without inertia has no acceleration");
+  mass.solve(rest, s.a);
+}
+
+std::string FmuInstance::step(double t, double h) {
+  require(state_.mode == FmuMode::step, "a step", "is made after initialization and before termination");
+  if (!std::isfinite(t) || !std::isfinite(h) || !(h > 0.0))
+    throw FmuError("the communication step must be > 0 and finite; it is " + to_text(h) + " s");
+  const double now = state_.state.t;
+  if (!(std::abs(t - now) <= kSameTime * h + 1e-14 * std::abs(now)))
+    throw FmuError("the communication point is " + to_text(t) + " s, but the last step ended at " +
+                   to_text(now) + " s");
+  if (!(t + h > t)) throw FmuError("a step of " + to_text(h) + " s does not advance the time " + to_text(t));
+  const FmuState before = state_;
+  try {
+    for (std::size_t i = 0; i < state_.torques.size(); ++i)
+      state_.torques[i] = {t, state_.torque_values[i].value, state_.torque_values[i].slope};
+    for (std::size_t i = 0; i < state_.speeds.size(); ++i) {
+      // The motion goes on from where the last step's has come to.
+      const double ratio = built_->original.ratio(built_->original.node(interface_.speeds[i]));
+      const double reached = state_.speeds[i].at(t, ratio, built_->system.reference()).value;
+      state_.speeds[i] = {{t, state_.speed_values[i].value, state_.speed_values[i].slope}, reached};
+    }
+    hand_inputs_on();
+    // The whole simulation's tolerance, shared out over its steps.
+    const double span =
+        state_.t_stop > state_.t_start ? state_.t_stop - state_.t_start : built_->model_case.duration;
+    const double whole = state_.tolerance > 0.0 ? state_.tolerance : kDefaultTolerance;
+    const Range range = ExactOptions::kTolerance;
+    const ExactOptions options{
+        .tolerance = std::clamp(whole * std::min(1.0, h / span), range.low, range.high),
+        .t_start = t,
+        .t_end = t + h};
+    const RunSummary summary = propagate(built_->system, options, state_.state);
+    if (!summary.ok() && summary.status != RunStatus::energy_error) throw SolverError(summary.reason);
+    for (auto* values : {&state_.torque_values, &state_.speed_values})
+      for (InputValue& input : *values) input.slope = 0.0;
+    built_->assembled = std::nan("");
+    return summary.reason;
+  } catch (...) {
+    state_ = before;
+    hand_inputs_on();
+    throw;
+  }
+}
+
+double FmuInstance::output(std::size_t place) {
+  if (!state_.started) start();
+  Built& built = *built_;
+  if (built.assembled != state_.state.t) {
+    built.assembler.set_time(state_.state.t);
+    built.assembled = state_.state.t;
+  }
+  const Output& output = built.outputs[place];
+  if (output.channel) return output.channel->evaluate(built.assembler, state_.state);
+  const MotionPoint q = built.assembler.node_motion(output.node, state_.state);
+  const double n = built.system.ratio(output.node);
+  const MotionPoint& phi = built.assembler.nominal();
+  return output.rate ? q.rate + n * phi.rate : q.value + n * phi.value;
+}
+
+void FmuInstance::set_state(const FmuState& state) {
+  if (state.parameters.size() != state_.parameters.size() || state.torques.size() != state_.torques.size() ||
+      state.speeds.size() != state_.speeds.size() ||
+      state.torque_values.size() != state_.torque_values.size() ||
+      state.speed_values.size() != state_.speed_values.size())
+    throw FmuError("the state is of another model");
+  std::unique_ptr<Built> built;
+  if (state.parameters != state_.parameters) built = build(state.parameters);
+  const System& system = built ? built->system : built_->system;
+  for (const Vector* part : {&state.state.z, &state.state.v, &state.state.a})
+    if (state.started && part->size() != system.size()) throw FmuError("the state is of another model");
+  if (state.started && state.state.history.size() != system.history_size())
+    throw FmuError("the state is of another model");
+  if ((state.mode == FmuMode::step || state.mode == FmuMode::terminated) && !state.started)
+    throw FmuError("the state is none that a simulation can be in");
+  if (built) built_ = std::move(built);
+  state_ = state;
+  hand_inputs_on();
+}
+
+}  // namespace drev::app

@@ -1,0 +1,48 @@
+#pragma once
+/// What both versions of FMI share: the instances that there are, and errors that end at the interface.
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/fmi/fmu_instance.hpp"
+
+/// Exported by the library; everything else is hidden (fmu.map).
+#define DREV_FMI extern "C" __attribute__((visibility("default")))
+
+namespace drev::app {
+
+/// The status codes of both versions.
+enum Status : int { kOk = 0, kWarning = 1, kDiscard = 2, kError = 3, kFatal = 4 };
+
+/// A component that an importer holds a pointer to.
+struct Component {
+  std::unique_ptr<FmuInstance> fmu;
+  std::function<void(Status, const char* category, const std::string&)> log;
+  std::vector<std::string> texts;  ///< what strings handed out point into, until the next such call
+  std::map<void*, std::unique_ptr<FmuState>> states;
+};
+
+/// Makes a component of a folder of resources; null, and a message, where that fails. token: the importer's.
+Component* add_component(const std::string& resources, const std::string& token,
+                         std::function<void(Status, const char*, const std::string&)> log);
+/// Null where the pointer is of no component that there is.
+Component* find_component(void* pointer);
+void remove_component(void* pointer);
+
+/// Does the call; what it throws is logged under the call's name, and an error. An unknown component is one, too.
+Status guard(void* pointer, const char* call, const std::function<Status(Component&)>& body);
+
+/// Get and set of values, and of states, alike in both versions.
+Status get_state(Component& component, void** state);
+Status set_state(Component& component, void* state);
+Status free_state(Component& component, void** state);
+Status state_size(Component& component, void* state, std::size_t* size);
+Status write_state(Component& component, void* state, std::uint8_t* bytes, std::size_t size);
+Status read_state(Component& component, const std::uint8_t* bytes, std::size_t size, void** state);
+/// Throws FmuError where one of the arrays is missing or the sizes differ.
+void check_arrays(const void* references, std::size_t count, const void* values, std::size_t value_count);
+
+}  // namespace drev::app

@@ -1,0 +1,54 @@
+#include "app/fmi/zip_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <minizip/zip.h>
+
+#include "app/base/output_file.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr std::size_t kPart = std::size_t{1} << 24;  // bytes that are handed to minizip at once
+
+}  // namespace
+
+ZipFile::ZipFile(const std::string& path) : path_(path), partial_(partial_path(path)) {
+  std::error_code none;
+  std::filesystem::remove(partial_, none);  // a link would be followed
+  zip_ = zipOpen64(partial_.c_str(), APPEND_STATUS_CREATE);
+  if (zip_ == nullptr) throw OutputError("cannot create " + partial_);
+}
+
+ZipFile::~ZipFile() {
+  if (zip_ == nullptr) return;
+  zipClose(zip_, nullptr);
+  std::error_code none;
+  std::filesystem::remove(partial_, none);
+}
+
+void ZipFile::add(const std::string& name, std::string_view content) {
+  zip_fileinfo info{};
+  info.tmz_date = {0, 0, 0, 1, 0, 1980};  // the same bytes whenever it is written
+  bool good = zipOpenNewFileInZip64(zip_, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED,
+                                    Z_DEFAULT_COMPRESSION, 0) == ZIP_OK;
+  while (good && !content.empty()) {
+    const std::size_t part = std::min(content.size(), kPart);
+    good = zipWriteInFileInZip(zip_, content.data(), static_cast<unsigned>(part)) == ZIP_OK;
+    content.remove_prefix(part);
+  }
+  if (!good || zipCloseFileInZip(zip_) != ZIP_OK)
+    throw OutputError("cannot write " + name + " into " + partial_);
+}
+
+void ZipFile::commit() {
+  const bool closed = zipClose(zip_, nullptr) == ZIP_OK;
+  zip_ = nullptr;
+  if (!closed) throw OutputError("cannot complete " + partial_);
+  std::error_code error;
+  std::filesystem::rename(partial_, path_, error);
+  if (error) throw OutputError("cannot give " + partial_ + " its name: " + error.message());
+}
+
+}  // namespace drev::app

@@ -1,0 +1,86 @@
+#pragma once
+/// What Python asks of a command, and what stands between the two while it computes: the interpreter's lock is
+/// released, Ctrl-C ends the computation in order, and how far it is goes to a callable.
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nanobind/nanobind.h>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/base/interrupt.hpp"
+#include "app/base/progress.hpp"
+#include "app/cli/command_line.hpp"
+
+namespace drev {
+class System;
+}
+
+namespace drev::python {
+
+namespace nb = nanobind;
+
+/// Asks computations to end, from any thread.
+class Stop {
+ public:
+  void set() { asked_ = true; }
+  bool is_set() const { return asked_; }
+
+ private:
+  std::atomic<bool> asked_ = false;
+};
+
+struct Request {
+  std::string command;              ///< as on the command line: "run"
+  std::string model = {};           ///< name or file; of a model made in Python, its name
+  std::optional<std::string> text;  ///< the model file of a model made in Python
+  std::vector<std::pair<std::string, std::string>> parameters = {};
+  std::map<std::string, std::vector<std::string>> options = {};
+  nb::object told = nb::none();  ///< called with (part, seconds left); none: progress goes to the terminal
+  std::shared_ptr<Stop> stop = {};
+
+  app::CommandLine line() const;
+};
+
+/// While it lives, computations of this thread ask Python for signals, and tell it how far they are.
+class Watch {
+ public:
+  explicit Watch(const Request& request);
+  ~Watch();
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+  /// Ended by Ctrl-C or by Stop. A signal handler of Python that raised something else has it raised here.
+  bool stopped();
+  /// Ends what this thread computes, as Ctrl-C does; false: it computes nothing.
+  static bool stop_current();
+
+ private:
+  bool asked();
+  void tell(double part, double left);
+
+  using Clock = std::chrono::steady_clock;
+  nb::object told_;
+  std::shared_ptr<Stop> stop_;
+  std::optional<nb::python_error> raised_;
+  bool stopped_ = false;
+  Clock::time_point asked_at_ = {};
+  Watch* before_;
+  app::InterruptSource source_;
+  std::optional<app::ProgressListener> listener_;
+};
+
+/// The undamped modes of a model that was built.
+nb::object modes_of(const System& system, std::optional<int> count, const std::string& contact);
+
+/// Errors of C++ as those of drev._errors.
+void bind_errors(nb::module_& module);
+void bind_commands(nb::module_& module);
+void bind_run(nb::module_& module);
+void bind_modes(nb::module_& module);
+void bind_system(nb::module_& module);
+void bind_callables(nb::module_& module);
+
+}  // namespace drev::python

@@ -1,0 +1,157 @@
+"""Modes as NumPy arrays on drev's own memory, read-only."""
+from functools import cached_property
+
+
+class _Table:
+    """The rows of a table as a DataFrame, HTML and text."""
+
+    def _columns(self):
+        raise NotImplementedError
+
+    def to_pandas(self):
+        """A pandas.DataFrame, a row a mode."""
+        import pandas
+
+        columns = self._columns()
+        return pandas.DataFrame(columns, index=pandas.RangeIndex(1, len(self) + 1, name="mode"))
+
+    def _rows(self):
+        columns = self._columns()
+        return list(columns), [[f"{v:.7g}" for v in row] for row in zip(*columns.values())]
+
+    def __str__(self):
+        names, rows = self._rows()
+        rows = [["mode"] + names] + [[str(i)] + row for i, row in enumerate(rows, 1)]
+        widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
+        return "\n".join("  ".join(cell.rjust(w) for cell, w in zip(row, widths)) for row in rows)
+
+    def _repr_html_(self):
+        names, rows = self._rows()
+        head = "".join(f"<th>{name}</th>" for name in ["mode"] + names)
+        body = "".join(
+            f"<tr><td>{i}</td>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for i, row in enumerate(rows, 1)
+        )
+        return f"<table><tr>{head}</tr>{body}</table>"
+
+
+class Modes(_Table):
+    """Undamped elastic modes K x = omega^2 M x, contacts in the state `contact`."""
+
+    def __init__(self, handle):
+        self._handle = handle
+        self.model = handle.model
+        #: modes with 0 Hz, not among those below
+        self.rigid_modes = handle.rigid_modes
+        self.contact = handle.contact
+        #: how they were found, in a line
+        self.how = handle.how
+        #: rows of `shapes`
+        self.nodes = handle.nodes
+
+    @cached_property
+    def frequency_Hz(self):
+        """Ascending."""
+        return self._handle.frequency_Hz
+
+    @cached_property
+    def error_Hz(self):
+        """What rounding leaves, of each."""
+        return self._handle.error_Hz
+
+    @cached_property
+    def shapes(self):
+        """nodes x modes; x' M x = 1, the entry of largest magnitude is positive."""
+        return self._handle.shapes
+
+    def _columns(self):
+        return {"frequency_Hz": self.frequency_Hz, "error_Hz": self.error_Hz}
+
+    def __len__(self):
+        return len(self.frequency_Hz)
+
+    def plot(self, *modes, backend="matplotlib", **more):
+        """Shapes over the nodes; modes: numbers from 1, default: the first four."""
+        from . import _plots
+
+        return _plots.modes(self, modes, backend, **more)
+
+    def __repr__(self):
+        return f"<drev.Modes of {self.model}: {len(self)} elastic, {self.rigid_modes} rigid, contacts {self.contact}>"
+
+
+class DampedModes(_Table):
+    """Damped modes (lambda^2 M + lambda C + K) x = 0, those that swing."""
+
+    def __init__(self, handle):
+        self._handle = handle
+        self.model = handle.model
+        self.rigid_modes = handle.rigid_modes
+        self.contact = handle.contact
+        #: rows of `shapes`
+        self.nodes = handle.nodes
+        #: rows of kinetic, elastic and dissipated
+        self.elements = handle.elements
+
+    @cached_property
+    def eigenvalues(self):
+        """lambda [1/s], Im > 0."""
+        return self._handle.eigenvalues
+
+    @cached_property
+    def frequency_Hz(self):
+        """Im lambda / (2 pi)."""
+        return self._handle.frequency_Hz
+
+    @cached_property
+    def natural_frequency_Hz(self):
+        """|lambda| / (2 pi)."""
+        return self._handle.natural_frequency_Hz
+
+    @cached_property
+    def damping_ratio(self):
+        """-Re lambda / |lambda|."""
+        return self._handle.damping_ratio
+
+    @cached_property
+    def real_eigenvalues(self):
+        """Of rigid motions' speeds and overdamped modes [1/s]."""
+        return self._handle.real_eigenvalues
+
+    @cached_property
+    def shapes(self):
+        """nodes x modes, complex; the entry of largest magnitude is 1."""
+        return self._handle.shapes
+
+    @property
+    def kinetic(self):
+        """Share of each element in each mode's kinetic energy: elements x modes."""
+        return self._handle.energy("kinetic")
+
+    @property
+    def elastic(self):
+        """Share in the elastic energy."""
+        return self._handle.energy("elastic")
+
+    @property
+    def dissipated(self):
+        """Share in the heat of a cycle."""
+        return self._handle.energy("dissipated")
+
+    def _columns(self):
+        return {
+            "frequency_Hz": self.frequency_Hz,
+            "undamped_Hz": self.natural_frequency_Hz,
+            "damping_ratio": self.damping_ratio,
+        }
+
+    def __len__(self):
+        return len(self.frequency_Hz)
+
+    def plot(self, *modes, backend="matplotlib", **more):
+        """Amplitudes of the shapes over the nodes; modes: numbers from 1, default: the first four."""
+        from . import _plots
+
+        return _plots.modes(self, modes, backend, **more)
+
+    def __repr__(self):
+        return f"<drev.DampedModes of {self.model}: {len(self)}, contacts {self.contact}>"

@@ -1,0 +1,81 @@
+"""The equation of motion of a model, evaluated from Python."""
+import numpy as np
+
+from ._modes import Modes
+
+
+class System:
+    """M z'' = force(t, z, z'): what Model.build() gives.
+
+    z are deviations from the nominal motion [rad or m] of the unknowns, in the order of `unknowns`; prescribed nodes
+    and ideal gears are eliminated. One thread at a time may evaluate one System.
+    """
+
+    def __init__(self, handle, keep=None):
+        self._handle = handle
+        self._keep = keep
+        #: number of unknowns
+        self.size = handle.size
+
+    @property
+    def unknowns(self):
+        """A node that stands for each unknown."""
+        return self._handle.unknowns
+
+    @property
+    def nodes(self):
+        """The names of all nodes."""
+        return self._handle.node_names
+
+    @property
+    def channels(self):
+        """(name, unit) of every channel."""
+        return self._handle.channels
+
+    @property
+    def breakpoints(self):
+        """Times at which a load or known motion jumps or kinks [s]: integrate from one to the next."""
+        return self._handle.breakpoints
+
+    @property
+    def initial(self):
+        """Deviations and rates at the start."""
+        return self._handle.initial
+
+    def force(self, t, deviations, rates, out=None):
+        """p - C z' - K z less the laws' forces [N m or N], at time t [s]. float64 arrays of `size` entries; `out` is
+        filled and returned."""
+        if out is None:
+            out = np.empty(self.size)
+        self._handle.force(t, deviations, rates, out)
+        return out
+
+    def acceleration(self, t, deviations, rates, out=None):
+        """z'' = M^-1 force [rad/s2 or m/s2]. Raises SolverError where a node has no inertia."""
+        if out is None:
+            out = np.empty(self.size)
+        self._handle.acceleration(t, deviations, rates, out)
+        return out
+
+    def modes(self, count=None, contact="closed"):
+        """Undamped modes, as ModelCase.modes() gives them: drev.Modes. The model is not built anew."""
+        return Modes(self._handle.modes(count, contact))
+
+    def matrix(self, which, sparse=None):
+        """ "mass", "damping" or "stiffness": constant matrices over the unknowns, laws and loads not in them.
+
+        sparse: True: scipy.sparse.csc_matrix, on drev's memory; False: a NumPy array; None: sparse above 500 unknowns.
+        """
+        if which not in ("mass", "damping", "stiffness"):
+            raise ValueError(f"which must be mass, damping or stiffness, not {which!r}")
+        values, rows, starts = self._handle.matrix(which)
+        if self.size > 500 if sparse is None else sparse:
+            from scipy.sparse import csc_matrix
+
+            return csc_matrix((values, rows, starts), shape=(self.size, self.size))
+        full = np.zeros((self.size, self.size))
+        full[rows, np.repeat(np.arange(self.size), np.diff(starts))] = values
+        return full
+
+    def __repr__(self):
+        return f"<drev.System of {self.size} unknowns>"

@@ -1,0 +1,298 @@
+// The second part of FrictionSeries: when a contact sticks or slides, along an expanded step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/contact/box_complementarity.hpp"
+#include "solvers/contact/roots.hpp"
+#include "solvers/exact/friction_series.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNothing = 1e-13;   // of the terms that a coefficient is summed from: rounding
+constexpr double kOnBound = 1e-11;   // of what a contact can hold
+constexpr double kSameSlope = 1e-9;  // of derivatives: rounding
+constexpr double kSlack = 4.0;    // of the difference between two forces that are the same but for rounding
+constexpr double kLeast = 4e-15;  // of a bound's own terms at s = 0, for its higher coefficients
+
+/// int_0^s a(s) b(s) ds.
+double integral_of_product(const std::vector<double>& a, const double* b, std::size_t terms_b, double s) {
+  double sum = 0.0, s_j = s;
+  for (std::size_t j = 0; j < a.size(); ++j, s_j *= s) {
+    if (a[j] == 0.0) continue;
+    double s_k = s_j;
+    for (std::size_t k = 0; k < terms_b; ++k, s_k *= s)
+      sum += a[j] * b[k] * s_k / static_cast<double>(j + k + 1);
+  }
+  return sum;
+}
+
+}  // namespace
+
+void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
+  const auto terms = idx(series.degree());
+  const double r = series.step() / h_;
+  for (Contact& c : contacts_) {
+    c.torque.resize(terms - 1);
+    c.slip.resize(terms);
+    c.slip_size.resize(terms);
+    double power = 1.0;
+    for (std::size_t d = 0; d < terms; ++d, power *= r) {
+      if (d + 1 < terms) c.torque[d] *= power;
+      if (d < 2) c.capacity[d] *= power, c.known[d] *= power;
+      double sum = 0.0, size = 0.0;
+      for (const Entry& e : c.z) {
+        const double part = e.coeff * series.coefficient(static_cast<int>(d) + 1, e.index);
+        sum += part;
+        size += std::abs(part);
+      }
+      const double rate = static_cast<double>(d + 1) / series.step();
+      c.slip[d] = rate * sum + (d < 2 ? c.known[d] : 0.0);
+      c.slip_size[d] = rate * size + (d < 2 ? std::abs(c.known[d]) : 0.0);
+      if (c.stuck || c.tied) c.slip[d] = 0.0;
+    }
+  }
+  h_ = series.step();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& c = contacts_[i];
+    c.acceleration_slack = c.speed_rounding;
+    if (c.root && from.a.allFinite()) {
+      double differs = 0.0;
+      for (const Entry& e : c.z)
+        differs += e.coeff * (2.0 / (h_ * h_) * series.coefficient(2, e.index) - from.a[e.index]);
+      c.acceleration_slack += kSlack * std::abs(differs);
+    }
+    c.acceleration_slack *= patience_;
+    find_bounds(i);
+  }
+}
+
+void FrictionSeries::find_bounds(std::size_t i) {
+  Contact& c = contacts_[i];
+  c.bounds.clear();
+  if (c.open || c.tied) return;
+  using What = Change::What;
+  if (c.stuck) {
+    const Limits most = limits(i, false);
+    for (const What what : {What::bound_high, What::bound_low}) {
+      const double side = what == What::bound_high ? 1.0 : -1.0, limit = side > 0.0 ? most.high : -most.low;
+      if (!std::isfinite(limit)) continue;
+      std::vector<double> g(std::max<std::size_t>(2, c.torque.size()), 0.0);
+      for (std::size_t d = 0; d < c.torque.size(); ++d) g[d] = -side * c.torque[d];
+      std::vector<double> size(g.size());
+      for (std::size_t d = 0; d < g.size(); ++d) size[d] = std::abs(g[d]);
+      for (std::size_t d = 0; d < 2; ++d) {
+        g[d] += limit * c.capacity[d];
+        size[d] += std::abs(limit * c.capacity[d]);
+      }
+      const bool on_it = c.root && c.root_bound == static_cast<int>(side);
+      const double zero = kOnBound * size[0] + c.torque_rounding;
+      c.bounds.push_back({what, std::move(g)});
+      clean(c.bounds.back(), size, zero, 0.0, on_it);
+    }
+    return;
+  }
+  std::vector<double> g(c.slip);
+  for (double& x : g) x *= c.sign;
+  const double zero = kNothing * std::max(c.slip_size[0], speed_scale_);
+  c.bounds.push_back({What::slip_ends, g});
+  clean(c.bounds.back(), c.slip_size, zero, c.acceleration_slack * h_, c.root);
+  const std::vector<double>& speeds = law(i).slip_speeds();
+  if (law(i).one_way() || speeds.size() < 2) return;
+  const auto add_knot = [&](What what, double speed) {
+    std::vector<double> bound(g);
+    bound[0] -= speed;
+    if (what == What::knot_above)
+      for (double& x : bound) x = -x;
+    c.bounds.push_back({what, std::move(bound)});
+    clean(c.bounds.back(), c.slip_size, kNothing * (c.slip_size[0] + speed), c.acceleration_slack * h_,
+          false);
+  };
+  if (c.segment > 0) add_knot(What::knot_below, speeds[idx(c.segment)]);
+  if (idx(c.segment) + 1 < speeds.size()) add_knot(What::knot_above, speeds[idx(c.segment) + 1]);
+}
+
+/// Coefficients that are rounding become zero: the first within `zero` (or any where on_it), the second within
+/// `first`.
+void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double zero, double first,
+                           bool on_it) {
+  std::vector<double>& g = bound.g;
+  bound.falls = -1;
+  if (!on_it && g[0] > zero) return;
+  if (!on_it && g[0] < -zero) {
+    bound.falls = 0;
+    return;
+  }
+  g[0] = 0.0;
+  for (std::size_t d = 1; d < g.size(); ++d) {
+    const double rounding = std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
+    if (std::abs(g[d]) > rounding) {
+      if (g[d] < 0.0) bound.falls = static_cast<int>(d);
+      return;
+    }
+    g[d] = 0.0;
+  }
+}
+
+std::optional<FrictionSeries::Change> FrictionSeries::change_at_once() const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    for (const Bound& b : contacts_[i].bounds)
+      if (b.falls >= 0) return Change{0.0, static_cast<int>(i), b.what, b.falls};
+  return std::nullopt;
+}
+
+std::optional<FrictionSeries::Change> FrictionSeries::first_change(double end) const {
+  std::optional<Change> first;
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    for (const Bound& b : contacts_[i].bounds)
+      if (const auto s = first_crossing(b.g, end)) {
+        first = Change{*s, static_cast<int>(i), b.what, 0};
+        end = *s;
+      }
+  return first;
+}
+
+double FrictionSeries::beyond_end(const Change& change) const {
+  for (const Bound& b : contacts_[idx(change.contact)].bounds)
+    if (b.what == change.what) return -polynomial_value(b.g, 1.0) / polynomial_slope(b.g, 1.0);
+  return 1.0;
+}
+
+bool FrictionSeries::pass(const Change& change, const Assembler& assembler, EvaluatedState& point) {
+  using What = Change::What;
+  Contact& c = contacts_[idx(change.contact)];
+  if (change.what == What::knot_above || change.what == What::knot_below) {
+    c.segment += change.what == What::knot_above ? 1 : -1;
+    return false;
+  }
+  const bool bound = change.what != What::slip_ends;
+  const int order = bound ? change.order : std::max(0, change.order - 1);
+  if (bound && change.s > 0.0) {  // the series behind it tells by its derivatives
+    c.root = true;
+    c.root_bound = change.what == What::bound_high ? 1 : -1;
+    return false;
+  }
+  if (change.s == 0.0) patience_ *= 2.0;
+  bool breaks_away = false;
+  if (change.s == 0.0 && order > 0) {
+    std::vector<char> rested(contacts_.size(), 0);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) rested[i] = contacts_[i].stuck || contacts_[i].tied;
+    pass_derivative(change, order, point);
+    Contact* first = nullptr;  // of those that break away; the others are asked again
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      Contact& other = contacts_[i];
+      if (!rested[i] || other.stuck || other.tied || law(i).one_way() || law(i).break_away() == 1.0) continue;
+      if (!first || static_cast<int>(i) == change.contact) first = &other;
+    }
+    breaks_away = first != nullptr;
+    if (first) first->loose = true;
+    if (!breaks_away) return false;
+  }
+  std::vector<char> at_rest(contacts_.size(), 0);
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    at_rest[i] = contacts_[i].stuck || contacts_[i].tied || (contacts_[i].root && !contacts_[i].open);
+  if (!breaks_away) at_rest[idx(change.contact)] = 1;
+  resolve(assembler, point, at_rest);
+  return true;
+}
+
+void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedState& point) {
+  const auto level = idx(order);
+  std::vector<std::size_t> of;
+  std::vector<int> sides;  // bits: 1 near the high bound, 2 near the low one
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& c = contacts_[i];
+    const bool chosen = static_cast<int>(i) == change.contact;
+    int near = 0;
+    if (c.open) continue;
+    if (c.tied) {
+      near = c.sign > 0 ? 1 : 2;
+    } else if (c.stuck) {
+      for (const Bound& b : c.bounds) {
+        bool zero = chosen && b.what == change.what;
+        if (!zero) zero = std::all_of(b.g.begin(), b.g.begin() + order, [](double x) { return x == 0.0; });
+        if (zero) near |= b.what == Change::What::bound_high ? 1 : 2;
+      }
+    } else {
+      const std::vector<double>& g = c.bounds.front().g;  // of the slip speed
+      const bool zero = std::all_of(g.begin(), g.begin() + order + 1, [](double x) { return x == 0.0; });
+      if (!chosen && !zero) continue;
+      near = c.sign > 0 ? 1 : 2;
+    }
+    of.push_back(i);
+    sides.push_back(near);
+  }
+  const auto m = static_cast<Eigen::Index>(of.size());
+  const std::vector<Eigen::Index> rows(of.begin(), of.end());
+  BoxComplementarity problem{.w = w_(rows, rows),
+                             .r = Vector(m),
+                             .low = Vector::Constant(m, -kInfinity),
+                             .high = Vector::Constant(m, kInfinity),
+                             .rounding = Vector(m),
+                             .free = std::vector<char>(of.size(), 0)};
+  Vector torque(m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const Contact& c = contacts_[of[static_cast<std::size_t>(k)]];
+    torque[k] = level < c.torque.size() ? c.torque[level] : 0.0;
+    problem.r[k] = static_cast<double>(order + 1) / h_ * c.slip[level + 1];
+    const Limits most = limits(of[static_cast<std::size_t>(k)], false);
+    const double g = level < 2 ? c.capacity[level] : 0.0;
+    const int near = sides[static_cast<std::size_t>(k)];
+    if (near & 1) problem.high[k] = g == 0.0 ? 0.0 : g * most.high;
+    if (near & 2) problem.low[k] = g == 0.0 ? 0.0 : g * most.low;
+    problem.free[static_cast<std::size_t>(k)] = near == 0;
+  }
+  problem.r += problem.w * torque;
+  const double largest = torque.lpNorm<Eigen::Infinity>();
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const bool chosen = static_cast<int>(of[static_cast<std::size_t>(k)]) == change.contact;
+    const double own = problem.w.row(k).cwiseAbs().dot(torque.cwiseAbs());
+    const double all = problem.w.row(k).lpNorm<1>() * largest;
+    problem.rounding[k] = patience_ * kSameSlope * (std::abs(problem.r[k]) + (chosen ? own : all));
+  }
+  const BoxSolution found = solve(problem);
+  stuck_.clear();
+  take(of, found, problem);
+  factor_stuck();
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    point.state.history[system_.frictions()[i].history_begin + FrictionHistory::kState] =
+        static_cast<int>(state(static_cast<int>(i)));
+}
+
+void FrictionSeries::forget_roots() {
+  for (Contact& c : contacts_) c.root = c.loose = false;
+  patience_ = 1.0;
+}
+
+double FrictionSeries::heat(const Contact& c, double s) const {
+  if (c.open || c.stuck || c.tied) return 0.0;
+  return h_ * integral_of_product(c.torque, c.slip.data(), c.slip.size(), s);
+}
+
+double FrictionSeries::dissipated(double s) const {
+  double sum = 0.0;
+  for (const Contact& c : contacts_) sum += heat(c, s);
+  return sum;
+}
+
+double FrictionSeries::input(double s) const {
+  double sum = 0.0;
+  for (const Contact& c : contacts_)
+    if (c.known[0] != 0.0 || c.known[1] != 0.0)
+      sum += h_ * integral_of_product(c.torque, c.known.data(), 2, s);
+  return sum;
+}
+
+void FrictionSeries::write(double s, const Vector& start, Vector& history) const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const int begin = system_.frictions()[i].history_begin;
+    history[begin + FrictionHistory::kTorque] = polynomial_value(contacts_[i].torque, s);
+    history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
+    history[begin + FrictionHistory::kHeat] = start[begin + FrictionHistory::kHeat] + heat(contacts_[i], s);
+  }
+}
+
+}  // namespace drev

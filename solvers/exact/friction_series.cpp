@@ -1,0 +1,374 @@
+#include "solvers/exact/friction_series.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/contact/box_complementarity.hpp"
+#include "solvers/run/run_verdict.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kAtRest = 1e-13;  // of the speeds that a slip speed is summed from, or the largest so far
+constexpr double kLocked = 1e-9;   // the same of a freewheel that rounding turns backward
+constexpr double kNoAcceleration = 1e-12;  // of the terms that a slip acceleration is summed from
+constexpr double kSumRounding = 1e-14;     // of a sum, relative to its terms
+constexpr double kDependent = 1e-10;       // of W_ii: what the stuck contacts leave of it
+
+double value_of(const std::vector<Entry>& row, const double* x) {
+  double sum = 0.0;
+  for (const Entry& e : row) sum += e.coeff * x[e.index];
+  return sum;
+}
+
+double size_of(const std::vector<Entry>& row, const double* x) {
+  double sum = 0.0;
+  for (const Entry& e : row) sum += std::abs(e.coeff * x[e.index]);
+  return sum;
+}
+
+void add_entry(std::vector<Entry>& row, int index, double coeff) {
+  for (Entry& e : row)
+    if (e.index == index) {
+      e.coeff += coeff;
+      return;
+    }
+  row.push_back({index, coeff});
+}
+
+/// |K| |z| + |C| |v| + |p|: the terms that forces are summed from.
+Vector force_sizes(const System& system, const EvaluatedState& point) {
+  Vector size = point.p.cwiseAbs();
+  const SparseMatrix& pattern = system.pattern();
+  for (int j = 0; j < pattern.cols(); ++j)
+    for (int s = pattern.outerIndexPtr()[j]; s < pattern.outerIndexPtr()[j + 1]; ++s)
+      size[pattern.innerIndexPtr()[s]] += std::abs(system.stiffness_values()[s] * point.state.z[j]) +
+                                          std::abs(system.damping_values()[s] * point.state.v[j]);
+  for (std::size_t j = 0; j < system.scalars().size(); ++j)
+    for (const Entry& e : system.scalars()[j].z) size[e.index] += std::abs(e.coeff * point.responses[j].y);
+  return size;
+}
+
+}  // namespace
+
+FrictionSeries::FrictionSeries(const System& system) : system_(system) {
+  if (system.frictions().empty()) return;
+  TaylorSeries series(system);
+  for (const FrictionTerm& term : system.frictions()) {
+    Contact c;
+    for (const Entry& e : term.nodes) {
+      const NodeMap& map = system.node_map(e.index);
+      for (const Entry& z : system.row_of(e.index)) add_entry(c.z, z.index, e.coeff * z.coeff);
+      if (map.prescribed >= 0) add_entry(c.u, map.prescribed, e.coeff * map.coeff);
+      c.nominal += e.coeff * system.ratio(e.index);
+    }
+    Vector row = Vector::Zero(system.size()), gain;
+    for (const Entry& e : c.z) row[e.index] = e.coeff;
+    series.solve_mass(row, gain);
+    for (int k = 0; k < system.size(); ++k)
+      if (gain[k] != 0.0) c.gain.push_back({k, gain[k]});
+    c.torque.assign(TaylorSeries::kMaxDegree + 1, 0.0);
+    c.slip = c.slip_size = c.torque;
+    contacts_.push_back(std::move(c));
+  }
+  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  w_.resize(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Vector column = Vector::Zero(system.size());
+    for (const Entry& e : contacts_[static_cast<std::size_t>(j)].gain) column[e.index] = e.coeff;
+    for (Eigen::Index i = 0; i < n; ++i)
+      w_(i, j) = value_of(contacts_[static_cast<std::size_t>(i)].z, column.data());
+  }
+  w_ = (0.5 * (w_ + w_.transpose())).eval();
+}
+
+double FrictionSeries::slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const {
+  double w = value_of(c.z, v.data()) + c.nominal * assembler.nominal().rate;
+  for (const Entry& e : c.u) w += e.coeff * assembler.prescribed(e.index).rate;
+  return w;
+}
+
+FrictionSeries::Limits FrictionSeries::limits(std::size_t i, bool loose) const {
+  if (law(i).one_way()) return {-kInfinite, 0.0};
+  const double torque = law(i).sliding_torques().front();
+  const double most = loose ? torque : torque * law(i).break_away();
+  return {-most, most};
+}
+
+void FrictionSeries::find_segment(std::size_t i, double slip) {
+  const std::vector<double>& speeds = law(i).slip_speeds();
+  const auto above = std::upper_bound(speeds.begin() + 1, speeds.end(), std::abs(slip));
+  contacts_[i].segment = static_cast<int>(above - speeds.begin()) - 1;
+}
+
+namespace {
+
+/// tau(|w|) = at_zero + slope |w| on a segment of the table.
+struct SlidingLine {
+  double at_zero = 0.0, slope = 0.0;
+};
+
+SlidingLine sliding_line(const Friction& law, int segment) {
+  if (law.one_way()) return {};
+  const std::vector<double>&v = law.slip_speeds(), &torque = law.sliding_torques();
+  const auto k = idx(segment);
+  if (k + 1 >= v.size()) return {torque[k], 0.0};
+  const double slope = (torque[k + 1] - torque[k]) / (v[k + 1] - v[k]);
+  return {torque[k] - slope * v[k], slope};
+}
+
+}  // namespace
+
+double FrictionSeries::sliding(std::size_t i, double slip) const {
+  const SlidingLine line = sliding_line(law(i), contacts_[i].segment);
+  return contacts_[i].capacity[0] * (contacts_[i].sign * line.at_zero + line.slope * slip);
+}
+
+FrictionState FrictionSeries::state(int contact) const {
+  const Contact& c = contacts_[idx(contact)];
+  if (c.open) return FrictionState::open;
+  if (c.stuck || c.tied) return FrictionState::stuck;
+  return c.sign > 0 ? FrictionState::forward : FrictionState::backward;
+}
+
+void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
+  std::vector<char> at_rest(contacts_.size(), 0);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& c = contacts_[i];
+    c.loose = c.root = false;
+    at_rest[i] = c.stuck || c.tied;
+  }
+  resolve(assembler, point, at_rest);
+}
+
+void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
+                             const std::vector<char>& at_rest) {
+  const auto n = contacts_.size();
+  Vector others = point.total;
+  for (std::size_t i = 0; i < n; ++i)
+    for (const Entry& e : contacts_[i].z)
+      others[e.index] -=
+          e.coeff * point.state.history[system_.frictions()[i].history_begin + FrictionHistory::kTorque];
+  const Vector sizes = force_sizes(system_, point);
+  Vector acceleration(static_cast<Eigen::Index>(n)), torque = Vector::Zero(static_cast<Eigen::Index>(n));
+  std::vector<std::size_t> resting;
+  if (point.state.v.size() > 0)
+    speed_scale_ = std::max(speed_scale_, point.state.v.lpNorm<Eigen::Infinity>());
+  for (std::size_t i = 0; i < n; ++i) {
+    Contact& c = contacts_[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    const Friction::Engagement g = law(i).engagement(assembler.time());
+    c.capacity = {g.value, g.slope};
+    acceleration[row] = -value_of(c.gain, others.data()) + c.nominal * assembler.nominal().acceleration;
+    for (const Entry& e : c.u) acceleration[row] += e.coeff * assembler.prescribed(e.index).acceleration;
+    c.speed_rounding = patience_ * kSumRounding * size_of(c.gain, sizes.data());
+    c.torque_rounding = c.speed_rounding / w_(row, row);
+    const double slip = slip_of(c, assembler, point.state.v);
+    double size = size_of(c.z, point.state.v.data()) + std::abs(c.nominal * assembler.nominal().rate);
+    for (const Entry& e : c.u) size += std::abs(e.coeff * assembler.prescribed(e.index).rate);
+    c.open = g.value == 0.0 && g.slope == 0.0 && !law(i).one_way();
+    c.stuck = c.tied = false;
+    if (c.open) continue;
+    const bool locks = law(i).one_way() && slip < 0.0 && slip >= -kLocked * size;
+    if (at_rest[i] || locks || std::abs(slip) <= kAtRest * std::max(size, speed_scale_)) {
+      resting.push_back(i);
+      c.segment = 0;
+      continue;
+    }
+    c.root = false;
+    c.sign = slip > 0.0 ? 1 : -1;
+    if (c.sign < 0 && law(i).one_way())
+      throw SolverError(at_time(system_.name(), assembler.time()) + "freewheel " +
+                        system_.element_instances()[idx(index(element(static_cast<int>(i))))].name +
+                        " turns in the direction that it locks, at " + to_text(slip) +
+                        " rad/s: the speeds at the start must fit it");
+    find_segment(i, slip);
+    torque[row] = sliding(i, slip);
+  }
+  acceleration -= w_ * torque;
+  const auto m = static_cast<Eigen::Index>(resting.size());
+  std::vector<Eigen::Index> of(resting.begin(), resting.end());
+  BoxComplementarity problem{.w = w_(of, of),
+                             .r = acceleration(of),
+                             .low = Vector::Zero(m),
+                             .high = Vector::Zero(m),
+                             .rounding = Vector::Zero(m)};
+  BoxSolution found;
+  for (bool settled = false; !settled;) {
+    for (Eigen::Index k = 0; k < m; ++k) {
+      const std::size_t i = resting[static_cast<std::size_t>(k)];
+      const Limits most = limits(i, contacts_[i].loose);
+      const double g = contacts_[i].capacity[0];
+      problem.low[k] = law(i).one_way() ? most.low : g * most.low;
+      problem.high[k] = g * most.high;
+      problem.rounding[k] = contacts_[i].speed_rounding + kNoAcceleration * std::abs(problem.r[k]);
+      for (Eigen::Index j = 0; j < m; ++j) {
+        const std::size_t o = resting[static_cast<std::size_t>(j)];
+        const double other = contacts_[o].capacity[0] * limits(o, false).high;
+        problem.rounding[k] += kNoAcceleration * std::abs(problem.w(k, j) * other);
+      }
+    }
+    if (m > 0) found = solve(problem);
+    // One breaks away at a time, the fastest: what it then carries is less, and the others are asked again.
+    Contact* fastest = nullptr;
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < m; ++k) {
+      Contact& c = contacts_[resting[static_cast<std::size_t>(k)]];
+      const Friction& friction = law(resting[static_cast<std::size_t>(k)]);
+      if (c.loose || friction.one_way() || friction.break_away() == 1.0) continue;
+      if (std::abs(found.a[k]) <= std::max(problem.rounding[k], largest)) continue;
+      largest = std::abs(found.a[k]);
+      fastest = &c;
+    }
+    settled = fastest == nullptr;
+    if (fastest) fastest->loose = true;
+  }
+  stuck_.clear();
+  if (m > 0) take(resting, found, problem);
+  factor_stuck();
+  for (Eigen::Index k = 0; k < m; ++k) torque[of[static_cast<std::size_t>(k)]] = found.lambda[k];
+  for (std::size_t i = 0; i < n; ++i) {
+    const int begin = system_.frictions()[i].history_begin;
+    point.state.history[begin + FrictionHistory::kTorque] = torque[static_cast<Eigen::Index>(i)];
+    point.state.history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
+  }
+}
+
+void FrictionSeries::take(const std::vector<std::size_t>& of, const BoxSolution& solution,
+                          const BoxComplementarity& problem) {
+  for (const bool between : {true, false})
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if ((solution.free[k] != 0) != between) continue;
+      const auto row = static_cast<Eigen::Index>(k);
+      Contact& c = contacts_[of[k]];
+      c.root = true;
+      c.stuck = c.tied = false;
+      const double a = solution.a[row];
+      const bool at_high = solution.lambda[row] == problem.high[row];
+      if (!between && std::abs(a) > problem.rounding[row]) {
+        c.sign = a > 0.0 ? 1 : -1;
+        c.segment = 0;
+        continue;
+      }
+      c.root_bound = between ? 0 : at_high ? 1 : -1;
+      c.sign = at_high ? 1 : -1;
+      factor_stuck();
+      c.tied = !between && depends_on_stuck(of[k]);
+      c.stuck = !c.tied;
+      const Limits most = limits(of[k], c.loose);
+      c.bound = at_high ? most.high : most.low;
+      if (c.stuck) stuck_.push_back(of[k]);
+    }
+}
+
+bool FrictionSeries::depends_on_stuck(std::size_t i) const {
+  const auto row = static_cast<Eigen::Index>(i);
+  if (stuck_.empty()) return false;
+  const std::vector<Eigen::Index> s(stuck_.begin(), stuck_.end());
+  const Vector column = w_(s, row);
+  return w_(row, row) - column.dot(stuck_inverse_ * column) <= kDependent * w_(row, row);
+}
+
+void FrictionSeries::factor_stuck() {
+  if (stuck_.empty()) return;
+  const std::vector<Eigen::Index> s(stuck_.begin(), stuck_.end());
+  const Eigen::MatrixXd w = w_(s, s);
+  stuck_inverse_ = w.ldlt().solve(Eigen::MatrixXd::Identity(w.rows(), w.cols()));
+}
+
+void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, double t, double h) {
+  h_ = h;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& c = contacts_[i];
+    const Friction::Engagement g = law(i).engagement(t);
+    c.capacity = {g.value, g.slope * h};
+    c.known = {c.nominal * known.nominal()[1] / h, 2.0 * c.nominal * known.nominal()[2] / h};
+    for (const Entry& e : c.u)
+      for (std::size_t k = 0; k < 2; ++k)
+        c.known[k] += static_cast<double>(k + 1) / h * e.coeff * known.prescribed(e.index)[k + 1];
+    if (c.open || c.stuck || c.tied) continue;
+    const double slope = sliding_line(law(i), c.segment).slope;
+    if (slope != 0.0)
+      series.widen_damping(std::abs(slope) * std::max(g.value, g.value + g.slope * h) *
+                           w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+  }
+}
+
+void FrictionSeries::add(const TaylorSeries& series, int k, double factor, double* term) {
+  const auto d = idx(k - 2);
+  const auto apply = [&](const Contact& c, double torque) {
+    for (const Entry& e : c.gain) term[e.index] -= factor * e.coeff * torque;
+  };
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& c = contacts_[i];
+    if (d >= c.torque.size()) c.torque.resize(d + 1);
+    if (d >= c.slip.size()) c.slip.resize(d + 1);
+    c.torque[d] = 0.0;
+    if (c.open || c.stuck) continue;
+    const double g = d < 2 ? c.capacity[d] : 0.0;
+    if (c.tied) {
+      c.torque[d] = g * c.bound;
+    } else {
+      const SlidingLine line = sliding_line(law(i), c.segment);
+      c.torque[d] = c.sign * line.at_zero * g;
+      if (line.slope != 0.0) {
+        c.slip[d] = (k - 1) / h_ * value_of(c.z, series.coefficients(k - 1)) + (d < 2 ? c.known[d] : 0.0);
+        c.torque[d] +=
+            line.slope * (c.capacity[0] * c.slip[d] + (d > 0 ? c.capacity[1] * c.slip[d - 1] : 0.0));
+      }
+    }
+    if (c.torque[d] != 0.0) apply(c, c.torque[d]);
+  }
+  if (stuck_.empty()) return;
+  const auto m = static_cast<Eigen::Index>(stuck_.size());
+  Vector rest(m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const Contact& c = contacts_[stuck_[static_cast<std::size_t>(j)]];
+    rest[j] = value_of(c.z, term) / factor + (d == 0 ? c.known[1] / h_ : 0.0);
+  }
+  const Vector torque = stuck_inverse_ * rest;
+  for (Eigen::Index j = 0; j < m; ++j) {
+    Contact& c = contacts_[stuck_[static_cast<std::size_t>(j)]];
+    c.torque[d] = torque[j];
+    for (const Entry& e : c.gain) {
+      term[e.index] -= factor * e.coeff * torque[j];
+      // What rounding leaves of a node that is held at rest is no motion.
+      if (std::abs(term[e.index]) <= kSumRounding * std::abs(factor * e.coeff * torque[j]))
+        term[e.index] = 0.0;
+    }
+  }
+}
+
+void FrictionSeries::hold(const Assembler& assembler, Vector& v) const {
+  if (stuck_.empty()) return;
+  const auto m = static_cast<Eigen::Index>(stuck_.size());
+  Vector slip(m);
+  for (Eigen::Index j = 0; j < m; ++j)
+    slip[j] = slip_of(contacts_[stuck_[static_cast<std::size_t>(j)]], assembler, v);
+  const Vector impulse = stuck_inverse_ * slip;
+  for (Eigen::Index j = 0; j < m; ++j)
+    for (const Entry& e : contacts_[stuck_[static_cast<std::size_t>(j)]].gain)
+      v[e.index] -= e.coeff * impulse[j];
+}
+
+double FrictionSeries::energy_of_rounding(double duration) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const double speed = contacts_[i].speed_rounding * duration;
+    // The whole force, accelerating by its rounding.
+    sum += speed * speed / (kSumRounding * w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+  }
+  return sum;
+}
+
+void FrictionSeries::add_forces(const Vector& history, Vector& f) const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    for (const Entry& e : contacts_[i].z)
+      f[e.index] += e.coeff * history[system_.frictions()[i].history_begin + FrictionHistory::kTorque];
+}
+
+}  // namespace drev

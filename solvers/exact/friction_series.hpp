@@ -1,0 +1,142 @@
+#pragma once
+/// FrictionSeries: which friction contacts are stuck and which slide, their torques along a step of exact
+/// propagation, and when that changes.
+///
+/// A sliding contact adds its torque, whose coefficients follow from those of the slip speed. Stuck ones S hold
+/// their slip accelerations at zero: at each degree
+///
+///   W_SS lambda_S = B_S^T M^-1 (all other forces) + known accelerations,      W = B^T M^-1 B
+///
+/// so that the motion keeps w_S = 0 to rounding and lambda(s) comes as a polynomial. Where |lambda| meets what the
+/// contact can hold, and where a slip speed meets zero, are roots of polynomials (roots.hpp): none is missed.
+///
+/// Which contacts stick and which slide behind such a change is one complementarity problem over all contacts
+/// at rest (box_complementarity.hpp), first of the accelerations. Contacts that it leaves on a bound with zero
+/// acceleration are decided by the same problem of the next derivative, along the series that holds there, and
+/// so on: a contact that just reaches its bound slides, if its torque would go on to rise.
+#include <drev/core/law/friction.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+
+#include <array>
+#include <optional>
+
+#include "solvers/exact/load_series.hpp"
+#include "solvers/exact/taylor_series.hpp"
+
+namespace drev {
+
+struct BoxComplementarity;
+struct BoxSolution;
+
+class FrictionSeries final : public TermForces {
+ public:
+  explicit FrictionSeries(const System& system);
+  bool empty() const { return contacts_.empty(); }
+
+  struct Change {
+    double s = 0.0;
+    int contact = 0;
+    enum class What { slip_ends, bound_high, bound_low, knot_above, knot_below } what = What::slip_ends;
+    int order = 0;  ///< s = 0: of the first coefficient of the bound that is not zero
+  };
+
+  /// Modes at a state where all other forces were evaluated (total); leaves torques in its history.
+  void locate(const Assembler& assembler, EvaluatedState& point);
+  /// Takes over the modes of another one of the same system.
+  void locate_as(const FrictionSeries& other) {
+    contacts_ = other.contacts_;
+    stuck_ = other.stuck_;
+    stuck_inverse_ = other.stuck_inverse_;
+    speed_scale_ = other.speed_scale_;
+  }
+
+  /// What is known over a step of h seconds from t on.
+  void add_to(TaylorSeries& series, const LoadSeries& known, double t, double h);
+  /// Adds the contacts' part to term k of the series, factor = h^2/(k (k - 1)).
+  void add(const TaylorSeries& series, int k, double factor, double* term) override;
+  /// After the series was expanded from a state: slip speeds, and bounds. What the series' forces differ from those
+  /// evaluated there (their projection) counts as rounding of bounds that stand at zero.
+  void expand(const TaylorSeries& series, const State& from);
+
+  std::optional<Change> change_at_once() const;
+  std::optional<Change> first_change(double end) const;
+  /// How far behind s = 1 the bound is crossed, by Newton's rule.
+  double beyond_end(const Change& change) const;
+  /// At a change: what sticks and what slides from there on. The point is evaluated there (total), with its
+  /// history; at s = 0 the series is expanded from it. True: torques jumped.
+  bool pass(const Change& change, const Assembler& assembler, EvaluatedState& point);
+  /// The time goes on: bounds that stood at zero are left.
+  void forget_roots();
+
+  /// v back to zero slip of the stuck contacts.
+  void hold(const Assembler& assembler, Vector& v) const;
+  /// Torques, states and heat at s of the step into a history that has those of its start.
+  void write(double s, const Vector& start, Vector& history) const;
+  /// f += b lambda with the torques in a history.
+  void add_forces(const Vector& history, Vector& f) const;
+  /// From 0 to s of the step [J].
+  double dissipated(double s) const;
+  double input(double s) const;
+
+  /// Of a train that friction holds at rest: what rounding of its forces moves over a time [s], as an energy [J].
+  double energy_of_rounding(double duration) const;
+
+  FrictionState state(int contact) const;
+  ElementId element(int contact) const { return system_.frictions()[idx(contact)].element; }
+  int count() const { return static_cast<int>(contacts_.size()); }
+
+ private:
+  struct Bound {
+    Change::What what;
+    std::vector<double> g;  // > 0 while it holds
+    int falls = -1;         // at s = 0: its first coefficient that is not zero, which is negative
+  };
+  struct Contact {
+    std::vector<Entry> z, u;  // slip speed over unknowns and known motions
+    double nominal = 0.0;     // b^T n
+    std::vector<Entry> gain;  // M^-1 b over unknowns
+    // Mode: stuck, or sliding with sign. Tied: the stuck ones hold its slip speed at zero, its torque stands on its
+    // bound. Open: carries nothing at any speed.
+    bool stuck = false, tied = false, open = false;
+    int sign = 1;
+    int segment = 0;     // of the table of sliding torques, from slip_speeds()[segment] on
+    bool loose = false;  // it broke away at this instant
+    double bound = 0.0;  // what a tied one carries, per engagement
+    bool root = false;   // a slip speed, or the torque's distance to a bound, is zero at s = 0
+    int root_bound = 0;  // of the torque: 1 high, -1 low
+    double speed_rounding = 0.0, torque_rounding = 0.0;
+    double acceleration_slack = 0.0;  // of the step's first slip acceleration
+    // Along the step.
+    std::array<double, 2> capacity{}, known{};  // g(s), known part of w
+    std::vector<double> torque, slip, slip_size;
+    std::vector<Bound> bounds;
+  };
+  struct Limits {
+    double low = 0.0, high = 0.0;
+  };
+  const Friction& law(std::size_t i) const { return *system_.frictions()[i].friction; }
+  double sliding(std::size_t i, double slip) const;
+  void find_segment(std::size_t i, double slip);
+  /// Per engagement, at rest: what a stuck contact can hold, or one that broke loose at this instant.
+  Limits limits(std::size_t i, bool loose) const;
+  double slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const;
+  void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest);
+  void pass_derivative(const Change& change, int order, EvaluatedState& point);
+  void take(const std::vector<std::size_t>& of, const BoxSolution& solution,
+            const BoxComplementarity& problem);
+  bool depends_on_stuck(std::size_t i) const;
+  void factor_stuck();
+  void find_bounds(std::size_t i);
+  static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it);
+  double heat(const Contact& contact, double s) const;
+
+  const System& system_;
+  std::vector<Contact> contacts_;
+  Eigen::MatrixXd w_, stuck_inverse_;
+  std::vector<std::size_t> stuck_;
+  double h_ = 1.0;
+  double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
+  double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to
+};
+
+}  // namespace drev

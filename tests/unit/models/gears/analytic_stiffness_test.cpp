@@ -1,0 +1,73 @@
+// Analytical methods against figures computed independently with the same formulas, ISO's worked example (ISO/TR
+// 6336-30:2017, example 1), and the distance of all from finite elements.
+#include <drev/core/error.hpp>
+#include <drev/core/units.hpp>
+#include <drev/models/gears/analytic_stiffness.hpp>
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+#include "tests/unit/models/gears/gear_pairs.hpp"
+
+using namespace drev;
+
+TEST_CASE("One pair by potential energy with Sainsot's body and by Weber and Banaschek", "[gears]") {
+  struct Row {
+    GearGeometry pair;
+    double energy, weber, elements;  // elements: plane strain
+  };
+  for (const Row& row :
+       {Row{gear_pairs::t1(), 11.84, 15.96, 13.00}, Row{gear_pairs::t1n(), 12.29, 16.96, 13.67},
+        Row{gear_pairs::t2(), 11.98, 15.83, 13.27}, Row{gear_pairs::r62(), 12.67, 17.77, 14.16},
+        Row{gear_pairs::s(), 10.89, 13.75, 12.09}}) {
+    const GearPair pair(row.pair);
+    const double t = pair.pitch_point();
+    const double energy = analytic_pair_stiffness(pair, AnalyticMethod::potential_energy, t, 100e3) / 1e9;
+    const double weber = analytic_pair_stiffness(pair, AnalyticMethod::weber_banaschek, t, 100e3) / 1e9;
+    INFO(energy << " for " << row.energy << ", " << weber << " for " << row.weber);
+    CHECK(std::abs(energy / row.energy - 1.0) < 0.01);
+    CHECK(std::abs(weber / row.weber - 1.0) < 0.04);  // where the root section is taken is open in the source
+    CHECK(std::abs(energy / row.elements - 1.0) < 0.12);
+  }
+}
+
+TEST_CASE("ISO 6336-1 method B", "[gears]") {
+  const IsoStiffness example = iso_mesh_stiffness(IsoStiffnessInput{.virtual_teeth_1 = 18.905,
+                                                                    .virtual_teeth_2 = 114.543,
+                                                                    .profile_shift_1 = 0.145,
+                                                                    .profile_shift_2 = 0.0,
+                                                                    .dedendum = 1.4,
+                                                                    .helix_angle = 15.8 * kPi / 180.0,
+                                                                    .contact_ratio = 1.5491});
+  CHECK(std::abs(example.theoretical / 1e9 - 17.85584) < 2e-4);
+  CHECK(std::abs(example.single / 1e9 - 12.37047) < 2e-4);
+  CHECK(std::abs(example.mesh / 1e9 - 17.46485) < 3e-4);
+  CHECK(std::abs(example.crowned / 1e9 - 14.84512) < 3e-4);
+  CHECK(example.outside.empty());
+  const auto check = [](const GearGeometry& p, double theoretical, double single, double mesh) {
+    const IsoStiffness c = iso_mesh_stiffness(GearPair(p), 100e3);
+    CHECK(std::abs(c.theoretical / 1e9 - theoretical) < 6e-4);
+    CHECK(std::abs(c.single / 1e9 - single) < 6e-4);
+    CHECK(std::abs(c.mesh / 1e9 - mesh) < 6e-4);
+    return c;
+  };
+  check(gear_pairs::pair(10, 20, 20, 0, 0), 14.727, 11.487, 16.285);
+  check(gear_pairs::t2(), 17.386, 13.561, 21.397);
+  check(gear_pairs::r62(), 18.554, 14.472, 23.044);
+  CHECK(iso_mesh_stiffness(GearPair(gear_pairs::t1()), 100e3).outside.find("-1.252") != std::string::npos);
+  const double low = iso_mesh_stiffness(GearPair(gear_pairs::r62()), 6.25e3).single;
+  CHECK(std::abs(low / 14.472e9 - 0.5) < 1e-4);
+}
+
+TEST_CASE("Analytical methods refuse what they do not know", "[gears]") {
+  GearGeometry p = gear_pairs::t2();
+  p.gear_1.bore_diameter = kNotGiven;
+  const GearPair pair(p);
+  CHECK_THROWS_AS(analytic_pair_stiffness(pair, AnalyticMethod::potential_energy, pair.pitch_point(), 1e5),
+                  ModelError);
+  CHECK(analytic_pair_stiffness(pair, AnalyticMethod::weber_banaschek, pair.pitch_point(), 1e5) > 0.0);
+  CHECK_THROWS_AS(analytic_pair_stiffness(pair, AnalyticMethod::weber_banaschek, 1.0, -1.0), ModelError);
+  p.gear_1.bore_diameter = 0.02;  // r_f/r_bore = 14
+  CHECK(std::isnan(
+      analytic_pair_stiffness(GearPair(p), AnalyticMethod::potential_energy, pair.pitch_point(), 1e5)));
+}

@@ -1,0 +1,226 @@
+// Dry friction: sticking and sliding against closed forms (tests of the Modelica cases: friction_msl_test.cpp).
+// Covers solvers/exact/friction_series.hpp through propagate().
+#include <drev/core/assembler.hpp>
+#include <drev/core/channel.hpp>
+#include <drev/core/law/friction.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/run/recorder.hpp>
+#include <drev/solvers/statics.hpp>
+#include <drev/solvers/stepping/transient.hpp>
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+double channel(const System& system, const State& state, const std::string& name) {
+  Assembler assembler(system);
+  assembler.set_time(state.t);
+  return find_channel(system, name).evaluate(assembler, state);
+}
+
+struct Ran {
+  RunSummary summary;
+  State state;
+};
+
+Ran run(const System& system, double t_end) {
+  Ran r{.summary = {}, .state = State::initial(system)};
+  r.summary = propagate(system, {.tolerance = 1e-14, .t_end = t_end, .energy_tolerance = 1e-11}, r.state);
+  INFO(r.summary.brief_report());
+  CHECK(r.summary.ok());
+  return r;
+}
+
+Model two_inertias(double j_1, double w_1, double j_2, double w_2) {
+  Model m("two inertias");
+  m.add_node("a");
+  m.add_node("b");
+  m.add<Inertia>("J_a", {"a"}, {.inertia = j_1});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = j_2});
+  m.set_initial("a", 0.0, w_1);
+  m.set_initial("b", 0.0, w_2);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Friction: a clutch engages, constant torque, ramp, torque falling with slip (case F5)") {
+  const auto engage = [](Clutch::Params clutch, double slip_time) {
+    Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
+    m.add<Clutch>("clutch", {"a", "b"}, std::move(clutch));
+    const System system = m.build();
+    const Ran r = run(system, 1.0);
+    REQUIRE(r.summary.friction_events.size() == 1);
+    CHECK(r.summary.friction_events[0].becomes == "stuck");
+    CHECK(r.summary.friction_events[0].t == Approx(slip_time).epsilon(1e-9));
+    CHECK(r.state.v[0] == Approx(90.0 / 11.0).epsilon(1e-14));
+    CHECK(r.state.v[1] == Approx(90.0 / 11.0).epsilon(1e-14));
+    CHECK(channel(system, r.state, "clutch.slip_speed_rad_per_s") == 0.0);
+    CHECK(std::abs(channel(system, r.state, "clutch.torque_Nm")) < 1e-12);
+    // J_1 J_2/(J_1 + J_2) dw^2/2
+    CHECK(channel(system, r.state, "clutch.heat_J") == Approx(0.3 / 1.1 * 800.0).epsilon(1e-12));
+  };
+  engage({.torque = 60.0}, 2.0 / 11.0);
+  engage({.normal_force = 1000.0, .geometry = 0.15, .friction_coefficient = 0.4}, 2.0 / 11.0);
+  engage({.torque = 60.0, .engagement = TimeTable({0.0, 0.3}, {0.0, 1.0})}, 0.331818181818181818);
+  // w' = -(60 - 0.5 w) (1/J_1 + 1/J_2) from 40: the torque falls with the slip speed.
+  engage({.slip_speeds = {0.0, 100.0}, .sliding_torques = {60.0, 10.0}}, std::log(1.5) / (0.5 * 11.0 / 3.0));
+  // It opens for good at 0.1 s: nothing changes from there on.
+  Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
+  m.add<Clutch>("clutch", {"a", "b"}, {.torque = 60.0, .engagement = TimeTable({0.1, 0.1}, {1.0, 0.0})});
+  const Ran open = run(m.build(), 1.0);
+  CHECK(open.state.v[0] == Approx(18.0).epsilon(1e-14));
+  CHECK(open.summary.friction_events[0].becomes == "open");
+}
+
+TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
+  Model m("stick-slip");
+  m.add_node("mass");
+  m.add_node("drive");
+  m.add<Inertia>("J", {"mass"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("spring", {"mass", "drive"}, {.stiffness = 100.0});
+  Motion steady{[](double t) { return MotionPoint{0.2 * t, 0.2, 0.0}; }};
+  steady.piecewise_quadratic = true;
+  m.given_motion("drive", steady);
+  m.add<BearingFriction>("bearing", {"mass"}, {.torque = 4.0, .break_away_ratio = 1.5});
+  const System system = m.build();
+  const double slip = 3.0 * kPi / 20.0, period = slip + 0.2;
+  const Ran r = run(system, 0.3 + 10.0 * period);
+  const auto& events = r.summary.friction_events;
+  REQUIRE(events.size() >= 20);
+  for (int i = 0; i < 10; ++i) {
+    const auto k = static_cast<std::size_t>(2 * i);
+    CHECK(events[k].t == Approx(0.3 + i * period).epsilon(1e-12));
+    CHECK(events[k].becomes == "sliding forward");
+    CHECK(events[k + 1].t == Approx(0.3 + slip + i * period).epsilon(1e-12));
+    CHECK(events[k + 1].becomes == "stuck");
+  }
+  CHECK(channel(system, r.state, "bearing.heat_J") == Approx(10.0 * 0.536991118).epsilon(1e-8));
+}
+
+TEST_CASE("Friction: free decay stops at the turning points of Coulomb friction (case F7)") {
+  Model m("decay");
+  m.add_node("n");
+  m.add<Inertia>("J", {"n"}, {.inertia = 2.0});
+  m.add<GroundSpring>("spring", {"n"}, {.stiffness = 800.0});
+  m.add<BearingFriction>("bearing", {"n"}, {.torque = 3.0});
+  m.set_initial("n", 0.05, 0.0);
+  const System system = m.build();
+  for (int i = 1; i <= 7; ++i) {
+    const double expected[] = {-0.0425, 0.035, -0.0275, 0.02, -0.0125, 0.005, 0.0025};
+    const Ran r = run(system, i * kPi / 20.0 + (i == 7 ? 5.0 : 0.0));
+    if (i < 7) CHECK(r.state.z[0] == Approx(expected[i - 1]).epsilon(1e-12));
+    if (i == 7) CHECK(r.state.z[0] == Approx(0.0025).epsilon(1e-11));
+    if (i == 7) CHECK(r.summary.friction_events.back().t == Approx(1.099557429).epsilon(1e-9));
+    if (i == 7) CHECK(r.summary.friction_changes == 7);
+  }
+}
+
+TEST_CASE("Friction: forced Coulomb oscillator, sliding and with stops (case F8, Den Hartog)") {
+  const auto settled = [](double b, double r, double cycles, double& peak) {
+    Model m("forced");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<GroundSpring>("spring", {"n"}, {.stiffness = 1.0});
+    m.add<BearingFriction>("bearing", {"n"}, {.torque = r});
+    m.add<AppliedTorque>("load", {"n"}, {.harmonics = {{b / (2.0 * kPi), 1.0, 0.0}}});
+    const System system = m.build();
+    const double t_end = cycles * 2.0 * kPi / b;
+    State state = State::initial(system);
+    CHECK(propagate(system, {.tolerance = 1e-13, .t_end = t_end}, state).ok());
+    Recorder recorder(system, {"n.angle_rad"}, 1e-3 * 2.0 * kPi / b);
+    const RunSummary last = propagate(
+        system, {.tolerance = 1e-13, .t_start = t_end, .t_end = t_end + 2.0 * kPi / b}, state, {&recorder});
+    for (const double x : recorder.samples(0)) peak = std::max(peak, std::abs(x));
+    return last.friction_changes;
+  };
+  double peak = 0.0;
+  settled(2.0, 0.4, 60.0, peak);
+  CHECK(peak == Approx(0.266666667).epsilon(2e-5));  // samples of a thousandth of the cycle
+  peak = 0.0;
+  settled(0.25, 0.5, 10.0, peak);
+  CHECK(peak == Approx(0.691464065).epsilon(2e-5));
+}
+
+TEST_CASE("Friction: two clutches side by side carry together, and slip together") {
+  Model m = two_inertias(1.0, 5.0, 2.0, 5.0);
+  m.add<Clutch>("one", {"a", "b"}, {.torque = 10.0});
+  m.add<Clutch>("two", {"a", "b"}, {.torque = 20.0});
+  // The clutches carry two thirds of it: 30 N m at 45, after 4.5 s.
+  m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 100.0})});
+  const System system = m.build();
+  const Ran r = run(system, 4.4);
+  CHECK(r.state.v[0] == Approx(5.0 + 4.4 * 22.0 / 3.0).epsilon(1e-13));
+  CHECK(channel(system, r.state, "one.torque_Nm") + channel(system, r.state, "two.torque_Nm") ==
+        Approx(-44.0 * 2.0 / 3.0).epsilon(1e-12));
+  const Ran slips = run(system, 6.0);
+  // a' = 10 t - 30 behind 4.5 s, b' = 15.
+  CHECK(slips.state.v[0] == Approx(5.0 + 33.75 + 5.0 * (36.0 - 20.25) - 45.0).epsilon(1e-13));
+  CHECK(slips.state.v[1] == Approx(5.0 + 33.75 + 22.5).epsilon(1e-13));
+  CHECK(slips.summary.friction_changes <= 4);
+}
+
+TEST_CASE("Friction: a row of blocks at rest lets go one after the other as the load grows") {
+  // Chain of joints to ground and between nodes, all at rest: which slide is one problem over all of them.
+  Model m("row");
+  for (const char* n : {"a", "b", "c"}) {
+    m.add_node(n);
+    m.add<Inertia>(std::string("J_") + n, {n}, {.inertia = 1.0});
+    m.add<BearingFriction>(std::string("floor_") + n, {n}, {.torque = 2.0});
+  }
+  m.add<CoulombJoint>("ab", {"a", "b"}, {.torque = 10.0});
+  m.add<CoulombJoint>("bc", {"b", "c"}, {.torque = 1.0});
+  m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 20.0})});
+  const System system = m.build();
+  // Together a and b go when the load is their floors and what bc holds: 2 + 2 + 1 = 5 N m, 2.5 s; c never.
+  const Ran r = run(system, 4.0);
+  CHECK(r.state.v[0] == Approx(0.5 * (1.5 * 1.5)).epsilon(1e-12));
+  CHECK(r.state.v[1] == Approx(r.state.v[0]).epsilon(1e-14));
+  CHECK(r.state.v[2] == 0.0);
+  CHECK(channel(system, r.state, "bc.state") == -1.0);
+  CHECK(channel(system, r.state, "ab.state") == 0.0);
+  CHECK(channel(system, r.state, "floor_c.torque_Nm") == Approx(1.0).epsilon(1e-12));
+}
+
+TEST_CASE("Friction: a train that is held at rest stays there, and its energy is no error") {
+  Model m = two_inertias(0.3, 0.0, 0.7, 0.0);
+  m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 300.0});
+  m.add<Brake>("brake_a", {"a"}, {.torque = 5.0});
+  m.add<Brake>("brake_b", {"b"}, {.torque = 5.0});
+  m.add<AppliedTorque>("load", {"a"}, {.harmonics = {{3.0, 4.0, 0.3}}});
+  const Ran r = run(m.build(), 1.0);
+  CHECK(r.summary.friction_changes == 0);
+  CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-15);
+}
+
+TEST_CASE("Friction: a stuck clutch costs no more than the shaft that it could be") {
+  Model m = two_inertias(0.3, 1.0, 0.7, 1.0);
+  m.add<GroundSpring>("spring", {"b"}, {.stiffness = 300.0});
+  Model rigid = m;
+  m.add<Clutch>("clutch", {"a", "b"}, {.torque = 1e6});
+  rigid.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 300.0});
+  const Ran stuck = run(m.build(), 5.0), shaft = run(rigid.build(), 5.0);
+  CHECK(stuck.summary.friction_changes == 0);
+  CHECK(stuck.summary.steps <= shaft.summary.steps);
+  CHECK(stuck.summary.solves <= shaft.summary.solves);
+  const double omega = std::sqrt(300.0);
+  CHECK(stuck.state.z[1] == Approx(std::sin(5.0 * omega) / omega).epsilon(1e-12));
+}
+
+TEST_CASE("Friction: methods that cannot take it say so, and speeds that a freewheel forbids are refused") {
+  Model m = two_inertias(1.0, 1.0, 1.0, 0.0);
+  m.add<Freewheel>("freewheel", {"a", "b"}, {});
+  const System system = m.build();
+  CHECK_THROWS_WITH(propagate(system, {.t_end = 1.0}),
+                    Catch::Contains("turns in the direction that it locks"));
+  CHECK_THROWS_WITH(simulate(system, {.step = 1e-3, .t_end = 1.0}), Catch::Contains("sticks and slips"));
+  CHECK(choose_method(system, 1.0, 1e-3).method.exact());
+  CHECK_THROWS_WITH(StaticSolver(system), Catch::Contains("does not take dry friction"));
+}
