@@ -17,6 +17,7 @@ constexpr std::string_view kControlled = "@tolerance";
 constexpr double kReferenceTolerance = 1e-13;
 constexpr double kReferenceTime = 4.0;  // of the most that a drawn run may take
 constexpr double kGivenUp = 10.0;       // the same: a run that goes on for longer is stopped
+constexpr double kLeastGivenUp = 1.0;   // s: what the same run takes varies by more than the shortest limits
 constexpr int kMostDigits = 12;         // of the tolerance of controlled steps
 constexpr int kMostHalvings = 24;       // of the sample interval
 constexpr double kShortRun = 0.05;      // s: shorter ones are timed several times
@@ -71,9 +72,11 @@ class Measurement {
   }
 
  private:
+  double given_up_after() const { return std::max(kGivenUp * options_.most_seconds, kLeastGivenUp); }
+
   MethodRunOptions run_options() {
     // The energy is not judged: a coarse run is a point of the chart like any other.
-    const double end = processor_time() + kGivenUp * options_.most_seconds;
+    const double end = processor_time() + given_up_after();
     return {.t_end = result_.t_end, .energy_tolerance = 1e300, .progress = [this, end](double) {
               if (options_.progress && !options_.progress(part_)) result_.interrupted = true;
               return !result_.interrupted && processor_time() < end;
@@ -91,6 +94,8 @@ class Measurement {
       s.summary.reason = error.what();
     }
     s.seconds = processor_time() - start;
+    if (s.summary.status == RunStatus::interrupted && !result_.interrupted)
+      s.summary.reason = "given up after " + to_text(given_up_after()) + " s: more than the limit allows";
     for (std::size_t c = 0; c < channels_.size(); ++c) s.rows.push_back(recorder.samples(c));
     return s;
   }
