@@ -208,7 +208,7 @@ TEST_CASE("Standard output on a full disk is an error") {
   CHECK(Process({"run", "two_inertia", "--json"}, "/dev/full").wait().exit_code == 3);
 }
 
-TEST_CASE("An interrupted run leaves what it had") {
+TEST_CASE("An interrupted run leaves what it had", "[once]") {
   const int signal = GENERATE(SIGINT, SIGTERM);
   const TemporaryFolder folder;
   const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--out",
@@ -236,7 +236,7 @@ TEST_CASE("An interrupted run leaves what it had") {
   }
 }
 
-TEST_CASE("A killed run leaves a readable part that says so, beside the result before it") {
+TEST_CASE("A killed run leaves a readable part that says so, beside the result before it", "[once]") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const auto kill_one = [&](const std::string& channel) {
