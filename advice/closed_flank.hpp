@@ -12,7 +12,7 @@
 
 namespace drev {
 
-class ClosedFlank final : public Element, public ScalarForce {
+class ClosedFlank final : public Element, public ScalarForce, public AngleScaledForce {
  public:
   ClosedFlank(std::shared_ptr<const GearMesh> closed, double offset)
       : closed_(std::move(closed)),
@@ -40,6 +40,9 @@ class ClosedFlank final : public Element, public ScalarForce {
   Offset offset(double nominal_angle) const override { return closed_->offset(nominal_angle); }
   std::span<const LawPiece> pieces() const override { return pieces_; }
   double pieces_scale(double angle) const override { return closed_->pieces_scale(angle); }
+  ScaleStretch scale_stretch(double angle, double direction) const override {
+    return closed_->scale_stretch(angle, direction);
+  }
   std::optional<double> next_knot(double angle, double direction) const override {
     return closed_->next_knot(angle, direction);
   }

@@ -30,10 +30,23 @@ GearMesh::GearMesh(Params params)
       radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
       teeth_per_radian_(params_.teeth_1 / kTwoPi) {
   pieces_ = law_.pieces(params_.stiffness.mean());
+  if (const auto* series = std::get_if<MeshStiffness::Fourier>(&params_.stiffness.law()))
+    for (const Harmonic& h : series->harmonics) {
+      // cos(n (z_1 theta + 2 pi mesh_phase) + phase)
+      const double phase = kTwoPi * h.order * params_.mesh_phase + h.phase, part = h.amplitude / series->mean;
+      orders_.push_back({h.order * params_.teeth_1, part * std::cos(phase), -part * std::sin(phase)});
+    }
 }
 
 double GearMesh::pieces_scale(double angle) const {
   return params_.stiffness.at(phase(angle)).value / params_.stiffness.mean();
+}
+
+ScaleStretch GearMesh::scale_stretch(double angle, double direction) const {
+  const double at = phase(angle), mean = params_.stiffness.mean();
+  const TableStretch k = params_.stiffness.stretch(at, direction);
+  return {k.value / mean, k.slope * teeth_per_radian_ / mean, angle + (k.low - at) / teeth_per_radian_,
+          angle + (k.high - at) / teeth_per_radian_, orders_};
 }
 
 std::optional<double> GearMesh::angle_of(std::optional<double> knot, double angle) const {

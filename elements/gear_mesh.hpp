@@ -32,13 +32,14 @@
 /// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
 /// equations 4.2 to 4.5, with the signs of one common axis sense.
 #include <drev/core/element.hpp>
+#include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/elements/backlash_law.hpp>
 #include <drev/elements/mesh_stiffness.hpp>
 #include <drev/elements/transmission_error.hpp>
 
 namespace drev {
 
-class GearMesh final : public Element, public ScalarForce {
+class GearMesh final : public Element, public ScalarForce, public AngleScaledForce {
  public:
   struct Params {
     double base_radius_1 = kNotGiven;     ///< r_b1 [m], > 0
@@ -78,6 +79,7 @@ class GearMesh final : public Element, public ScalarForce {
   /// At the mean stiffness.
   std::span<const LawPiece> pieces() const override { return pieces_; }
   double pieces_scale(double angle) const override;
+  ScaleStretch scale_stretch(double angle, double direction) const override;
   std::optional<double> next_knot(double angle, double direction) const override;
   std::optional<double> next_offset_knot(double nominal_angle, double direction) const override;
 
@@ -90,6 +92,7 @@ class GearMesh final : public Element, public ScalarForce {
   BacklashLaw law_;
   double radius_1_, radius_2_, teeth_per_radian_;
   std::vector<LawPiece> pieces_;
+  std::vector<LoadOrder> orders_;  // of the stiffness over its mean, per revolution of gear 1
 };
 
 }  // namespace drev

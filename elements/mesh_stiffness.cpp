@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 
 namespace drev {
 
@@ -93,17 +94,24 @@ double MeshStiffness::mean() const {
   return std::get<PeriodicTable>(law_).mean();
 }
 
-std::optional<double> MeshStiffness::next_knot(double phase, double direction) const {
+TableStretch MeshStiffness::stretch(double phase, double direction) const {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   constexpr double kOnKnot = 1e-13;
-  if (const auto* step = std::get_if<Step>(&law_)) {
-    const double nudge = kOnKnot * std::max(1.0, std::abs(phase));
-    const double beyond = direction > 0.0 ? phase + nudge : phase - nudge;
-    const double base = std::floor(beyond), middle = base + step->contact_ratio - 1.0;
-    if (direction > 0.0) return beyond < middle ? middle : base + 1.0;
-    return beyond > middle ? middle : base;
-  }
+  if (const auto* table = std::get_if<PeriodicTable>(&law_)) return table->stretch(phase, direction);
+  const auto* step = std::get_if<Step>(&law_);
+  if (step == nullptr) return {mean(), 0.0, -kInfinite, kInfinite};
+  const double nudge = kOnKnot * std::max(1.0, std::abs(phase));
+  const double beyond = direction > 0.0 ? phase + nudge : phase - nudge;
+  const double base = std::floor(beyond), middle = base + step->contact_ratio - 1.0;
+  if (beyond < middle) return {step->both, 0.0, base, middle};
+  return {step->single, 0.0, middle, base + 1.0};
+}
+
+std::optional<double> MeshStiffness::next_knot(double phase, double direction) const {
   if (const auto* table = std::get_if<PeriodicTable>(&law_)) return table->next_knot(phase, direction);
-  return std::nullopt;
+  if (!std::holds_alternative<Step>(law_)) return std::nullopt;
+  const TableStretch here = stretch(phase, direction);
+  return direction > 0.0 ? here.high : here.low;
 }
 
 void MeshStiffness::check(ParameterCheck& check, const std::string& parameter) const {

@@ -42,6 +42,9 @@ class MeshStiffness {
   double mean() const;  ///< over one mesh period [N/m]
   /// The next phase beyond at which k jumps or kinks, upwards where direction > 0; none for a smooth k.
   std::optional<double> next_knot(double phase, double direction) const;
+  /// k about a phase as value and slope between knots, without the harmonics of a Fourier series; within rounding of a
+  /// knot the stretch ahead of it: above it where direction > 0, else below.
+  TableStretch stretch(double phase, double direction) const;
   bool varies() const { return !std::holds_alternative<double>(law_); }
   void check(ParameterCheck& check, const std::string& parameter) const;
 

@@ -1,6 +1,7 @@
 #include <drev/core/error.hpp>
 #include <drev/models/gears/gear_drawing.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,6 +27,51 @@ MeshCycleOptions under_load(const GearDrawing& drawing, const GearPair& pair, co
   return options;
 }
 
+constexpr double kCurveError = 1e-3;  // of a curve's largest value: below what its finite elements leave open
+
+struct Curve {
+  std::vector<double> phases, values;
+};
+
+/// The periodic curve by the fewest of its points, going on from each as far as straight lines leave all points
+/// between within kCurveError: each point kept is a knot of every run.
+Curve thinned(const Curve& curve) {
+  const std::size_t n = curve.values.size();
+  double largest = 0.0;
+  for (const double v : curve.values) largest = std::max(largest, std::abs(v));
+  const auto phase = [&](std::size_t i) { return curve.phases[i % n] + static_cast<double>(i / n); };
+  const auto straight = [&](std::size_t from, std::size_t to) {
+    const double slope = (curve.values[to % n] - curve.values[from % n]) / (phase(to) - phase(from));
+    for (std::size_t i = from + 1; i < to; ++i)
+      if (std::abs(curve.values[from % n] + slope * (phase(i) - phase(from)) - curve.values[i % n]) >
+          kCurveError * largest)
+        return false;
+    return true;
+  };
+  // From the sharpest bend on, which no line passes.
+  std::size_t start = 0;
+  double sharpest = -1.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double bend =
+        std::abs(curve.values[(i + 1) % n] - 2.0 * curve.values[i] + curve.values[(i + n - 1) % n]);
+    if (bend > sharpest) sharpest = bend, start = i;
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t from = start; from < start + n;) {
+    kept.push_back(from % n);
+    std::size_t to = from + 1;
+    while (to < start + n && straight(from, to + 1)) ++to;
+    from = to;
+  }
+  std::sort(kept.begin(), kept.end());
+  Curve result;
+  for (const std::size_t i : kept) {
+    result.phases.push_back(curve.phases[i]);
+    result.values.push_back(curve.values[i]);
+  }
+  return result;
+}
+
 }  // namespace
 
 GearMeshData gear_mesh_data(const GearDrawing& drawing, const std::string& place) {
@@ -49,16 +95,21 @@ GearMesh::Params gear_mesh_params(const GearDrawing& drawing, const GearMeshData
   rest.teeth_1 = data.pair.gear(0).teeth;
   rest.teeth_2 = data.pair.gear(1).teeth;
   double MeshPoint::*const value = drawing.tangent ? &MeshPoint::tangent : &MeshPoint::secant;
-  std::vector<double> phases, stiffnesses, errors;
+  Curve stiffness, error;
   bool uneven = false;
   for (const MeshPoint& p : data.cycle.points()) {
-    phases.push_back(p.phase);
-    stiffnesses.push_back(p.*value * data.pair.face_width());
-    errors.push_back(p.unloaded_error);
+    stiffness.phases.push_back(p.phase);
+    stiffness.values.push_back(p.*value * data.pair.face_width());
+    error.values.push_back(p.unloaded_error);
     uneven = uneven || p.unloaded_error != 0.0;
   }
-  rest.stiffness = MeshStiffness::table(phases, std::move(stiffnesses));
-  if (uneven) rest.transmission_error = TransmissionError::table(std::move(phases), std::move(errors));
+  error.phases = stiffness.phases;
+  stiffness = thinned(stiffness);
+  rest.stiffness = MeshStiffness::table(std::move(stiffness.phases), std::move(stiffness.values));
+  if (uneven) {
+    error = thinned(error);
+    rest.transmission_error = TransmissionError::table(std::move(error.phases), std::move(error.values));
+  }
   rest.normal_backlash = data.backlash.percentile(drawing.backlash_percentile);
   return rest;
 }

@@ -43,7 +43,6 @@ class ExactRun final : public StepMotion {
         series_(expansion_.series),
         known_(expansion_.known),
         laws_(system),
-        smooth_(expansion_.smooth),
         friction_(expansion_.friction),
         progress_(options.progress, options.t_start, options.t_end) {
     now_.state = std::move(state);
@@ -105,7 +104,7 @@ class ExactRun final : public StepMotion {
   /// and the next step's start behind it, as far away as rounding of the angle asks for.
   Stop next_stop(const Stops& stops) const {
     const Stop stop = stops.after(now_.state.t);
-    const auto knot = smooth_.next_break(now_.state.t, stop.t);
+    const auto knot = expansion_.offsets.next_break(now_.state.t, stop.t);
     if (!knot) return stop;
     const double width = kKnotWidth * std::abs(*knot);
     if (!(*knot + width < stop.t)) return stop;
@@ -170,7 +169,7 @@ class ExactRun final : public StepMotion {
       evaluate(assembler_, next_, evaluated_at);
     else
       evaluate_energies(next_, evaluated_at);
-    const ProjectedLaws::Work smooth = smooth_.work(series_, s, next_);
+    const LawWork smooth = expansion_.work(s, next_);
     if (!energy_->step(
             next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input + friction_.input(s),
             series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated + friction_.dissipated(s))) {
@@ -239,7 +238,7 @@ class ExactRun final : public StepMotion {
     for (int cuts = 0;; ++cuts) {
       h = expand(h);
       if (!running()) return {};
-      laws_.expand(series_, known_, smooth_);
+      expansion_.expand_laws(laws_);
       if (const auto change = laws_.change_at_once()) {
         changed_ = change;
         pass(*change, now_.state.t);
@@ -260,7 +259,7 @@ class ExactRun final : public StepMotion {
       if (end.change) end.s = end.change->s;
       if (const auto change = friction_.first_change(end.s)) end = {.s = change->s, .friction = change};
       if (const auto knot = known_.first_knot(series_, end.s)) end = {.s = *knot, .at_knot = true};
-      if (const auto knot = smooth_.first_knot(series_, end.s)) end = {.s = *knot, .at_law_knot = true};
+      if (const auto knot = expansion_.first_knot(end.s)) end = {.s = *knot, .at_law_knot = true};
       // So close to the start the motion has had no time to differ.
       const bool at_start = end.s < kAtStart || end.s * h < kTimeRounding * std::abs(now_.state.t);
       if (!known_.projected() || cuts > kMaxCuts || at_start) return end;
@@ -282,7 +281,7 @@ class ExactRun final : public StepMotion {
 
   /// Time [s] beside a law's knot at the step's end, for which rounding leaves its side open.
   double beside_knot(const End& end, double t) const {
-    return end.at_law_knot ? std::max(smooth_.knot_clearance(), kTimeRounding * std::abs(t)) : 0.0;
+    return end.at_law_knot ? std::max(expansion_.knot_clearance(), kTimeRounding * std::abs(t)) : 0.0;
   }
 
   /// Shows the observers points inside a step to t_new: where they asked for one, beside a contact change or a
@@ -382,7 +381,7 @@ class ExactRun final : public StepMotion {
       if (got == h) return h;
       growing_step_ = got > 0.0 ? got : kRetreat * h;
       if (growing_step_ <= kNoProgress * largest_step_) return give_up(h);
-      if (got > 0.0 && !known_.projects() && smooth_.empty()) {
+      if (got > 0.0 && expansion_.shortens()) {
         known_.shorten(got / h);
         return got;
       }
@@ -453,7 +452,6 @@ class ExactRun final : public StepMotion {
   TaylorSeries& series_;  // its parts
   LoadSeries& known_;
   LawSeries laws_;
-  ProjectedLaws& smooth_;
   FrictionSeries& friction_;
   std::optional<StepExpansion> part_;         // of a step, to a point inside
   std::optional<LawSeries::Change> changed_;  // at the start of this step

@@ -123,13 +123,14 @@ void LawSeries::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, ProjectedLaws& smooth) {
+void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, const LawOffsets& offsets,
+                       const ScaleSeries& scale_of) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     Law& law = laws_[j];
-    const std::vector<double>& offset = smooth.offset(static_cast<int>(j));
+    const std::vector<double>& offset = offsets.offset(static_cast<int>(j));
     law.x.assign(std::max(terms, offset.size()), 0.0);
     law.x_size.assign(law.x.size(), 0.0);
     law.known.assign(3, 0.0);
@@ -150,7 +151,7 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, Proj
       law.x[k] += offset[k];
       law.x_size[k] += std::abs(offset[k]);
     }
-    if (law.scaled) smooth.expand_scale(static_cast<int>(j), series, law.scale);
+    if (law.scaled) scale_of(static_cast<int>(j), law.scale);
   }
 }
 

@@ -6,13 +6,14 @@
 /// fall below zero is the change (roots.hpp). Behind a change the crossed bound of the new
 /// piece stands at zero: that root is divided out, and the sign of the first coefficient that is
 /// not zero says whether the piece holds or changes back at once. Laws that are projected
-/// (projected_laws.hpp) take part with the bounds of their pieces, or with the stretches between their kinks.
+/// or expanded
+/// (projected_laws.hpp, expanded_laws.hpp) take part with the bounds of their pieces, or with the stretches between their kinks.
 /// Where the pieces are scaled by an angle, y = r(s) Y(x, x'/r), a bound with b_v is r (a + b_x x) + b_v x'.
 #include <functional>
 #include <optional>
 
+#include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/projected_laws.hpp"
 
 namespace drev {
 
@@ -37,8 +38,11 @@ class LawSeries {
   /// Adds the stiffest pieces of all laws, to bound the fastest rate.
   void add_stiffest(TaylorSeries& series) const;
 
+  /// Series of how the pieces of a law are scaled along the step.
+  using ScaleSeries = std::function<void(int law, std::vector<double>& scale)>;
   /// The deflections' series along the step.
-  void expand(const TaylorSeries& series, const LoadSeries& known, ProjectedLaws& smooth);
+  void expand(const TaylorSeries& series, const LoadSeries& known, const LawOffsets& offsets,
+              const ScaleSeries& scale_of);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
   /// The first change in (0, end].

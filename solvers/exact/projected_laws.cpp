@@ -4,23 +4,20 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
+#include "solvers/exact/expanded_laws.hpp"
 
 namespace drev {
 
 namespace {
-// What is left of rounding in the last coefficients: of an offset, and of the angle that it is looked up at.
-constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
+constexpr double kRounding = 2e-14;    // of the last coefficients
 constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
 }  // namespace
 
 ProjectedLaws::ProjectedLaws(const System& system)
-    : system_(system),
-      assembler_(system),
-      offsets_(system.scalars().size()),
-      forces_(TaylorSeries::stride(system)) {
+    : system_(system), assembler_(system), forces_(TaylorSeries::stride(system)) {
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
-    if (!linear_pieces(term).empty()) continue;
+    if (!linear_pieces(term).empty() || ExpandedLaws::takes(term)) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
     if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
     for (const Entry& e : term.z) rows_.push_back({e.index, !term.force->pieces().empty()});
@@ -33,10 +30,9 @@ double ProjectedLaws::along(const ScalarTerm& term, const Vector& q) {
   return sum;
 }
 
-double ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
+void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
   t_ = start.state.t;
   h_ = h;
-  double rest = 0.0;
   for (Law& law : laws_) {
     const ScalarTerm& term = *law.term;
     const ScalarResponse& r = start.responses[idx(law.index)];
@@ -59,37 +55,7 @@ double ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, 
       }
       series.right_side(0)[row.index] -= row.coeff * (law.y - law.k * law.x - law.c * law.x_dot);
     }
-    rest = std::max(rest, expand_offset(law, series));
   }
-  return rest;
-}
-
-/// - e along the nominal angle, which is known; returns the polynomial's rest.
-double ProjectedLaws::expand_offset(const Law& law, const TaylorSeries& series) {
-  const ScalarTerm& term = *law.term;
-  std::vector<double>& offset = offsets_[idx(law.index)];
-  offset.clear();
-  if (term.phase_node < 0) return 0.0;
-  const double ratio = system_.ratio(term.phase_node);
-  const GaussRule& rule = gauss_rule();
-  std::array<double, GaussRule::kNodes> values{};
-  double largest = 0.0, rounding = 0.0;
-  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-    const double angle =
-        system_.reference() ? ratio * system_.reference()->at(t_ + h_ * rule.s[q]).value : 0.0;
-    const Offset at_node = term.force->offset(angle);
-    values[q] = -at_node.e;
-    largest = std::max(largest, std::abs(at_node.e));
-    rounding = std::max(rounding, std::abs(at_node.de_dangle * angle));
-  }
-  if (largest == 0.0) return 0.0;
-  const double known_to = kRounding * largest + kAngleRounding * rounding;
-  const NodePolynomial polynomial = through_nodes(values, known_to);
-  offset.assign(polynomial.power.begin(), polynomial.power.end());
-  double scale = largest;
-  for (const Entry& e : term.z)
-    scale = std::max(scale, std::abs(e.coeff) * series.z_scale()[idx(series.kind(e.index))]);
-  return std::max(0.0, polynomial.tail - known_to) / scale;
 }
 
 void ProjectedLaws::expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale) {
@@ -103,28 +69,6 @@ void ProjectedLaws::expand_scale(int law, const TaylorSeries& series, std::vecto
   }
   const NodePolynomial polynomial = through_nodes(values, kRounding * std::abs(values[0]));
   scale.assign(polynomial.power.begin(), polynomial.power.end());
-}
-
-std::optional<double> ProjectedLaws::next_break(double t, double end) const {
-  std::optional<double> first;
-  if (!system_.reference()) return first;
-  const MotionPoint phi = system_.reference()->at(t);
-  for (const Law& law : laws_) {
-    if (law.term->phase_node < 0) continue;
-    const double ratio = system_.ratio(law.term->phase_node);
-    for (const double side : {1.0, -1.0}) {
-      const auto knot = law.term->force->next_offset_knot(ratio * phi.value, side);
-      if (!knot) continue;
-      const std::array<double, 3> g{side * (*knot - ratio * phi.value), -side * ratio * phi.rate,
-                                    -0.5 * side * ratio * phi.acceleration};
-      if (!(g[0] > 0.0)) continue;
-      if (const auto s = first_crossing(g, end - t)) {
-        first = t + *s;
-        end = *first;
-      }
-    }
-  }
-  return first;
 }
 
 double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& projection) {
@@ -185,8 +129,8 @@ std::optional<double> ProjectedLaws::first_knot(const TaylorSeries& series, doub
   return first;
 }
 
-ProjectedLaws::Work ProjectedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) {
-  Work work;
+LawWork ProjectedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) {
+  LawWork work;
   if (laws_.empty()) return work;
   const GaussRule& rule = gauss_rule();
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
@@ -196,11 +140,7 @@ ProjectedLaws::Work ProjectedLaws::work(const TaylorSeries& series, double s, co
     for (const Law& law : laws_) {
       const ScalarInput in = assembler_.input(*law.term, z_, v_);
       const ScalarResponse r = law.term->force->evaluate(in);
-      const double by_unknowns = along(*law.term, v_);
-      work.dissipated += dt * r.dissipated_power;
-      // What the law's energy gains beyond its ends' work comes from what varies in it.
-      work.input += law.term->force->varies() ? dt * (r.dissipated_power - r.y * by_unknowns)
-                                              : dt * r.y * (in.x_dot - by_unknowns);
+      work.add(dt, r.y, in.x_dot, along(*law.term, v_), r.dissipated_power, law.term->force->varies());
     }
   }
   // The same energies as the run's own: at a jump of stiffness rounding may put another look on its other side.

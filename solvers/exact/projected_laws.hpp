@@ -1,6 +1,5 @@
 #pragma once
-/// ProjectedLaws: laws that state no linear pieces (mesh stiffness by phase, transmission error, damping that
-/// grows with penetration, a user's own), for TaylorSeries.
+/// ProjectedLaws: laws that state neither linear pieces nor products (expanded_laws.hpp), a user's own, for TaylorSeries.
 ///
 /// Between its kinks() such a law is smooth. Its tangent at the step's start goes into the matrices; what
 /// y(x, x', t, angle) differs from it along the series' path is projected (legendre_projection.hpp), pass by
@@ -11,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "solvers/exact/law_work.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/taylor_series.hpp"
 
@@ -23,8 +23,7 @@ class ProjectedLaws {
   bool empty() const { return laws_.empty(); }
 
   /// Adds the tangents at the step's start, the point's inputs and responses; the step has h seconds.
-  /// Returns what the offsets' polynomials may be off by, relative to the deflections.
-  double add_to(TaylorSeries& series, const EvaluatedState& start, double h);
+  void add_to(TaylorSeries& series, const EvaluatedState& start, double h);
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
@@ -35,12 +34,6 @@ class ProjectedLaws {
     for (const Row& r : rows_) judge(r.row, r.analytic);
   }
 
-  /// The first time in (t, end) at which the offset of a law has a knot: a step must end there.
-  std::optional<double> next_break(double t, double end) const;
-
-  /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
-  const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
-
   /// Series of how the pieces of the law are scaled by its angle along the path (ScalarForce::pieces_scale).
   void expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale);
 
@@ -49,12 +42,8 @@ class ProjectedLaws {
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
 
-  /// Energy put in by what varies in the laws and their ends, and dissipated in them, from 0 to s [J].
-  struct Work {
-    double input = 0.0, dissipated = 0.0;
-  };
-  /// end: what was evaluated at s.
-  Work work(const TaylorSeries& series, double s, const EvaluatedState& end);
+  /// From 0 to s; end: what was evaluated at s.
+  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end);
 
  private:
   struct Law {
@@ -66,7 +55,6 @@ class ProjectedLaws {
     double angle = 0.0, stored = 0.0;
   };
   static double along(const ScalarTerm& term, const Vector& q);
-  double expand_offset(const Law& law, const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;
@@ -76,7 +64,6 @@ class ProjectedLaws {
     bool analytic;
   };
   std::vector<Row> rows_;
-  std::vector<std::vector<double>> offsets_;
   std::vector<double> g_;
   NodeForces forces_;
   Vector z_, v_;

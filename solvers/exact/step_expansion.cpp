@@ -26,7 +26,9 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   known.add_to(series, h);
   laws.add_to(series, known, h);
   if (!friction.empty()) friction.add_to(series, known, from.state.t, h);
-  const double rest = smooth.add_to(series, from, h);
+  const double rest = offsets.expand(series, from.state.t, h);
+  smooth.add_to(series, from, h);
+  expanded.add_to(series, laws, known, offsets, from, h);
   if (rest > share && h > limits.shortest)
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
   // Loads and smooth laws can be stiffer than what bounded the largest step.
@@ -39,6 +41,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   for (int pass = 0;; ++pass) {
     const bool last = !projects || settled;
     const double got = series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
+    if (expanded.turns_back(series)) return {h, true};
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0);
@@ -57,6 +60,20 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   }
 }
 
+std::optional<double> StepExpansion::first_knot(double end) {
+  std::optional<double> first;
+  const auto take = [&](auto& laws) {
+    const auto knot = laws.first_knot(series, end);
+    if (!knot) return;
+    first = knot;
+    end = *knot;
+    knot_clearance_ = laws.knot_clearance();
+  };
+  take(smooth);
+  take(expanded);
+  return first;
+}
+
 bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState& from, const LawSeries& laws,
                                 double s, const Limits& limits) {
   known.locate_as(other.known);
@@ -64,6 +81,7 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   contraction_ = other.contraction_;
   series.scale_as(other.series);
   friction.locate_as(other.friction);
+  expanded.locate_as(other.expanded);
   const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
   if (made.to_knot || made.h != h) return false;
   friction.expand(series, from.state);

@@ -232,6 +232,17 @@ void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
   Eigen::Map<Vector>(with_rows_.data(), n_).noalias() += system_.rows().topRows(m).transpose() * row_forces_;
 }
 
+/// False: none of them acts.
+bool TaylorSeries::add_term_forces(int k, double factor, double* term) const {
+  bool any = false;
+  for (TermForces* forces : term_forces_) {
+    if (!forces->active()) continue;
+    forces->add(*this, k, factor, term);
+    any = true;
+  }
+  return any;
+}
+
 TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   const double* p = k - 2 <= right_degree_ ? p_.data() + idx((k - 2) * stride_) : zeros_.data();
   const double* x_0 = coefficients(k - 2);
@@ -248,16 +259,16 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
                                        {block_begin_.data(), whole ? c_views_.data() : nullptr},
                                        main_alone ? c_.data() + diagonals_[idx(main_)].values : nullptr,
                                        c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
-    if (term_forces_) term_forces_->add(*this, k, factor, next);
+    const bool more = add_term_forces(k, factor, next);
     rows_of(next);
-    return kinds_.empty() && !term_forces_ ? Norm{largest, 0.0} : norm(next);
+    return kinds_.empty() && !more ? Norm{largest, 0.0} : norm(next);
   }
   std::copy_n(p, n_, solve_in_.data());
   subtract_product(k_, false, x_0, 1.0, solve_in_.data());
   if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
   solve_mass(solve_in_, solve_out_);
   for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
-  if (term_forces_) term_forces_->add(*this, k, factor, next);
+  add_term_forces(k, factor, next);
   rows_of(next);
   return norm(next);
 }
@@ -283,6 +294,14 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
                             k * sizes_[idx(k)][i] / (h * tolerance * v_scale[i])});
     return largest;
   };
+  int known_degree = right_degree_;
+  bool products = false;  // of series: their tails are not bounded by the norms of K and C alone
+  for (const TermForces* forces : term_forces_)
+    if (forces->active()) {
+      known_degree = std::max(known_degree, forces->known_degree());
+      products = true;
+    }
+  bool small_before = false;
   for (int k = 2; k <= kMaxDegree; ++k) {
     const Norm size = next_term(k, h);
     sizes_[idx(k)] = size;
@@ -293,11 +312,13 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     degree_ = k;
     ++products_;
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
-    if (k < right_degree_ + 3) continue;  // a term of the right side may still be to come
+    if (k < known_degree + 3) continue;  // a term of the right side may still be to come
     const double last = excess(k);
     const double first = k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
     const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
-    if (first <= 1.0 && second <= 1.0) return h_;
+    const bool is_small = first <= 1.0 && second <= 1.0;
+    if (is_small && (small_before || !products)) return h_;
+    small_before = is_small;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;

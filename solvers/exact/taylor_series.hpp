@@ -27,9 +27,14 @@ namespace drev {
 
 class TaylorSeries;
 
-/// Forces whose coefficients follow from the very term that they act on (dry friction).
+/// Forces whose coefficients follow from those of the motion, term by term (products of series), or from the very term
+/// that they act on (dry friction).
 class TermForces {
  public:
+  /// False: they add nothing to this step.
+  virtual bool active() const { return true; }
+  /// Up to this power of s they may have terms of their own.
+  virtual int known_degree() const { return 0; }
   /// Adds what they make of term k: M^-1 f_{k-2} times factor = h^2/(k (k - 1)).
   virtual void add(const TaylorSeries& series, int k, double factor, double* term) = 0;
 
@@ -59,8 +64,8 @@ class TaylorSeries {
   void widen(int row, double k, double c);
   /// The same of a damping along any row, as a rate c/m [1/s].
   void widen_damping(double rate) { c_more_ += rate; }
-  /// Forces that act on every term; null: none. Owned by the caller.
-  void act_through(TermForces* forces) { term_forces_ = forces; }
+  /// Adds forces that act on every term, behind those added before. Owned by the caller.
+  void act_through(TermForces* forces) { term_forces_.push_back(forces); }
   /// Estimate from above of the fastest rate |lambda| with those [1/s].
   double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
@@ -132,11 +137,12 @@ class TaylorSeries {
           system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
   }
   void add_row_forces(const double* p, const double* x_0);
+  bool add_term_forces(int k, double factor, double* term) const;
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
 
   const System& system_;
-  TermForces* term_forces_ = nullptr;
+  std::vector<TermForces*> term_forces_;
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_

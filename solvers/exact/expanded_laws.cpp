@@ -1,0 +1,276 @@
+#include "solvers/exact/expanded_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/roots.hpp"
+#include "solvers/exact/law_offsets.hpp"
+#include "solvers/exact/law_series.hpp"
+#include "solvers/exact/legendre_projection.hpp"
+#include "solvers/exact/load_series.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
+constexpr double kLeastRate = 1e-6;    // at a knot, of the mean rate to it
+constexpr double kOnKnot = 1e-12;      // of the angle, at least of 1 rad
+
+std::size_t capacity() { return static_cast<std::size_t>(TaylorSeries::kMaxDegree) + 1; }
+
+/// Term m of the product of two series.
+double product_term(const std::vector<double>& a, const std::vector<double>& b, int m) {
+  double sum = 0.0;
+  for (int i = 0; i <= m; ++i) sum += a[idx(i)] * b[idx(m - i)];
+  return sum;
+}
+
+double term_or_zero(const std::vector<double>& series, int m) {
+  return idx(m) < series.size() ? series[idx(m)] : 0.0;
+}
+
+}  // namespace
+
+bool ExpandedLaws::takes(const ScalarTerm& term) {
+  if (term.force->pieces().empty() || !linear_pieces(term).empty()) return false;
+  return term.phase_node < 0 || dynamic_cast<const AngleScaledForce*>(term.force) != nullptr;
+}
+
+ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(system) {
+  const auto& scalars = system.scalars();
+  if (std::none_of(scalars.begin(), scalars.end(), takes)) return;
+  TaylorSeries series(system);
+  for (std::size_t j = 0; j < scalars.size(); ++j) {
+    const ScalarTerm& term = scalars[j];
+    if (!takes(term)) continue;
+    Law law;
+    law.index = static_cast<int>(j);
+    law.term = &term;
+    if (term.phase_node >= 0) {
+      law.scaled = dynamic_cast<const AngleScaledForce*>(term.force);
+      law.phase_row = system.row_of(term.phase_node);
+    }
+    Vector row = Vector::Zero(system.size()), gain;
+    for (const Entry& e : term.z) row[e.index] += e.coeff;
+    series.solve_mass(row, gain);
+    for (int i = 0; i < system.size(); ++i)
+      if (gain[i] != 0.0) law.gain.push_back({i, gain[i]});
+    for (auto* s : {&law.x, &law.theta, &law.r}) s->assign(capacity(), 0.0);
+    laws_.push_back(std::move(law));
+  }
+}
+
+void ExpandedLaws::locate_as(const ExpandedLaws& other) {
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    laws_[i].direction = other.laws_[i].direction;
+    laws_[i].turned = other.laws_[i].turned;
+  }
+}
+
+void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const LoadSeries& known,
+                          const LawOffsets& offsets, const EvaluatedState& start, double h) {
+  active_ = false;
+  known_degree_ = 0;
+  h_ = h;
+  assembler_.set_time(start.state.t);
+  for (Law& law : laws_) {
+    const ScalarTerm& term = *law.term;
+    const ScalarInput& in = start.inputs[idx(law.index)];
+    const LawPiece& p = term.force->pieces()[idx(pieces.piece(law.index))];
+    law.active = p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0;
+    active_ = active_ || law.active;
+    law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
+    law.k = p.k;
+    law.g = p.product;
+    law.y_0 = p.y_0 + p.k * law.origin;
+    law.c = p.c + p.product * law.origin;
+    law.elastic_0 = p.elastic_0 + p.elastic_k * law.origin;
+    law.elastic_k = p.elastic_k;
+    law.stored = start.responses[idx(law.index)].stored_energy;
+    law.known = offsets.offset(law.index);
+    if (law.known.size() < 3) law.known.resize(3, 0.0);
+    for (const Entry& e : term.u)
+      for (std::size_t i = 0; i < 3; ++i) law.known[i] += e.coeff * known.prescribed(e.index)[i];
+    law.known[0] -= law.origin;
+    if (law.active) known_degree_ = std::max(known_degree_, static_cast<int>(law.known.size()) - 1);
+    law.angle = in.angle;
+    law.stretch = {};
+    if (law.scaled != nullptr) {
+      law.known_angle.assign(3, 0.0);
+      const auto add_known = [&](double factor, const MotionPoint& m) {
+        law.known_angle[1] += factor * m.rate * h;
+        law.known_angle[2] += 0.5 * factor * m.acceleration * h * h;
+      };
+      const NodeMap& map = system_.node_map(term.phase_node);
+      add_known(system_.ratio(term.phase_node), assembler_.nominal());
+      if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
+      double rate = law.known_angle[1] / h;
+      for (const Entry& e : law.phase_row) rate += e.coeff * start.state.v[e.index];
+      if (rate != 0.0) {
+        law.direction = rate > 0.0 ? 1.0 : -1.0;
+        law.turned = false;
+      }
+      law.stretch = law.scaled->scale_stretch(law.angle, law.direction);
+    }
+    start_scale(law);
+    if (!law.active) continue;
+    double b_1 = 0.0;
+    for (const Entry& e : term.z) b_1 += std::abs(e.coeff);
+    const double k = law.r[0] * law.k + law.g * in.x_dot, c = law.c + law.g * (in.x - law.origin);
+    for (const Entry& e : term.z) series.widen(e.index, k * b_1 * e.coeff, c * b_1 * e.coeff);
+  }
+}
+
+void ExpandedLaws::start_scale(Law& law) const {
+  law.r[0] = law.stretch.value;
+  const std::size_t orders = law.stretch.orders.size();
+  law.cosine.assign(orders * capacity(), 0.0);
+  law.sine.assign(orders * capacity(), 0.0);
+  for (std::size_t i = 0; i < orders; ++i) {
+    const LoadOrder& o = law.stretch.orders[i];
+    const double c = std::cos(o.order * law.angle), s = std::sin(o.order * law.angle);
+    law.cosine[i * capacity()] = c;
+    law.sine[i * capacity()] = s;
+    law.r[0] += o.cosine * c + o.sine * s;
+  }
+}
+
+/// r_m, m >= 1, from theta_1 ... theta_m.
+void ExpandedLaws::add_scale(Law& law, int m) {
+  law.r[idx(m)] = law.stretch.slope * law.theta[idx(m)];
+  for (std::size_t i = 0; i < law.stretch.orders.size(); ++i) {
+    const LoadOrder& o = law.stretch.orders[i];
+    double* c = law.cosine.data() + i * capacity();
+    double* s = law.sine.data() + i * capacity();
+    double of_c = 0.0, of_s = 0.0;
+    for (int j = 1; j <= m; ++j) {
+      of_c += j * law.theta[idx(j)] * c[m - j];
+      of_s += j * law.theta[idx(j)] * s[m - j];
+    }
+    c[m] = -o.order / m * of_s;
+    s[m] = o.order / m * of_c;
+    law.r[idx(m)] += o.cosine * c[m] + o.sine * s[m];
+  }
+}
+
+/// x_m and theta_m.
+void ExpandedLaws::add_term(Law& law, const TaylorSeries& series, int m) const {
+  double x = term_or_zero(law.known, m);
+  for (const Entry& e : law.term->z) x += e.coeff * series.coefficient(m, e.index);
+  law.x[idx(m)] = x;
+  if (law.scaled == nullptr) return;
+  double theta = m == 0 ? law.angle : term_or_zero(law.known_angle, m);
+  if (m > 0)
+    for (const Entry& e : law.phase_row) theta += e.coeff * series.coefficient(m, e.index);
+  law.theta[idx(m)] = theta;
+}
+
+void ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double* term) {
+  const int m = k - 2;
+  for (Law& law : laws_) {
+    if (!law.active) continue;
+    if (m == 0) add_term(law, series, 0);
+    add_term(law, series, m + 1);
+    double y = law.k * law.r[0] * law.x[idx(m)];
+    if (law.scaled != nullptr) {
+      if (m > 0) add_scale(law, m);
+      y = law.k * product_term(law.r, law.x, m);
+    }
+    y += law.y_0 * (m == 0 || law.scaled != nullptr ? law.r[idx(m)] : 0.0);
+    double rate = law.c * (m + 1) * law.x[idx(m + 1)];
+    // x x' is half the rate of x^2.
+    if (law.g != 0.0) rate += 0.5 * law.g * (m + 1) * product_term(law.x, law.x, m + 1);
+    y += rate / h_;
+    for (const Entry& e : law.gain) term[e.index] -= e.coeff * y * factor;
+  }
+}
+
+/// All series, to the degree of the motion's.
+void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
+  for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
+  if (law.scaled != nullptr)
+    for (int m = 1; m <= series.degree(); ++m) add_scale(law, m);
+}
+
+bool ExpandedLaws::turns_back(const TaylorSeries& series) {
+  bool any = false;
+  for (Law& law : laws_) {
+    if (law.scaled == nullptr || law.turned) continue;
+    const double near = kOnKnot * std::max(1.0, std::abs(law.angle));
+    const double to_knot = law.direction > 0.0 ? law.angle - law.stretch.low : law.stretch.high - law.angle;
+    if (!(to_knot < near)) continue;
+    double largest = 0.0, lead = 0.0;
+    for (int m = 1; m <= series.degree(); ++m) {
+      add_term(law, series, m);
+      largest = std::max(largest, std::abs(law.theta[idx(m)]));
+    }
+    for (int m = 1; m <= series.degree() && lead == 0.0; ++m)
+      if (std::abs(law.theta[idx(m)]) > kOnKnot * largest) lead = law.theta[idx(m)];
+    if (!(lead * law.direction < 0.0)) continue;
+    law.direction = -law.direction;
+    law.turned = any = true;
+  }
+  return any;
+}
+
+bool ExpandedLaws::expand_scale(int index, const TaylorSeries& series, std::vector<double>& scale) {
+  for (Law& law : laws_) {
+    if (law.index != index) continue;
+    complete(law, series);
+    scale.assign(law.r.begin(), law.r.begin() + series.degree() + 1);
+    return true;
+  }
+  return false;
+}
+
+std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, double end) {
+  std::optional<double> first;
+  for (Law& law : laws_) {
+    if (law.scaled == nullptr) continue;
+    if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
+    for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
+    for (const double side : {1.0, -1.0}) {
+      const double bound = side > 0.0 ? law.stretch.high : law.stretch.low;
+      if (!std::isfinite(bound)) continue;
+      std::vector<double> g(law.theta.begin(), law.theta.begin() + series.degree() + 1);
+      for (double& term : g) term *= -side;
+      g[0] = std::max(0.0, side * (bound - law.angle));
+      if (g[0] == 0.0 && law.direction * side > 0.0)
+        continue;  // no stretch is that short: on the knot, past it
+      if (g[0] < kOnKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) g[0] = 0.0;
+      if (const auto s = first_crossing(g, end)) {
+        first = s;
+        end = *s;
+        const double rate = std::max(std::abs(polynomial_slope(g, end)), kLeastRate * std::abs(g[0]));
+        knot_clearance_ = kAngleClear * std::max(1.0, std::abs(law.angle)) * h_ / rate;
+      }
+    }
+  }
+  return first;
+}
+
+LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) {
+  LawWork work;
+  const GaussRule& rule = gauss_rule();
+  const auto terms = idx(series.degree() + 1);
+  for (Law& law : laws_) {
+    const bool varies = law.term->force->varies();
+    if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
+    if (!law.active) continue;
+    complete(law, series);
+    const std::span<const double> x = std::span(law.x).first(terms);
+    const std::span<const double> r = std::span(law.r).first(law.scaled != nullptr ? terms : 1);
+    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+      const double at = s * rule.s[q];
+      const double deflection = polynomial_value(x, at), rate = polynomial_slope(x, at) / h_;
+      const double known = polynomial_slope(law.known, at) / h_, scale = polynomial_value(r, at);
+      const double y = scale * (law.y_0 + law.k * deflection) + (law.c + law.g * deflection) * rate;
+      const double elastic = scale * (law.elastic_0 + law.elastic_k * deflection);
+      work.add(s * h_ * rule.weight[q], y, rate, rate - known, (y - elastic) * rate, varies);
+    }
+  }
+  return work;
+}
+
+}  // namespace drev

@@ -1,0 +1,92 @@
+#pragma once
+/// ExpandedLaws: laws whose force along a step follows as a power series from that of the motion, by products:
+///
+///   y = r (y_0 + k x) + (c + g x) x'       on the piece that holds (law_piece.hpp)
+///   y_m = y_0 r_m + k sum_i r_i x_{m-i} + (c (m+1) x_{m+1} + g sum_i x_i (m-i+1) x_{m-i+1})/h
+///
+/// r(theta): pieces_scale() of a law that states its formula (angle_scaled_force.hpp), 1 of one that follows no angle; a
+/// straight stretch of it is r_m = slope theta_m, an order E = exp(i n theta) the recurrence
+/// E_m = i n/m sum_j j theta_j E_{m-j}. So mesh stiffness by phase, transmission error and damping that grows with
+/// penetration take no passes, and a piece is continued analytically behind its end, where the step is cut.
+/// Each degree costs a sum of its length. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM, 2008,
+/// chapter 13.
+#include <drev/core/assembler.hpp>
+#include <drev/core/law/angle_scaled_force.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+
+#include <optional>
+#include <vector>
+
+#include "solvers/exact/law_work.hpp"
+#include "solvers/exact/taylor_series.hpp"
+
+namespace drev {
+
+class LawOffsets;
+class LawSeries;
+class LoadSeries;
+
+class ExpandedLaws final : public TermForces {
+ public:
+  explicit ExpandedLaws(const System& system);
+  /// The law is one of these: it states pieces, and what scales them, and a method for linear pieces does not do.
+  static bool takes(const ScalarTerm& term);
+
+  bool empty() const { return laws_.empty(); }
+  /// Takes over which way the angles went.
+  void locate_as(const ExpandedLaws& other);
+
+  /// What is known over a step of h seconds from `start` on, where the pieces are those of `pieces`.
+  void add_to(TaylorSeries& series, const LawSeries& pieces, const LoadSeries& known,
+              const LawOffsets& offsets, const EvaluatedState& start, double h);
+  /// Adds the forces' part to term k of the series, factor = h^2/(k (k - 1)).
+  void add(const TaylorSeries& series, int k, double factor, double* term) override;
+  bool active() const override { return active_; }
+  int known_degree() const override { return known_degree_; }
+
+  /// An angle at rest on a knot goes the other way than was assumed: expand anew.
+  bool turns_back(const TaylorSeries& series);
+
+  /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
+  bool expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale);
+
+  /// First s in (0, end] at which an angle passes a knot.
+  std::optional<double> first_knot(const TaylorSeries& series, double end);
+  /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
+  double knot_clearance() const { return knot_clearance_; }
+
+  /// From 0 to s; end: what was evaluated at s.
+  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end);
+
+ private:
+  struct Law {
+    int index = 0;
+    const ScalarTerm* term = nullptr;
+    const AngleScaledForce* scaled = nullptr;  // null: r = 1
+    std::vector<Entry> phase_row;              // its phase node's deviation
+    std::vector<Entry> gain;                   // M^-1 b over unknowns
+    double direction = 1.0;                    // in which the angle went last
+    bool turned = false;                       // at rest, once
+    // Of the step: the piece about `origin`, where its elastic force is zero.
+    bool active = false;
+    double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
+    double angle = 0.0, stored = 0.0;
+    ScaleStretch stretch;
+    std::vector<double> known, known_angle;  // series of what is known of x and theta
+    std::vector<double> x, theta, r;
+    std::vector<double> cosine, sine;  // of each order, by degree: cos and sin of order theta
+  };
+  void start_scale(Law& law) const;
+  void add_term(Law& law, const TaylorSeries& series, int m) const;
+  static void add_scale(Law& law, int m);
+  void complete(Law& law, const TaylorSeries& series) const;
+
+  const System& system_;
+  Assembler assembler_;
+  std::vector<Law> laws_;
+  bool active_ = false;
+  int known_degree_ = 0;
+  double h_ = 0.0, knot_clearance_ = 0.0;
+};
+
+}  // namespace drev

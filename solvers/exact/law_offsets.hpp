@@ -1,0 +1,29 @@
+#pragma once
+/// LawOffsets: the known offsets of laws (transmission error at the nominal angle) as polynomials over a step.
+#include <drev/core/system.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace drev {
+
+class TaylorSeries;
+
+class LawOffsets {
+ public:
+  explicit LawOffsets(const System& system) : system_(system), offsets_(system.scalars().size()) {}
+
+  /// Over h seconds from t on, through the nodes of Gauss's rule. Returns what the polynomials may be off by, relative to
+  /// the deflections.
+  double expand(const TaylorSeries& series, double t, double h);
+  /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
+  const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
+  /// The first time in (t, end) at which the offset of a law has a knot: a step must end there.
+  std::optional<double> next_break(double t, double end) const;
+
+ private:
+  const System& system_;
+  std::vector<std::vector<double>> offsets_;
+};
+
+}  // namespace drev
