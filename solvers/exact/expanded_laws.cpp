@@ -80,6 +80,7 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     const LawPiece& p = term.force->pieces()[idx(pieces.piece(law.index))];
     law.active = p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0;
     active_ = active_ || law.active;
+    law.works = law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0;
     law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
     law.k = p.k;
     law.g = p.product;
@@ -186,11 +187,13 @@ void ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double*
   }
 }
 
-/// All series, to the degree of the motion's.
-void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
-  for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
-  if (law.scaled != nullptr)
+void ExpandedLaws::expand(const TaylorSeries& series) {
+  for (Law& law : laws_) {
+    if (!law.works && law.scaled == nullptr) continue;
+    for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
+    if (law.scaled == nullptr) continue;
     for (int m = 1; m <= series.degree(); ++m) add_scale(law, m);
+  }
 }
 
 bool ExpandedLaws::turns_back(const TaylorSeries& series) {
@@ -214,10 +217,9 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   return any;
 }
 
-bool ExpandedLaws::expand_scale(int index, const TaylorSeries& series, std::vector<double>& scale) {
-  for (Law& law : laws_) {
+bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) const {
+  for (const Law& law : laws_) {
     if (law.index != index) continue;
-    complete(law, series);
     scale.assign(law.r.begin(), law.r.begin() + series.degree() + 1);
     return true;
   }
@@ -229,7 +231,6 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
   for (Law& law : laws_) {
     if (law.scaled == nullptr) continue;
     if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
-    for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
     for (const double side : {1.0, -1.0}) {
       const double bound = side > 0.0 ? law.stretch.high : law.stretch.low;
       if (!std::isfinite(bound)) continue;
@@ -250,15 +251,14 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
   return first;
 }
 
-LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) {
+LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) const {
   LawWork work;
   const GaussRule& rule = gauss_rule();
   const auto terms = idx(series.degree() + 1);
-  for (Law& law : laws_) {
+  for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
-    if (!law.active) continue;
-    complete(law, series);
+    if (!law.works) continue;
     const std::span<const double> x = std::span(law.x).first(terms);
     const std::span<const double> r = std::span(law.r).first(law.scaled != nullptr ? terms : 1);
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {

@@ -47,8 +47,10 @@ class ExpandedLaws final : public TermForces {
   /// An angle at rest on a knot goes the other way than was assumed: expand anew.
   bool turns_back(const TaylorSeries& series);
 
+  /// After the series was expanded: all series of the laws, which what follows reads.
+  void expand(const TaylorSeries& series);
   /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
-  bool expand_scale(int law, const TaylorSeries& series, std::vector<double>& scale);
+  bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale) const;
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
@@ -56,7 +58,7 @@ class ExpandedLaws final : public TermForces {
   double knot_clearance() const { return knot_clearance_; }
 
   /// From 0 to s; end: what was evaluated at s.
-  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end);
+  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end) const;
 
  private:
   struct Law {
@@ -68,7 +70,7 @@ class ExpandedLaws final : public TermForces {
     double direction = 1.0;                    // in which the angle went last
     bool turned = false;                       // at rest, once
     // Of the step: the piece about `origin`, where its elastic force is zero.
-    bool active = false;
+    bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, stored = 0.0;
     ScaleStretch stretch;
@@ -79,7 +81,6 @@ class ExpandedLaws final : public TermForces {
   void start_scale(Law& law) const;
   void add_term(Law& law, const TaylorSeries& series, int m) const;
   static void add_scale(Law& law, int m);
-  void complete(Law& law, const TaylorSeries& series) const;
 
   const System& system_;
   Assembler assembler_;

@@ -14,13 +14,17 @@ namespace {
 constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
 }  // namespace
 
+LawOffsets::LawOffsets(const System& system) : system_(system), offsets_(system.scalars().size()) {
+  for (std::size_t j = 0; j < offsets_.size(); ++j)
+    if (system.scalars()[j].phase_node >= 0) phased_.push_back(j);
+}
+
 double LawOffsets::expand(const TaylorSeries& series, double t, double h) {
   double rest = 0.0;
   const GaussRule& rule = gauss_rule();
-  for (std::size_t j = 0; j < offsets_.size(); ++j) {
+  for (const std::size_t j : phased_) {
     const ScalarTerm& term = system_.scalars()[j];
     offsets_[j].clear();
-    if (term.phase_node < 0) continue;
     const double ratio = system_.ratio(term.phase_node);
     std::array<double, GaussRule::kNodes> values{};
     double largest = 0.0, rounding = 0.0;
@@ -46,10 +50,10 @@ double LawOffsets::expand(const TaylorSeries& series, double t, double h) {
 
 std::optional<double> LawOffsets::next_break(double t, double end) const {
   std::optional<double> first;
-  if (!system_.reference()) return first;
+  if (phased_.empty() || !system_.reference()) return first;
   const MotionPoint phi = system_.reference()->at(t);
-  for (const ScalarTerm& term : system_.scalars()) {
-    if (term.phase_node < 0) continue;
+  for (const std::size_t j : phased_) {
+    const ScalarTerm& term = system_.scalars()[j];
     const double ratio = system_.ratio(term.phase_node);
     for (const double side : {1.0, -1.0}) {
       const auto knot = term.force->next_offset_knot(ratio * phi.value, side);

@@ -11,7 +11,7 @@ class TaylorSeries;
 
 class LawOffsets {
  public:
-  explicit LawOffsets(const System& system) : system_(system), offsets_(system.scalars().size()) {}
+  explicit LawOffsets(const System& system);
 
   /// Over h seconds from t on, through the nodes of Gauss's rule. Returns what the polynomials may be off by, relative to
   /// the deflections.
@@ -23,6 +23,7 @@ class LawOffsets {
 
  private:
   const System& system_;
+  std::vector<std::size_t> phased_;  // laws that follow a node's phase
   std::vector<std::vector<double>> offsets_;
 };
 

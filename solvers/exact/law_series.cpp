@@ -180,19 +180,20 @@ void LawSeries::bound_sizes(const Law& law, const LawBound& b, std::vector<doubl
     size[k] += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * law.x_size[k + 1];
 }
 
-bool LawSeries::falls_at_once(Law& law, const LawBound& b, int index) {
+LawSeries::Start LawSeries::start_of(Law& law, const LawBound& b, int index) {
   std::vector<double>& g = law.bounds[idx(index)];
   bound_series(law, b, g);
-  if (index != law.root && g[0] > 0.0) return false;
+  if (index != law.root && g[0] > 0.0) return Start::holds;
   bound_sizes(law, b, sizes_);
   const double whole = std::abs(b.a) + sizes_[0];
-  if (index != law.root && g[0] < -kZero * whole) return true;
+  if (index != law.root && g[0] < -kZero * whole) return Start::jumped;
   g[0] = 0.0;
   for (std::size_t k = 1; k < g.size(); ++k) {
-    if (std::abs(g[k]) > std::max(kZero * sizes_[k], kFloor * whole)) return g[k] < 0.0;
+    if (std::abs(g[k]) > std::max(kZero * sizes_[k], kFloor * whole))
+      return g[k] < 0.0 ? Start::falls : Start::holds;
     g[k] = 0.0;
   }
-  return false;
+  return Start::holds;
 }
 
 std::optional<LawSeries::Change> LawSeries::change_at_once() {
@@ -200,8 +201,8 @@ std::optional<LawSeries::Change> LawSeries::change_at_once() {
     const LawPiece& p = current(j);
     laws_[j].bounds.resize(p.bounds.size());
     for (std::size_t i = 0; i < p.bounds.size(); ++i)
-      if (falls_at_once(laws_[j], p.bounds[i], static_cast<int>(i)))
-        return Change{0.0, static_cast<int>(j), static_cast<int>(i)};
+      if (const Start start = start_of(laws_[j], p.bounds[i], static_cast<int>(i)); start != Start::holds)
+        return Change{0.0, static_cast<int>(j), static_cast<int>(i), start == Start::jumped};
   }
   return std::nullopt;
 }
@@ -234,6 +235,7 @@ void LawSeries::pass(const Change& change) {
   const LawBound crossed = current(idx(change.law)).bounds[idx(change.bound)];
   law.piece = crossed.next;
   law.root = -1;
+  if (change.jumped) return;  // no bound stands at zero
   const std::vector<LawBound>& bounds = current(idx(change.law)).bounds;
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (opposite(crossed, bounds[i])) law.root = static_cast<int>(i);

@@ -23,6 +23,8 @@ class LawSeries {
     double s = 0.0;  ///< where in the step
     int law = 0;     ///< of System::scalars()
     int bound = 0;   ///< of its piece
+    /// At s = 0 the bound is beyond zero: a stiffness or the rate of an offset jumped across it.
+    bool jumped = false;
   };
 
   explicit LawSeries(const System& system);
@@ -75,7 +77,8 @@ class LawSeries {
   };
   const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
-  bool falls_at_once(Law& law, const LawBound& bound, int index);
+  enum class Start { holds, falls, jumped };
+  Start start_of(Law& law, const LawBound& bound, int index);
   void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;
   /// The sizes of the terms that its coefficients are summed from.
   void bound_sizes(const Law& law, const LawBound& bound, std::vector<double>& size) const;

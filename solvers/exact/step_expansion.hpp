@@ -50,8 +50,9 @@ class StepExpansion {
 
   /// The laws' deflections and bounds along the step.
   void expand_laws(LawSeries& laws) {
+    expanded.expand(series);
     laws.expand(series, known, offsets, [this](int law, std::vector<double>& scale) {
-      if (!expanded.expand_scale(law, series, scale)) smooth.expand_scale(law, series, scale);
+      if (!expanded.scale_of(law, series, scale)) smooth.expand_scale(law, series, scale);
     });
   }
   /// First s in (0, end] at which the angle of a law passes one of its knots.

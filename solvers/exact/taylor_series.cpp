@@ -16,8 +16,9 @@ namespace drev {
 namespace {
 constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
 constexpr double kEigenvalueMargin = 1.1;
-constexpr double kEnergyPart = 0.01;    // of the tolerance: terms that energies do without, 1e-13 to 1e-9
-constexpr double kShortenSeries = 0.9;  // of the step at which the last terms are just small enough
+constexpr double kEnergyPart = 0.01;     // of the tolerance: terms that energies do without, 1e-13 to 1e-9
+constexpr double kLastOfProducts = 0.1;  // of what is allowed: the last two terms where series are multiplied
+constexpr double kShortenSeries = 0.9;   // of the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
@@ -301,7 +302,6 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       known_degree = std::max(known_degree, forces->known_degree());
       products = true;
     }
-  bool small_before = false;
   for (int k = 2; k <= kMaxDegree; ++k) {
     const Norm size = next_term(k, h);
     sizes_[idx(k)] = size;
@@ -317,13 +317,15 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     const double first = k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
     const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     const bool is_small = first <= 1.0 && second <= 1.0;
-    if (is_small && (small_before || !products)) return h_;
-    small_before = is_small;
+    if (is_small && !products) return h_;
+    // Terms of products fall like a geometric series, whose rest is a multiple of the last ones.
+    if (is_small && last <= kLastOfProducts && excess(k - 1) <= kLastOfProducts) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
+  const double most = products ? kLastOfProducts : 1.0;
   for (const int k : {kMaxDegree - 1, kMaxDegree})
-    if (excess(k) > 1.0) r = std::min(r, std::pow(excess(k), -1.0 / (k - 1)));
+    if (excess(k) > most) r = std::min(r, std::pow(excess(k) / most, -1.0 / (k - 1)));
   r *= kShortenSeries;
   double power = 1.0;
   for (int k = 0; k <= degree_; ++k, power *= r)
