@@ -1,0 +1,14 @@
+#pragma once
+/// `drev run MODEL --vary ... --table`: many variants of one model in lockstep, over all processors or the ranks of
+/// MPI, with one table of their figures (app/variants).
+#include "app/cli/command_line.hpp"
+
+namespace drev::app {
+
+/// Whether the command line wants a table: --table, --resume or --sample, or several variants under an MPI launcher.
+bool means_variants(const CommandLine& line);
+/// As run_command. Returns 0 if all variants succeeded, kInterrupted, kBadInput where those that failed have
+/// parameters that cannot be, else kNotTrusted.
+int run_variants(const CommandLine& line);
+
+}  // namespace drev::app
