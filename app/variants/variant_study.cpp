@@ -244,6 +244,7 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
     } else if (f.name.ends_with(".min")) {
       value = (peak++)->min;
     } else {
+      if (result.contacts.empty()) continue;  // it has no gap
       value = 0.0;
       for (const ContactRecord& c : result.contacts)
         value += f.name == "front_contacts"  ? static_cast<double>(c.front_impacts)
