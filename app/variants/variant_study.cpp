@@ -93,15 +93,47 @@ struct VariantStudy::Built {
   VariantStatus status = VariantStatus::success;
   std::string reason;
   double duration = 0.0;
-  std::vector<Channel> deflection, torques, meshes, more;
-  /// Of all of them, in this order.
-  std::vector<std::string> channel_names() const {
-    std::vector<std::string> names;
+  std::shared_ptr<const Watched> watched = {};
+};
+
+/// The channels that figures are of; for variants that are built alike those of the first one, since to find them
+/// takes as long as to build the variant.
+struct VariantStudy::Watched {
+  Watched(const ModelCase& model_case, const System& system, const std::vector<std::string>& asked)
+      : deflection_name(model_case.deflection),
+        torque_names(model_case.torques),
+        build(build_of(system)),
+        torques(find_channels(system, torque_names)),
+        meshes(mesh_channels(system)),
+        more(find_channels(system, asked)) {
+    if (!deflection_name.empty()) deflection = find_channels(system, {deflection_name});
     for (const auto* list : {&deflection, &torques, &meshes, &more})
       for (const Channel& c : *list) names.push_back(c.name());
-    return names;
   }
+  bool fits(const ModelCase& model_case, const System& system) const {
+    return model_case.deflection == deflection_name && model_case.torques == torque_names &&
+           build_of(system) == build;
+  }
+  /// Elements, and which laws have gaps.
+  static std::vector<std::string> build_of(const System& system) {
+    std::vector<std::string> parts;
+    for (const ElementInstance& p : system.element_instances()) parts.push_back(p.name);
+    for (const ScalarTerm& t : system.scalars())
+      parts.push_back(std::to_string(index(t.element)) + (t.force->gap() ? " gap" : ""));
+    return parts;
+  }
+
+  std::string deflection_name;
+  std::vector<std::string> torque_names, build;
+  std::vector<Channel> deflection, torques, meshes, more;
+  std::vector<std::string> names;  ///< of all of them, in this order
 };
+
+std::shared_ptr<const VariantStudy::Watched> VariantStudy::watched_by(const ModelCase& model_case,
+                                                                      const System& system) const {
+  if (watched_ && watched_->fits(model_case, system)) return watched_;
+  return std::make_shared<const Watched>(model_case, system, channels_);
+}
 
 VariantStudy::VariantStudy(RunRequest request, VariantPlan plan, bool record_asked)
     : request_(std::move(request)), plan_(std::move(plan)) {
@@ -113,6 +145,7 @@ VariantStudy::VariantStudy(RunRequest request, VariantPlan plan, bool record_ask
     why_not_lockstep_ =
         ::drev::why_not_lockstep(request_.model.system, stepping_options(method, 1.0, nullptr)).value_or("");
   block_size_ = why_not_lockstep_.empty() ? kLanes : 1;
+  watched_ = watched_by(request_.model.model_case, request_.model.system);
   find_figures();
   describe();
 }
@@ -185,10 +218,7 @@ VariantStudy::Built VariantStudy::build(std::uint64_t variant) const {
     if (request_.start != Start::rest)
       system =
           find_start(system, request_.start, {.duration = built.duration, .method = request_.method}).system;
-    if (!model_case.deflection.empty()) built.deflection = find_channels(system, {model_case.deflection});
-    built.torques = find_channels(system, model_case.torques);
-    built.meshes = mesh_channels(system);
-    built.more = find_channels(system, channels_);
+    built.watched = watched_by(model_case, system);
     built.system.emplace(std::move(system));
   } catch (const ModelError& error) {
     built.status = VariantStatus::bad_input;
@@ -214,14 +244,15 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
   double* row = rows.numbers.data() + place * row_size();
   *row++ = static_cast<double>(status);
   if (status != VariantStatus::success && status != VariantStatus::energy_error) return;
+  const Watched& watched = *built.watched;
   auto peak = result.peaks.begin();
   const auto next_largest = [&](const std::vector<Channel>& channels) {
     const std::vector<Peak> peaks(peak, peak + std::ssize(channels));
     peak += std::ssize(channels);
     return largest_of(channels, peaks);
   };
-  const std::optional<Largest> deflection = next_largest(built.deflection),
-                               force = next_largest(built.torques), mesh = next_largest(built.meshes);
+  const std::optional<Largest> deflection = next_largest(watched.deflection),
+                               force = next_largest(watched.torques), mesh = next_largest(watched.meshes);
   const auto in_unit = [](const std::optional<Largest>& largest, const char* unit, double factor) {
     return largest && largest->unit == unit ? factor * largest->value : kNone;
   };
@@ -264,11 +295,11 @@ void VariantStudy::run_together(std::vector<Built>& built, std::uint64_t block, 
     if (!built[i].system) continue;
     places.push_back(i);
     alike = alike && built[i].duration == built[places.front()].duration &&
-            built[i].channel_names() == built[places.front()].channel_names();
+            built[i].watched->names == built[places.front()].watched->names;
   }
   if (places.empty()) return;
   const Built& leader = built[places.front()];
-  const ManyOptions many{.channels = leader.channel_names(), .threads = 1};
+  const ManyOptions many{.channels = leader.watched->names, .threads = 1};
   const VariantBuilder take = [&](std::size_t i) { return std::move(*built[places[i]].system); };
   try {
     if (!alike) throw ModelError(std::vector<Finding>{{"", "", "", "", "not of one duration"}});

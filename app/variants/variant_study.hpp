@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,7 @@ class VariantStudy {
 
  private:
   struct Built;
+  struct Watched;
   void find_figures();
   void describe();
   Built build(std::uint64_t variant) const;
@@ -77,9 +79,12 @@ class VariantStudy {
                     const std::function<bool()>& go_on, BlockRows& rows) const;
   void enter(const Built& built, const VariantResult& result, std::size_t place, BlockRows& rows) const;
 
+  std::shared_ptr<const Watched> watched_by(const ModelCase& model_case, const System& system) const;
+
   RunRequest request_;
   VariantPlan plan_;
-  std::vector<std::string> channels_;  // with columns of their own
+  std::shared_ptr<const Watched> watched_;  // of the first variant
+  std::vector<std::string> channels_;       // with columns of their own
   std::vector<FigureColumn> figures_;
   std::uint64_t block_size_ = 1;
   std::string why_not_lockstep_;
