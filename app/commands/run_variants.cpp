@@ -37,51 +37,6 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--every", "is for single runs, which have a history"},
     {"--format", "is for single runs, which have a history"}};
 
-VariantStudy make_study(const CommandLine& line) {
-  std::vector<Finding> findings = line.findings;
-  const auto models = line.list("MODEL").value_or(std::vector<std::string>{});
-  if (models.size() > 1 || (models.size() == 1 && is_model_directory(models.front())))
-    findings.push_back({kCommandLine, "--table", "", "", "is of one model's variants; give one MODEL"});
-  if (!line.option("--out"))
-    findings.push_back({kCommandLine, "--out", "", "", "is needed: the table's folder"});
-  for (const auto& [option, why] : kWithout)
-    if (line.list(option) && *line.option(option) != "0")
-      findings.push_back({kCommandLine, option, "", "", why});
-  const auto words = line.list("--vary").value_or(std::vector<std::string>{});
-  if (words.empty())
-    findings.push_back({kCommandLine, "--vary", "", "", "is needed: what differs between variants"});
-  for (const std::string& word : words)
-    for (const auto& [name, value] : line.parameters)
-      if (word.starts_with(name + "="))
-        findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
-  const bool sampled = line.option("--sample").has_value();
-  std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
-  std::optional<Sampling> sampling;
-  if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
-  std::vector<Correlation> correlations =
-      read_correlations(line.list("--correlate").value_or(std::vector<std::string>{}), findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
-  VariantPlan plan(std::move(varied), sampling, std::move(correlations), findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
-
-  CommandLine first = line;  // What is wrong with all variants is said once.
-  for (const char* option : {"--jobs", "--resume", "--sample", "--correlate", "--vary"})
-    first.options.erase(option);
-  first.options["--table"] = {""};  // no method by trial, which may find another one another time
-  const ParameterValues values = plan.parameters(0);
-  first.parameters.insert(first.parameters.end(), values.begin(), values.end());
-  RunRequest request = request_run(first);
-  if (request.accuracy)
-    throw ModelError(std::vector<Finding>{
-        {kCommandLine, "--accuracy", "", "",
-         "of the model's [run] is for single runs: name a --method, or a --step, for the table"}});
-  if (request.settle && (!request.settle->time || *request.settle->time > 0.0))
-    throw ModelError(std::vector<Finding>{{kCommandLine, "--settle", "", "",
-                                           "of the model's [run] is for single runs: figures of a table are "
-                                           "of the whole run; give --settle 0"}});
-  return {std::move(request), std::move(plan), line.list("--record").has_value()};
-}
-
 /// What of the folder keeps the study from being begun, or gone on with.
 void check_folder(const VariantStudy& study, const std::string& folder, bool resume) {
   const auto description = VariantStore::description_in(folder);
@@ -145,8 +100,7 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
   }
   if (outcome.interrupted || !outcome.fault.empty()) {
     std::fprintf(stderr, "drev: %s; %s\n",
-                 outcome.fault.empty() ? "interrupted" : ("ended by " + outcome.fault).c_str(),
-                 kept().c_str());
+                 outcome.fault.empty() ? "interrupted" : ("ended: " + outcome.fault).c_str(), kept().c_str());
     return outcome.fault.empty() ? kInterrupted : kNotTrusted;
   }
   const VariantStatistics statistics = statistics_of(study, store);
@@ -173,6 +127,50 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
 
 }  // namespace
 
+VariantStudy study_of(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  const auto models = line.list("MODEL").value_or(std::vector<std::string>{});
+  if (models.size() > 1 || (models.size() == 1 && is_model_directory(models.front())))
+    findings.push_back({kCommandLine, "--table", "", "", "is of one model's variants; give one MODEL"});
+  for (const auto& [option, why] : kWithout)
+    if (line.list(option) && *line.option(option) != "0")
+      findings.push_back({kCommandLine, option, "", "", why});
+  const auto words = line.list("--vary").value_or(std::vector<std::string>{});
+  if (words.empty())
+    findings.push_back({kCommandLine, "--vary", "", "", "is needed: what differs between variants"});
+  for (const std::string& word : words)
+    for (const auto& [name, value] : line.parameters)
+      if (word.starts_with(name + "="))
+        findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
+  const bool sampled = line.option("--sample").has_value();
+  std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
+  std::optional<Sampling> sampling;
+  if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
+  std::vector<Correlation> correlations =
+      read_correlations(line.list("--correlate").value_or(std::vector<std::string>{}), findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  VariantPlan plan(std::move(varied), sampling, std::move(correlations), findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+
+  CommandLine first = line;  // What is wrong with all variants is said once.
+  for (const char* option : {"--out", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
+    first.options.erase(option);
+  first.keeps_history = true;       // --record needs no file
+  first.options["--table"] = {""};  // no method by trial, which may find another one another time
+  const ParameterValues values = plan.parameters(0);
+  first.parameters.insert(first.parameters.end(), values.begin(), values.end());
+  RunRequest request = request_run(first);
+  if (request.accuracy)
+    throw ModelError(std::vector<Finding>{
+        {kCommandLine, "--accuracy", "", "",
+         "of the model's [run] is for single runs: name a --method, or a --step, for the table"}});
+  if (request.settle && (!request.settle->time || *request.settle->time > 0.0))
+    throw ModelError(std::vector<Finding>{{kCommandLine, "--settle", "", "",
+                                           "of the model's [run] is for single runs: figures of a table are "
+                                           "of the whole run; give --settle 0"}});
+  return {std::move(request), std::move(plan), line.list("--record").has_value()};
+}
+
 bool means_variants(const CommandLine& line) {
   return line.list("--table") || line.list("--resume") || line.list("--sample") || line.list("--correlate") ||
          (line.list("--vary") && launched_beside_others());
@@ -184,7 +182,10 @@ int run_variants(const CommandLine& line) {
   bool declined = true;
   std::optional<VariantStudy> study;
   try {
-    study.emplace(make_study(line));
+    CommandLine asked = line;
+    if (!line.option("--out"))
+      asked.findings.push_back({kCommandLine, "--out", "", "", "is needed: the table's folder"});
+    study.emplace(study_of(asked));
     if (ranks.first()) {
       const int code = lead(line, *study, ranks, declined);
       if (declined) decline_work(ranks, {});

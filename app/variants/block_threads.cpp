@@ -15,7 +15,10 @@ BlockThreads::BlockThreads(const VariantStudy& study, int threads) : study_(stud
 }
 
 BlockThreads::~BlockThreads() {
-  stop_ = true;
+  {
+    const std::lock_guard lock(mutex_);  // or a thread that is about to wait would not hear of it
+    stop_ = true;
+  }
   given_.notify_all();
   for (std::thread& thread : threads_) thread.join();
 }
