@@ -131,7 +131,7 @@ TEST_CASE("What is wrong with a table's command line is listed at once, before a
   CHECK(contains(drev_command({"run", "gear_drive", "--sample", "lhs:5", "--out", "r"}).err, "--vary"));
 }
 
-TEST_CASE("--resume refuses a changed model and names the change; without --resume nothing is thrown away") {
+TEST_CASE("A study resumed with a changed model is refused by its change, and none is thrown away unasked") {
   const TemporaryFolder folder;
   const std::string model = (folder / "train.toml").string(), out = (folder / "r").string();
   const auto write = [&](const std::string& inertia) {
