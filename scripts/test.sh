@@ -44,6 +44,7 @@ run_tests() {
   return $status
 }
 
+packages+=(libopenmpi-dev openmpi-bin)                # studies over the ranks of MPI
 packages+=(valgrind python3-h5py python3-jsonschema)  # count instructions; read and check results
 packages+=(clang-format-14 clang-tidy-14)             # this release alone formats as the tree is formatted
 # Opens reports. Ubuntu's is a snap, which could not: that test is skipped there.

@@ -23,29 +23,6 @@ std::string message(const std::string& path, const std::string& reason) {
   throw OutputError(message(path, std::strerror(error)));
 }
 
-/// Opens a regular file to write it, one process at a time; -1 where there is none and `flags` do not create it.
-/// What stands there may be someone else's doing: a link is not followed, a pipe or device not written.
-int open_to_write(const std::string& path, int flags) {
-  const int descriptor =
-      ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | flags, 0666);
-  if (descriptor < 0 && errno == ENOENT && (flags & O_CREAT) == 0) return -1;
-  const auto refuse = [&](const std::string& reason) {
-    if (descriptor >= 0) ::close(descriptor);
-    throw OutputError(message(path, reason));
-  };
-  if (descriptor < 0 && errno == ELOOP) refuse("it is a symbolic link, which is not followed; remove it");
-  if (descriptor < 0 && errno != ENXIO) fail(path, errno);
-  struct stat opened {
-  }, named{};
-  if (descriptor < 0 || ::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode))
-    refuse("it is no regular file; remove it");
-  // Nor may another change what this one has just given its name.
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 || ::lstat(path.c_str(), &named) != 0 ||
-      opened.st_ino != named.st_ino)
-    refuse("another process is writing it");
-  return descriptor;
-}
-
 void empty(int descriptor, const std::string& path) {
   if (::ftruncate(descriptor, 0) == 0) return;
   const int error = errno;
@@ -69,6 +46,34 @@ int write_all(int descriptor, const std::string& text) {
 int sync(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno; }
 
 }  // namespace
+
+int open_to_write(const std::string& path, int flags, int access) {
+  const int descriptor =
+      ::open(path.c_str(), access | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | flags, 0666);
+  if (descriptor < 0 && errno == ENOENT && (flags & O_CREAT) == 0) return -1;
+  const auto refuse = [&](const std::string& reason) {
+    if (descriptor >= 0) ::close(descriptor);
+    throw OutputError(message(path, reason));
+  };
+  if (descriptor < 0 && errno == ELOOP) refuse("it is a symbolic link, which is not followed; remove it");
+  if (descriptor < 0 && errno != ENXIO) fail(path, errno);
+  struct stat opened {
+  }, named{};
+  if (descriptor < 0 || ::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode))
+    refuse("it is no regular file; remove it");
+  // Nor may another change what this one has just given its name.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 || ::lstat(path.c_str(), &named) != 0 ||
+      opened.st_ino != named.st_ino)
+    refuse("another process is writing it");
+  return descriptor;
+}
+
+void sync_directory(const std::string& directory) {
+  const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;  // what cannot be opened cannot be asked to
+  sync(descriptor);
+  ::close(descriptor);
+}
 
 void create_directory(const std::string& directory) {
   std::error_code error;
@@ -97,7 +102,7 @@ void write_file(const std::string& directory, const std::string& name, const std
 
 OutputFile::OutputFile(const std::string& directory, const std::string& name, const std::string& extension)
     : path_(directory + "/" + name + "." + extension), partial_(drev::app::partial_path(path_)) {
-  descriptor_ = open_to_write(partial_, O_CREAT);
+  descriptor_ = open_to_write(partial_, O_CREAT, O_WRONLY);
   empty(descriptor_, partial_);
 }
 
@@ -135,7 +140,7 @@ ReplacedFile::ReplacedFile(const std::string& directory, const std::string& name
     : path_(directory + "/" + name + "." + extension),
       partial_(drev::app::partial_path(path_)),
       next_(partial_ + ".next") {
-  descriptor_ = open_to_write(partial_, 0);
+  descriptor_ = open_to_write(partial_, 0, O_WRONLY);
 }
 
 ReplacedFile::~ReplacedFile() {
@@ -143,7 +148,7 @@ ReplacedFile::~ReplacedFile() {
 }
 
 void ReplacedFile::replace(const std::string& text) {
-  const int next = open_to_write(next_, O_CREAT);
+  const int next = open_to_write(next_, O_CREAT, O_WRONLY);
   empty(next, next_);
   int error = write_all(next, text);
   if (error == 0) error = sync(next);

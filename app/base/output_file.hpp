@@ -14,6 +14,13 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Opens a regular file to write it, one process at a time; -1 where there is none and `flags` do not create it.
+/// access: O_WRONLY or O_RDWR. What stands there may be someone else's doing: a link is not followed, a pipe or device
+/// not written. Throws OutputError.
+int open_to_write(const std::string& path, int flags, int access);
+/// Puts the names of a directory's files on the disk.
+void sync_directory(const std::string& directory);
+
 /// Creates the directory, with those above it. Throws OutputError.
 void create_directory(const std::string& directory);
 /// The directory of a file; "." where its path names none.

@@ -13,8 +13,9 @@ constexpr auto kMeasured = std::chrono::milliseconds(2000);  // after which what
 
 thread_local ProgressListener::Told* listener = nullptr;
 
-/// "40 s", "3 min", "2.5 h", "more than 1000 h"
-std::string time_text(double seconds) {
+}  // namespace
+
+std::string rough_time(double seconds) {
   if (!(seconds < 3.6e6)) return "more than 1000 h";
   char text[32];
   if (seconds < 90.0)
@@ -25,8 +26,6 @@ std::string time_text(double seconds) {
     std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
   return text;
 }
-
-}  // namespace
 
 ProgressListener::ProgressListener(Told told) : told_(std::move(told)), before_(listener) {
   listener = &told_;
@@ -74,7 +73,7 @@ void Progress::update(double part) {
   if (!due() || !(part > 0.0)) return;
   char text[32];
   std::snprintf(text, sizeof text, "%5.1f %%, ", 100.0 * part);
-  draw(text + time_text(left) + " left");
+  draw(text + rough_time(left) + " left");
 }
 
 /// Once: whether the computation will take long, and why.
@@ -82,7 +81,7 @@ void Progress::announce(double left) {
   const std::function<std::string()> why_long = std::exchange(why_long_, nullptr);
   if (left < kAnnounced) return;
   clear();
-  std::fprintf(stderr, "drev: this will take %s more: %s\n", time_text(left).c_str(), why_long().c_str());
+  std::fprintf(stderr, "drev: this will take %s more: %s\n", rough_time(left).c_str(), why_long().c_str());
 }
 
 void Progress::show(const std::string& text) {

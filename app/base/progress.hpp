@@ -7,6 +7,9 @@
 
 namespace drev::app {
 
+/// "40 s", "3 min", "2.5 h", "more than 1000 h".
+std::string rough_time(double seconds);
+
 /// While it lives, computations of the thread that made it tell `told` how far they are in place of stderr: the
 /// part that is done, 0..1, and the seconds that are left; not more often than every 0.1 s.
 class ProgressListener {

@@ -59,9 +59,19 @@ const std::vector<CommandEntry>& commands() {
              commas,
              {"csv", "hdf5"}},
             {"--vary", "NAME=VALUES",
-             "A run for each value A,B,C, FIRST:STEP:LAST or both mixed of a parameter, in DIR/NAME=VALUE",
+             "A run for each value A,B,C, FIRST:STEP:LAST or both mixed of a parameter, in DIR/NAME=VALUE; "
+             "also orders(N), and with --sample uniform(LOW,HIGH), normal(MEAN,DEVIATION)",
              again},
             {"--jobs", "N", "Of several runs: so many at once; default: one a processor"},
+            {"--table", "",
+             "Of --vary: one table of figures, DIR/variants.h5, in place of a folder each; constant steps in "
+             "lockstep",
+             none},
+            {"--sample", "KIND:N",
+             "A table of N variants drawn by random, lhs, sobol or saltelli (Sobol indices); a seed behind: "
+             "lhs:1000:7"},
+            {"--correlate", "A,B=C", "Of --sample: correlation of two parameters", again},
+            {"--resume", "", "Goes on with a table that was not finished, or begins it", none},
             run,
             plugin},
        .footer = methods_help() + "\n" + kRunExamples + "\n" + kExitCodesHelp,

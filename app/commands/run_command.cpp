@@ -6,6 +6,7 @@
 #include "app/commands/commands.hpp"
 #include "app/commands/run_many.hpp"
 #include "app/commands/run_request.hpp"
+#include "app/commands/run_variants.hpp"
 #include "app/report/run_files.hpp"
 
 namespace drev::app {
@@ -24,6 +25,7 @@ int exit_code(const RunOutcome& outcome) {
 }  // namespace
 
 int run_command(const CommandLine& line) {
+  if (means_variants(line)) return run_variants(line);
   if (means_many(line)) return run_many(line);
   const RunRequest request = request_run(line);
   watch_signals();

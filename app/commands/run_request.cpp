@@ -138,7 +138,8 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (line.option("--step") && !line.option("--method"))
     return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
   if (!line.option("--method") && !line.option("--tolerance"))
-    return model && line.option("--accuracy") ? choose_method(model->system, duration, step)
+    return model && (line.option("--accuracy") || line.option("--table"))
+               ? choose_method(model->system, duration, step)
            : model ? try_methods(model->system, choose_method(model->system, duration, step), duration,
                                  [] { return !interrupted(); })
                          .choice

@@ -1,6 +1,5 @@
 #pragma once
-/// Values that --vary gives to parameters: NAME=A,B,C or NAME=FIRST:STEP:LAST, the last one included where
-/// the steps lead to it.
+/// The combinations of --vary as runs of their own, each with a folder (app/variants/varied.hpp has the values' form).
 #include <drev/core/error.hpp>
 
 #include <string>

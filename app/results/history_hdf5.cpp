@@ -6,108 +6,15 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <hdf5.h>
-#include <utility>
 
 #include "app/base/output_file.hpp"
+#include "app/results/hdf5_file.hpp"
 
 namespace drev::app {
 
 namespace {
 
-constexpr hsize_t kBlock = 1024;  // rows
-
-/// Closes what HDF5 has opened.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  operator hid_t() const { return id_; }  // NOLINT: HDF5 wants the number
-  bool close() { return close_(std::exchange(id_, -1)) >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-class Hdf5File {
- public:
-  explicit Hdf5File(const std::string& path) : path_(path), file_(create(path), H5Fclose) {
-    check(file_ >= 0);
-  }
-
-  void add_text(hid_t object, const char* name, const std::string& text) {
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
-    check(H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0);
-    const char* characters = text.c_str();
-    const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    check(attribute >= 0 && H5Awrite(attribute, type, &characters) >= 0);
-  }
-
-  /// Grows block by block.
-  void add_column(const HistoryColumn& column) {
-    const hsize_t none = 0, unlimited = H5S_UNLIMITED;
-    const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-    const Handle chunks(H5Pcreate(H5P_DATASET_CREATE), H5Pclose), links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    H5Pset_chunk(chunks, 1, &kBlock);
-    H5Pset_create_intermediate_group(links, 1);  // a name with a slash
-    columns_.emplace_back(
-        H5Dcreate2(file_, column.name.c_str(), H5T_NATIVE_DOUBLE, space, links, chunks, H5P_DEFAULT),
-        H5Dclose);
-    check(columns_.back() >= 0);
-    add_text(columns_.back(), "unit", column.unit);
-  }
-
-  void append(std::size_t column, hsize_t at, const std::vector<double>& values) {
-    const hsize_t count = values.size(), size = at + count;
-    const hid_t set = columns_[column];
-    check(H5Dset_extent(set, &size) >= 0);
-    const Handle to(H5Dget_space(set), H5Sclose), from(H5Screate_simple(1, &count, nullptr), H5Sclose);
-    check(H5Sselect_hyperslab(to, H5S_SELECT_SET, &at, nullptr, &count, nullptr) >= 0 &&
-          H5Dwrite(set, H5T_NATIVE_DOUBLE, from, to, H5P_DEFAULT, values.data()) >= 0);
-  }
-
-  void close() {
-    for (Handle& column : columns_) check(column.close());
-    check(H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0);
-    check(file_.close());
-  }
-  hid_t id() const { return file_; }
-
- private:
-  static hid_t create(const std::string& path) {
-    H5dont_atexit();  // or HDF5 tries at the end to write what a full disk would not take, and crashes
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_file_locking(access, 0, 1);  // OutputFile has locked it
-    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  }
-
-  void check(bool good) const {
-    if (good) return;
-    std::string reason = "HDF5 failed";
-    H5Ewalk2(
-        H5E_DEFAULT, H5E_WALK_UPWARD,
-        [](unsigned n, const H5E_error2_t* error, void* text) -> herr_t {
-          if (n == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
-          return 0;
-        },
-        &reason);
-    // Of "file write failed: ..., errno = 28, error message = 'No space left on device', ..." what matters.
-    const std::string marker = "error message = '";
-    if (const std::size_t at = reason.find(marker); at != std::string::npos)
-      reason = reason.substr(at + marker.size(), reason.find('\'', at + marker.size()) - at - marker.size());
-    throw OutputError("cannot write " + path_ + ": " + reason);
-  }
-
-  std::string path_;
-  Handle file_;
-  std::vector<Handle> columns_;
-};
+constexpr std::size_t kBlock = 1024;  // rows
 
 }  // namespace
 
@@ -119,15 +26,15 @@ void write_hdf5(const std::string& directory, const std::string& csv,
   OutputFile file(directory, "history", "h5");
   {
     Hdf5File h5(file.partial_path());
-    h5.add_text(h5.id(), "drev", DREV_VERSION);
-    h5.add_text(h5.id(), "summary", summary);
+    h5.add_text("drev", DREV_VERSION);
+    h5.add_text("summary", summary);
     h5.add_column({"time_s", "s"});
-    for (const HistoryColumn& column : columns) h5.add_column(column);
+    for (const HistoryColumn& column : columns) h5.add_column({column.name, column.unit});
     std::vector<std::vector<double>> block(columns.size() + 1);
-    hsize_t rows = 0;
+    std::uint64_t rows = 0;
     const auto empty_block = [&] {
       if (block[0].empty()) return;
-      for (std::size_t c = 0; c < block.size(); ++c) h5.append(c, rows, block[c]);
+      for (std::size_t c = 0; c < block.size(); ++c) h5.write(c, rows, block[c]);
       rows += block[0].size();
       for (std::vector<double>& values : block) values.clear();
     };

@@ -10,4 +10,5 @@ NB_MODULE(_drev, module) {
   drev::python::bind_modes(module);
   drev::python::bind_system(module);
   drev::python::bind_callables(module);
+  drev::python::bind_study(module);
 }

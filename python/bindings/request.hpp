@@ -82,5 +82,6 @@ void bind_run(nb::module_& module);
 void bind_modes(nb::module_& module);
 void bind_system(nb::module_& module);
 void bind_callables(nb::module_& module);
+void bind_study(nb::module_& module);
 
 }  // namespace drev::python

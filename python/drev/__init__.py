@@ -14,6 +14,7 @@ from ._errors import Finding, Interrupted, ModelError, NotTrustedWarning, Output
 from ._model import Model
 from ._modes import DampedModes, Modes
 from ._run import Figure, Run
+from ._study import Study
 from ._system import System
 from ._tables import Advice, Branch, Campbell, Chart, Judgement, Result, Section, Sweep
 from ._variants import Variant, Variants

@@ -6,7 +6,7 @@ import re
 import tempfile
 import warnings
 
-from . import _commands, _drev, _errors, _progress
+from . import _commands, _drev, _errors, _progress, _study
 from ._modes import DampedModes, Modes
 from ._run import Run
 from ._system import System
@@ -223,6 +223,25 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
         run writes its files to DIR/NAME=VALUE. A run that fails is among the results with its error.
         """
         return Variants._compute(self, values, jobs, progress, options)
+
+    def study(self, values, *, sample=None, correlate=None, client=None, jobs=None, progress=None, **options):
+        """A row of figures of each of many variants, in lockstep where steps are constant: drev.Study (docs/reliability.md).
+
+        values: {name: values}, values a sequence, or a text: "1:0.5:3", "orders(9)", with a sample "uniform(1,2)",
+        "normal(1,0.1)". sample: "lhs:1000", "sobol:1000", ...; correlate: {(name, name): correlation}. client: a
+        dask.distributed.Client, or an executor of concurrent.futures, whose workers have drev; default: `jobs` threads.
+        Other arguments: those of run(), such as step_s and duration_s.
+        """
+        return _study.compute(self, values, sample, correlate, client, jobs, progress, options)
+
+    def _study_request(self, keywords, words):
+        """What the study is asked for, and its picklable part."""
+        options = {**_commands.options("run", dict(keywords), "run"), **words, "MODEL": [self._model]}
+        if self._run is not None:
+            options.setdefault("--run", [self._run])
+        parameters = [(k, _parameter_text(v)) for k, v in self._parameters.items()]
+        spec = (self._model, self._text(), parameters, options)
+        return _drev.Request("run", *spec, None, None), spec
 
     def check(self):
         """Everything that is wrong is raised as ModelError; else the counts of nodes and elements, and the runs."""

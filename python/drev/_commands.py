@@ -9,7 +9,7 @@ from . import _drev, _errors
 _SUFFIX = {"SECONDS": "_s", "RPM": "_rpm"}
 _NAMES = {"--for": "figure", "--only": "only"}
 #: Options that are other functions, or part of how a model is named.
-_LEFT_OUT = {"--plugin", "--vary", "--jobs", "--damped"}
+_LEFT_OUT = {"--plugin", "--vary", "--jobs", "--damped", "--table", "--sample", "--correlate", "--resume"}
 
 
 class Option:

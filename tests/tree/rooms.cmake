@@ -34,6 +34,8 @@ set(room_table
   "app/fmi:core solvers/* models app/base app/model_file app/model_file/writing app/run"
   "app/fmi/library:core app/fmi"
   "app/cli:core solvers/* models app/base app/model_file app/run"
+  "app/mpi:"
+  "app/variants:core solvers/* models app/base app/model_file app/run app/results app/cli app/mpi"
   "app/commands:core elements solvers/* models/* advice app/*"
   "app:app/*"
   "python/bindings:core elements solvers/* models advice app/*")

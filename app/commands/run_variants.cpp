@@ -1,0 +1,207 @@
+#include "app/commands/run_variants.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "app/base/interrupt.hpp"
+#include "app/base/output_file.hpp"
+#include "app/base/progress.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/model_list.hpp"
+#include "app/commands/run_request.hpp"
+#include "app/variants/ranks.hpp"
+#include "app/variants/variant_table.hpp"
+#include "app/variants/variant_work.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr int kMostThreads = 1024;
+
+/// Options that a table has no use for, and why.
+constexpr std::pair<const char*, const char*> kWithout[] = {
+    {"--accuracy", "is for single runs, whose figures it finds with their errors"},
+    {"--settle",
+     "is for single runs: figures of a table are of the whole run; with --start static or periodic "
+     "nothing has to settle"},
+    {"--reduce", "is for single runs"},
+    {"--report", "is for one run"},
+    {"--events", "is for one run"},
+    {"--rainflow", "is for single runs"},
+    {"--every", "is for single runs, which have a history"},
+    {"--format", "is for single runs, which have a history"}};
+
+/// What of the folder keeps the study from being begun, or gone on with.
+void check_folder(const VariantStudy& study, const std::string& folder, bool resume) {
+  const auto description = VariantStore::description_in(folder);
+  if (!description) return;
+  std::vector<Finding> findings;
+  const std::string path = VariantStore::path_in(folder);
+  if (!resume) {
+    const auto [done, all] = VariantStore::progress_in(folder);
+    if (done == 0) return;
+    const auto then = Json::parse(*description, nullptr, false);
+    const std::uint64_t variants = then.is_object() ? then.value("variants", all) : all;
+    const std::uint64_t finished =
+        std::min(variants, done * (then.is_object() ? then.value("block", 1U) : 1U));
+    findings.push_back(
+        {path, "", "", "",
+         "holds " + std::to_string(finished) + " finished variants, of " + std::to_string(variants) +
+             ", of a study that did not come to its end: add --resume to go on with it, or remove "
+             "that file"});
+  } else {
+    for (const std::string& difference :
+         differences(Json::parse(*description, nullptr, false), study.description()))
+      findings.push_back({path, "--resume", "", "", "cannot go on with another study: " + difference});
+  }
+  if (!findings.empty()) throw ModelError(std::move(findings));
+}
+
+int thread_count_of(const CommandLine& line, const Ranks& ranks) {
+  std::vector<Finding> findings;
+  int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const auto jobs = line.option("--jobs");
+  if (jobs) threads = read_count("--jobs", *jobs, kMostThreads, "", findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return ranks.count() > 1 && !jobs ? 1 : threads;
+}
+
+/// The work of the first rank, or of this process alone.
+int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks, bool& declined) {
+  const std::string folder = *line.option("--out");
+  const bool resume = line.list("--resume").has_value();
+  const int threads = thread_count_of(line, ranks);
+  check_folder(study, folder, resume);
+  if (resume && !VariantStore::description_in(folder))
+    if (const auto then = study_of_table(folder); then && differences(*then, study.description()).empty()) {
+      const Json summary = summary_of_table(folder).value_or(Json::object());
+      print(line.json ? json_text(summary) : labelled("table", folder + "/variants.h5 is complete already"));
+      return summary.value("status", "") == "success" ? kSuccess : kNotTrusted;
+    }
+  watch_signals();
+  VariantStore store(folder, study.description().dump(), study.store_shape(), resume);
+  const std::string go_on = "the same command with --resume goes on";
+  const auto kept = [&] {
+    return std::to_string(std::min(study.plan().count(), store.count() * study.block_size())) + " of " +
+           std::to_string(study.plan().count()) + " variants are kept in " + store.path() + "; " + go_on;
+  };
+  declined = false;
+  WorkOutcome outcome;
+  try {
+    outcome = lead_work(study, ranks, threads, store);
+  } catch (const OutputError& error) {
+    throw OutputError(std::string(error.what()) + "; " + kept());
+  }
+  if (outcome.interrupted || !outcome.fault.empty()) {
+    std::fprintf(stderr, "drev: %s; %s\n",
+                 outcome.fault.empty() ? "interrupted" : ("ended: " + outcome.fault).c_str(), kept().c_str());
+    return outcome.fault.empty() ? kInterrupted : kNotTrusted;
+  }
+  const VariantStatistics statistics = statistics_of(study, store);
+  const VariantSummary summary = summary_of(study, statistics, store, folder);
+  try {
+    write_variant_table(study, store, folder, json_text(summary.json));
+    write_file(folder, "variants", "json", json_text(summary.json));
+    sync_directory(folder);
+  } catch (const OutputError& error) {
+    throw OutputError(std::string(error.what()) + "; " + kept());
+  }
+  store.remove();
+  std::string text = summary.text;
+  if (outcome.computed > 0 && outcome.seconds > 0.0) {
+    const int cores = threads * ranks.count();
+    text += labelled("time", rough_time(outcome.seconds) + " on " + std::to_string(cores) +
+                                 (cores == 1 ? " thread: " : " threads: ") +
+                                 digits(static_cast<double>(outcome.computed) / outcome.seconds / cores, 3) +
+                                 " variants a second on each");
+  }
+  print(line.json ? json_text(summary.json) : text);
+  return summary.exit_code;
+}
+
+}  // namespace
+
+VariantStudy study_of(const CommandLine& line) {
+  std::vector<Finding> findings = line.findings;
+  const auto models = line.list("MODEL").value_or(std::vector<std::string>{});
+  if (models.size() > 1 || (models.size() == 1 && is_model_directory(models.front())))
+    findings.push_back({kCommandLine, "--table", "", "", "is of one model's variants; give one MODEL"});
+  for (const auto& [option, why] : kWithout)
+    if (line.list(option) && *line.option(option) != "0")
+      findings.push_back({kCommandLine, option, "", "", why});
+  const auto words = line.list("--vary").value_or(std::vector<std::string>{});
+  if (words.empty())
+    findings.push_back({kCommandLine, "--vary", "", "", "is needed: what differs between variants"});
+  for (const std::string& word : words)
+    for (const auto& [name, value] : line.parameters)
+      if (word.starts_with(name + "="))
+        findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
+  const bool sampled = line.option("--sample").has_value();
+  std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
+  std::optional<Sampling> sampling;
+  if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
+  std::vector<Correlation> correlations =
+      read_correlations(line.list("--correlate").value_or(std::vector<std::string>{}), findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  VariantPlan plan(std::move(varied), sampling, std::move(correlations), findings);
+  if (!findings.empty()) throw ModelError(std::move(findings));
+
+  CommandLine first = line;  // What is wrong with all variants is said once.
+  for (const char* option : {"--out", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
+    first.options.erase(option);
+  first.keeps_history = true;       // --record needs no file
+  first.options["--table"] = {""};  // no method by trial, which may find another one another time
+  const ParameterValues values = plan.parameters(0);
+  first.parameters.insert(first.parameters.end(), values.begin(), values.end());
+  RunRequest request = request_run(first);
+  if (request.accuracy)
+    throw ModelError(std::vector<Finding>{
+        {kCommandLine, "--accuracy", "", "",
+         "of the model's [run] is for single runs: name a --method, or a --step, for the table"}});
+  if (request.settle && (!request.settle->time || *request.settle->time > 0.0))
+    throw ModelError(std::vector<Finding>{{kCommandLine, "--settle", "", "",
+                                           "of the model's [run] is for single runs: figures of a table are "
+                                           "of the whole run; give --settle 0"}});
+  return {std::move(request), std::move(plan), line.list("--record").has_value()};
+}
+
+bool means_variants(const CommandLine& line) {
+  return line.list("--table") || line.list("--resume") || line.list("--sample") || line.list("--correlate") ||
+         (line.list("--vary") && launched_beside_others());
+}
+
+int run_variants(const CommandLine& line) {
+  const Ranks ranks;
+  if (!ranks.first()) set_quiet(true);
+  bool declined = true;
+  std::optional<VariantStudy> study;
+  try {
+    CommandLine asked = line;
+    if (!line.option("--out"))
+      asked.findings.push_back({kCommandLine, "--out", "", "", "is needed: the table's folder"});
+    study.emplace(study_of(asked));
+    if (ranks.first()) {
+      const int code = lead(line, *study, ranks, declined);
+      if (declined) decline_work(ranks, {});
+      return code;
+    }
+  } catch (const std::exception& error) {
+    if (!ranks.first()) {
+      decline_work(ranks, error.what());
+      return kSuccess;  // the first rank says it, and ends with the code
+    }
+    if (declined) decline_work(ranks, {});
+    throw;
+  }
+  watch_signals();
+  follow_work(*study, ranks, thread_count_of(line, ranks));
+  return kSuccess;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,219 @@
+#include "app/variants/variant_store.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+#include "app/base/checksum.hpp"
+#include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr char kMagic[9] = "drevVAR1";
+constexpr std::uint64_t kPage = 4096;
+
+/// Stands at the start of the file; the description follows it.
+struct Head {
+  char magic[8];
+  std::uint64_t text, checksum;  // bytes of the description, and its checksum
+  std::uint64_t blocks, numbers;
+};
+
+std::uint64_t up_to_page(std::uint64_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
+
+/// Bytes read, fewer at the file's end; -1: an error.
+ssize_t read_all(int descriptor, char* to, std::size_t size, std::uint64_t at) {
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = ::pread(descriptor, to + done, size - done, static_cast<off_t>(at + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return -1;
+    if (count == 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  return static_cast<ssize_t>(done);
+}
+
+[[noreturn]] void fail(const std::string& path, int error, const std::string& more = {}) {
+  throw OutputError("cannot write " + path + ": " + std::strerror(error) + more);
+}
+
+void write_all(int descriptor, const std::string& path, const std::string& bytes, std::uint64_t at) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count =
+        ::pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(at + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, errno);
+    done += static_cast<std::size_t>(count);
+  }
+}
+
+/// The head and the description of a store; false: there is none that is whole.
+bool read_head(int descriptor, Head& head, std::string& text) {
+  if (read_all(descriptor, reinterpret_cast<char*>(&head), sizeof head, 0) != sizeof head) return false;
+  if (std::memcmp(head.magic, kMagic, sizeof head.magic) != 0 || head.text > (std::uint64_t{1} << 28))
+    return false;
+  text.resize(head.text);
+  return read_all(descriptor, text.data(), text.size(), sizeof head) == static_cast<ssize_t>(text.size()) &&
+         checksum(text) == head.checksum;
+}
+
+void append(std::string& bytes, const void* from, std::size_t size) {
+  bytes.append(static_cast<const char*>(from), size);
+}
+
+/// Never 0, which is what a place holds that nothing was written to.
+std::uint64_t place_checksum(std::string_view bytes, std::uint64_t block, std::uint64_t key) {
+  std::string numbers;
+  append(numbers, &block, sizeof block);
+  append(numbers, &key, sizeof key);
+  return checksum(bytes, checksum(numbers)) | 1U;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)) {}
+  ~Reader() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  operator int() const { return descriptor_; }  // NOLINT: as system calls take it
+
+ private:
+  int descriptor_;
+};
+
+std::string megabytes(std::uint64_t bytes) {
+  return short_digits(std::max(0.1, static_cast<double>(bytes) / 1e6), 3) + " MB";
+}
+
+}  // namespace
+
+std::string VariantStore::path_in(const std::string& folder) { return folder + "/variants.partial.store"; }
+
+std::optional<std::string> VariantStore::description_in(const std::string& folder) {
+  const Reader file(path_in(folder));
+  Head head{};
+  std::string text;
+  if (file < 0 || !read_head(file, head, text)) return {};
+  return text;
+}
+
+std::pair<std::uint64_t, std::uint64_t> VariantStore::progress_in(const std::string& folder) {
+  const Reader file(path_in(folder));
+  Head head{};
+  std::string text;
+  if (file < 0 || !read_head(file, head, text)) return {};
+  const std::size_t size = head.numbers * sizeof(double) + kReason + sizeof(std::uint64_t);
+  std::string bytes(size, '\0');
+  std::uint64_t done = 0;
+  for (std::uint64_t block = 0; block < head.blocks; ++block) {
+    const std::uint64_t at = up_to_page(sizeof head + head.text) + block * size;
+    if (read_all(file, bytes.data(), size, at) != static_cast<ssize_t>(size)) break;
+    std::uint64_t sum = 0;
+    std::memcpy(&sum, bytes.data() + size - sizeof sum, sizeof sum);
+    if (sum != 0) ++done;
+  }
+  return {done, head.blocks};
+}
+
+VariantStore::VariantStore(const std::string& folder, const std::string& description, StoreShape shape,
+                           bool resume)
+    : path_(path_in(folder)), shape_(shape), key_(checksum(description)), done_(shape.blocks, false) {
+  create_directory(folder);
+  descriptor_ = open_to_write(path_, O_CREAT, O_RDWR);
+  try {
+    Head head{{}, description.size(), key_, shape.blocks, shape.numbers};
+    std::memcpy(head.magic, kMagic, sizeof head.magic);
+    start_ = up_to_page(sizeof head + description.size());
+    Head found{};
+    std::string text;
+    if (resume && read_head(descriptor_, found, text) && text == description &&
+        std::memcmp(&found, &head, sizeof head) == 0) {
+      std::string bytes;
+      for (std::uint64_t block = 0; block < shape.blocks; ++block)
+        if (read(block, bytes)) done_[block] = true, ++count_;
+    } else {
+      if (::ftruncate(descriptor_, 0) != 0) fail(path_, errno);
+      std::string bytes;
+      append(bytes, &head, sizeof head);
+      write_all(descriptor_, path_, bytes + description, 0);
+    }
+    const std::uint64_t size = place(shape.blocks);
+    // Not posix_fallocate(), which writes everywhere where the file system cannot do it.
+    if (::fallocate(descriptor_, 0, 0, static_cast<off_t>(size)) != 0 &&
+        (errno != EOPNOTSUPP || ::ftruncate(descriptor_, static_cast<off_t>(size)) != 0)) {
+      const int error = errno;
+      if (count_ == 0) std::remove(path_.c_str());
+      fail(path_, error,
+           "; the study's rows take " + megabytes(size) + " there, and their table as much again");
+    }
+    sync();
+    sync_directory(folder);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+VariantStore::~VariantStore() { ::close(descriptor_); }
+
+std::size_t VariantStore::place_size() const {
+  return shape_.numbers * sizeof(double) + kReason + sizeof(std::uint64_t);
+}
+
+std::uint64_t VariantStore::place(std::uint64_t block) const { return start_ + block * place_size(); }
+
+bool VariantStore::read(std::uint64_t block, std::string& bytes) const {
+  bytes.resize(place_size());
+  if (read_all(descriptor_, bytes.data(), bytes.size(), place(block)) != static_cast<ssize_t>(bytes.size()))
+    return false;
+  std::uint64_t sum = 0;
+  const std::size_t rest = bytes.size() - sizeof sum;
+  std::memcpy(&sum, bytes.data() + rest, sizeof sum);
+  return sum != 0 && sum == place_checksum({bytes.data(), rest}, block, key_);
+}
+
+void VariantStore::put(std::uint64_t block, const BlockRows& rows) {
+  std::string bytes;
+  append(bytes, rows.numbers.data(), rows.numbers.size() * sizeof(double));
+  bytes += rows.reason.substr(0, kReason);
+  bytes.resize(place_size() - sizeof(std::uint64_t), '\0');
+  const std::uint64_t sum = place_checksum(bytes, block, key_);
+  append(bytes, &sum, sizeof sum);
+  write_all(descriptor_, path_, bytes, place(block));
+  if (!done_[block]) ++count_;
+  done_[block] = true;
+}
+
+void VariantStore::sync() {
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail(path_, errno);
+  durable_ = count_;
+}
+
+BlockRows VariantStore::get(std::uint64_t block) const {
+  std::string bytes;
+  if (!read(block, bytes)) throw OutputError("cannot read block " + std::to_string(block) + " of " + path_);
+  BlockRows rows;
+  rows.numbers.resize(shape_.numbers);
+  std::memcpy(rows.numbers.data(), bytes.data(), shape_.numbers * sizeof(double));
+  const char* reason = bytes.data() + shape_.numbers * sizeof(double);
+  rows.reason.assign(reason, ::strnlen(reason, kReason));
+  return rows;
+}
+
+void VariantStore::remove() {
+  if (std::remove(path_.c_str()) != 0) fail(path_, errno);
+}
+
+}  // namespace drev::app

@@ -1,0 +1,97 @@
+#pragma once
+/// A study of many variants of one model, of each of which a row of figures is kept: what is asked for, and the
+/// computation of a block of variants.
+///
+/// Blocks are the same however many processes and threads share the work, and so are their rows. Variants of a block
+/// with constant steps are made in lockstep (drev/solvers/batch/simulate_many.hpp) where they are of one topology
+/// and duration, else one by one.
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/base/json_values.hpp"
+#include "app/run/run_request.hpp"
+#include "app/variants/variant_plan.hpp"
+#include "app/variants/variant_store.hpp"
+
+namespace drev {
+struct VariantResult;
+}  // namespace drev
+
+namespace drev::app {
+
+/// Status of a variant as a number of its row.
+enum class VariantStatus {
+  success,
+  energy_error,
+  unstable,
+  no_convergence,
+  not_finite,
+  failed,
+  bad_input  ///< the parameters cannot be
+};
+inline constexpr int kVariantStatuses = 7;
+const char* status_text(VariantStatus status);
+
+struct FigureColumn {
+  std::string name, unit;
+};
+
+class VariantStudy {
+ public:
+  /// request: of the first variant; record_asked: its recorded channels were asked for and have columns, too.
+  VariantStudy(RunRequest request, VariantPlan plan, bool record_asked);
+
+  const RunRequest& request() const { return request_; }
+  const VariantPlan& plan() const { return plan_; }
+  /// Behind the status, in the order of a row.
+  const std::vector<FigureColumn>& figures() const { return figures_; }
+  std::size_t row_size() const { return 1 + figures_.size(); }
+
+  std::uint64_t block_size() const { return block_size_; }  ///< variants
+  std::uint64_t blocks() const { return (plan_.count() + block_size_ - 1) / block_size_; }
+  std::uint64_t first_of(std::uint64_t block) const { return block * block_size_; }
+  /// Fewer in the last block.
+  std::uint64_t count_of(std::uint64_t block) const {
+    return std::min(block_size_, plan_.count() - first_of(block));
+  }
+  StoreShape store_shape() const { return {blocks(), block_size_ * row_size()}; }
+  /// Why variants run one by one; empty: in lockstep.
+  const std::string& why_not_lockstep() const { return why_not_lockstep_; }
+
+  /// Everything that its rows follow from, as JSON: model and files with checksums, parameters, method, and so on.
+  const Json& description() const { return description_; }
+
+  /// The rows of a block; nothing where go_on said false. Called by several threads at once.
+  std::optional<BlockRows> run(std::uint64_t block, const std::function<bool()>& go_on) const;
+
+ private:
+  struct Built;
+  struct Watched;
+  void find_figures();
+  void describe();
+  Built build(std::uint64_t variant) const;
+  void run_together(std::vector<Built>& built, std::uint64_t block, std::size_t first, std::size_t count,
+                    const std::function<bool()>& go_on, BlockRows& rows) const;
+  void enter(const Built& built, const VariantResult& result, std::size_t place, BlockRows& rows) const;
+
+  std::shared_ptr<const Watched> watched_by(const ModelCase& model_case, const System& system) const;
+
+  RunRequest request_;
+  VariantPlan plan_;
+  std::shared_ptr<const Watched> watched_;  // of the first variant
+  std::vector<std::string> channels_;       // with columns of their own
+  std::vector<FigureColumn> figures_;
+  std::uint64_t block_size_ = 1;
+  std::string why_not_lockstep_;
+  Json description_;
+};
+
+/// What differs between two descriptions, each as a sentence; none: nothing.
+std::vector<std::string> differences(const Json& then, const Json& now);
+
+}  // namespace drev::app

@@ -1,0 +1,278 @@
+#include "app/variants/variant_table.hpp"
+
+#include <drev/core/version.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/results/hdf5_file.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr std::uint64_t kRowsAtOnce = 65536;  // that are in memory at once
+constexpr std::size_t kFailuresTold = 20;     // failures, of all
+
+std::string table_path(const std::string& folder) { return folder + "/variants.h5"; }
+
+/// Whether a column of texts is needed, and how long they are; 0: numbers.
+std::size_t text_size(const Varied& varied) {
+  if (varied.kind == Varied::Kind::orders) return order_text(0, varied.items).size();
+  std::size_t size = 0;
+  bool numbers = true;
+  double value = 0.0;
+  for (const std::string& text : varied.values) {
+    numbers = numbers && read_number(text, value);
+    size = std::max(size, text.size());
+  }
+  return numbers ? 0 : size;
+}
+
+std::string unit_of(const VariantStudy& study, const std::string& name) {
+  for (const Parameter& p : study.request().model.parameters.known())
+    if (p.name == name) return p.unit;
+  return {};
+}
+
+Json varied_object(const VariantStudy& study, std::uint64_t variant) {
+  Json object = Json::object();
+  for (const auto& [name, text] : study.plan().parameters(variant)) {
+    double value = 0.0;
+    object[name] = read_number(text, value) ? number(value) : Json(text);
+  }
+  return object;
+}
+
+std::string varied_text(const VariantStudy& study, std::uint64_t variant) {
+  std::vector<std::string> parts;
+  for (const auto& [name, text] : study.plan().parameters(variant)) parts.push_back(name + "=" + text);
+  return join(parts);
+}
+
+Json figure_object(const VariantStudy& study, const FigureStatistics& s) {
+  const bool any = s.count > 0;
+  const auto extreme = [&](double value, std::uint64_t at) {
+    return any ? Json{{"value", number(value)}, {"variant", at}, {"varied", varied_object(study, at)}}
+               : Json();
+  };
+  Json object{{"name", s.column.name},
+              {"unit", s.column.unit},
+              {"count", s.count},
+              {"mean", any ? number(s.mean) : Json()},
+              {"mean_error", any && study.plan().sampling() ? number(s.mean_error) : Json()},
+              {"deviation", any ? number(s.deviation) : Json()},
+              {"min", extreme(s.min, s.at_min)},
+              {"max", extreme(s.max, s.at_max)},
+              {"quantiles", Json::array()},
+              {"histogram", s.histogram},
+              {"sobol", Json::array()}};
+  for (const Quantile& q : s.quantiles)
+    object["quantiles"].push_back(
+        {{"part", q.part}, {"value", number(q.value)}, {"low", number(q.low)}, {"high", number(q.high)}});
+  for (std::size_t j = 0; j < s.indices.size(); ++j)
+    object["sobol"].push_back({{"parameter", study.plan().varied()[j].name},
+                               {"first", number(s.indices[j].first)},
+                               {"first_error", number(1.96 * s.indices[j].first_error)},
+                               {"total", number(s.indices[j].total)},
+                               {"total_error", number(1.96 * s.indices[j].total_error)}});
+  return object;
+}
+
+struct Failure {
+  std::uint64_t variant;
+  VariantStatus status;
+  std::string reason;
+};
+
+/// The first variants that failed, one a block, with the reason that its block keeps.
+std::vector<Failure> failures_of(const VariantStudy& study, const VariantStore& store) {
+  std::vector<Failure> all;
+  for (std::uint64_t block = 0; block < study.blocks() && all.size() < kFailuresTold; ++block) {
+    const BlockRows rows = store.get(block);
+    if (rows.reason.empty()) continue;
+    for (std::uint64_t i = 0; i < study.count_of(block); ++i)
+      if (const double status = rows.numbers[i * study.row_size()]; status != 0.0) {
+        all.push_back(
+            {study.first_of(block) + i, static_cast<VariantStatus>(static_cast<int>(status)), rows.reason});
+        break;
+      }
+  }
+  return all;
+}
+
+std::string figures_text(const VariantStudy& study, const VariantStatistics& statistics) {
+  const bool sampled = study.plan().sampling().has_value();
+  std::vector<std::vector<std::string>> rows{
+      {"figure", "mean", "deviation", "least", "5 %", "median", "95 %", "largest"}};
+  for (const FigureStatistics& s : statistics.figures()) {
+    if (s.count == 0) continue;
+    const std::string unit = s.column.unit.empty() ? "" : " [" + s.column.unit + "]";
+    rows.push_back({s.column.name + unit,
+                    short_digits(s.mean, 5) + (sampled ? " +- " + short_digits(s.mean_error, 2) : ""),
+                    short_digits(s.deviation, 4), short_digits(s.min, 5),
+                    short_digits(s.quantiles[1].value, 4), short_digits(s.quantiles[2].value, 4),
+                    short_digits(s.quantiles[3].value, 4), short_digits(s.max, 5)});
+  }
+  std::string text = columns_text(rows);
+  for (const FigureStatistics& s : statistics.figures()) {
+    if (s.indices.empty()) continue;
+    text += "\nSobol indices of " + s.column.name + ", first order and total, with 95 % intervals\n";
+    std::vector<std::vector<std::string>> table{{"parameter", "first", "+-", "total", "+-"}};
+    for (std::size_t j = 0; j < s.indices.size(); ++j) {
+      const SobolIndex& index = s.indices[j];
+      table.push_back({study.plan().varied()[j].name, digits(index.first, 3),
+                       digits(1.96 * index.first_error, 2), digits(index.total, 3),
+                       digits(1.96 * index.total_error, 2)});
+    }
+    text += columns_text(table);
+  }
+  return text;
+}
+
+}  // namespace
+
+VariantStatistics statistics_of(const VariantStudy& study, const VariantStore& store) {
+  VariantStatistics statistics(study);
+  for (const bool again : {false, true})
+    for (std::uint64_t block = 0; block < study.blocks(); ++block) {
+      const BlockRows rows = store.get(block);
+      for (std::uint64_t i = 0; i < study.count_of(block); ++i) {
+        const double* row = rows.numbers.data() + i * study.row_size();
+        if (again)
+          statistics.look_again(row);
+        else
+          statistics.look(study.first_of(block) + i, row);
+      }
+    }
+  statistics.finish();
+  return statistics;
+}
+
+VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& statistics,
+                          const VariantStore& store, const std::string& folder) {
+  const std::uint64_t count = study.plan().count(), good = statistics.count(VariantStatus::success);
+  VariantSummary summary;
+  const bool bad_input = count - good == statistics.count(VariantStatus::bad_input);
+  summary.exit_code = good == count ? kSuccess : bad_input ? kBadInput : kNotTrusted;
+  Json& json = summary.json;
+  json = {{"$schema", "urn:drev:variants:1"}, {"kind", "variants"}, {"drev", DREV_VERSION}};
+  json["status"] = good == count ? "success" : "failed";
+  json["study"] = study.description();
+  json["study"].erase("files");
+  json["lockstep"] = study.why_not_lockstep().empty();
+  json["why_not_lockstep"] = text_or_null(study.why_not_lockstep());
+  json["statuses"] = Json::object();
+  std::vector<std::string> counts;
+  for (int i = 0; i < kVariantStatuses; ++i) {
+    const auto status = static_cast<VariantStatus>(i);
+    json["statuses"][status_text(status)] = statistics.count(status);
+    if (statistics.count(status) > 0)
+      counts.push_back(std::to_string(statistics.count(status)) + " " + status_text(status));
+  }
+  json["figures"] = Json::array();
+  for (const FigureStatistics& s : statistics.figures()) json["figures"].push_back(figure_object(study, s));
+  json["failures"] = Json::array();
+  const std::vector<Failure> failures = failures_of(study, store);
+  for (const Failure& f : failures)
+    json["failures"].push_back({{"variant", f.variant},
+                                {"status", status_text(f.status)},
+                                {"varied", varied_object(study, f.variant)},
+                                {"reason", f.reason}});
+
+  std::string& text = summary.text;
+  const Method& method = study.request().method;
+  text = labelled("variants", std::to_string(count) + " of " + study.request().words + ": " + join(counts)) +
+         labelled("method", to_text(method) + (study.why_not_lockstep().empty()
+                                                   ? ", eight variants in lockstep"
+                                                   : ", one by one: " + study.why_not_lockstep())) +
+         "\n" + figures_text(study, statistics) + "\n";
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, failures.size()); ++i)
+    text += wrap("variant " + std::to_string(failures[i].variant) + " (" +
+                     varied_text(study, failures[i].variant) + "): " + status_text(failures[i].status) +
+                     ": " + failures[i].reason,
+                 2);
+  if (failures.size() > 3) text += "  more of them in " + folder + "/variants.json\n";
+  text += labelled("table", table_path(folder));
+  return summary;
+}
+
+void write_variant_table(const VariantStudy& study, const VariantStore& store, const std::string& folder,
+                         const std::string& summary) {
+  const std::uint64_t count = study.plan().count();
+  OutputFile file(folder, "variants", "h5");
+  {
+    Hdf5File h5(file.partial_path());
+    h5.add_text("drev", DREV_VERSION);
+    h5.add_text("study", study.description().dump());
+    h5.add_text("summary", summary);
+    const std::vector<Varied>& varied = study.plan().varied();
+    for (const Varied& v : varied)
+      h5.add_column(
+          {.name = v.name, .unit = unit_of(study, v.name), .rows = count, .text_size = text_size(v)});
+    std::vector<std::string> meanings;
+    for (int i = 0; i < kVariantStatuses; ++i) meanings.push_back(status_text(static_cast<VariantStatus>(i)));
+    h5.add_column({.name = "status", .rows = count, .meanings = meanings});
+    for (const FigureColumn& f : study.figures())
+      h5.add_column({.name = f.name, .unit = f.unit, .rows = count});
+
+    const std::size_t row_size = study.row_size();
+    std::vector<std::vector<std::string>> texts(varied.size());
+    std::vector<std::vector<double>> numbers(varied.size()), columns(row_size);
+    std::uint64_t at = 0;
+    const auto empty_rows = [&] {
+      const std::uint64_t rows = columns[0].size();
+      for (std::size_t c = 0; c < varied.size(); ++c) {
+        if (numbers[c].empty())
+          h5.write(c, at, texts[c]);
+        else
+          h5.write(c, at, numbers[c]);
+        texts[c].clear(), numbers[c].clear();
+      }
+      for (std::size_t c = 0; c < row_size; ++c) {
+        h5.write(varied.size() + c, at, columns[c]);
+        columns[c].clear();
+      }
+      at += rows;
+    };
+    std::vector<bool> text_column;
+    for (const Varied& v : varied) text_column.push_back(text_size(v) > 0);
+    for (std::uint64_t block = 0; block < study.blocks(); ++block) {
+      const BlockRows rows = store.get(block);
+      for (std::uint64_t i = 0; i < study.count_of(block); ++i) {
+        const ParameterValues values = study.plan().parameters(study.first_of(block) + i);
+        for (std::size_t c = 0; c < varied.size(); ++c) {
+          double value = 0.0;
+          if (text_column[c])
+            texts[c].push_back(values[c].second);
+          else if (read_number(values[c].second, value))
+            numbers[c].push_back(value);
+        }
+        for (std::size_t c = 0; c < row_size; ++c) columns[c].push_back(rows.numbers[i * row_size + c]);
+      }
+      if (columns[0].size() + study.block_size() > kRowsAtOnce) empty_rows();
+    }
+    if (!columns[0].empty()) empty_rows();
+    h5.close();
+  }
+  file.commit();
+}
+
+std::optional<Json> study_of_table(const std::string& folder) {
+  const auto text = hdf5_text(table_path(folder), "study");
+  if (!text) return {};
+  Json json = Json::parse(*text, nullptr, false);
+  return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+}
+
+std::optional<Json> summary_of_table(const std::string& folder) {
+  const auto text = hdf5_text(table_path(folder), "summary");
+  if (!text) return {};
+  Json json = Json::parse(*text, nullptr, false);
+  return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,44 @@
+"""Many variants with a row of figures each: numbers of single runs and of the command, over threads, processes and Dask."""
+import numpy as np
+import pytest
+
+import drev
+
+VALUES = {"backlash_mm": "0.1:0.02:0.3", "engine_rpm": [700, 750]}
+STEPS = {"step_s": 2e-5, "duration_s": 0.01}
+
+
+def same(one, other):
+    assert one.columns.keys() == other.columns.keys() and len(one) == len(other)
+    for name in one.columns:
+        assert np.array_equal(one[name], other[name], equal_nan=True), name
+
+
+def test_a_study_has_the_figures_of_single_runs():
+    drive = drev.load("gear_drive")
+    study = drive.study({"backlash_mm": [0.1, 0.2]}, method="exact", duration_s=0.01)
+    assert list(study.status) == ["success"] * 2 and study.units["max_mesh_force_N"] == "N"
+    for backlash, force in zip(study["backlash_mm"], study["max_mesh_force_N"]):
+        run = drive.set(backlash_mm=backlash).run(method="exact", duration_s=0.01)
+        assert run.figures["max_mesh_force_N"].value == pytest.approx(force, rel=1e-9)
+
+
+def test_any_number_of_threads_gives_the_same_rows():
+    drive = drev.load("gear_drive")
+    same(drive.study(VALUES, jobs=1, **STEPS), drive.study(VALUES, jobs=3, **STEPS))
+
+
+def test_what_is_wrong_is_a_model_error():
+    with pytest.raises(drev.ModelError, match="needs sample"):
+        drev.load("gear_drive").study({"backlash_mm": "uniform(0,1)"}, **STEPS)
+    with pytest.raises(drev.ModelError, match="did you mean"):
+        drev.load("gear_drive").study({"backlash_m": [1, 2]}, **STEPS)
+
+
+def test_dask_gives_the_same_rows():
+    distributed = pytest.importorskip("distributed")
+    drive = drev.load("gear_drive")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            study = drive.study(VALUES, client=client, **STEPS)
+    same(study, drive.study(VALUES, **STEPS))
