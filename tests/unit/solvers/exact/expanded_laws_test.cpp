@@ -1,0 +1,114 @@
+// Covers solvers/exact/expanded_laws.hpp and law_work.hpp, law_offsets.hpp through propagate(): laws that are products of
+// series, against closed forms; and what a jump leaves of a bound.
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// A disc of inertia J on base radius 1 m against a gear that turns as given.
+Model disc_on_mesh(double inertia, double speed, GearMesh::Params mesh) {
+  Model m("disc");
+  m.add_node("given");
+  m.add_node("disc");
+  m.add<Inertia>("J", {"disc"}, {.inertia = inertia});
+  mesh.base_radius_1 = mesh.base_radius_2 = 1.0;
+  m.add<GearMesh>("mesh", {"given", "disc"}, std::move(mesh));
+  m.constant_speed("given", speed);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Exact propagation: a rebound from a flank whose damping grows with penetration") {
+  // m v dv/dp = -p (k + g v): F(v) = v/g - k/g^2 ln(k + g v) is the same at both ends of the contact.
+  const double k = 4e6, c = 300.0, p_ref = 1e-3, half_gap = 1e-4, speed = 0.8, mass = 2.0, g = c / p_ref;
+  Model m = disc_on_mesh(
+      mass, 0.0,
+      {.stiffness = k, .normal_backlash = 2.0 * half_gap, .damping = c, .reference_penetration = p_ref});
+  m.set_initial("disc", 0.0, speed);
+  const System system = m.build();
+  State state = State::initial(system);
+  const RunSummary run = propagate(system, {.tolerance = 1e-12, .t_end = 2.5e-3}, state);
+  REQUIRE(run.ok());
+  CHECK(run.contact_changes == 2);
+  const auto f = [&](double v) { return v / g - k / (g * g) * std::log1p(g * v / k); };
+  double low = -speed, high = 0.0;  // F falls below v = 0
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f(middle) > f(speed) ? low : high) = middle;
+  }
+  CHECK(-low < 0.97 * speed);  // something is lost
+  CHECK(state.v[0] == Approx(low).epsilon(1e-11));
+  CHECK(run.energy.dissipated == Approx(0.5 * mass * (speed * speed - low * low)).epsilon(1e-9));
+  CHECK(std::abs(run.energy.worst_imbalance) < 1e-11);
+}
+
+TEST_CASE("Exact propagation: a mesh whose stiffness rises linearly with the angle, by Bessel functions") {
+  // x'' + (a + b t) x = 0, b > 0: x = sqrt(s) Z_1/3(2/3 s^(3/2)), s = b^(1/3) (t + a/b).
+  const double mass = 0.5, speed = 4.0 * kPi, low = 2e5, high = 4e5, end = 0.2;  // of a mesh period of 0.5 s
+  Model m = disc_on_mesh(
+      mass, speed, {.teeth_1 = 1, .teeth_2 = 1, .stiffness = MeshStiffness::table({0.0, 0.8}, {low, high})});
+  m.set_initial("disc", 1e-3, 0.0);
+  const System system = m.build();
+  State state = State::initial(system);
+  const RunSummary run = propagate(system, {.tolerance = 1e-12, .t_end = end}, state);
+  REQUIRE(run.ok());
+  const double a = low / mass, b = (high - low) / 0.8 * (speed / kTwoPi) / mass, root = std::cbrt(b);
+  struct Pair {
+    double value, slope;
+  };
+  const auto solution = [&](double t, bool second) {
+    const double s = root * (t + a / b), z = 2.0 / 3.0 * std::pow(s, 1.5);
+    const auto bessel = [&](double order) {
+      return second ? std::cyl_neumann(order, z) : std::cyl_bessel_j(order, z);
+    };
+    // d/ds [sqrt(s) Z_1/3(z)] = -s Z_4/3(z) + sqrt(s)/(2 s) Z_1/3 + ...; by Z' = Z_1/3/(3 z) - Z_4/3, dz/ds = sqrt(s)
+    const double value = std::sqrt(s) * bessel(1.0 / 3.0);
+    const double slope =
+        0.5 / std::sqrt(s) * bessel(1.0 / 3.0) + s * (bessel(1.0 / 3.0) / (3.0 * z) - bessel(4.0 / 3.0));
+    return Pair{value, slope * root};
+  };
+  const Pair j_0 = solution(0.0, false), y_0 = solution(0.0, true);
+  const Pair j = solution(end, false), y = solution(end, true);
+  const double w = j_0.value * y_0.slope - y_0.value * j_0.slope, x_0 = 1e-3;
+  const double of_j = x_0 * y_0.slope / w, of_y = -x_0 * j_0.slope / w;
+  const double x = of_j * j.value + of_y * y.value, v = of_j * j.slope + of_y * y.slope;
+  CHECK(std::abs(state.z[0] - x) < 1e-10 * x_0);
+  CHECK(std::abs(state.v[0] - v) < 1e-10 * x_0 * std::sqrt(high / mass));
+  CHECK(run.steps < 120);  // 25 periods of vibration, no passes
+}
+
+TEST_CASE("Exact propagation: a limited damper behind a jump of its mesh's stiffness") {
+  // A disc so heavy that it goes on at its speed v closes the gap at t_0; the flank then carries min(2 k p, k p + c v),
+  // p = v (t - t_0), and loses k p or c v, whichever is less, by the stiffness of the moment.
+  const double low = 1e6, high = 3e6, c = 2e4, half_gap = 1e-5, v = 0.05, end = 9e-3, jump = 7e-3;
+  for (const bool rises : {true, false}) {
+    const double first = rises ? low : high, second = rises ? high : low;
+    Model m =
+        disc_on_mesh(1e9, kTwoPi * 10.0,
+                     {.teeth_1 = 10,
+                      .teeth_2 = 10,
+                      .stiffness = MeshStiffness::step(second, first, 1.7),  // at 0.7 of a period of 0.01 s
+                      .normal_backlash = 2.0 * half_gap,
+                      .damping = c,
+                      .damping_law = MeshDamping::limited});
+    m.set_initial("disc", 0.0, v);
+    const System system = m.build();
+    State state = State::initial(system);
+    const RunSummary run = propagate(system, {.tolerance = 1e-10, .t_end = end}, state);
+    REQUIRE(run.ok());
+    const auto lost = [&](double k, double from, double to) {
+      const double a = v * from - half_gap, b = v * to - half_gap, knee = std::clamp(c * v / k, a, b);
+      return 0.5 * k * (knee * knee - a * a) + c * v * (b - knee);
+    };
+    CHECK(run.energy.dissipated ==
+          Approx(lost(first, half_gap / v, jump) + lost(second, jump, end)).epsilon(1e-6));
+  }
+}
