@@ -11,6 +11,7 @@
 #include <map>
 
 #include "app/base/output_file.hpp"
+#include "app/base/temporary_folder.hpp"
 #include "app/fmi/model_description.hpp"
 #include "app/fmi/zip_file.hpp"
 #include "app/model_file/writing/export.hpp"
@@ -30,23 +31,6 @@ std::string content_of(const fs::path& path) {
   if (!file) throw OutputError("cannot read " + path.string());
   return text;
 }
-
-/// A folder of its own for as long as it lives.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "drev_fmu_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw OutputError("cannot create the folder " + name);
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code none;
-    fs::remove_all(path, none);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path path;
-};
 
 /// The deepest folder that holds all of the files.
 fs::path common_folder(const std::vector<fs::path>& files) {

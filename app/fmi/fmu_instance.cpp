@@ -2,6 +2,8 @@
 
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/assembler.hpp>
+#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/start.hpp>
 
@@ -18,8 +20,6 @@ namespace {
 constexpr double kSameTime = 1e-9;  // relative to the communication step
 constexpr double kDefaultTolerance = 1e-10;
 constexpr double kProbe = 0.01;  // change of a parameter that is tried, relative
-const char* const kActualRate[] = {".actual_speed_rad_per_s", ".actual_velocity_m_per_s"};
-const char* const kActualValue[] = {".actual_angle_rad", ".actual_position_m"};
 
 bool same_motion(const Motion* a, const Motion* b, double t) {
   const bool moves_a = a != nullptr && a->at, moves_b = b != nullptr && b->at;
@@ -48,14 +48,6 @@ bool same_unknowns(const System& a, const System& b, double t) {
 
 }  // namespace
 
-/// An output: a channel, or the actual motion of a node, nominal motion and deviation together.
-struct FmuInstance::Output {
-  std::string name, unit;
-  std::optional<Channel> channel = {};
-  int node = -1;
-  bool rate = false;
-};
-
 /// A model with values of its parameters, made ready.
 struct FmuInstance::Built {
   Built(ModelCase given, const FmuInterface& interface)
@@ -67,19 +59,8 @@ struct FmuInstance::Built {
         assembler(system) {
     if (const auto why = why_not_exact(system))
       throw ModelError({{system.name(), "", "", "", "cannot be an FMU: " + *why}});
-    std::vector<std::string> channels;
-    for (const std::string& name : interface.outputs)
-      if (!find_actual(name)) {
-        outputs.push_back({name, "", {}, -1, false});
-        channels.push_back(name);
-      }
-    std::vector<Channel> found = find_channels(system, channels);
-    auto next = found.begin();
-    for (Output& output : outputs) {
-      if (output.node >= 0) continue;
-      output.unit = next->unit();
-      output.channel = std::move(*next++);
-    }
+    refuse_controllers(system, "an FMU");
+    outputs = find_signals(system, interface.outputs);
     assembler.set_time(0.0);
     for (const std::string& name : interface.speeds) {
       Assembler at_start(original);
@@ -104,20 +85,6 @@ struct FmuInstance::Built {
     return all;
   }
 
-  bool find_actual(const std::string& name) {
-    for (const bool rate : {false, true})
-      for (const bool turns : {true, false}) {
-        const std::string end = (rate ? kActualRate : kActualValue)[turns ? 0 : 1];
-        if (!name.ends_with(end)) continue;
-        const int node = system.node(name.substr(0, name.size() - end.size()));
-        if ((system.node_kind(node) == NodeKind::rotational) != turns) continue;
-        const char* unit = rate ? (turns ? "rad/s" : "m/s") : (turns ? "rad" : "m");
-        outputs.push_back({name, unit, {}, node, rate});
-        return true;
-      }
-    return false;
-  }
-
   std::vector<NodeKind> input_kinds(const FmuInterface& interface) const {
     std::vector<NodeKind> all;
     for (const auto* names : {&interface.torques, &interface.speeds})
@@ -131,7 +98,7 @@ struct FmuInstance::Built {
   System original;  // without the inputs
   System system;
   Assembler assembler;
-  std::vector<Output> outputs;
+  std::vector<Signal> outputs;
   std::vector<double> start_speeds, start_deviations;
   double assembled = std::nan("");
 };
@@ -143,7 +110,7 @@ FmuInstance::FmuInstance(const std::string& resources)
   file_ = std::make_unique<ModelFile>(path, interface_.run);
   reset();
   std::vector<std::string> units;
-  for (const Output& output : built_->outputs) units.push_back(output.unit);
+  for (const Signal& output : built_->outputs) units.push_back(output.unit());
   variables_ = fmu_variables(interface_, file_->entry().parameters, built_->input_kinds(interface_), units);
 }
 
@@ -456,12 +423,7 @@ double FmuInstance::output(std::size_t place) {
     built.assembler.set_time(state_.state.t);
     built.assembled = state_.state.t;
   }
-  const Output& output = built.outputs[place];
-  if (output.channel) return output.channel->evaluate(built.assembler, state_.state);
-  const MotionPoint q = built.assembler.node_motion(output.node, state_.state);
-  const double n = built.system.ratio(output.node);
-  const MotionPoint& phi = built.assembler.nominal();
-  return output.rate ? q.rate + n * phi.rate : q.value + n * phi.value;
+  return built.outputs[place].evaluate(built.assembler, state_.state);
 }
 
 void FmuInstance::set_state(const FmuState& state) {

@@ -63,7 +63,6 @@ class FmuInstance {
 
  private:
   struct Built;
-  struct Output;
 
   const FmuVariable& variable(unsigned reference, FmuVariable::Type type) const;
   const FmuVariable& settable(unsigned reference, FmuVariable::Type type) const;

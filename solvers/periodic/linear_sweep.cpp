@@ -1,3 +1,4 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
@@ -133,6 +134,7 @@ std::complex<double> SweepModes::at(Eigen::Index mode, double speed) const {
 }
 
 LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options) {
+  refuse_controllers(system, "a sweep of speeds");
   LinearSweep sweep;
   sweep.speeds = options.speeds;
   sweep.orders = options.orders;

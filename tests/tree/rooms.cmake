@@ -33,6 +33,7 @@ set(room_table
   "app/study:core elements solvers/* models app/base app/run app/chart"
   "app/fmi:core solvers/* models app/base app/model_file app/model_file/writing app/run"
   "app/fmi/library:core app/fmi"
+  "app/fmi/import:core app/base app/model_file"
   "app/cli:core solvers/* models app/base app/model_file app/run"
   "app/commands:core elements solvers/* models/* advice app/*"
   "app:app/*"
