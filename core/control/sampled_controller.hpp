@@ -34,8 +34,8 @@ class ControlSession {
   virtual ~ControlSession() = default;
   /// At the start of the run: inputs there [units of the signals], outputs [N m or N].
   virtual void start(std::span<const double> inputs, std::span<double> outputs) = 0;
-  /// From `from` to `to` [s] with the inputs at both; outputs at `to`.
-  virtual void step(double from, double to, std::span<const double> before, std::span<const double> inputs,
+  /// From time t over the communication step h [s], with the inputs at both ends; outputs at t + h.
+  virtual void step(double t, double h, std::span<const double> before, std::span<const double> inputs,
                     std::span<double> outputs) = 0;
 };
 

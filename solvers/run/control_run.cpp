@@ -71,7 +71,7 @@ void ControlRun::ask(Controlled& c, const Assembler& assembler, const State& sta
     if (first)
       c.session->start(c.inputs, c.outputs);
     else
-      c.session->step(point(c, c.points), point(c, c.points + 1.0), before, c.inputs, c.outputs);
+      c.session->step(point(c, c.points), c.controller->step(), before, c.inputs, c.outputs);
   } catch (const std::exception& error) {
     throw SolverError(at_time(system_.name(), state.t) + c.name + ": " + error.what());
   }

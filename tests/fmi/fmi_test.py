@@ -15,6 +15,7 @@ import numpy
 from fmpy.validation import validate_fmu
 
 import halves
+import imported
 from client import Fmu, difference, get, run, set_values, simulate
 
 DREV, MODELS, FOLDER = map(os.path.abspath, sys.argv[1:4])
@@ -251,7 +252,14 @@ def documented():
     assert 5.0 < torque < 40.0, done.stdout
 
 
-PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused]
+def import_of_fmus():
+    """FMUs as elements of models."""
+    imported.coupled_back(DREV, export, write, FOLDER)
+    imported.refused_imports(DREV, write, FOLDER)
+    imported.hostile_archives(DREV, write, FOLDER)
+
+
+PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused, import_of_fmus]
 shutil.rmtree(FOLDER, ignore_errors=True)
 os.makedirs(FOLDER)
 for part in PARTS:

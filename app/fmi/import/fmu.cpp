@@ -58,13 +58,13 @@ class FmuSession final : public ControlSession {
     get(outputs);
   }
 
-  void step(double from, double to, std::span<const double> before, std::span<const double> inputs,
+  void step(double t, double h, std::span<const double> before, std::span<const double> inputs,
             std::span<double> outputs) override {
     set(params_.interpolate_inputs ? before : inputs);
     if (params_.interpolate_inputs)
       for (std::size_t i = 0; i < inputs.size(); ++i)
-        instance_->set_slope(*description_.find(params_.inputs[i].variable), (inputs[i] - before[i]) / (to - from));
-    instance_->step(from, to - from);
+        instance_->set_slope(*description_.find(params_.inputs[i].variable), (inputs[i] - before[i]) / h);
+    instance_->step(t, h);
     get(outputs);
   }
 

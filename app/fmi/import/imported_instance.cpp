@@ -124,7 +124,7 @@ class Instance2 final : public Instance {
     const std::string uri = "file://" + fmu_->resources().string();
     using Make = void*(const char*, int, const char*, const char*, const Callbacks*, int, int);
     self_ = reinterpret_cast<Make*>(fmu_->function("fmi2Instantiate"))(
-        name.c_str(), kCoSimulation, fmu_->description().token.c_str(), uri.c_str(), &callbacks_, 0, 0);
+        name.c_str(), kCoSimulation, fmu_->description().token.c_str(), uri.c_str(), &callbacks_, 0, 1);
     if (self_ == nullptr) fail("fmi2Instantiate made no instance");
   }
   ~Instance2() override { end(); }
@@ -174,7 +174,7 @@ class Instance3 final : public Instance {
     using Make = void*(const char*, const char*, const char*, bool, bool, bool, bool, const Reference*, std::size_t,
                        void*, void (*)(void*, int, const char*, const char*), void*);
     self_ = reinterpret_cast<Make*>(fmu_->function("fmi3InstantiateCoSimulation"))(
-        name.c_str(), fmu_->description().token.c_str(), folder.c_str(), false, false, false, false, nullptr, 0, &log_,
+        name.c_str(), fmu_->description().token.c_str(), folder.c_str(), false, true, false, false, nullptr, 0, &log_,
         drev_log_3, nullptr);
     if (self_ == nullptr) fail("fmi3InstantiateCoSimulation made no instance");
   }

@@ -40,26 +40,39 @@ class Archive {
     if (all.number_entry > limits.files)
       throw std::runtime_error("holds " + std::to_string(all.number_entry) + " files; at most " +
                                std::to_string(limits.files) + " are unpacked");
+    limit_ = left_ = limits.bytes;
+    for_each(all.number_entry, [this](const std::string& /*name*/, std::uint64_t size) { take(size); });
     left_ = limits.bytes;
+    for_each(all.number_entry, [&](const std::string& name, std::uint64_t /*size*/) { unpack_one(folder, name); });
+  }
+
+ private:
+  /// Every entry with its name and the size that the archive says, once both are found harmless.
+  template <class Use>
+  void for_each(std::uint64_t count, const Use& use) {
     int at = unzGoToFirstFile(zip_.get());
-    for (std::uint64_t i = 0; i < all.number_entry; ++i) {
-      if (at != UNZ_OK) throw std::runtime_error("is damaged");
-      unpack_one(folder, limits);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      unz_file_info64 info{};
+      std::string name(kLongestName + 1, '\0');
+      if (at != UNZ_OK || unzGetCurrentFileInfo64(zip_.get(), &info, name.data(), name.size(), nullptr, 0, nullptr,
+                                                  0) != UNZ_OK)
+        throw std::runtime_error("is damaged");
+      if (info.size_filename > kLongestName) throw std::runtime_error("holds a name that is too long");
+      name.resize(info.size_filename);
+      if (!stays_inside(name)) throw std::runtime_error("holds the path '" + name + "', which leads out of it");
+      if ((info.external_fa >> 16 & kFileKind) == kLink) throw std::runtime_error("holds the link '" + name + "'");
+      if ((info.flag & kEncrypted) != 0) throw std::runtime_error("is encrypted");
+      use(name, info.uncompressed_size);
       at = unzGoToNextFile(zip_.get());
     }
   }
 
- private:
-  void unpack_one(const fs::path& folder, const UnzipLimits& limits) {
-    unz_file_info64 info{};
-    std::string name(kLongestName + 1, '\0');
-    if (unzGetCurrentFileInfo64(zip_.get(), &info, name.data(), name.size(), nullptr, 0, nullptr, 0) != UNZ_OK)
-      throw std::runtime_error("is damaged");
-    if (info.size_filename > kLongestName) throw std::runtime_error("holds a name that is too long");
-    name.resize(info.size_filename);
-    if (!stays_inside(name)) throw std::runtime_error("holds the path '" + name + "', which leads out of it");
-    if ((info.external_fa >> 16 & kFileKind) == kLink) throw std::runtime_error("holds the link '" + name + "'");
-    if ((info.flag & kEncrypted) != 0) throw std::runtime_error("is encrypted");
+  void take(std::uint64_t bytes) {
+    if (bytes > left_) throw std::runtime_error("holds more than " + std::to_string(limit_) + " bytes unpacked");
+    left_ -= bytes;
+  }
+
+  void unpack_one(const fs::path& folder, const std::string& name) {
     if (name.back() == '/') {
       fs::create_directories(folder / name);
       return;
@@ -73,10 +86,7 @@ class Archive {
       const int got = unzReadCurrentFile(zip_.get(), part.data(), static_cast<unsigned>(part.size()));
       if (got < 0) throw std::runtime_error("is damaged at '" + name + "'");
       if (got == 0) break;
-      // Counted as they come: what the archive says of its sizes is not believed.
-      if (static_cast<std::uint64_t>(got) > left_)
-        throw std::runtime_error("holds more than " + std::to_string(limits.bytes) + " bytes unpacked");
-      left_ -= static_cast<std::uint64_t>(got);
+      take(static_cast<std::uint64_t>(got));  // what the archive says of its sizes is not believed
       file.write(part.data(), got);
     }
     if (unzCloseCurrentFile(zip_.get()) != UNZ_OK) throw std::runtime_error("is damaged at '" + name + "'");
@@ -85,7 +95,7 @@ class Archive {
   }
 
   std::unique_ptr<void, int (*)(void*)> zip_;
-  std::uint64_t left_ = 0;
+  std::uint64_t limit_ = 0, left_ = 0;
 };
 
 }  // namespace

@@ -37,9 +37,9 @@ class TestController final : public SampledController {
       void start(std::span<const double> inputs, std::span<double> outputs) override {
         outputs[0] = law_(t_, inputs);
       }
-      void step(double /*from*/, double to, std::span<const double> /*before*/, std::span<const double> inputs,
+      void step(double t, double h, std::span<const double> /*before*/, std::span<const double> inputs,
                 std::span<double> outputs) override {
-        outputs[0] = law_(to, inputs);
+        outputs[0] = law_(t + h, inputs);
       }
 
      private:
