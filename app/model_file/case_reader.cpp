@@ -295,7 +295,8 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
   if (result.model_case) {
     for (const Value& root : document.roots) result.model_case->files.push_back(*root.at.file);
     for (const auto& [path, table] : context.csv) result.model_case->files.push_back(path);
-    result.model_case->files.insert(result.model_case->files.end(), context.files.begin(), context.files.end());
+    result.model_case->files.insert(result.model_case->files.end(), context.files.begin(),
+                                    context.files.end());
   }
   limit_findings(context.findings, document.at);
   if (!context.findings.empty()) result.model_case.reset();

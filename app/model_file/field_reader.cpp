@@ -68,7 +68,8 @@ class FieldReader final : public Fields {
     const std::optional<std::string> read = read_text(found->entry->value, place(*found), context_);
     if (!read) return;
     std::filesystem::path given(*read);
-    if (given.is_relative()) given = std::filesystem::path(*found->entry->value.at.file).parent_path() / given;
+    if (given.is_relative())
+      given = std::filesystem::path(*found->entry->value.at.file).parent_path() / given;
     path = given.string();
     context_.files.insert(path);
   }

@@ -41,7 +41,8 @@ void check_controllers(const System& system) {
       find_signals(system, controller->inputs());
     } catch (const ModelError& error) {
       for (const Finding& finding : error.findings())
-        findings.push_back({system.name() + "/" + name, "inputs", finding.value, finding.unit, finding.range});
+        findings.push_back(
+            {system.name() + "/" + name, "inputs", finding.value, finding.unit, finding.range});
     }
   if (!findings.empty()) throw ModelError(std::move(findings));
 }
@@ -49,9 +50,9 @@ void check_controllers(const System& system) {
 std::optional<std::string> why_not_controllers(const System& system, const std::string& what) {
   const std::vector<PlacedController> found = sampled_controllers(system);
   if (found.empty()) return std::nullopt;
-  return found.front().name + " is a controller that is sampled every " + to_text(found.front().controller->step()) +
-         " s (" + std::string(found.front().controller->type()) + "): " + what +
-         " does not take it; run the model in time, or leave it out";
+  return found.front().name + " is a controller that is sampled every " +
+         to_text(found.front().controller->step()) + " s (" + std::string(found.front().controller->type()) +
+         "): " + what + " does not take it; run the model in time, or leave it out";
 }
 
 void refuse_controllers(const System& system, const std::string& what) {

@@ -37,7 +37,8 @@ std::vector<Signal> find_signals(const System& system, const std::vector<std::st
       for (const bool turns : {true, false}) {
         const std::string end = (rate ? kRates : kValues)[turns ? 0 : 1];
         if (!names[i].ends_with(end)) continue;
-        const auto node = std::find(nodes.begin(), nodes.end(), names[i].substr(0, names[i].size() - end.size()));
+        const auto node =
+            std::find(nodes.begin(), nodes.end(), names[i].substr(0, names[i].size() - end.size()));
         const auto place = static_cast<int>(node - nodes.begin());
         if (node == nodes.end() || (system.node_kind(place) == NodeKind::rotational) != turns) continue;
         signal.node_ = place;

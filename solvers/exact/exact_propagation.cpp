@@ -455,7 +455,7 @@ class ExactRun final : public StepMotion {
   double beside_knot_ = 0.0;  // s: the step starts at a law's knot, which is passed for certain behind it
   struct {
     double t_0 = 0.0, length = 0.0, s = 1.0;
-  } step_;  // which observers are shown: its end is s of the series
+  } step_;                     // which observers are shown: its end is s of the series
   std::vector<double> kinks_;  // times of, inside this step
   EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;

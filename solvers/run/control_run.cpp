@@ -20,8 +20,9 @@ ControlRun::ControlRun(const System& system, double t_start, double t_end)
   for (const auto& [name, controller] : sampled_controllers(system)) {
     if (!controller->acquire()) {
       for (const Controlled& c : all_) c.controller->release();
-      throw SolverError(system.name() + ": " + name +
-                        " is in use by another run: a controller takes part in one run at a time; build the model anew");
+      throw SolverError(
+          system.name() + ": " + name +
+          " is in use by another run: a controller takes part in one run at a time; build the model anew");
     }
     all_.push_back({name, controller, find_signals(system, controller->inputs())});
   }
@@ -55,7 +56,8 @@ double ControlRun::next_stop(double t) const {
 
 void ControlRun::sample(const Assembler& assembler, const State& state) {
   for (Controlled& c : all_)
-    if (state.t >= point(c, c.points + 1.0) - kSamePoint * c.controller->step()) ask(c, assembler, state, false);
+    if (state.t >= point(c, c.points + 1.0) - kSamePoint * c.controller->step())
+      ask(c, assembler, state, false);
 }
 
 void ControlRun::ask(Controlled& c, const Assembler& assembler, const State& state, bool first) {

@@ -18,28 +18,32 @@ using Type = ImportedVariable::Type;
 /// What is wrong with a variable for what it is to be; empty: nothing.
 std::string fault_of(const FmuDescription& fmu, const std::string& name, const char* causality, bool real) {
   const ImportedVariable* v = fmu.find(name);
-  const auto article = [](const std::string& word) { return (word.starts_with("i") || word.starts_with("o") ? "an " : "a ") + word; };
+  const auto article = [](const std::string& word) {
+    return (word.starts_with("i") || word.starts_with("o") ? "an " : "a ") + word;
+  };
   if (v == nullptr || v->causality != causality) {
     const std::vector<std::string> names = fmu.names(causality);
     std::string known;
     for (const std::string& other : names) known += (known.empty() ? "" : ", ") + other;
     const std::string hint = did_you_mean(name, names);
-    const std::string there =
-        !hint.empty() ? hint : known.empty() ? "; it has none" : "; there are " + known;
+    const std::string there = !hint.empty() ? hint : known.empty() ? "; it has none" : "; there are " + known;
     return (v == nullptr ? "is no variable of the FMU" : "is " + article(v->causality) + " of the FMU") +
            ", and must be " + article(causality) + there;
   }
   if (v->array) return "is an array; drev takes scalars";
-  if (real && v->type != Type::real) return "is of type " + v->type_name + "; drev takes Real (FMI 2) and Float64";
+  if (real && v->type != Type::real)
+    return "is of type " + v->type_name + "; drev takes Real (FMI 2) and Float64";
   if (v->type == Type::other)
-    return "is of type " + v->type_name + "; drev sets Real, Integer, Boolean and String, and of FMI 3 Float64, Int32, "
+    return "is of type " + v->type_name +
+           "; drev sets Real, Integer, Boolean and String, and of FMI 3 Float64, Int32, "
            "Boolean and String";
   return {};
 }
 
 class FmuSession final : public ControlSession {
  public:
-  FmuSession(const Fmu::Params& params, const std::shared_ptr<const UnpackedFmu>& fmu, double t_start, double t_end)
+  FmuSession(const Fmu::Params& params, const std::shared_ptr<const UnpackedFmu>& fmu, double t_start,
+             double t_end)
       : params_(params), description_(fmu->description()), t_start_(t_start), t_end_(t_end) {
     instance_ = instantiate(fmu, "drev");
   }
@@ -77,7 +81,8 @@ class FmuSession final : public ControlSession {
     for (std::size_t j = 0; j < outputs.size(); ++j) {
       const Fmu::Output& output = params_.outputs[j];
       const double y = instance_->get(*description_.find(output.variable));
-      if (!std::isfinite(y)) throw std::runtime_error(params_.file + ": output " + output.variable + " is not finite");
+      if (!std::isfinite(y))
+        throw std::runtime_error(params_.file + ": output " + output.variable + " is not finite");
       outputs[j] = output.factor * y;
     }
   }
@@ -125,7 +130,8 @@ void Fmu::check(ParameterCheck& check) const {
     const bool text = fmu.find(p.variable)->type == Type::text;
     if (!text && !std::isfinite(p.value))
       check.fail("parameters", p.variable, "", "must have a value that is a finite number");
-    if (text && !std::isnan(p.value)) check.fail("parameters", p.variable, "", "is a text: give text, not value");
+    if (text && !std::isnan(p.value))
+      check.fail("parameters", p.variable, "", "is a text: give text, not value");
   }
   if (params_.interpolate_inputs && !fmu.interpolates_inputs)
     check.fail("interpolate_inputs", "true", "",
@@ -159,7 +165,9 @@ void list(Fields& f, Fmu::Params& p) {
         });
   };
   rows("inputs", p.inputs, [](Fields& g, Fmu::Input& input) { g.text("channel", input.channel); });
-  rows("outputs", p.outputs, [](Fields& g, Fmu::Output& output) { g.number({"factor", D::none}, output.factor); });
+  rows("outputs", p.outputs, [](Fields& g, Fmu::Output& output) {
+    g.number({"factor", D::none}, output.factor);
+  });
   rows("parameters", p.parameters, [](Fields& g, Fmu::Parameter& parameter) {
     const bool read = g.reading();
     if (read || parameter.text.empty()) g.number({"value", D::none}, parameter.value);

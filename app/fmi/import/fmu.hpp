@@ -21,7 +21,8 @@ class Fmu final : public SampledController {
  public:
   struct Input {
     std::string variable;  ///< of the FMU: a real input
-    std::string channel;   ///< what it is given: a channel, NODE.actual_speed_rad_per_s, time_s (signal.hpp), in SI
+    std::string
+        channel;  ///< what it is given: a channel, NODE.actual_speed_rad_per_s, time_s (signal.hpp), in SI
   };
   struct Output {
     std::string variable;  ///< of the FMU: a real output [N m or N]
@@ -34,13 +35,13 @@ class Fmu final : public SampledController {
     static const double kNotSet;
   };
   struct Params {
-    std::string file;                       ///< .fmu, relative to the model file
-    double step = 0.0;                      ///< h, between communication points [s], > 0
-    Hold hold = Hold::zero_order;           ///< of the torques between them: zero_order or first_order
-    bool interpolate_inputs = false;        ///< FMI 2.0 FMUs that can
-    std::vector<Input> inputs = {};         ///< rows of variable and channel
-    std::vector<Output> outputs = {};       ///< rows of variable and factor, one a node
-    std::vector<Parameter> parameters = {}; ///< rows of variable and value (or text)
+    std::string file;                        ///< .fmu, relative to the model file
+    double step = 0.0;                       ///< h, between communication points [s], > 0
+    Hold hold = Hold::zero_order;            ///< of the torques between them: zero_order or first_order
+    bool interpolate_inputs = false;         ///< FMI 2.0 FMUs that can
+    std::vector<Input> inputs = {};          ///< rows of variable and channel
+    std::vector<Output> outputs = {};        ///< rows of variable and factor, one a node
+    std::vector<Parameter> parameters = {};  ///< rows of variable and value (or text)
   };
   explicit Fmu(Params params);
 

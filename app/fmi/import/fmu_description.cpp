@@ -26,9 +26,9 @@ bool is_true(const Attributes& attributes, const char* name) {
 
 /// FMI 2 names the type in a child of ScalarVariable, FMI 3 by the element itself.
 Type type_of(const std::string& name) {
-  static const std::map<std::string, Type> types{
-      {"Real", Type::real},       {"Float64", Type::real},    {"Integer", Type::integer}, {"Int32", Type::integer},
-      {"Boolean", Type::boolean}, {"String", Type::text}};
+  static const std::map<std::string, Type> types{{"Real", Type::real},       {"Float64", Type::real},
+                                                 {"Integer", Type::integer}, {"Int32", Type::integer},
+                                                 {"Boolean", Type::boolean}, {"String", Type::text}};
   const auto found = types.find(name);
   return found == types.end() ? Type::other : found->second;
 }
@@ -36,7 +36,8 @@ Type type_of(const std::string& name) {
 class Reader {
  public:
   FmuDescription read(const std::string& xml) {
-    const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
+    const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr),
+                                                                         XML_ParserFree);
     if (!parser) throw std::runtime_error("there is not enough memory");
     XML_SetUserData(parser.get(), this);
     XML_SetElementHandler(parser.get(), begin, end);
@@ -82,13 +83,13 @@ class Reader {
 
   void add_variable(const std::string& element, const Attributes& attributes) {
     const std::string causality = value_of(attributes, "causality");
-    found_.variables.push_back(
-        {.name = value_of(attributes, "name"),
-         .reference = static_cast<unsigned>(std::strtoul(value_of(attributes, "valueReference").c_str(), nullptr, 10)),
-         .type = found_.fmi == 3 ? type_of(element) : Type::other,
-         .type_name = element,
-         .causality = causality.empty() ? "local" : causality,
-         .variability = value_of(attributes, "variability")});
+    found_.variables.push_back({.name = value_of(attributes, "name"),
+                                .reference = static_cast<unsigned>(std::strtoul(
+                                    value_of(attributes, "valueReference").c_str(), nullptr, 10)),
+                                .type = found_.fmi == 3 ? type_of(element) : Type::other,
+                                .type_name = element,
+                                .causality = causality.empty() ? "local" : causality,
+                                .variability = value_of(attributes, "variability")});
   }
 
   FmuDescription found_;
@@ -99,7 +100,8 @@ class Reader {
 }  // namespace
 
 const ImportedVariable* FmuDescription::find(const std::string& name) const {
-  const auto found = std::find_if(variables.begin(), variables.end(), [&](const auto& v) { return v.name == name; });
+  const auto found =
+      std::find_if(variables.begin(), variables.end(), [&](const auto& v) { return v.name == name; });
   return found == variables.end() ? nullptr : &*found;
 }
 

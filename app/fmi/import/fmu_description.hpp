@@ -20,7 +20,7 @@ struct ImportedVariable {
 };
 
 struct FmuDescription {
-  int fmi = 0;  ///< 2 or 3
+  int fmi = 0;                                ///< 2 or 3
   std::string model_name, token, identifier;  ///< identifier: of the library, for co-simulation
   bool interpolates_inputs = false;           ///< FMI 2: canInterpolateInputs
   std::vector<ImportedVariable> variables;

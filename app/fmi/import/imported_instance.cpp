@@ -1,6 +1,9 @@
 // The importer's side of FMI 2.0 and 3.0, declared from the standard's text (fmi-standard.org, versions 2.0.4 and 3.0).
 #include "app/fmi/import/imported_instance.hpp"
 
+#include <drev/core/error.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdint>
@@ -8,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <drev/core/error.hpp>
 
 namespace drev::app {
 
@@ -25,6 +27,7 @@ class Log {
     if (text == nullptr) return;
     std::string line(text, strnlen(text, kLongestLine));
     while (!line.empty() && line.back() == '\n') line.pop_back();
+    std::replace(line.begin(), line.end(), '\n', ' ');
     if (line.empty()) return;
     lines_.push_back(std::move(line));
     if (lines_.size() > kLinesKept) lines_.pop_front();
@@ -42,8 +45,8 @@ class Log {
 };
 
 extern "C" {
-void drev_log_2(void* log, const char* /*instance*/, int /*status*/, const char* /*category*/, const char* format,
-                ...) {
+void drev_log_2(void* log, const char* /*instance*/, int /*status*/, const char* /*category*/,
+                const char* format, ...) {
   if (log == nullptr || format == nullptr) return;
   char text[kLongestLine];
   va_list arguments;
@@ -90,7 +93,9 @@ class Instance : public ImportedInstance {
     judge(reinterpret_cast<int (*)(Arguments...)>(fmu_->function(full))(arguments...), full, about);
   }
 
-  [[noreturn]] void fail(const std::string& why) { throw std::runtime_error(fmu_->name() + ": " + why + log_.take()); }
+  [[noreturn]] void fail(const std::string& why) {
+    throw std::runtime_error(fmu_->name() + ": " + why + log_.take());
+  }
 
   void judge(int status, const std::string& name, const std::string& about) {
     if (status <= kWarning) return;
@@ -108,7 +113,9 @@ class Instance : public ImportedInstance {
     self_ = nullptr;
   }
 
-  static std::string step_text(double t, double h) { return "t = " + to_text(t) + " s, step " + to_text(h) + " s"; }
+  static std::string step_text(double t, double h) {
+    return "t = " + to_text(t) + " s, step " + to_text(h) + " s";
+  }
 
   std::shared_ptr<const UnpackedFmu> fmu_;
   std::string prefix_;
@@ -171,11 +178,11 @@ class Instance3 final : public Instance {
  public:
   Instance3(std::shared_ptr<const UnpackedFmu> fmu, const std::string& name) : Instance(std::move(fmu), 3) {
     const std::string folder = fmu_->resources().string() + "/";
-    using Make = void*(const char*, const char*, const char*, bool, bool, bool, bool, const Reference*, std::size_t,
-                       void*, void (*)(void*, int, const char*, const char*), void*);
+    using Make = void*(const char*, const char*, const char*, bool, bool, bool, bool, const Reference*,
+                       std::size_t, void*, void (*)(void*, int, const char*, const char*), void*);
     self_ = reinterpret_cast<Make*>(fmu_->function("fmi3InstantiateCoSimulation"))(
-        name.c_str(), fmu_->description().token.c_str(), folder.c_str(), false, true, false, false, nullptr, 0, &log_,
-        drev_log_3, nullptr);
+        name.c_str(), fmu_->description().token.c_str(), folder.c_str(), false, true, false, false, nullptr,
+        0, &log_, drev_log_3, nullptr);
     if (self_ == nullptr) fail("fmi3InstantiateCoSimulation made no instance");
   }
   ~Instance3() override { end(); }
@@ -209,7 +216,9 @@ class Instance3 final : public Instance {
     double reached = t + h;
     const std::string about = step_text(t, h);
     call("DoStep", about, self_, t, h, true, &event, &ends, &early, &reached);
-    if (early) fail("fmi3DoStep (" + about + ") ended early, at " + to_text(reached) + " s, though that is not allowed");
+    if (early)
+      fail("fmi3DoStep (" + about + ") ended early, at " + to_text(reached) +
+           " s, though that is not allowed");
     if (ends) fail("it asked for the simulation to end at " + to_text(reached) + " s");
   }
 
@@ -223,7 +232,8 @@ class Instance3 final : public Instance {
 
 }  // namespace
 
-std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu, const std::string& name) {
+std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu,
+                                              const std::string& name) {
   if (fmu->description().fmi == 3) return std::make_unique<Instance3>(std::move(fmu), name);
   return std::make_unique<Instance2>(std::move(fmu), name);
 }

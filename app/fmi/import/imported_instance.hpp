@@ -23,6 +23,7 @@ class ImportedInstance {
   virtual void step(double t, double h) = 0;
 };
 
-std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu, const std::string& name);
+std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu,
+                                              const std::string& name);
 
 }  // namespace drev::app

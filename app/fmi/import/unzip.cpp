@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 4096;
-constexpr unsigned kEncrypted = 1;                         // of an entry's flags
-constexpr unsigned kFileKind = 0170000, kLink = 0120000;   // of a mode of Unix
-constexpr std::size_t kRead = std::size_t{1} << 18;        // bytes read at once
+constexpr unsigned kEncrypted = 1;                        // of an entry's flags
+constexpr unsigned kFileKind = 0170000, kLink = 0120000;  // of a mode of Unix
+constexpr std::size_t kRead = std::size_t{1} << 18;       // bytes read at once
 
 /// Whether the name, with '/' between folders, stays in the folder that it is unpacked to.
 bool stays_inside(const std::string& name) {
@@ -43,7 +43,8 @@ class Archive {
     limit_ = left_ = limits.bytes;
     for_each(all.number_entry, [this](const std::string& /*name*/, std::uint64_t size) { take(size); });
     left_ = limits.bytes;
-    for_each(all.number_entry, [&](const std::string& name, std::uint64_t /*size*/) { unpack_one(folder, name); });
+    for_each(all.number_entry,
+             [&](const std::string& name, std::uint64_t /*size*/) { unpack_one(folder, name); });
   }
 
  private:
@@ -54,13 +55,15 @@ class Archive {
     for (std::uint64_t i = 0; i < count; ++i) {
       unz_file_info64 info{};
       std::string name(kLongestName + 1, '\0');
-      if (at != UNZ_OK || unzGetCurrentFileInfo64(zip_.get(), &info, name.data(), name.size(), nullptr, 0, nullptr,
-                                                  0) != UNZ_OK)
+      if (at != UNZ_OK || unzGetCurrentFileInfo64(zip_.get(), &info, name.data(), name.size(), nullptr, 0,
+                                                  nullptr, 0) != UNZ_OK)
         throw std::runtime_error("is damaged");
       if (info.size_filename > kLongestName) throw std::runtime_error("holds a name that is too long");
       name.resize(info.size_filename);
-      if (!stays_inside(name)) throw std::runtime_error("holds the path '" + name + "', which leads out of it");
-      if ((info.external_fa >> 16 & kFileKind) == kLink) throw std::runtime_error("holds the link '" + name + "'");
+      if (!stays_inside(name))
+        throw std::runtime_error("holds the path '" + name + "', which leads out of it");
+      if ((info.external_fa >> 16 & kFileKind) == kLink)
+        throw std::runtime_error("holds the link '" + name + "'");
       if ((info.flag & kEncrypted) != 0) throw std::runtime_error("is encrypted");
       use(name, info.uncompressed_size);
       at = unzGoToNextFile(zip_.get());
@@ -68,7 +71,8 @@ class Archive {
   }
 
   void take(std::uint64_t bytes) {
-    if (bytes > left_) throw std::runtime_error("holds more than " + std::to_string(limit_) + " bytes unpacked");
+    if (bytes > left_)
+      throw std::runtime_error("holds more than " + std::to_string(limit_) + " bytes unpacked");
     left_ -= bytes;
   }
 

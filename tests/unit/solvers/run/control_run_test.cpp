@@ -108,12 +108,14 @@ TEST_CASE("A sampled PI governor gives the motion of its z-transform, by every k
     INFO(to_text(method));
     const std::vector<double> speeds = speeds_of(system, method, 1.0);
     REQUIRE(speeds.size() == 101);
-    for (int k = 0; k <= 100; ++k) CHECK(std::abs(speeds[static_cast<std::size_t>(k)] - speed_at(k)) < tolerance * 10.0 * largest);
+    for (int k = 0; k <= 100; ++k)
+      CHECK(std::abs(speeds[static_cast<std::size_t>(k)] - speed_at(k)) < tolerance * 10.0 * largest);
   }
 }
 
 TEST_CASE("A run that ends between communication points has a short last step") {
-  const std::vector<double> speeds = speeds_of(governed(), {.name = kExact, .tolerance = 1e-12}, 0.1 + 0.3 * kStep);
+  const std::vector<double> speeds =
+      speeds_of(governed(), {.name = kExact, .tolerance = 1e-12}, 0.1 + 0.3 * kStep);
   // Over the last, short step the torque is that of t_10.
   CHECK(speeds.size() >= 11);
   CHECK(std::abs(speeds[10] - speed_at(10)) < 1e-13);
@@ -124,10 +126,11 @@ TEST_CASE("A first-order hold follows a ramp from its second communication point
   Model model("ramp");
   const NodeId disc = model.add_node("engine");
   model.add<Inertia>("J", {disc}, {.inertia = kInertia});
-  model.add("ramp", {disc},
-            std::make_shared<TestController>(kStep, Hold::first_order, std::vector<std::string>{"time_s"}, [] {
-              return Sampled([](double /*t*/, std::span<const double> time) { return kRate * time[0]; });
-            }));
+  model.add(
+      "ramp", {disc},
+      std::make_shared<TestController>(kStep, Hold::first_order, std::vector<std::string>{"time_s"}, [] {
+        return Sampled([](double /*t*/, std::span<const double> time) { return kRate * time[0]; });
+      }));
   const std::vector<double> speeds = speeds_of(model.build(), {.name = kExact, .tolerance = 1e-12}, 0.5);
   // Zero over the first step, then the ramp itself: J w = rate (t^2 - h^2)/2.
   const double expected = kRate * (0.25 - kStep * kStep) / (2.0 * kInertia);
@@ -172,9 +175,11 @@ TEST_CASE("What a controller throws, reads in vain or leaves not finite ends the
     const System system = model.build();
     run_method(system, {.name = kExact, .tolerance = 1e-10}, {.t_end = 1.0});
   };
-  CHECK_THROWS_WITH(run({}, [](double t, auto) { return t > 0.25 ? throw std::runtime_error("no fuel") : 0.0; }),
-                    Catch::Contains("0.3") && Catch::Contains("controller: no fuel"));
-  CHECK_THROWS_WITH(run({}, [](double t, auto) { return t > 0.25 ? NAN : 0.0; }), Catch::Contains("not finite"));
+  CHECK_THROWS_WITH(
+      run({}, [](double t, auto) { return t > 0.25 ? throw std::runtime_error("no fuel") : 0.0; }),
+      Catch::Contains("0.3") && Catch::Contains("controller: no fuel"));
+  CHECK_THROWS_WITH(run({}, [](double t, auto) { return t > 0.25 ? NAN : 0.0; }),
+                    Catch::Contains("not finite"));
   CHECK_THROWS_WITH(run({"disc.actual_sped_rad_per_s"}, [](double, auto) { return 0.0; }),
                     Catch::Contains("is no channel of this model"));
 }
