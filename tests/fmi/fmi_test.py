@@ -14,6 +14,7 @@ except ImportError:
 import numpy
 from fmpy.validation import validate_fmu
 
+import advanced
 import halves
 import imported
 from client import Fmu, difference, get, run, set_values, simulate
@@ -259,7 +260,14 @@ def import_of_fmus():
     imported.hostile_archives(DREV, write, FOLDER)
 
 
-PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused, import_of_fmus]
+def beyond_steps():
+    """Derivatives, intermediate values, event mode."""
+    advanced.inside(export, model, write)
+    advanced.events(DREV, export, model, FOLDER)
+
+
+PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused,
+         import_of_fmus, beyond_steps]
 shutil.rmtree(FOLDER, ignore_errors=True)
 os.makedirs(FOLDER)
 for part in PARTS:

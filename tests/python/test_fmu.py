@@ -70,3 +70,17 @@ def test_what_the_fmu_logs_is_said(folder):
     with pytest.raises(drev.SolverError, match=r"Failing.fmu: fmi2DoStep \(t = 0.05 s, step 0.01 s\).*no fuel") as caught:
         drev.load(str(folder / "failing.toml")).run()
     assert 0.0 < caught.value.result.time[-1] <= 0.06
+
+
+def test_an_fmu_from_python(tmp_path):
+    fmpy = pytest.importorskip("fmpy")
+    from conftest import two_masses
+
+    m = two_masses()
+    path = str(tmp_path / "train.fmu")
+    m.export_fmu(path, torque=["load"], record=["shaft.torque_Nm"], fmi="2")
+    signal = np.array([(0.0, 5.0), (1.0, 5.0)], dtype=[("time", float), ("load.input_torque_Nm", float)])
+    found = fmpy.simulate_fmu(path, stop_time=0.05, output_interval=1e-3, input=signal)
+    m.add_applied_torque("step", "load", torque_Nm=5)
+    run = m.run(duration_s=0.05, every_s=1e-3, record=["shaft.torque_Nm"])
+    assert np.max(np.abs(found["shaft.torque_Nm"][:51] - run["shaft.torque_Nm"][:51])) < 1e-9
