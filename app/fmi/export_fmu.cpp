@@ -58,7 +58,8 @@ Contents model_files(const ModelRequest& model, const FmuRequest& request, std::
   const fs::path common = common_folder(files);
   Contents all;
   for (const fs::path& file : files)
-    all["model/" + file.lexically_relative(common).generic_string()] = content_of(file);
+    all["model/" + file.lexically_relative(common).generic_string()] =
+        request.text && file == files.front() ? *request.text : content_of(file);
   main = "model/" + files.front().lexically_relative(common).generic_string();
   return all;
 }

@@ -13,6 +13,7 @@ namespace drev::app {
 struct FmuRequest {
   std::string file;                          ///< .fmu
   std::string model;                         ///< the model file as given; empty: a built-in model
+  std::optional<std::string> text = {};      ///< of the model file, where it is not to be read
   std::string run = {};                      ///< of it; empty: [run]
   std::vector<std::string> torques, speeds;  ///< nodes
   std::vector<std::string> outputs;          ///< channels

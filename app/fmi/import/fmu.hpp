@@ -35,7 +35,7 @@ class Fmu final : public SampledController {
     static const double kNotSet;
   };
   struct Params {
-    std::string file;                        ///< .fmu, relative to the model file
+    std::string file = {};                   ///< .fmu, relative to the model file
     double step = 0.0;                       ///< h, between communication points [s], > 0
     Hold hold = Hold::zero_order;            ///< of the torques between them: zero_order or first_order
     bool interpolate_inputs = false;         ///< FMI 2.0 FMUs that can
