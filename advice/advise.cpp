@@ -43,6 +43,7 @@ class Ladder {
         evidence_(full_),
         figure_(figure_options(model_case, full_, options)) {
     figure_.watch = evidence_.channels();
+    figure_.pause = options.pause;
   }
 
   Advice run() {
@@ -241,6 +242,7 @@ class Ladder {
   }
 
   Rung measure(const Name& name, Recipe recipe) const {
+    if (options_.pause) options_.pause();
     recipe.figure.watch.clear();
     recipe.figure.most_seconds = kMostCost * full_rung_.seconds;
     Rung rung{.name = name.name,

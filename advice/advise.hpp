@@ -15,6 +15,7 @@
 #include <drev/core/range.hpp>
 #include <drev/models/model_case.hpp>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct AdviseOptions {
   std::string figure = "peak deflection";
   double within = 0.02;  ///< relative
   static constexpr Range kWithin{1e-4, 0.5};
+  std::function<void()> pause = {};  ///< called now and then; what it throws ends the advice
 };
 
 struct Rung {

@@ -52,13 +52,16 @@ Run run_once(const System& system, const Method& method, const FigureOptions& o,
   Run run;
   // A balance that is off is an error of the figure like any other, and shows in its estimate.
   const std::clock_t begin = std::clock();
-  const RunSummary summary = run_method(
-      system, method,
-      {.t_end = o.t_end,
-       .energy_tolerance = 1e300,
-       .progress =
-           [&](double) { return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < most_seconds; }},
-      state, observers);
+  const RunSummary summary =
+      run_method(system, method,
+                 {.t_end = o.t_end,
+                  .energy_tolerance = 1e300,
+                  .progress =
+                      [&](double) {
+                        if (o.pause) o.pause();
+                        return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < most_seconds;
+                      }},
+                 state, observers);
   if (!summary.ok()) run.failure = summary.reason;
   if (summary.status == RunStatus::interrupted)
     run.failure = "a run takes longer than the time allowed for it, " + rounded(most_seconds) + " s";

@@ -12,6 +12,7 @@
 #include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/peak.hpp>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct FigureOptions {
   /// Processor time of one run beyond which there is no estimate [s].
   double most_seconds = std::numeric_limits<double>::infinity();
   std::vector<std::string> watch = {};  ///< further channels, of which the range over the run is noted
+  std::function<void()> pause = {};     ///< called now and then; what it throws ends the estimate
 };
 
 /// Of the channels' unit, of a run with `method`. Of kind interval: mean and 95 % interval of one run.

@@ -12,6 +12,7 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/completion.hpp"
+#include "app/fmi/import/fmu.hpp"
 
 namespace drev::app {
 
@@ -29,6 +30,7 @@ void complain(const ModelError& error) {
 
 int guarded_main(int argc, char** argv) {
   try {
+    register_fmu();
     if (argc > 1 && std::string_view(argv[1]) == "__complete") {
       std::string text;
       for (const std::string& offered : completions({argv + 2, argv + argc})) text += offered + "\n";

@@ -1,3 +1,4 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/at_speed.hpp>
@@ -488,6 +489,7 @@ NonlinearSweep Sweeper::run() {
 }  // namespace
 
 NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options) {
+  refuse_controllers(system, "a sweep of speeds");
   return Sweeper(system, options).run();
 }
 

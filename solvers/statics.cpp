@@ -1,5 +1,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/statics.hpp>
@@ -24,6 +25,7 @@ StaticSolver::StaticSolver(const System& system)
       assembler_(std::make_unique<Assembler>(system)),
       newton_(std::make_unique<SparseNewton>(system)) {
   refuse_friction(system, "the static equilibrium");
+  refuse_controllers(system, "the static equilibrium");
   const std::vector<std::string> floating = system.floating_parts(Contact::closed);
   if (!floating.empty()) {
     std::string names;

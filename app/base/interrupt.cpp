@@ -46,6 +46,10 @@ bool interrupted() {
   return caught != 0 || (source != nullptr && (*source)());
 }
 
+void end_if_interrupted() {
+  if (interrupted()) throw Interruption();
+}
+
 InterruptSource::InterruptSource(std::function<bool()> asked) : asked_(std::move(asked)), before_(source) {
   source = &asked_;
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// SIGINT and SIGTERM, remembered until the computation asks; or what a program that has signals of its own says.
 #include <functional>
+#include <stdexcept>
 
 namespace drev::app {
 
@@ -10,6 +11,14 @@ namespace drev::app {
 /// program has signals of its own.
 void watch_signals();
 bool interrupted();
+
+/// A computation that was ended so.
+class Interruption : public std::runtime_error {
+ public:
+  Interruption() : std::runtime_error("interrupted") {}
+};
+/// Throws Interruption where interrupted() says so: for computations that pause() now and then.
+void end_if_interrupted();
 
 /// While it lives, interrupted() asks `asked` too in the thread that made it.
 class InterruptSource {

@@ -1,6 +1,7 @@
 #include <drev/advice/advise.hpp>
 #include <drev/advice/recipe.hpp>
 
+#include "app/base/interrupt.hpp"
 #include "app/base/json_values.hpp"
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 struct AdviseRequest {
   ModelRequest model;
-  AdviseOptions options;
+  AdviseOptions options{.pause = end_if_interrupted};
 };
 
 AdviseRequest request_advise(const CommandLine& line) {

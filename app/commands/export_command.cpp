@@ -17,6 +17,7 @@ namespace {
 int export_as_fmu(const CommandLine& line, const ModelRequest& model) {
   FmuRequest request{.file = *line.option("--fmu"),
                      .model = model.file ? line.model : "",
+                     .text = line.text,
                      .run = line.option("--run").value_or(""),
                      .torques = line.list("--torque").value_or(std::vector<std::string>{}),
                      .speeds = line.list("--speed").value_or(std::vector<std::string>{}),

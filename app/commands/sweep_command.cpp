@@ -20,7 +20,7 @@ namespace drev::app {
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
-  LinearSweepOptions options;
+  LinearSweepOptions options{.pause = end_if_interrupted};
   std::vector<double> speeds_rpm;
   if (const auto speeds = line.option("--speeds"))
     speeds_rpm = read_rising("--speeds", *speeds, "rpm", findings);

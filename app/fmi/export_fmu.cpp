@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <dlfcn.h>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "app/base/output_file.hpp"
+#include "app/fmi/import/unzip.hpp"
 #include "app/fmi/model_description.hpp"
 #include "app/fmi/zip_file.hpp"
 #include "app/model_file/writing/export.hpp"
@@ -23,6 +25,7 @@ namespace fs = std::filesystem;
 using Contents = std::map<std::string, std::string>;  // by name in the archive
 
 constexpr const char* kLibrary = "drev_fmu.so";
+constexpr const char* kArchive = "fmu_library.zip";
 
 std::string content_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -30,23 +33,6 @@ std::string content_of(const fs::path& path) {
   if (!file) throw OutputError("cannot read " + path.string());
   return text;
 }
-
-/// A folder of its own for as long as it lives.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "drev_fmu_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw OutputError("cannot create the folder " + name);
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code none;
-    fs::remove_all(path, none);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path path;
-};
 
 /// The deepest folder that holds all of the files.
 fs::path common_folder(const std::vector<fs::path>& files) {
@@ -72,7 +58,8 @@ Contents model_files(const ModelRequest& model, const FmuRequest& request, std::
   const fs::path common = common_folder(files);
   Contents all;
   for (const fs::path& file : files)
-    all["model/" + file.lexically_relative(common).generic_string()] = content_of(file);
+    all["model/" + file.lexically_relative(common).generic_string()] =
+        request.text && file == files.front() ? *request.text : content_of(file);
   main = "model/" + files.front().lexically_relative(common).generic_string();
   return all;
 }
@@ -150,19 +137,29 @@ void check_names(const ModelRequest& model) {
 
 }  // namespace
 
-std::string fmu_library_folder() {
+FmuLibrary::FmuLibrary() {
   std::error_code none;
+  Dl_info self{};
+  // The Python package holds them in an archive beside its extension module.
+  if (::dladdr(reinterpret_cast<const void*>(&export_fmu), &self) != 0 && self.dli_fname != nullptr)
+    if (const fs::path archive = fs::path(self.dli_fname).parent_path() / kArchive;
+        fs::exists(archive, none)) {
+      unpacked_.emplace();
+      unzip(archive.string(), unpacked_->path.string());
+      folder_ = unpacked_->path;
+      return;
+    }
   const fs::path beside = fs::read_symlink("/proc/self/exe", none).parent_path();
   for (const char* folder : {"../lib/drev", "../" DREV_FMU_FOLDER})
-    if (fs::exists(beside / folder / kLibrary, none)) return (beside / folder).string();
-  return {};
+    if (fs::exists(beside / folder / kLibrary, none)) {
+      folder_ = beside / folder;
+      return;
+    }
+  throw OutputError(std::string(kLibrary) + " is not there: it is built with drev and installed to lib/drev");
 }
 
 void export_fmu(const ModelRequest& model, const FmuRequest& request) {
-  const std::string library = fmu_library_folder();
-  if (library.empty())
-    throw OutputError(std::string(kLibrary) +
-                      " is not there: it is built with drev and installed to lib/drev");
+  const FmuLibrary library;
   check_names(model);
   FmuInterface interface = interface_of(model, request);
   Contents resources = model_files(model, request, interface.model);
@@ -184,7 +181,7 @@ void export_fmu(const ModelRequest& model, const FmuRequest& request) {
   for (const auto& [name, content] : resources) zip.add("resources/" + name, content);
   const std::string platform = request.fmi == 3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
   std::vector<fs::path> libraries;
-  for (const auto& entry : fs::directory_iterator(library)) libraries.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(library.folder())) libraries.push_back(entry.path());
   std::sort(libraries.begin(), libraries.end());
   for (const fs::path& path : libraries) {
     const std::string name = path.filename().string();

@@ -2,6 +2,8 @@
 
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/assembler.hpp>
+#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/start.hpp>
 
@@ -9,17 +11,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "solvers/linear/sparse_cholesky.hpp"
+#include "app/fmi/fmu_built.hpp"
 
 namespace drev::app {
 
 namespace {
 
-constexpr double kSameTime = 1e-9;  // relative to the communication step
-constexpr double kDefaultTolerance = 1e-10;
 constexpr double kProbe = 0.01;  // change of a parameter that is tried, relative
-const char* const kActualRate[] = {".actual_speed_rad_per_s", ".actual_velocity_m_per_s"};
-const char* const kActualValue[] = {".actual_angle_rad", ".actual_position_m"};
 
 bool same_motion(const Motion* a, const Motion* b, double t) {
   const bool moves_a = a != nullptr && a->at, moves_b = b != nullptr && b->at;
@@ -48,94 +46,6 @@ bool same_unknowns(const System& a, const System& b, double t) {
 
 }  // namespace
 
-/// An output: a channel, or the actual motion of a node, nominal motion and deviation together.
-struct FmuInstance::Output {
-  std::string name, unit;
-  std::optional<Channel> channel = {};
-  int node = -1;
-  bool rate = false;
-};
-
-/// A model with values of its parameters, made ready.
-struct FmuInstance::Built {
-  Built(ModelCase given, const FmuInterface& interface)
-      : torques(interface.torques.size()),
-        speeds(interface.speeds.size()),
-        model_case(std::move(given)),
-        original(model_case.model.build()),
-        system(with_inputs(model_case.model, nodes(interface)).build()),
-        assembler(system) {
-    if (const auto why = why_not_exact(system))
-      throw ModelError({{system.name(), "", "", "", "cannot be an FMU: " + *why}});
-    std::vector<std::string> channels;
-    for (const std::string& name : interface.outputs)
-      if (!find_actual(name)) {
-        outputs.push_back({name, "", {}, -1, false});
-        channels.push_back(name);
-      }
-    std::vector<Channel> found = find_channels(system, channels);
-    auto next = found.begin();
-    for (Output& output : outputs) {
-      if (output.node >= 0) continue;
-      output.unit = next->unit();
-      output.channel = std::move(*next++);
-    }
-    assembler.set_time(0.0);
-    for (const std::string& name : interface.speeds) {
-      Assembler at_start(original);
-      at_start.set_time(0.0);
-      const int node = original.node(name);
-      const MotionPoint q = at_start.node_motion(node, State::initial(original));
-      start_speeds.push_back(q.rate + original.ratio(node) * at_start.nominal().rate);
-      start_deviations.push_back(q.value);
-    }
-  }
-
-  std::vector<InputNode> nodes(const FmuInterface& interface) {
-    std::vector<InputNode> all;
-    for (std::size_t i = 0; i < torques.size(); ++i) {
-      torques[i] = std::make_shared<InputSignal>();
-      all.push_back({interface.torques[i], torques[i], {}});
-    }
-    for (std::size_t i = 0; i < speeds.size(); ++i) {
-      speeds[i] = std::make_shared<SpeedInput>();
-      all.push_back({interface.speeds[i], {}, speeds[i]});
-    }
-    return all;
-  }
-
-  bool find_actual(const std::string& name) {
-    for (const bool rate : {false, true})
-      for (const bool turns : {true, false}) {
-        const std::string end = (rate ? kActualRate : kActualValue)[turns ? 0 : 1];
-        if (!name.ends_with(end)) continue;
-        const int node = system.node(name.substr(0, name.size() - end.size()));
-        if ((system.node_kind(node) == NodeKind::rotational) != turns) continue;
-        const char* unit = rate ? (turns ? "rad/s" : "m/s") : (turns ? "rad" : "m");
-        outputs.push_back({name, unit, {}, node, rate});
-        return true;
-      }
-    return false;
-  }
-
-  std::vector<NodeKind> input_kinds(const FmuInterface& interface) const {
-    std::vector<NodeKind> all;
-    for (const auto* names : {&interface.torques, &interface.speeds})
-      for (const std::string& name : *names) all.push_back(system.node_kind(system.node(name)));
-    return all;
-  }
-
-  std::vector<std::shared_ptr<InputSignal>> torques;
-  std::vector<std::shared_ptr<SpeedInput>> speeds;
-  ModelCase model_case;
-  System original;  // without the inputs
-  System system;
-  Assembler assembler;
-  std::vector<Output> outputs;
-  std::vector<double> start_speeds, start_deviations;
-  double assembled = std::nan("");
-};
-
 FmuInstance::FmuInstance(const std::string& resources)
     : folder_(resources),
       interface_(read_interface((std::filesystem::path(resources) / "interface.toml").string())) {
@@ -143,7 +53,7 @@ FmuInstance::FmuInstance(const std::string& resources)
   file_ = std::make_unique<ModelFile>(path, interface_.run);
   reset();
   std::vector<std::string> units;
-  for (const Output& output : built_->outputs) units.push_back(output.unit);
+  for (const Signal& output : built_->outputs) units.push_back(output.unit());
   variables_ = fmu_variables(interface_, file_->entry().parameters, built_->input_kinds(interface_), units);
 }
 
@@ -219,6 +129,7 @@ const FmuVariable& FmuInstance::settable(unsigned reference, FmuVariable::Type t
   const FmuVariable& found = variable(reference, type);
   using enum FmuVariable::Role;
   if (found.role == time || found.role == output) throw FmuError("variable " + found.name + " cannot be set");
+  if (inside_.state != nullptr) throw FmuError("nothing can be set inside a step");
   if (state_.mode == FmuMode::terminated) throw FmuError("nothing can be set after termination");
   if (found.role == parameter && !found.tunable && state_.mode == FmuMode::step)
     throw FmuError("parameter " + found.name + " is fixed: it can be set before initialization ends");
@@ -229,6 +140,7 @@ double FmuInstance::real(unsigned reference) {
   const FmuVariable& found = variable(reference, FmuVariable::Type::real);
   switch (found.role) {
     case FmuVariable::Role::time:
+      if (inside_.state != nullptr) return inside_.state->t;
       return state_.mode == FmuMode::step || state_.mode == FmuMode::terminated ? state_.state.t
                                                                                 : state_.t_start;
     case FmuVariable::Role::parameter: {
@@ -357,12 +269,6 @@ void FmuInstance::terminate() {
   state_.mode = FmuMode::terminated;
 }
 
-void FmuInstance::hand_inputs_on() {
-  for (std::size_t i = 0; i < state_.torques.size(); ++i) *built_->torques[i] = state_.torques[i];
-  for (std::size_t i = 0; i < state_.speeds.size(); ++i) *built_->speeds[i] = state_.speeds[i];
-  built_->assembled = std::nan("");
-}
-
 void FmuInstance::start() {
   for (std::size_t i = 0; i < state_.torques.size(); ++i)
     state_.torques[i] = {state_.t_start, state_.torque_values[i].value, 0.0};
@@ -386,82 +292,6 @@ void FmuInstance::start() {
   }
   find_acceleration();
   state_.started = true;
-}
-
-/// a = M^-1 (p - C v - K z - B y).
-void FmuInstance::find_acceleration() {
-  State& s = state_.state;
-  const System& system = built_->system;
-  built_->assembler.set_time(s.t);
-  Vector p, part, rest = Vector::Zero(system.size());
-  p.setZero(system.size());
-  built_->assembler.external(s.z, s.v, p);
-  built_->assembler.add_scalar_forces(s.z, s.v, rest);
-  built_->assembler.multiply_stiffness(s.z, part);
-  rest += part;
-  built_->assembler.multiply_damping(s.v, part);
-  rest = p - rest - part;
-  SparseCholesky mass;
-  mass.factorize(system.pattern(), system.mass_values());
-  if (!mass.ok()) throw SolverError(system.name() + ": a node without inertia has no acceleration");
-  mass.solve(rest, s.a);
-}
-
-std::string FmuInstance::step(double t, double h) {
-  require(state_.mode == FmuMode::step, "a step", "is made after initialization and before termination");
-  if (!std::isfinite(t) || !std::isfinite(h) || !(h > 0.0))
-    throw FmuError("the communication step must be > 0 and finite; it is " + to_text(h) + " s");
-  const double now = state_.state.t;
-  if (!(std::abs(t - now) <= kSameTime * h + 1e-14 * std::abs(now)))
-    throw FmuError("the communication point is " + to_text(t) + " s, but the last step ended at " +
-                   to_text(now) + " s");
-  if (!(t + h > t)) throw FmuError("a step of " + to_text(h) + " s does not advance the time " + to_text(t));
-  const FmuState before = state_;
-  try {
-    for (std::size_t i = 0; i < state_.torques.size(); ++i)
-      state_.torques[i] = {t, state_.torque_values[i].value, state_.torque_values[i].slope};
-    for (std::size_t i = 0; i < state_.speeds.size(); ++i) {
-      // The motion goes on from where the last step's has come to.
-      const double ratio = built_->original.ratio(built_->original.node(interface_.speeds[i]));
-      const double reached = state_.speeds[i].at(t, ratio, built_->system.reference()).value;
-      state_.speeds[i] = {{t, state_.speed_values[i].value, state_.speed_values[i].slope}, reached};
-    }
-    hand_inputs_on();
-    // The whole simulation's tolerance, shared out over its steps.
-    const double span =
-        state_.t_stop > state_.t_start ? state_.t_stop - state_.t_start : built_->model_case.duration;
-    const double whole = state_.tolerance > 0.0 ? state_.tolerance : kDefaultTolerance;
-    const Range range = ExactOptions::kTolerance;
-    const ExactOptions options{
-        .tolerance = std::clamp(whole * std::min(1.0, h / span), range.low, range.high),
-        .t_start = t,
-        .t_end = t + h};
-    const RunSummary summary = propagate(built_->system, options, state_.state);
-    if (!summary.ok() && summary.status != RunStatus::energy_error) throw SolverError(summary.reason);
-    for (auto* values : {&state_.torque_values, &state_.speed_values})
-      for (InputValue& input : *values) input.slope = 0.0;
-    built_->assembled = std::nan("");
-    return summary.reason;
-  } catch (...) {
-    state_ = before;
-    hand_inputs_on();
-    throw;
-  }
-}
-
-double FmuInstance::output(std::size_t place) {
-  if (!state_.started) start();
-  Built& built = *built_;
-  if (built.assembled != state_.state.t) {
-    built.assembler.set_time(state_.state.t);
-    built.assembled = state_.state.t;
-  }
-  const Output& output = built.outputs[place];
-  if (output.channel) return output.channel->evaluate(built.assembler, state_.state);
-  const MotionPoint q = built.assembler.node_motion(output.node, state_.state);
-  const double n = built.system.ratio(output.node);
-  const MotionPoint& phi = built.assembler.nominal();
-  return output.rate ? q.rate + n * phi.rate : q.value + n * phi.value;
 }
 
 void FmuInstance::set_state(const FmuState& state) {

@@ -5,11 +5,17 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "app/fmi/fmu_interface.hpp"
 #include "app/fmi/fmu_state.hpp"
+
+namespace drev {
+struct ExactOptions;
+}
 
 namespace drev::app {
 
@@ -18,6 +24,17 @@ class ModelFile;
 class FmuError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// What an importer wishes for in a step.
+struct FmuStepWishes {
+  bool end_at_change = false;  ///< end it where a contact changes
+  /// Called inside the step: real() then gives outputs there, and nothing may be set.
+  std::function<void(double t)> inside = {};
+};
+struct FmuStepped {
+  std::string warning = {};  ///< or nothing
+  bool at_change = false;    ///< it ended ahead of its time, at a contact change
 };
 
 class FmuInstance {
@@ -52,8 +69,14 @@ class FmuInstance {
   /// tolerance: relative, 0: the default; t_stop <= t_start: there is none. s.
   void enter_initialization(double t_start, double t_stop, double tolerance);
   void exit_initialization();
-  /// From t over h [s]; returns a warning, or nothing.
-  std::string step(double t, double h);
+  /// From t over h [s], or to the first contact change if that is wished for.
+  FmuStepped step(double t, double h, const FmuStepWishes& wishes = {});
+  /// sum_j (dy_i/du_j) seed_j of outputs y by inputs u, where the motion has come to, with the inputs as they are set: what
+  /// follows an input at once (accelerations, reactions, forces of dampers beside a speed). By central differences,
+  /// which are exact but for rounding where the law is linear.
+  std::vector<double> directional_derivative(const std::vector<unsigned>& unknowns,
+                                             const std::vector<unsigned>& knowns,
+                                             const std::vector<double>& seed);
   void terminate();
   void reset();
 
@@ -63,7 +86,7 @@ class FmuInstance {
 
  private:
   struct Built;
-  struct Output;
+  class Inside;
 
   const FmuVariable& variable(unsigned reference, FmuVariable::Type type) const;
   const FmuVariable& settable(unsigned reference, FmuVariable::Type type) const;
@@ -74,6 +97,8 @@ class FmuInstance {
   void start();
   void hand_inputs_on();
   void find_acceleration();
+  double reached(const SpeedInput& input, std::size_t i, double t) const;
+  std::optional<double> first_change(const ExactOptions& options);
   double output(std::size_t place);
 
   std::string folder_;
@@ -82,6 +107,11 @@ class FmuInstance {
   std::vector<FmuVariable> variables_;
   FmuState state_;
   std::unique_ptr<Built> built_;
+  /// The point inside a step that the importer is being shown.
+  struct {
+    const Assembler* assembler = nullptr;
+    const State* state = nullptr;
+  } inside_;
 };
 
 }  // namespace drev::app

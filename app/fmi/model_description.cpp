@@ -92,9 +92,10 @@ class Description {
   void add_capabilities() {
     const std::string name = attribute("modelIdentifier", identifier_);
     line("  <CoSimulation" + name + " canHandleVariableCommunicationStepSize=\"true\"" +
-         (fmi_ == 3 ? " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\""
+         (fmi_ == 3 ? " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" hasEventMode=\"true\" "
+                      "providesDirectionalDerivatives=\"true\" providesIntermediateUpdate=\"true\""
                     : " canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\" "
-                      "canInterpolateInputs=\"true\"") +
+                      "canInterpolateInputs=\"true\" providesDirectionalDerivative=\"true\"") +
          "/>");
   }
 

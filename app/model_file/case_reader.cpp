@@ -1,6 +1,7 @@
 #include "app/model_file/case_reader.hpp"
 
 #include <drev/app/model_file/element_table.hpp>
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 
@@ -44,6 +45,7 @@ class CaseReader {
     }
     try {
       const System system = model_.build();
+      check_controllers(system);
       ModelCase model_case{.model = std::move(model_), .note = doc_.note};
       run.complete(model_case, system, context_);
       if (doc_.strength != nullptr) read_strength(*doc_.strength, system, model_case, context_);
@@ -293,6 +295,8 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
   if (result.model_case) {
     for (const Value& root : document.roots) result.model_case->files.push_back(*root.at.file);
     for (const auto& [path, table] : context.csv) result.model_case->files.push_back(path);
+    result.model_case->files.insert(result.model_case->files.end(), context.files.begin(),
+                                    context.files.end());
   }
   limit_findings(context.findings, document.at);
   if (!context.findings.empty()) result.model_case.reset();

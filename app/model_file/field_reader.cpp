@@ -1,6 +1,7 @@
 #include "app/model_file/field_reader.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "app/model_file/column_reader.hpp"
 #include "app/model_file/key_finder.hpp"
@@ -57,6 +58,20 @@ class FieldReader final : public Fields {
     const Found* found = keys_.find(name);
     if (found == nullptr || !found->unit.empty()) return;
     if (const auto read = read_text(found->entry->value, place(*found), context_)) value = *read;
+  }
+  void file(const std::string& name, std::string& path, Need need) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) {
+      if (need == Need::required) keys_.missing(name, name);
+      return;
+    }
+    const std::optional<std::string> read = read_text(found->entry->value, place(*found), context_);
+    if (!read) return;
+    std::filesystem::path given(*read);
+    if (given.is_relative())
+      given = std::filesystem::path(*found->entry->value.at.file).parent_path() / given;
+    path = given.string();
+    context_.files.insert(path);
   }
   void texts(const std::string& name, std::vector<std::string>& values) override {
     if (const Found* found = keys_.find(name))

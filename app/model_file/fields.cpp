@@ -41,6 +41,7 @@ void FieldKeys::flag(const std::string& name, bool& value) {
   plain(name, Need::optional, value ? "true" : "false");
 }
 void FieldKeys::text(const std::string& name, std::string& value) { plain(name, Need::optional, value); }
+void FieldKeys::file(const std::string& name, std::string& /*path*/, Need need) { plain(name, need); }
 void FieldKeys::texts(const std::string& name, std::vector<std::string>& /*values*/) { plain(name); }
 void FieldKeys::choice(const std::string& name, const std::vector<std::string>& words, int& index) {
   plain(name, Need::optional, words[static_cast<std::size_t>(index)]);

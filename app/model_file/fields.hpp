@@ -48,6 +48,9 @@ class Fields {
   virtual void whole(const std::string& name, int& value, Need need = Need::optional) = 0;
   virtual void flag(const std::string& name, bool& value) = 0;
   virtual void text(const std::string& name, std::string& value) = 0;
+  /// A file, whose path is relative to the folder of the model file that names it. Read: as the whole path, or relative
+  /// to where the program runs.
+  virtual void file(const std::string& name, std::string& path, Need need = Need::optional) = 0;
   virtual void texts(const std::string& name, std::vector<std::string>& values) = 0;
   virtual void choice(const std::string& name, const std::vector<std::string>& words, int& index) = 0;
   /// Columns of one length; true where they were given.
@@ -89,6 +92,7 @@ class FieldKeys final : public Fields {
   void whole(const std::string& name, int& value, Need need) override;
   void flag(const std::string& name, bool& value) override;
   void text(const std::string& name, std::string& value) override;
+  void file(const std::string& name, std::string& path, Need need) override;
   void texts(const std::string& name, std::vector<std::string>& values) override;
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;

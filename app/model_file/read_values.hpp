@@ -2,6 +2,7 @@
 /// Single values of a model file: numbers with their expressions, texts with what is filled in.
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ReadContext {
   std::map<std::string, const Value*> tables = {};  ///< of [tables]
   std::vector<Finding> findings = {};
   std::map<std::string, std::optional<CsvTable>> csv = {};  ///< read already; none: it could not be
+  std::set<std::string> files = {};                         ///< that elements name
 };
 
 /// A number as it stands in the file, an expression evaluated; nothing, and a finding, if it is none. `unit`

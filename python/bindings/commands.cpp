@@ -60,16 +60,14 @@ nb::tuple execute(const Request& request, bool json) {
   std::string text;
   int code = 0;
   Watch watch(request);
-  {
+  try {
     const nb::gil_scoped_release unlocked;
     app::PrintedText printed;
     code = line.command->execute(line);
     text = printed.text();
+  } catch (const app::Interruption&) {  // as watch says
   }
-  if (watch.stopped()) {
-    PyErr_SetNone(PyExc_KeyboardInterrupt);
-    throw nb::python_error();
-  }
+  watch.raise_if_stopped();
   return nb::make_tuple(code, text);
 }
 

@@ -48,10 +48,15 @@ Damped* damped_modes(const Request& asked) {
   app::CommandLine line = asked.line();
   line.options["--damped"] = {};
   Watch watch(asked);
-  const nb::gil_scoped_release unlocked;
-  const app::ModesRequest request = app::request_modes(line);
-  auto all = std::make_unique<Damped>(
-      Damped{app::find_damped_modes(request), request.model.system.node_names(), request.model.entry->name});
+  std::unique_ptr<Damped> all;
+  try {
+    const nb::gil_scoped_release unlocked;
+    const auto request = std::make_shared<const app::ModesRequest>(app::request_modes(line));
+    all = std::make_unique<Damped>(Damped{answered([request] { return app::find_damped_modes(*request); }),
+                                          request->model.system.node_names(), request->model.entry->name});
+  } catch (const app::Interruption&) {  // as watch says
+  }
+  watch.raise_if_stopped();
   for (std::size_t i = 0; i < all->found.count; ++i) {
     const DampedMode& mode = all->found.set.modes[i];
     all->lambda.push_back(mode.lambda);

@@ -1,9 +1,11 @@
 // The extension module drev._drev: what the package's Python code (python/drev) is made on. Its own names are internal.
+#include "app/fmi/import/fmu.hpp"
 #include "python/bindings/request.hpp"
 
 NB_MODULE(_drev, module) {
   // Results and models that live until the interpreter ends are no leak.
   nanobind::set_leak_warnings(false);
+  drev::app::register_fmu();
   drev::python::bind_errors(module);
   drev::python::bind_commands(module);
   drev::python::bind_run(module);

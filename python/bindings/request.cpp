@@ -64,6 +64,12 @@ void Watch::tell(double part, double left) {
   }
 }
 
+void Watch::raise_if_stopped() {
+  if (!stopped()) return;
+  PyErr_SetNone(PyExc_KeyboardInterrupt);
+  throw nb::python_error();
+}
+
 bool Watch::stopped() {
   if (raised_) throw nb::python_error(std::move(*raised_));
   return stopped_;

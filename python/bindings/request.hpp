@@ -3,11 +3,13 @@
 /// released, Ctrl-C ends the computation in order, and how far it is goes to a callable.
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <map>
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -54,6 +56,8 @@ class Watch {
   Watch& operator=(const Watch&) = delete;
   /// Ended by Ctrl-C or by Stop. A signal handler of Python that raised something else has it raised here.
   bool stopped();
+  /// Then KeyboardInterrupt.
+  void raise_if_stopped();
   /// Ends what this thread computes, as Ctrl-C does; false: it computes nothing.
   static bool stop_current();
 
@@ -71,6 +75,19 @@ class Watch {
   app::InterruptSource source_;
   std::optional<app::ProgressListener> listener_;
 };
+
+/// compute() in a thread of its own while this one asks for signals: for what cannot be ended in its midst. Where it is to
+/// end, throws app::Interruption at once; the thread goes on to its end with what compute() holds, and its result is lost.
+/// To be called without Python's lock.
+template <class Compute>
+auto answered(Compute compute) {
+  std::packaged_task<decltype(compute())()> task(std::move(compute));
+  auto result = task.get_future();
+  std::thread(std::move(task)).detach();
+  while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+    app::end_if_interrupted();
+  return result.get();
+}
 
 /// The undamped modes of a model that was built.
 nb::object modes_of(const System& system, std::optional<int> count, const std::string& contact);

@@ -256,6 +256,14 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
         """The model as the text of a model file, as its parameters make it: every number with all digits."""
         return self._execute("export", {}, as_json=False)
 
+    def export_fmu(self, path, **options):
+        """Writes the model as an FMU for co-simulation, `path`, which ends in .fmu (docs/fmi.md).
+
+        Options, as of the command: torque and speed (nodes whose torque [N m] or speed [rad/s] is an input), record
+        (channels that are outputs), fmi ("3" or "2").
+        """
+        self._execute("export", {"fmu": path, **options}, "export_fmu", as_json=False)
+
     def save(self, path):
         """Writes the model file `path`, which ends in .toml."""
         self._execute("export", {"out": path}, "save", as_json=False)

@@ -1,4 +1,4 @@
-"""What the headers of elements/ say, for docstrings: python element_docs.py elements/ element_docs.json
+"""What the headers of elements say, for docstrings: python element_docs.py FOLDER_OR_HEADER... element_docs.json
 
 Of each header the comment above its class (equation, sign, limits, source), and of each field of its Params, and of
 the structs beside it, the comment with unit and range.
@@ -35,9 +35,10 @@ def fields(text):
     return found
 
 
-def main(folder, target):
+def main(*paths):
+    *sources, target = map(pathlib.Path, paths)
     docs = {}
-    for header in sorted(pathlib.Path(folder).rglob("*.hpp")):
+    for header in [h for s in sources for h in (sorted(s.rglob("*.hpp")) if s.is_dir() else [s])]:
         text = header.read_text(encoding="utf-8")
         docs[header.stem] = {"text": block_above_includes(text), "fields": fields(text)}
     pathlib.Path(target).write_text(json.dumps(docs, indent=0, sort_keys=True), encoding="utf-8")

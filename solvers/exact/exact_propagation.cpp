@@ -8,6 +8,7 @@
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/step_expansion.hpp"
+#include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
 #include "solvers/run/run_verdict.hpp"
@@ -44,6 +45,7 @@ class ExactRun final : public StepMotion {
         known_(expansion_.known),
         laws_(system),
         friction_(expansion_.friction),
+        controls_(system, options.t_start, options.t_end),
         progress_(options.progress, options.t_start, options.t_end) {
     now_.state = std::move(state);
     now_.state.t = options.t_start;
@@ -60,6 +62,10 @@ class ExactRun final : public StepMotion {
 
   RunSummary run() {
     evaluate(assembler_, now_, now_.state.t);
+    if (!controls_.empty()) {
+      controls_.start(assembler_, now_.state);
+      evaluate(assembler_, now_, now_.state.t);
+    }
     laws_.locate(now_.inputs);
     locate_friction();
     EnergyMonitor energy(assembler_, now_);
@@ -69,7 +75,7 @@ class ExactRun final : public StepMotion {
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
     check_start(summary_, system_, now_.state);
-    const Stops stops(system_, options_.t_end, 0.0);
+    const Stops stops(system_, options_.t_end, 0.0, {}, &controls_);
     while (running() && now_.state.t < options_.t_end) run_to(next_stop(stops));
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
@@ -117,9 +123,10 @@ class ExactRun final : public StepMotion {
     if (running() && now_.state.t < options_.t_end) restart();
   }
 
-  /// Behind a breakpoint: forces and known motions have their new values.
+  /// Behind a breakpoint or communication point: forces and known motions have their new values.
   void restart() {
     next_ = now_;
+    controls_.sample(assembler_, now_.state);
     evaluate(assembler_, now_, now_.state.t);
     if (system_.any_prescribed_moves()) laws_.locate(now_.inputs);
     locate_friction();
@@ -151,7 +158,7 @@ class ExactRun final : public StepMotion {
     const double remaining = stop.t - from.t;
     const End end = find_end(remaining);
     if (!running()) return;
-    note_friction(from.t);
+    friction_.note_changes(from.t, from.t == options_.t_start, summary_);
     const double s = end.s, got = series_.step();
     const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop.t : std::min(from.t + s * got, stop.t);
@@ -214,19 +221,6 @@ class ExactRun final : public StepMotion {
     friction_.hold(assembler_, now_.state.v);
     evaluate(assembler_, now_, t);
     for (Observer* o : observers_) o->restart(assembler_, now_);
-  }
-
-  /// Enters what sticks or slides since the last call.
-  void note_friction(double t) {
-    friction_states_.resize(idx(friction_.count()), FrictionState::open);
-    for (int i = 0; i < friction_.count(); ++i) {
-      const FrictionState to = friction_.state(i);
-      if (to == std::exchange(friction_states_[idx(i)], to) || t == options_.t_start) continue;
-      ++summary_.friction_changes;
-      if (summary_.friction_events.size() < RunSummary::kMostFrictionEvents)
-        summary_.friction_events.push_back(
-            {t, system_.element_instances()[idx(index(friction_.element(i)))].name, to_text(to)});
-    }
   }
 
   /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
@@ -453,13 +447,13 @@ class ExactRun final : public StepMotion {
   LoadSeries& known_;
   LawSeries laws_;
   FrictionSeries& friction_;
+  ControlRun controls_;
   std::optional<StepExpansion> part_;         // of a step, to a point inside
   std::optional<LawSeries::Change> changed_;  // at the start of this step
   double beside_knot_ = 0.0;  // s: the step starts at a law's knot, which is passed for certain behind it
   struct {
     double t_0 = 0.0, length = 0.0, s = 1.0;
-  } step_;  // which observers are shown: its end is s of the series
-  std::vector<FrictionState> friction_states_;
+  } step_;                     // which observers are shown: its end is s of the series
   std::vector<double> kinks_;  // times of, inside this step
   EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/contact/box_complementarity.hpp"
 #include "solvers/contact/roots.hpp"
@@ -31,6 +32,18 @@ double integral_of_product(const std::vector<double>& a, const double* b, std::s
 }
 
 }  // namespace
+
+void FrictionSeries::note_changes(double t, bool at_start, RunSummary& summary) {
+  noted_.resize(contacts_.size(), FrictionState::open);
+  for (int i = 0; i < count(); ++i) {
+    const FrictionState to = state(i);
+    if (to == std::exchange(noted_[idx(i)], to) || at_start) continue;
+    ++summary.friction_changes;
+    if (summary.friction_events.size() < RunSummary::kMostFrictionEvents)
+      summary.friction_events.push_back(
+          {t, system_.element_instances()[idx(index(element(i)))].name, to_text(to)});
+  }
+}
 
 void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
   const auto terms = idx(series.degree());

@@ -16,6 +16,7 @@
 /// so on: a contact that just reaches its bound slides, if its torque would go on to rise.
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/run_summary.hpp>
 
 #include <array>
 #include <optional>
@@ -82,6 +83,8 @@ class FrictionSeries final : public TermForces {
   double energy_of_rounding(double duration) const;
 
   FrictionState state(int contact) const;
+  /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing.
+  void note_changes(double t, bool at_start, RunSummary& summary);
   ElementId element(int contact) const { return system_.frictions()[idx(contact)].element; }
   int count() const { return static_cast<int>(contacts_.size()); }
 
@@ -132,6 +135,7 @@ class FrictionSeries final : public TermForces {
 
   const System& system_;
   std::vector<Contact> contacts_;
+  std::vector<FrictionState> noted_;
   Eigen::MatrixXd w_, stuck_inverse_;
   std::vector<std::size_t> stuck_;
   double h_ = 1.0;

@@ -1,4 +1,5 @@
 #include <drev/core/assembler.hpp>
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
@@ -56,6 +57,7 @@ DampedMode to_mode(std::complex<double> lambda) {
 }  // namespace
 
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options) {
+  refuse_controllers(system, "the solution for damped modes");
   const int n = system.size();
   if (n > options.size_limit)
     throw ModelError({{system.name() + "/damped modes", "unknowns", std::to_string(n), "",

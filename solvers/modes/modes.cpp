@@ -1,3 +1,4 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/modes.hpp>
@@ -144,6 +145,7 @@ std::string ModesSummary::brief() const {
 double ModeSet::omega(int mode) const { return hz(frequency_Hz[idx(mode)]); }
 
 ModeSet solve_modes(const System& system, const ModesOptions& options) {
+  refuse_controllers(system, "the solution for modes");
   const int n = system.size();
   ModeSet modes;
   modes.contact = options.contact;

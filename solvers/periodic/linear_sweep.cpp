@@ -1,8 +1,10 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -133,6 +135,7 @@ std::complex<double> SweepModes::at(Eigen::Index mode, double speed) const {
 }
 
 LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options) {
+  refuse_controllers(system, "a sweep of speeds");
   LinearSweep sweep;
   sweep.speeds = options.speeds;
   sweep.orders = options.orders;
@@ -162,7 +165,8 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
   const TwistSums twist_sums(response.sections());
   std::vector<Vector> load_sums(sweep.unbalanced.size(), Vector::Zero(speeds));
   std::vector<std::unique_ptr<Worker>> workers(threads_for(system, options, sweep.orders.size()));
-  for_all(workers.size(), static_cast<int>(workers.size()), [&](std::size_t w, std::size_t /*thread*/) {
+  std::atomic<bool> ended{false};
+  for_all(workers.size(), static_cast<int>(workers.size()), [&](std::size_t w, std::size_t thread) {
     workers[w] = std::make_unique<Worker>(sum);
     Worker& worker = *workers[w];
     std::optional<LinearResponse> own;
@@ -171,6 +175,13 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
     LinearResponse& here = own ? *own : response;
     const auto count = static_cast<Eigen::Index>(workers.size()), number = static_cast<Eigen::Index>(w);
     for (Eigen::Index i = speeds * number / count; i < speeds * (number + 1) / count; ++i) {
+      if (ended) return;
+      if (thread == 0 && options.pause) try {
+          options.pause();
+        } catch (...) {
+          ended = true;
+          throw;
+        }
       const double speed = sweep.speeds[static_cast<std::size_t>(i)];
       here.vibration(speed, worker.point);
       here.mean(speed, worker.point);
@@ -189,7 +200,7 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
     sweep.unbalanced_scale.push_back(load_sums[f].maxCoeff());
   note_left_out(system, response.content().at(reference_direction(system) * sweep.speeds.back()),
                 response.content(), sweep);
-  if (options.refine) find_sweep_peaks(system, response, sum, sweep);
+  if (options.refine) find_sweep_peaks(system, response, sum, options.pause, sweep);
   return sweep;
 }
 

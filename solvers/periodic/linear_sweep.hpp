@@ -30,6 +30,7 @@
 #include <drev/core/system.hpp>
 
 #include <complex>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ struct LinearSweepOptions {
   bool refine = true;           ///< find the peaks between the speeds, and the criticals
   int threads = 0;              ///< at most; 0: one a processor where there is enough to do
   std::string balance = {};     ///< node whose mean torque takes up what is left over; empty: none
+  /// Called between speeds by the thread that asked for the sweep; what it throws ends the sweep.
+  std::function<void()> pause = {};
 };
 
 struct SweepSection {

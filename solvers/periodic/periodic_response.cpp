@@ -1,4 +1,5 @@
 #include <drev/core/channel.hpp>
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
@@ -173,6 +174,8 @@ std::string refusal(const System& system) {
   if (const auto floating = system.floating_parts(Contact::closed); !floating.empty())
     return "a part of the model floats freely (with " + floating.front() + ")";
   if (const auto why = why_not_friction(system, "a periodic steady state by harmonic balance")) return *why;
+  if (const auto why = why_not_controllers(system, "a periodic steady state by harmonic balance"))
+    return *why;
   for (const GeneralTerm& term : system.generals())
     if (term.force->history_size() > 0)
       return system.element_instances()[idx(index(term.element))].name + " has a history, which is unknown";

@@ -49,13 +49,15 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::Mat
   return to;
 }
 
-SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
+SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
+                        const std::function<void()>& pause) {
   const bool follows = response.content().follows_speed() && speeds.size() > 1;
   const int count = follows ? kModeSpeeds : 1;
   SweepModes modes;
   modes.speeds.resize(count);
   Eigen::MatrixXcd shapes;
   for (int i = 0; i < count; ++i) {
+    pause();
     const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;
     modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
     const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
@@ -76,9 +78,11 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 
 class Search {
  public:
-  Search(LinearResponse& response, TrigonometricSum& sum, LinearSweep& sweep)
+  Search(LinearResponse& response, TrigonometricSum& sum, const std::function<void()>& pause,
+         LinearSweep& sweep)
       : response_(response),
         sum_(sum),
+        pause_(pause),
         sweep_(sweep),
         low_(sweep.speeds.front()),
         high_(sweep.speeds.back()) {
@@ -188,6 +192,7 @@ class Search {
   }
   void all_sections(double speed) {
     if (curves_.contains(speed)) return;
+    pause_();
     response_.vibration(speed, point_);
     sum_.extremes(point_.amplitude, extremes_);
     std::vector<double>& here = curves_[speed];
@@ -197,6 +202,7 @@ class Search {
     }
   }
   double one(double speed, std::size_t section) {
+    pause_();
     response_.vibration(speed, point_);
     sum_.extremes(point_.amplitude.col(static_cast<Eigen::Index>(section)), extremes_);
     return extremes_.front().half_range();
@@ -216,6 +222,7 @@ class Search {
 
   LinearResponse& response_;
   TrigonometricSum& sum_;
+  const std::function<void()>& pause_;
   LinearSweep& sweep_;
   double low_, high_;
   std::map<double, std::vector<double>> curves_;  // half ranges of all sections, by speed
@@ -229,20 +236,21 @@ class Search {
 }  // namespace
 
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
-                      LinearSweep& sweep) {
+                      const std::function<void()>& wanted_pause, LinearSweep& sweep) {
+  const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
   if (system.size() > kMostUnknowns) {
     sweep.modes_note =
         "damped modes are not sought with more than " + std::to_string(kMostUnknowns) +
         " unknowns: a resonance that is narrower than the distance of the speeds can be missed";
   } else {
     try {
-      sweep.modes = follow_modes(system, response, sweep.speeds);
+      sweep.modes = follow_modes(system, response, sweep.speeds, pause);
     } catch (const SolverError& error) {
       sweep.modes_note = std::string(error.what()) +
                          ": a resonance that is narrower than the distance of the speeds can be missed";
     }
   }
-  Search search(response, sum, sweep);
+  Search search(response, sum, pause, sweep);
   search.seed();
   search.find_peaks();
   search.find_criticals();

@@ -12,8 +12,8 @@ namespace drev {
 class LinearResponse;
 class TrigonometricSum;
 
-/// Fills sweep.modes, peaks and criticals.
+/// Fills sweep.modes, peaks and criticals. pause: of LinearSweepOptions.
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
-                      LinearSweep& sweep);
+                      const std::function<void()>& pause, LinearSweep& sweep);
 
 }  // namespace drev

@@ -1,3 +1,4 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
@@ -87,6 +88,7 @@ Reduction craig_bampton(const System& system, const ReductionOptions& o) {
 
 Reduction reduce(const System& system, const ReductionOptions& options) {
   refuse_friction(system, "a reduction");
+  refuse_controllers(system, "a reduction");
   check_options(system, options);
   return options.kind == ReductionOptions::Kind::modal ? modal(system, options)
                                                        : craig_bampton(system, options);

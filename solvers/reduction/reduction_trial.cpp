@@ -1,3 +1,4 @@
+#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
 #include <drev/solvers/reduction/reduction_trial.hpp>
@@ -35,6 +36,7 @@ ReductionTrial try_choice(const System& system, const TrialOptions& o, double ta
     return trial;
   };
   if (const auto why = why_not_friction(system, "a reduction")) return refuse(*why);
+  if (const auto why = why_not_controllers(system, "a reduction")) return refuse(*why);
   const std::vector<Channel> channels = find_channels(system, o.channels);
   if (const Channel* unknown = first_without_estimate(channels))
     return refuse("the error of " + unknown->name() + " cannot be estimated");

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "solvers/run/control_run.hpp"
+
 namespace drev {
 
 namespace {
@@ -15,20 +17,22 @@ double Stop::evaluation_time() const {
   return at_break ? std::nextafter(t - width, -std::numeric_limits<double>::infinity()) : t;
 }
 
-Stops::Stops(const System& system, double t_end, double same, std::vector<Observer*> observers)
-    : system_(system), t_end_(t_end), same_(same), observers_(std::move(observers)) {}
+Stops::Stops(const System& system, double t_end, double same, std::vector<Observer*> observers,
+             const ControlRun* controls)
+    : system_(system), t_end_(t_end), same_(same), observers_(std::move(observers)), controls_(controls) {}
 
 Stop Stops::after(double t) const {
   const std::vector<double>& breaks = system_.breakpoints();
-  const auto next_break = std::upper_bound(breaks.begin(), breaks.end(), t);
-  double stop = t_end_;
-  if (next_break != breaks.end()) stop = std::min(stop, *next_break);
+  const auto after = std::upper_bound(breaks.begin(), breaks.end(), t);
+  double next_break = after != breaks.end() ? *after : std::numeric_limits<double>::infinity();
+  if (controls_ != nullptr) next_break = std::min(next_break, controls_->next_stop(t));
+  double stop = std::min(t_end_, next_break);
   for (const Observer* o : observers_) {
     const double wanted = o->next_stop(t);
     if (wanted > t + same_) stop = std::min(stop, wanted);
   }
   if (t_end_ - stop <= same_) stop = t_end_;
-  if (next_break != breaks.end() && *next_break - stop <= same_) return {*next_break, true};
+  if (next_break - stop <= same_) return {next_break, true};
   return {stop, false};
 }
 

@@ -1,12 +1,14 @@
 #pragma once
-/// Where the steps of a run end: breakpoints of loads and known motions, times that observers ask for, and
-/// the end of the run. Stops that differ by rounding are one.
+/// Where the steps of a run end: breakpoints of loads and known motions, communication points of sampled controllers,
+/// times that observers ask for, and the end of the run. Stops that differ by rounding are one.
 #include <drev/core/system.hpp>
 #include <drev/solvers/run/observer.hpp>
 
 #include <vector>
 
 namespace drev {
+
+class ControlRun;
 
 struct Stop {
   double t = 0.0;         ///< s
@@ -23,8 +25,9 @@ inline constexpr double kSameStop = 1e-9;
 class Stops {
  public:
   /// same >= 0: stops within this time of each other are one [s]. observers: whose times are stops, too; they
-  /// outlive this.
-  Stops(const System& system, double t_end, double same, std::vector<Observer*> observers = {});
+  /// outlive this. controls: whose communication points are breaks, too; null: none.
+  Stops(const System& system, double t_end, double same, std::vector<Observer*> observers = {},
+        const ControlRun* controls = nullptr);
   /// The first stop after t.
   Stop after(double t) const;
 
@@ -32,6 +35,7 @@ class Stops {
   const System& system_;
   double t_end_, same_;
   std::vector<Observer*> observers_;
+  const ControlRun* controls_;
 };
 
 /// A span of time in steps of equal length, of the length asked for or (but for rounding) less.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
 #include "solvers/run/run_checks.hpp"
@@ -57,6 +58,12 @@ class Run final : public StepMotion {
 
   RunSummary run() {
     stepper_->start(*now_);
+    ControlRun controls(system_, options_.t_start, options_.t_end);
+    controls_ = &controls;
+    if (!controls.empty()) {
+      controls.start(equation_.assembler(), now_->state);
+      stepper_->start(*now_);
+    }
     EnergyMonitor energy(equation_.assembler(), *now_);
     energy_ = &energy;
     for (Observer* o : observers_) o->look_through(*this);
@@ -66,7 +73,7 @@ class Run final : public StepMotion {
     // Controlled steps pass what observers ask for, and are interpolated there.
     const Stops stops(system_, options_.t_end,
                       kSameStop * (options_.step > 0.0 ? options_.step : kLargestStep * duration()),
-                      control_ ? std::vector<Observer*>{} : observers_);
+                      control_ ? std::vector<Observer*>{} : observers_, &controls);
     while (running() && now_->state.t < options_.t_end) run_to(stops.after(now_->state.t));
     summary_.t_end = now_->state.t;
     summary_.load_passes = equation_.load_passes();
@@ -167,6 +174,7 @@ class Run final : public StepMotion {
       constant_steps(stop);
     if (stop.at_break && running() && now_->state.t < options_.t_end) {
       *next_ = *now_;
+      controls_->sample(equation_.assembler(), now_->state);
       stepper_->start(*now_);
       energy_->restart(*next_, *now_);
       for (Observer* o : observers_) o->restart(equation_.assembler(), *now_);
@@ -344,6 +352,7 @@ class Run final : public StepMotion {
   long tries_ = 0;  // steps made freely, accepted or not
   CoarseSteps coarse_;
   EnergyMonitor* energy_ = nullptr;
+  ControlRun* controls_ = nullptr;
   RunSummary summary_;
   bool locates_ = false, grows_ = false;
   long coarse_solves_ = 0;

@@ -74,9 +74,9 @@ def simulate(fmu, names, duration, h, inputs=None, values=(), slave=None):
     return numpy.array(rows)
 
 
-def run(drev, model, names, duration, every, folder, options=()):
+def run(drev, model, names, duration, every, folder, options=(), method="exact"):
     """The same rows from drev run."""
-    subprocess.run([drev, "run", model, "--method", "exact", "--duration", repr(duration), "--every", repr(every),
+    subprocess.run([drev, "run", model, "--method", method, "--duration", repr(duration), "--every", repr(every),
                     "--record", ",".join(names), "--out", folder, *options], check=True, stdout=subprocess.DEVNULL)
     with open(os.path.join(folder, "history.csv"), encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))

@@ -14,7 +14,9 @@ except ImportError:
 import numpy
 from fmpy.validation import validate_fmu
 
+import advanced
 import halves
+import imported
 from client import Fmu, difference, get, run, set_values, simulate
 
 DREV, MODELS, FOLDER = map(os.path.abspath, sys.argv[1:4])
@@ -251,7 +253,21 @@ def documented():
     assert 5.0 < torque < 40.0, done.stdout
 
 
-PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused]
+def import_of_fmus():
+    """FMUs as elements of models."""
+    imported.coupled_back(DREV, export, write, FOLDER)
+    imported.refused_imports(DREV, write, FOLDER)
+    imported.hostile_archives(DREV, write, FOLDER)
+
+
+def beyond_steps():
+    """Derivatives, intermediate values, event mode."""
+    advanced.inside(export, model, write)
+    advanced.events(DREV, export, model, FOLDER)
+
+
+PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused,
+         import_of_fmus, beyond_steps]
 shutil.rmtree(FOLDER, ignore_errors=True)
 os.makedirs(FOLDER)
 for part in PARTS:

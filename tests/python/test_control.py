@@ -251,3 +251,35 @@ m.cycle = m
 """
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == "" and done.stdout == ""
+
+
+def chain(discs):
+    """Discs on a row of shafts, excited in the first order: for computations that take long."""
+    m = drev.Model("chain")
+    m.add_node("n_0", nominal_speed_rpm=600)
+    for i in range(discs):
+        if i > 0:
+            m.add_node(f"n_{i}")
+            m.add_shaft_spring(f"s_{i}", [f"n_{i - 1}", f"n_{i}"], stiffness_Nm_per_rad=1e5, damping_Nms_per_rad=1.0)
+        m.add_inertia(f"J_{i}", f"n_{i}", inertia_kg_m2=0.1 + 0.001 * i)
+    return m
+
+
+@pytest.mark.parametrize("asked", ["sweep", "campbell", "damped_modes", "advise"])
+def test_ctrl_c_is_answered_promptly(asked):
+    timer = threading.Timer(0.5, press_ctrl_c)
+    backlash = drev.load("gear_drive")
+    m = chain(300)
+    speeds = [100 + 0.01 * i for i in range(30000)]
+    ask = {"sweep": lambda: m.sweep(speeds_rpm=speeds, record=["s_1.torque_Nm"]),
+           "campbell": lambda: m.campbell(speeds_rpm=speeds, record=["s_1.torque_Nm"]),
+           "damped_modes": lambda: chain(700).damped_modes(),
+           "advise": lambda: backlash.advise(within=1e-4)}[asked]
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            ask()
+            timer.join()  # it was faster than the timer
+            time.sleep(1)
+    finally:
+        timer.cancel()

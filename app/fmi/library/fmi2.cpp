@@ -131,7 +131,7 @@ DREV_FMI int fmi2Reset(void* component) {
 
 DREV_FMI int fmi2DoStep(void* component, double t, double h, int /*no_set_before*/) {
   return guard(component, "fmi2DoStep", [&](Component& c) {
-    const std::string warning = c.fmu->step(t, h);
+    const std::string warning = c.fmu->step(t, h).warning;
     if (warning.empty()) return kOk;
     c.log(kWarning, "logStatusWarning", warning);
     return kWarning;
@@ -220,11 +220,13 @@ DREV_FMI int fmi2GetRealOutputDerivatives(void* component, const unsigned* /*ref
                                           std::size_t /*count*/, const int* /*orders*/, double* /*values*/) {
   return absent(component, "fmi2GetRealOutputDerivatives");
 }
-DREV_FMI int fmi2GetDirectionalDerivative(void* component, const unsigned* /*unknown*/,
-                                          std::size_t /*unknowns*/, const unsigned* /*known*/,
-                                          std::size_t /*knowns*/, const double* /*seed*/,
-                                          double* /*sensitivity*/) {
-  return absent(component, "fmi2GetDirectionalDerivative");
+DREV_FMI int fmi2GetDirectionalDerivative(void* component, const unsigned* unknowns,
+                                          std::size_t unknown_count, const unsigned* knowns,
+                                          std::size_t known_count, const double* seed, double* sensitivity) {
+  return guard(component, "fmi2GetDirectionalDerivative", [&](Component& c) {
+    return derivative(c, {unknowns, unknown_count, sensitivity, unknown_count},
+                      {knowns, known_count, seed, known_count});
+  });
 }
 DREV_FMI int fmi2CancelStep(void* component) { return absent(component, "fmi2CancelStep"); }
 DREV_FMI int fmi2GetStatus(void* component, int /*kind*/, int* /*value*/) {

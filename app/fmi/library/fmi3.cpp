@@ -9,6 +9,9 @@ using namespace drev::app;
 using Instance = void*;
 using Reference = std::uint32_t;
 using Logger = void (*)(void* environment, int status, const char* category, const char* message);
+using IntermediateUpdate = void (*)(void* environment, double t, bool set_requested, bool get_allowed,
+                                    bool step_finished, bool can_return_early, bool* early_return_requested,
+                                    double* early_return_time);
 
 constexpr std::size_t kMostValues = std::size_t{1} << 24;
 
@@ -31,25 +34,29 @@ DREV_FMI int fmi3SetDebugLogging(Instance instance, bool /*on*/, std::size_t cou
 }
 
 DREV_FMI Instance fmi3InstantiateCoSimulation(const char* name, const char* token, const char* resources,
-                                              bool /*visible*/, bool /*logging*/, bool event_mode,
-                                              bool /*early*/, const Reference* /*intermediate*/,
-                                              std::size_t intermediate_count, void* environment,
-                                              Logger logger, void* /*update*/) {
+                                              bool /*visible*/, bool /*logging*/, bool event_mode, bool early,
+                                              const Reference* /*intermediate*/,
+                                              std::size_t /*intermediate_count*/, void* environment,
+                                              Logger logger, IntermediateUpdate update) {
   (void)name;
   const auto log = [environment, logger](Status status, const char* category, const std::string& message) {
     if (logger != nullptr) logger(environment, status, category, message.c_str());
   };
-  if (event_mode || intermediate_count > 0) {
-    log(kError, "logStatusError",
-        "the FMU has neither event mode nor intermediate variables: contact changes are located inside a "
-        "step");
-    return nullptr;
-  }
   if (resources == nullptr) {
     log(kError, "logStatusError", "the FMU needs the path of its resources");
     return nullptr;
   }
-  return add_component(resources, text_or_empty(token), log);
+  Component* component = add_component(resources, text_or_empty(token), log);
+  if (component == nullptr) return nullptr;
+  component->uses_events = event_mode;
+  component->may_end_early = early;
+  if (update != nullptr)
+    component->update = [environment, update](double t) {
+      bool ends_early = false;
+      double end = t;
+      update(environment, t, false, true, true, false, &ends_early, &end);
+    };
+  return component;
 }
 
 DREV_FMI void fmi3FreeInstance(Instance instance) { remove_component(instance); }
@@ -65,6 +72,7 @@ DREV_FMI int fmi3EnterInitializationMode(Instance instance, bool tolerance_given
 DREV_FMI int fmi3ExitInitializationMode(Instance instance) {
   return guard(instance, "fmi3ExitInitializationMode", [](Component& c) {
     c.fmu->exit_initialization();
+    c.in_event = c.uses_events;
     return kOk;
   });
 }
@@ -79,6 +87,7 @@ DREV_FMI int fmi3Terminate(Instance instance) {
 DREV_FMI int fmi3Reset(Instance instance) {
   return guard(instance, "fmi3Reset", [](Component& c) {
     c.fmu->reset();
+    c.in_event = false;
     return kOk;
   });
 }
@@ -86,14 +95,61 @@ DREV_FMI int fmi3Reset(Instance instance) {
 DREV_FMI int fmi3DoStep(Instance instance, double t, double h, bool /*no_set_before*/, bool* event,
                         bool* terminate, bool* early, double* last) {
   return guard(instance, "fmi3DoStep", [&](Component& c) {
-    const std::string warning = c.fmu->step(t, h);
-    if (event != nullptr) *event = false;
+    if (c.in_event) throw FmuError("it belongs in step mode: fmi3EnterStepMode comes first");
+    FmuStepWishes wishes{.end_at_change = c.uses_events && c.may_end_early};
+    const auto tell = [&c](double at) {
+      c.updating = true;
+      c.update(at);
+      c.updating = false;
+    };
+    if (c.update) wishes.inside = tell;
+    const FmuStepped stepped = c.fmu->step(t, h, wishes);
+    if (event != nullptr) *event = stepped.at_change;
     if (terminate != nullptr) *terminate = false;
-    if (early != nullptr) *early = false;
+    if (early != nullptr) *early = stepped.at_change;
     if (last != nullptr) *last = c.fmu->state().state.t;
-    if (warning.empty()) return kOk;
-    c.log(kWarning, "logStatusWarning", warning);
+    if (stepped.warning.empty()) return kOk;
+    c.log(kWarning, "logStatusWarning", stepped.warning);
     return kWarning;
+  });
+}
+
+DREV_FMI int fmi3EnterEventMode(Instance instance) {
+  return guard(instance, "fmi3EnterEventMode", [](Component& c) {
+    if (!c.uses_events) throw FmuError("the instance was made without event mode");
+    if (c.in_event || c.fmu->mode() != FmuMode::step) throw FmuError("it belongs in step mode");
+    c.in_event = true;
+    return kOk;
+  });
+}
+
+DREV_FMI int fmi3EnterStepMode(Instance instance) {
+  return guard(instance, "fmi3EnterStepMode", [](Component& c) {
+    if (!c.in_event) throw FmuError("it belongs in event mode");
+    c.in_event = false;
+    return kOk;
+  });
+}
+
+// The train has no discrete states: its contacts follow the motion.
+DREV_FMI int fmi3UpdateDiscreteStates(Instance instance, bool* needs_update, bool* terminate,
+                                      bool* nominals_changed, bool* states_changed, bool* next_defined,
+                                      double* /*next*/) {
+  return guard(instance, "fmi3UpdateDiscreteStates", [&](Component& c) {
+    if (!c.in_event) throw FmuError("it belongs in event mode");
+    for (bool* answer : {needs_update, terminate, nominals_changed, states_changed, next_defined})
+      if (answer != nullptr) *answer = false;
+    return kOk;
+  });
+}
+
+DREV_FMI int fmi3GetDirectionalDerivative(Instance instance, const Reference* unknowns,
+                                          std::size_t unknown_count, const Reference* knowns,
+                                          std::size_t known_count, const double* seed, std::size_t seed_count,
+                                          double* sensitivity, std::size_t sensitivity_count) {
+  return guard(instance, "fmi3GetDirectionalDerivative", [&](Component& c) {
+    return derivative(c, {unknowns, unknown_count, sensitivity, sensitivity_count},
+                      {knowns, known_count, seed, seed_count});
   });
 }
 

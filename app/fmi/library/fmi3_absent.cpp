@@ -1,5 +1,5 @@
 // Functions of FMI 3.0 that every library must have and that this one answers with an error: model exchange,
-// scheduled execution, clocks, event mode, arrays, and types that no variable of drev has.
+// scheduled execution, clocks, arrays, and types that no variable of drev has.
 #include "app/fmi/library/instances.hpp"
 
 namespace {
@@ -51,10 +51,8 @@ DREV_NO_TYPE(fmi3SetBoolean)
 DREV_NO_TYPE(fmi3SetBinary)
 DREV_NO_TYPE(fmi3SetClock)
 
-DREV_ABSENT(fmi3EnterEventMode)
 DREV_ABSENT(fmi3GetNumberOfVariableDependencies)
 DREV_ABSENT(fmi3GetVariableDependencies)
-DREV_ABSENT(fmi3GetDirectionalDerivative)
 DREV_ABSENT(fmi3GetAdjointDerivative)
 DREV_ABSENT(fmi3EnterConfigurationMode)
 DREV_ABSENT(fmi3ExitConfigurationMode)
@@ -67,7 +65,6 @@ DREV_ABSENT(fmi3SetIntervalFraction)
 DREV_ABSENT(fmi3SetShiftDecimal)
 DREV_ABSENT(fmi3SetShiftFraction)
 DREV_ABSENT(fmi3EvaluateDiscreteStates)
-DREV_ABSENT(fmi3UpdateDiscreteStates)
 DREV_ABSENT(fmi3EnterContinuousTimeMode)
 DREV_ABSENT(fmi3CompletedIntegratorStep)
 DREV_ABSENT(fmi3SetTime)
@@ -78,6 +75,5 @@ DREV_ABSENT(fmi3GetContinuousStates)
 DREV_ABSENT(fmi3GetNominalsOfContinuousStates)
 DREV_ABSENT(fmi3GetNumberOfEventIndicators)
 DREV_ABSENT(fmi3GetNumberOfContinuousStates)
-DREV_ABSENT(fmi3EnterStepMode)
 DREV_ABSENT(fmi3GetOutputDerivatives)
 DREV_ABSENT(fmi3ActivateModelPartition)

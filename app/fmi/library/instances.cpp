@@ -4,6 +4,7 @@
 
 #include <mutex>
 #include <new>
+#include <string_view>
 
 namespace drev::app {
 
@@ -84,6 +85,8 @@ Status guard(void* pointer, const char* call, const std::function<Status(Compone
   if (component == nullptr) return kError;
   std::string why = "failed";
   try {
+    if (component->updating && std::string_view(call) != "fmi3GetFloat64")
+      throw FmuError("inside a step only real values are to be had");
     return body(*component);
   } catch (const std::bad_alloc&) {
     why = "there is not enough memory";
@@ -135,6 +138,17 @@ Status read_state(Component& component, const std::uint8_t* bytes, std::size_t s
   check_pointer(bytes);
   check_pointer(state);
   keep(component, from_bytes(bytes, size, component.fmu->interface().token), state);
+  return kOk;
+}
+
+Status derivative(Component& component, const ReferenceArray<double>& unknowns,
+                  const ReferenceArray<const double>& knowns) {
+  check_arrays(unknowns.references, unknowns.count, unknowns.values, unknowns.value_count);
+  check_arrays(knowns.references, knowns.count, knowns.values, knowns.value_count);
+  const std::vector<double> found = component.fmu->directional_derivative(
+      {unknowns.references, unknowns.references + unknowns.count},
+      {knowns.references, knowns.references + knowns.count}, {knowns.values, knowns.values + knowns.count});
+  std::copy(found.begin(), found.end(), unknowns.values);
   return kOk;
 }
 

@@ -23,6 +23,12 @@ struct Component {
   std::function<void(Status, const char* category, const std::string&)> log;
   std::vector<std::string> texts;  ///< what strings handed out point into, until the next such call
   std::map<void*, std::unique_ptr<FmuState>> states;
+  // FMI 3:
+  bool uses_events = false, in_event = false;  ///< event mode
+  bool may_end_early = false;
+  /// Intermediate values: called with times inside a step and its end [s]; empty: not wanted.
+  std::function<void(double t)> update = {};
+  bool updating = false;  ///< the importer is in that call
 };
 
 /// Makes a component of a folder of resources; null, and a message, where that fails. token: the importer's.
@@ -42,6 +48,16 @@ Status free_state(Component& component, void** state);
 Status state_size(Component& component, void* state, std::size_t* size);
 Status write_state(Component& component, void* state, std::uint8_t* bytes, std::size_t size);
 Status read_state(Component& component, const std::uint8_t* bytes, std::size_t size, void** state);
+/// Value references of outputs with their sensitivities, and of inputs with their seeds.
+template <class Value>
+struct ReferenceArray {
+  const std::uint32_t* references;
+  std::size_t count;
+  Value* values;
+  std::size_t value_count;
+};
+Status derivative(Component& component, const ReferenceArray<double>& unknowns,
+                  const ReferenceArray<const double>& knowns);
 /// Throws FmuError where one of the arrays is missing or the sizes differ.
 void check_arrays(const void* references, std::size_t count, const void* values, std::size_t value_count);
 

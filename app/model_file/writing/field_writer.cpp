@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 namespace drev::app {
 
@@ -85,6 +86,11 @@ void FieldWriter::flag(const std::string& name, bool& value) {
 void FieldWriter::text(const std::string& name, std::string& value) {
   if (!is_default(name, value)) add(name, toml_text(value));
 }
+/// By its whole path: the file that is written may stand anywhere.
+void FieldWriter::file(const std::string& name, std::string& path, Need /*need*/) {
+  add(name, toml_text(std::filesystem::absolute(path).lexically_normal().string()));
+}
+
 void FieldWriter::texts(const std::string& name, std::vector<std::string>& values) {
   if (!values.empty()) add(name, toml_texts(values));
 }

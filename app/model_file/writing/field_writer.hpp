@@ -38,6 +38,7 @@ class FieldWriter final : public Fields {
   void whole(const std::string& name, int& value, Need need) override;
   void flag(const std::string& name, bool& value) override;
   void text(const std::string& name, std::string& value) override;
+  void file(const std::string& name, std::string& path, Need need) override;
   void texts(const std::string& name, std::vector<std::string>& values) override;
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;

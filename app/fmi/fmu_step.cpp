@@ -1,0 +1,198 @@
+// The second part of FmuInstance: communication steps, what outputs are, and how they follow the inputs.
+#include <drev/solvers/run/observer.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include "app/fmi/fmu_built.hpp"
+#include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/run/run_verdict.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr double kSameTime = 1e-9;  // relative to the communication step
+constexpr double kDefaultTolerance = 1e-10;
+constexpr double kChange =
+    1e-4;  // of an input, for derivatives: relative, or in its unit where it is less than 1
+
+}  // namespace
+
+/// Shows the importer the points of the step that a run's observers see.
+class FmuInstance::Inside final : public Observer {
+ public:
+  Inside(FmuInstance& of, const std::function<void(double t)>& tell) : of_(of), tell_(tell) {}
+  ~Inside() override { of_.inside_ = {}; }
+  void start(const Assembler& /*assembler*/, const EvaluatedState& /*point*/) override {}
+  void step(const Assembler& assembler, const EvaluatedState& /*from*/, const EvaluatedState& to) override {
+    of_.inside_ = {&assembler, &to.state};
+    tell_(to.state.t);
+    of_.inside_ = {};
+  }
+
+ private:
+  FmuInstance& of_;
+  const std::function<void(double t)>& tell_;
+};
+
+void FmuInstance::hand_inputs_on() {
+  for (std::size_t i = 0; i < state_.torques.size(); ++i) *built_->torques[i] = state_.torques[i];
+  for (std::size_t i = 0; i < state_.speeds.size(); ++i) *built_->speeds[i] = state_.speeds[i];
+  built_->assembled = std::nan("");
+}
+
+/// a = M^-1 (p - C v - K z - B y).
+void FmuInstance::find_acceleration() {
+  State& s = state_.state;
+  const System& system = built_->system;
+  built_->assembler.set_time(s.t);
+  Vector p, part, rest = Vector::Zero(system.size());
+  p.setZero(system.size());
+  built_->assembler.external(s.z, s.v, p);
+  built_->assembler.add_scalar_forces(s.z, s.v, rest);
+  built_->assembler.multiply_stiffness(s.z, part);
+  rest += part;
+  built_->assembler.multiply_damping(s.v, part);
+  rest = p - rest - part;
+  SparseCholesky mass;
+  mass.factorize(system.pattern(), system.mass_values());
+  if (!mass.ok()) throw SolverError(system.name() + ": a node without inertia has no acceleration");
+  mass.solve(rest, s.a);
+}
+
+/// The motion of speed input i goes on from where the last step's has come to.
+double FmuInstance::reached(const SpeedInput& input, std::size_t i, double t) const {
+  const double ratio = built_->original.ratio(built_->original.node(interface_.speeds[i]));
+  return input.at(t, ratio, built_->system.reference()).value;
+}
+
+/// When the first contact changes behind the start of a run and ahead of its end; the state stays as it is.
+std::optional<double> FmuInstance::first_change(const ExactOptions& options) {
+  const double near = kSameTime * (options.t_end - options.t_start);
+  std::optional<double> first;
+  ExactOptions watched = options;
+  watched.on_change = [&](const ContactChange& change) {
+    if (!first && change.t > options.t_start + near && change.t < options.t_end - near) first = change.t;
+  };
+  State state = state_.state;
+  propagate(built_->system, watched, state);
+  return first;
+}
+
+FmuStepped FmuInstance::step(double t, double h, const FmuStepWishes& wishes) {
+  require(state_.mode == FmuMode::step, "a step", "is made after initialization and before termination");
+  if (!std::isfinite(t) || !std::isfinite(h) || !(h > 0.0))
+    throw FmuError("the communication step must be > 0 and finite; it is " + to_text(h) + " s");
+  const double now = state_.state.t;
+  if (!(std::abs(t - now) <= kSameTime * h + 1e-14 * std::abs(now)))
+    throw FmuError("the communication point is " + to_text(t) + " s, but the last step ended at " +
+                   to_text(now) + " s");
+  if (!(t + h > t)) throw FmuError("a step of " + to_text(h) + " s does not advance the time " + to_text(t));
+  require(inside_.state == nullptr, "a step", "is not made inside another");
+  const FmuState before = state_;
+  try {
+    for (std::size_t i = 0; i < state_.torques.size(); ++i)
+      state_.torques[i] = {t, state_.torque_values[i].value, state_.torque_values[i].slope};
+    for (std::size_t i = 0; i < state_.speeds.size(); ++i) {
+      const double deviation = reached(state_.speeds[i], i, t);
+      state_.speeds[i] = {{t, state_.speed_values[i].value, state_.speed_values[i].slope}, deviation};
+    }
+    hand_inputs_on();
+    // The whole simulation's tolerance, shared out over its steps.
+    const double span =
+        state_.t_stop > state_.t_start ? state_.t_stop - state_.t_start : built_->model_case.duration;
+    const double whole = state_.tolerance > 0.0 ? state_.tolerance : kDefaultTolerance;
+    const Range range = ExactOptions::kTolerance;
+    ExactOptions options{.tolerance = std::clamp(whole * std::min(1.0, h / span), range.low, range.high),
+                         .t_start = t,
+                         .t_end = t + h};
+    FmuStepped stepped;
+    if (wishes.end_at_change)
+      if (const std::optional<double> change = first_change(options)) {
+        options.t_end = *change;
+        stepped.at_change = true;
+      }
+    Inside inside(*this, wishes.inside);
+    std::vector<Observer*> observers;
+    if (wishes.inside) observers.push_back(&inside);
+    const RunSummary summary = propagate(built_->system, options, state_.state, observers);
+    if (!summary.ok() && summary.status != RunStatus::energy_error) throw SolverError(summary.reason);
+    for (auto* values : {&state_.torque_values, &state_.speed_values})
+      for (InputValue& input : *values) input.slope = 0.0;
+    built_->assembled = std::nan("");
+    stepped.warning = summary.reason;
+    return stepped;
+  } catch (...) {
+    state_ = before;
+    hand_inputs_on();
+    throw;
+  }
+}
+
+double FmuInstance::output(std::size_t place) {
+  if (inside_.state != nullptr) return built_->outputs[place].evaluate(*inside_.assembler, *inside_.state);
+  if (!state_.started) start();
+  Built& built = *built_;
+  if (built.assembled != state_.state.t) {
+    built.assembler.set_time(state_.state.t);
+    built.assembled = state_.state.t;
+  }
+  return built.outputs[place].evaluate(built.assembler, state_.state);
+}
+
+std::vector<double> FmuInstance::directional_derivative(const std::vector<unsigned>& unknowns,
+                                                        const std::vector<unsigned>& knowns,
+                                                        const std::vector<double>& seed) {
+  using enum FmuVariable::Role;
+  require(state_.mode == FmuMode::step || state_.mode == FmuMode::initialization, "a derivative",
+          "is asked for after initialization has begun and before termination");
+  require(inside_.state == nullptr, "a derivative", "is not asked for inside a step");
+  require(built_->system.frictions().empty(), "a derivative", "is not known where there is dry friction");
+  std::vector<std::size_t> places;
+  for (const unsigned reference : unknowns) {
+    const FmuVariable& v = variable(reference, FmuVariable::Type::real);
+    if (v.role != output) throw FmuError("variable " + v.name + " is no output");
+    places.push_back(v.place);
+  }
+  double size = 1.0, direction = 0.0;
+  for (std::size_t i = 0; i < knowns.size(); ++i) {
+    const FmuVariable& v = variable(knowns[i], FmuVariable::Type::real);
+    if (v.role != torque && v.role != speed) throw FmuError("variable " + v.name + " is no input");
+    if (!std::isfinite(seed[i])) throw FmuError("the seed of variable " + v.name + " is not finite");
+    size = std::max(size, std::abs(real(knowns[i])));
+    direction = std::max(direction, std::abs(seed[i]));
+  }
+  std::vector<double> slopes(unknowns.size(), 0.0);
+  if (direction == 0.0) return slopes;
+  if (!state_.started) start();
+  const FmuState before = state_;
+  const double t = state_.state.t, change = kChange * size / direction;
+  try {
+    for (const double side : {1.0, -1.0}) {
+      state_ = before;
+      for (std::size_t i = 0; i < state_.torques.size(); ++i)
+        state_.torques[i] = {t, state_.torque_values[i].value, 0.0};
+      for (std::size_t i = 0; i < state_.speeds.size(); ++i)
+        state_.speeds[i] = {{t, state_.speed_values[i].value, 0.0}, reached(before.speeds[i], i, t)};
+      for (std::size_t i = 0; i < knowns.size(); ++i) {
+        const FmuVariable& v = variables_[knowns[i]];
+        InputSignal& signal = v.role == torque ? state_.torques[v.place] : state_.speeds[v.place].signal;
+        signal.value += side * change * seed[i];
+      }
+      hand_inputs_on();
+      find_acceleration();
+      for (std::size_t i = 0; i < places.size(); ++i)
+        slopes[i] += side * this->output(places[i]) / (2.0 * change);
+    }
+  } catch (...) {
+    state_ = before;
+    hand_inputs_on();
+    throw;
+  }
+  state_ = before;
+  hand_inputs_on();
+  return slopes;
+}
+
+}  // namespace drev::app

@@ -1,0 +1,36 @@
+#pragma once
+/// What the modelDescription.xml of an FMU says, as far as drev uses it: FMI 2.0 and 3.0, co-simulation.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace drev::app {
+
+/// A scalar variable of an FMU.
+struct ImportedVariable {
+  enum class Type { real, integer, boolean, text, other };
+  std::string name;
+  unsigned reference = 0;
+  Type type = Type::other;
+  std::string type_name;  ///< as the description spells it, for messages
+  std::string causality;  ///< input, output, parameter, ...
+  std::string variability;
+  bool array = false;  ///< of FMI 3: drev takes scalars
+};
+
+struct FmuDescription {
+  int fmi = 0;                                ///< 2 or 3
+  std::string model_name, token, identifier;  ///< identifier: of the library, for co-simulation
+  bool interpolates_inputs = false;           ///< FMI 2: canInterpolateInputs
+  std::vector<ImportedVariable> variables;
+
+  const ImportedVariable* find(const std::string& name) const;
+  /// Names of the variables of a causality.
+  std::vector<std::string> names(std::string_view causality) const;
+};
+
+/// Throws std::runtime_error with line and reason for a text that is none, and for an FMU that has no co-simulation.
+FmuDescription read_description(const std::string& xml);
+
+}  // namespace drev::app

@@ -1,0 +1,29 @@
+#pragma once
+/// An instance of another tool's FMU for co-simulation, of FMI 2.0 or 3.0 alike. Its library runs in this process. Errors
+/// are std::runtime_error that name the FMU, the call, the variable, and what the FMU logged.
+#include <memory>
+#include <string>
+
+#include "app/fmi/import/unpacked_fmu.hpp"
+
+namespace drev::app {
+
+class ImportedInstance {
+ public:
+  virtual ~ImportedInstance() = default;
+  /// A real, integer or boolean variable (0 is false).
+  virtual void set(const ImportedVariable& variable, double value) = 0;
+  virtual void set_text(const ImportedVariable& variable, const std::string& value) = 0;
+  /// FMI 2: derivative of an input over the next step, 1/s of its unit.
+  virtual void set_slope(const ImportedVariable& variable, double slope) = 0;
+  virtual double get(const ImportedVariable& variable) = 0;
+  virtual void enter_initialization(double t_start, double t_end) = 0;
+  virtual void exit_initialization() = 0;
+  /// From t over h [s].
+  virtual void step(double t, double h) = 0;
+};
+
+std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu,
+                                              const std::string& name);
+
+}  // namespace drev::app
