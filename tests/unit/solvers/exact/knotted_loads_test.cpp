@@ -172,15 +172,17 @@ TEST_CASE("Knots inside the steps of exact propagation: the motion of the same l
       };
       State with = start(system), without = start(called);
       const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = 0.05}, with);
-      const RunSummary other = propagate(called, {.tolerance = 1e-9, .t_end = 0.05}, without);
+      const RunSummary other = propagate(called, {.tolerance = 1e-12, .t_end = 0.05}, without);
       REQUIRE(run.ok());
       REQUIRE(other.ok());
       INFO(k << " " << (nominal == nullptr) << ": steps " << run.steps << ", " << other.steps);
       CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-8 * without.z.lpNorm<Eigen::Infinity>());
       CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-8 * without.v.lpNorm<Eigen::Infinity>());
       CHECK(std::abs(run.energy.relative_error()) < 1e-8);
-      // Knots cost a called load many steps.
-      if (!p.gas.angle.empty()) CHECK(2 * run.steps < other.steps);
+      if (k == 0) {  // Knots cost a called load many steps.
+        State again = start(called);
+        CHECK(2 * run.steps < propagate(called, {.tolerance = 1e-9, .t_end = 0.05}, again).steps);
+      }
       if (nominal == nullptr) ++k;
     }
 }
