@@ -122,11 +122,12 @@ double SmoothLoads::differ_called(const Place& l, NodeForces& forces) const {
                                                    .deviation = deviation,
                                                    .speed = nominal_speed + l.coeff * rate_[at],
                                                    .nominal_speed = nominal_speed});
-    const double nonlinear = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
-    forces.at(q, l.row) += l.coeff * (r.torque - l.torque - nonlinear);
+    double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+    if (l.speed_slope != 0.0) tangent += l.speed_slope * (nominal_speed + l.coeff * rate_[at] - l.speed);
+    forces.at(q, l.row) += l.coeff * (r.torque - l.torque - tangent);
     if (l.feedback)
-      gain = std::max(gain,
-                      0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
+      gain = std::max(gain, 0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) +
+                                h_ * std::abs(r.dtorque_dspeed - l.speed_slope));
   }
   return gain;
 }

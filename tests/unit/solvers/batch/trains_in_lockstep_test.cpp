@@ -97,15 +97,15 @@ TEST_CASE("Planetary trains: elastic meshes in lockstep, a rigid set one by one"
                       {.base_radius_1 = .0387,
                        .base_radius_2 = .05015,
                        .stiffness = 5e8,
-                       .damping = 500.0,
-                       .normal_backlash = 30e-6 + 2e-6 * static_cast<double>(i)});
+                       .normal_backlash = 30e-6 + 2e-6 * static_cast<double>(i),
+                       .damping = 500.0});
       m.add<GearMesh>("ring_" + planet, {planet, "ring", "carrier"},
                       {.base_radius_1 = .05015,
                        .base_radius_2 = .139,
                        .internal = true,
                        .stiffness = 5e8,
-                       .damping = 500.0,
-                       .normal_backlash = 50e-6});
+                       .normal_backlash = 50e-6,
+                       .damping = 500.0});
     }
     m.hold("ring");
     m.add<AppliedTorque>("drive", {"sun"}, {.harmonics = {{400.0, 20.0, 0.0}}});

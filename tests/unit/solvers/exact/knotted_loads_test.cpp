@@ -186,3 +186,17 @@ TEST_CASE("Knots inside the steps of exact propagation: the motion of the same l
       if (nominal == nullptr) ++k;
     }
 }
+
+TEST_CASE("An engine that rocks about rest on its gas pressure: its angle turns back on knots", "[exact]") {
+  const EngineCylinders::Params p = engine_of(rough_gas());
+  const System system = train<EngineCylinders>(p, nullptr), called = train<OnlyCalled>(p, nullptr);
+  State with = State::initial(system), without = with;
+  const RunSummary run = propagate(system, {.tolerance = 1e-8, .t_end = 0.06}, with);
+  const RunSummary other = propagate(called, {.tolerance = 1e-10, .t_end = 0.06}, without);
+  REQUIRE(run.ok());
+  REQUIRE(other.ok());
+  INFO(run.steps << " " << other.steps << " " << with.v.transpose());
+  CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-6 * without.z.lpNorm<Eigen::Infinity>());
+  CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-6 * without.v.lpNorm<Eigen::Infinity>());
+  CHECK(std::abs(run.energy.relative_error()) < 1e-7);
+}
