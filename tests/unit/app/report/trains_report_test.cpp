@@ -12,7 +12,8 @@ namespace {
 nlohmann::json report_of(const std::string& file, const std::string& duration) {
   const drev::test::TemporaryFolder folder;
   const std::string page = (folder / "r.html").string();
-  REQUIRE(drev::test::drev_command({"run", file, "--duration", duration, "--report", page, "--quiet"})
+  REQUIRE(drev::test::drev_command(
+              {"run", file, "--duration", duration, "--settle", "0", "--report", page, "--quiet"})
               .exit_code == 0);
   return nlohmann::json::parse(drev::app::blocks_of(drev::test::read_file(page)).at(0));
 }
