@@ -24,6 +24,7 @@
 #include <drev/elements/machines/propeller.hpp>
 #include <drev/elements/machines/speed_governor.hpp>
 #include <drev/elements/machines/torque_curve.hpp>
+#include <drev/elements/machines/torque_function.hpp>
 #include <drev/elements/polyline_spring.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
 #include <drev/elements/segment_count.hpp>

@@ -71,6 +71,30 @@ CurvePoint PeriodicCurve::at(double argument) const {
   return {points_.values()[i] + s * (c.b + s * (c.c + s * c.d)), c.b + s * (2.0 * c.c + 3.0 * s * c.d)};
 }
 
+CubicPiece PeriodicCurve::piece(double argument, double direction) const {
+  constexpr double kOnKnot = 1e-13;  // of the argument, at least of 1 rad
+  const std::vector<double>& u = points_.arguments();
+  const std::size_t n = u.size();
+  const double period = points_.period(), near = kOnKnot * std::max(1.0, std::abs(argument));
+  const double within = argument - period * std::floor((argument - u[0]) / period);
+  const double inverse_spacing = points_.evenly_spaced() ? static_cast<double>(n) / period : 0.0;
+  std::size_t i = table_segment(u, inverse_spacing, within);
+  const auto width = [&](std::size_t k) { return (k + 1 < n ? u[k + 1] : u[0] + period) - u[k]; };
+  double s = within - u[i];
+  if (direction > 0.0 && width(i) - s <= near) {
+    s -= width(i);
+    i = i + 1 < n ? i + 1 : 0;
+  } else if (!(direction > 0.0) && s <= near) {
+    i = i > 0 ? i - 1 : n - 1;
+    s += width(i);
+  }
+  const Cubic c = segments_ ? (*segments_)[i] : Cubic{points_.slopes()[i], 0.0, 0.0};
+  return {argument - s,
+          argument + (width(i) - s),
+          {points_.values()[i] + s * (c.b + s * (c.c + s * c.d)), c.b + s * (2.0 * c.c + 3.0 * s * c.d),
+           c.c + 3.0 * s * c.d, c.d}};
+}
+
 double PeriodicCurve::mean() const {
   if (!segments_) return points_.mean();
   const std::vector<double>& u = points_.arguments();

@@ -7,6 +7,7 @@
 /// The spline has value, slope and curvature continuous everywhere, across the end of the period too; between
 /// points of a smooth curve, h apart, it is off by 5/384 h^4 max|f''''| at most. It may overshoot beside steep
 /// steps. Source: C. de Boor, A Practical Guide to Splines, Springer, 1978, chapter IV (periodic end conditions).
+#include <drev/core/law/knotted_load.hpp>
 #include <drev/elements/periodic_table.hpp>
 
 #include <memory>
@@ -23,6 +24,9 @@ class PeriodicCurve {
   PeriodicCurve(PeriodicTable points, Interpolation interpolation);
 
   CurvePoint at(double argument) const;
+  /// The cubic (or straight line) about an argument, from knot to knot; within rounding of a knot the one ahead of
+  /// it: above it where direction > 0, else below.
+  CubicPiece piece(double argument, double direction) const;
   double mean() const;  ///< over one period
   const PeriodicTable& points() const { return points_; }
   Interpolation interpolation() const { return interpolation_; }

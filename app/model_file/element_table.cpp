@@ -155,6 +155,7 @@ std::vector<ElementType>& table() {
                                         row<AbsoluteDamper>("absolute_damper"),
                                         row<Propeller>("propeller"),
                                         row<TorqueCurve>("torque_curve"),
+                                        row<TorqueFunction>("torque_function"),
                                         row<Generator>("generator"),
                                         row<SpeedGovernor>("speed_governor"),
                                         row<PlanetarySet>("planetary_set"),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace drev::app {
 
@@ -18,15 +19,85 @@ constexpr std::size_t kLongest = 1000;
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 
+/// What a number that a formula's variables have entered is not: known before they are.
+std::optional<double> constant(double x) { return x; }
+double smaller(double a, double b) { return b < a ? b : a; }
+double larger(double a, double b) { return b > a ? b : a; }
+
+/// A number of a formula that is recorded: a constant, or a step of the tape.
+struct Recorded {
+  double value = 0.0;  ///< of a constant
+  int step = -1;
+  std::vector<Formula::Step>* tape = nullptr;  ///< null: a constant
+
+  Recorded(double v = 0.0) : value(v) {}  // NOLINT: constants stand in formulas
+  Recorded(std::vector<Formula::Step>& on, const Formula::Step& made)
+      : step(static_cast<int>(on.size())), tape(&on) {
+    on.push_back(made);
+  }
+  int on(std::vector<Formula::Step>& t) const {
+    return tape != nullptr ? step : Recorded(t, {.op = Formula::Op::constant, .value = value}).step;
+  }
+  static Recorded binary(Formula::Op op, const Recorded& a, const Recorded& b, double of_constants) {
+    std::vector<Formula::Step>* t = a.tape != nullptr ? a.tape : b.tape;
+    if (t == nullptr) return of_constants;
+    const int first = a.on(*t), second = b.on(*t);
+    return {*t, {.op = op, .a = first, .b = second}};
+  }
+  static Recorded unary(Formula::Op op, const Recorded& a, double of_constant) {
+    if (a.tape == nullptr) return of_constant;
+    return {*a.tape, {.op = op, .a = a.step}};
+  }
+};
+using Op = Formula::Op;
+Recorded operator+(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::add, a, b, a.value + b.value);
+}
+Recorded operator-(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::subtract, a, b, a.value - b.value);
+}
+Recorded operator*(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::multiply, a, b, a.value * b.value);
+}
+Recorded operator/(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::divide, a, b, a.value / b.value);
+}
+Recorded operator-(const Recorded& a) { return Recorded::unary(Op::negate, a, -a.value); }
+Recorded pow(const Recorded& a, double n) {
+  if (a.tape == nullptr) return std::pow(a.value, n);
+  return {*a.tape, {.op = Op::power, .a = a.step, .value = n}};
+}
+Recorded abs(const Recorded& a) { return Recorded::unary(Op::abs, a, std::abs(a.value)); }
+Recorded exp(const Recorded& a) { return Recorded::unary(Op::exp, a, std::exp(a.value)); }
+Recorded log(const Recorded& a) { return Recorded::unary(Op::log, a, std::log(a.value)); }
+Recorded sin(const Recorded& a) { return Recorded::unary(Op::sin, a, std::sin(a.value)); }
+Recorded cos(const Recorded& a) { return Recorded::unary(Op::cos, a, std::cos(a.value)); }
+Recorded tan(const Recorded& a) { return Recorded::unary(Op::tan, a, std::tan(a.value)); }
+Recorded smaller(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::smaller, a, b, std::min(a.value, b.value));
+}
+Recorded larger(const Recorded& a, const Recorded& b) {
+  return Recorded::binary(Op::larger, a, b, std::max(a.value, b.value));
+}
+std::optional<double> constant(const Recorded& a) {
+  return a.tape == nullptr ? std::optional(a.value) : std::nullopt;
+}
+
+/// The grammar, over doubles or over what records a formula.
+template <class Number>
 class Parser {
  public:
-  Parser(const std::string& text, const Scope& scope) : text_(text), scope_(scope) {}
+  using Value = QuantifiedOf<Number>;
+  using Variables = std::map<std::string, Value>;
+  Parser(const std::string& text, const Scope& scope, const Variables& variables = {})
+      : text_(text), scope_(scope), variables_(variables) {}
 
-  Quantified all() {
+  Value all() {
     if (text_.size() > kLongest) fail("is longer than " + std::to_string(kLongest) + " characters");
-    const Quantified value = sum();
+    const Value value = sum();
     if (!at_end()) unexpected();
-    if (!std::isfinite(value.value)) fail("gives no finite number");
+    if (const auto known = constant(value.value); known && !std::isfinite(*known))
+      fail("gives no finite number");
     return value;
   }
   bool condition() {
@@ -58,9 +129,9 @@ class Parser {
     if (!take(c)) fail(std::string("lacks a '") + c + "'" + (at_end() ? " at its end" : ""));
   }
 
-  Quantified sum() {
+  Value sum() {
     if (++depth_ > kDeepest) fail("is nested too deeply");
-    Quantified left = product();
+    Value left = product();
     for (char op = next(); op == '+' || op == '-'; op = next()) {
       ++i_;
       const std::string wrong = add(left, product(), op == '+' ? 1.0 : -1.0, left);
@@ -69,26 +140,26 @@ class Parser {
     --depth_;
     return left;
   }
-  Quantified product() {
-    Quantified left = sign();
+  Value product() {
+    Value left = sign();
     for (char op = next(); op == '*' || op == '/'; op = next()) {
       ++i_;
       left = op == '*' ? multiply(left, sign()) : divide(left, sign());
     }
     return left;
   }
-  Quantified sign() {
+  Value sign() {
     if (++depth_ > kDeepest) fail("is nested too deeply");
     bool minus = false;
     for (char c = next(); c == '-' || c == '+'; c = next()) {
       if (c == '-') minus = !minus;
       ++i_;
     }
-    Quantified value = item();
+    Value value = item();
     if (take('^')) {
-      const Quantified exponent = sign();
+      const Value exponent = sign();
       if (!exponent.plain()) fail("has an exponent in " + exponent.unit);
-      value = power(value, exponent.value);
+      value = power(value, known(exponent, "has an exponent"));
     }
     if (minus) value.value = -value.value;
     --depth_;
@@ -99,7 +170,7 @@ class Parser {
   struct Side {
     bool is_text = false;
     std::string text = {};
-    Quantified number = {};
+    Value number = {};
   };
   Side side() {
     if (take('\'')) {
@@ -168,7 +239,7 @@ class Parser {
     if (a.is_text && sign != "==" && sign != "!=")
       fail("compares texts by " + sign + "; there are == and !=");
     if (a.is_text) return (a.text == b.text) == (sign == "==");
-    Quantified difference;
+    Value difference;
     const std::string wrong = add(a.number, b.number, -1.0, difference);
     if (!wrong.empty()) fail("compares " + wrong.substr(5));
     const double d = difference.value;
@@ -190,10 +261,10 @@ class Parser {
     return result;
   }
 
-  Quantified item() {
+  Value item() {
     const char c = next();
     if (take('(')) {
-      const Quantified value = sum();
+      const Value value = sum();
       need(')');
       return value;
     }
@@ -214,72 +285,84 @@ class Parser {
     while (i_ < text_.size() && (letter(text_[i_]) || digit(text_[i_]))) ++i_;
     return text_.substr(begin, i_ - begin);
   }
-  Quantified named() {
+  Value named() {
     const std::string name = word();
     if (name == "position" && take('(')) {
       const std::vector<double>& list = find_list(word());
       need(',');
-      const double wanted = sum().value;
+      const double wanted = known(sum(), "seeks a number");
       need(')');
       const auto found = std::find(list.begin(), list.end(), wanted);
       if (found == list.end()) fail("seeks " + to_text(wanted) + ", which the list does not hold");
-      return {static_cast<double>(found - list.begin() + 1)};
+      return {Number(static_cast<double>(found - list.begin() + 1))};
     }
     if (take('(')) return function(name);
     if (take('[')) {
       const std::vector<double>& list = find_list(name);
-      const double place = sum().value;
+      const double place = known(sum(), "takes a place");
       need(']');
       if (!(place >= 1.0 && place <= static_cast<double>(list.size())) || place != std::floor(place))
         fail("takes number " + to_text(place) + " of " + name + ", which has " + std::to_string(list.size()) +
              ", counted from 1");
-      return Quantified::of(list[static_cast<std::size_t>(place) - 1], unit_suffix(name));
+      return Value::of(Number(list[static_cast<std::size_t>(place) - 1]), unit_suffix(name));
     }
+    if (const auto found = variables_.find(name); found != variables_.end()) return found->second;
     const auto found = scope_.numbers.find(name);
-    if (found != scope_.numbers.end()) return Quantified::of(found->second, unit_suffix(name));
-    if (name == "pi") return {kPi};
+    if (found != scope_.numbers.end()) return Value::of(Number(found->second), unit_suffix(name));
+    if (name == "pi") return {Number(kPi)};
     if (scope_.texts.contains(name)) fail("takes " + name + " for a number, which is a text");
     if (scope_.lists.contains(name)) fail("needs a place in the list " + name + ", such as " + name + "[1]");
-    fail("names " + name + ", which is no parameter" + did_you_mean(name, scope_.names()));
+    std::vector<std::string> names = scope_.names();
+    for (const auto& [variable, value] : variables_) names.push_back(variable);
+    const std::string column =
+        variables_.empty() ? "" : ", in column " + std::to_string(i_ - name.size() + 1);
+    fail("names " + name + column + ", which is no " + (variables_.empty() ? "" : "variable and no ") +
+         "parameter" + did_you_mean(name, names));
   }
-  Quantified function(const std::string& name) {
+  Value function(const std::string& name) {
     static const std::vector<std::string> known{"sqrt", "abs", "exp", "log", "sin",   "cos",
                                                 "tan",  "min", "max", "si",  "plain", "position"};
     if (std::find(known.begin(), known.end(), name) == known.end())
       fail("calls " + name + "(), which is no function" + did_you_mean(name, known));
-    Quantified a = sum();
+    Value a = sum();
     if (name == "min" || name == "max") {
       while (take(',')) {
-        const Quantified b = sum();
-        Quantified difference;
+        const Value b = sum();
+        Value difference;
         const std::string wrong = add(a, b, -1.0, difference);
         if (!wrong.empty()) fail("compares " + wrong.substr(5));
-        if ((difference.value < 0.0) == (name == "max")) a.value = b.value;
-        if (a.plain()) a.unit = b.unit, a.combined = b.combined, a.parts = b.parts;
+        a = {name == "max" ? larger(a.value, b.value) : smaller(a.value, b.value), a.plain() ? b : a};
       }
       need(')');
       return a;
     }
     need(')');
-    if (name == "abs") a.value = std::abs(a.value);
+    using std::abs, std::sin, std::cos, std::tan, std::exp, std::log;
+    if (name == "abs") a.value = abs(a.value);
     if (name == "abs") return a;
     if (name == "si") return in_si(a);
     if (name == "plain") return {a.value};
     if (name == "sqrt") {
-      if (a.value < 0.0) fail("takes the root of " + to_text(a.value));
+      if (const auto of = constant(a.value); of && *of < 0.0) fail("takes the root of " + to_text(*of));
       return power(a, 0.5);
     }
     const bool angle = a.plain() || a.fits("");
     const bool turning = name == "sin" || name == "cos" || name == "tan";
     if (turning && (a.unit == "deg" || a.unit == "mrad" || a.unit == "rad"))
-      a.value *= a.parts.factor;
+      a.value = a.value * a.parts.factor;
     else if (!angle)
       fail("takes " + name + " of " + a.unit);
-    return {name == "sin"   ? std::sin(a.value)
-            : name == "cos" ? std::cos(a.value)
-            : name == "tan" ? std::tan(a.value)
-            : name == "exp" ? std::exp(a.value)
-                            : std::log(a.value)};
+    return {name == "sin"   ? sin(a.value)
+            : name == "cos" ? cos(a.value)
+            : name == "tan" ? tan(a.value)
+            : name == "exp" ? exp(a.value)
+                            : log(a.value)};
+  }
+  /// What must be known before the variables are.
+  double known(const Value& value, const std::string& what) const {
+    const std::optional<double> number = constant(value.value);
+    if (!number) fail(what + " that follows a variable");
+    return *number;
   }
   const std::vector<double>& find_list(const std::string& name) {
     const auto found = scope_.lists.find(name);
@@ -291,9 +374,33 @@ class Parser {
 
   const std::string& text_;
   const Scope& scope_;
+  const Variables variables_;
   std::size_t i_ = 0;
   int depth_ = 0;
 };
+
+/// The steps that step `last` is made of, it the last of them.
+std::vector<Formula::Step> needed(const std::vector<Formula::Step>& tape, int last) {
+  std::vector<int> place(tape.size(), -1);
+  std::vector<char> wanted(tape.size(), 0);
+  wanted[static_cast<std::size_t>(last)] = 1;
+  for (int i = last; i >= 0; --i) {
+    const Formula::Step& s = tape[static_cast<std::size_t>(i)];
+    if (wanted[static_cast<std::size_t>(i)] == 0 || s.op == Op::variable) continue;
+    for (const int of : {s.a, s.b})
+      if (of >= 0) wanted[static_cast<std::size_t>(of)] = 1;
+  }
+  std::vector<Formula::Step> kept;
+  for (int i = 0; i <= last; ++i) {
+    if (wanted[static_cast<std::size_t>(i)] == 0) continue;
+    Formula::Step s = tape[static_cast<std::size_t>(i)];
+    if (s.op != Op::variable && s.a >= 0) s.a = place[static_cast<std::size_t>(s.a)];
+    if (s.b >= 0) s.b = place[static_cast<std::size_t>(s.b)];
+    place[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
+    kept.push_back(s);
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -306,10 +413,41 @@ std::vector<std::string> Scope::names() const {
 Quantified evaluate(const std::string& text, const Scope& scope) {
   const bool names = text.size() <= kLongest && text.find('{') != std::string::npos;
   const std::string filled = names ? expand(text, scope) : text;
-  return Parser(filled, scope).all();
+  return Parser<double>(filled, scope).all();
 }
 
-bool holds(const std::string& condition, const Scope& scope) { return Parser(condition, scope).condition(); }
+Formula compile(const std::string& text, const Scope& scope, const std::vector<FormulaVariable>& variables,
+                const std::string& unit) {
+  const bool names = text.size() <= kLongest && text.find('{') != std::string::npos;
+  const std::string filled = names ? expand(text, scope) : text;
+  // Variables without their units first: "-0.02 * speed_rad_per_s^2"; with them, "torque_Nm * speed_rpm/rated_rpm".
+  for (const bool plain : {true, false}) {
+    std::vector<Formula::Step> tape;
+    Parser<Recorded>::Variables known;
+    for (const FormulaVariable& v : variables) {
+      Recorded number(tape, {.op = Op::variable, .a = v.number});
+      if (v.factor != 1.0) number = number * v.factor;
+      known[v.name] = {number, known_unit(plain ? "" : unit_suffix(v.name))};
+    }
+    std::string wrong;
+    try {
+      const QuantifiedOf<Recorded> result = Parser<Recorded>(filled, scope, known).all();
+      if (result.fits(unit)) {
+        return Formula(needed(tape, result.value.on(tape)));
+      }
+      wrong = "the expression \"" + text.substr(0, 80) + "\" is in " + result.unit + ", the key in " + unit +
+              "; si(...) gives it in SI, plain(...) without a unit";
+    } catch (const ExpressionError& error) {
+      wrong = error.sentence;
+    }
+    if (!plain) throw ExpressionError{wrong};
+  }
+  return {};
+}
+
+bool holds(const std::string& condition, const Scope& scope) {
+  return Parser<double>(condition, scope).condition();
+}
 
 std::string expand(const std::string& text, const Scope& scope) {
   std::string result;

@@ -16,6 +16,9 @@
 /// number in a list; {sum} in a name is replaced by its value first. FUNCTION: sqrt, abs, exp, log (natural), sin, cos,
 /// tan (of deg where the unit says so, else of rad), min, max, si (the value in SI), plain (without its unit). Numbers
 /// are as written, in the unit that a parameter's name ends in; that unit goes with the value (quantified.hpp).
+#include <drev/app/model_file/fields.hpp>
+#include <drev/elements/formula.hpp>
+
 #include <map>
 #include <string>
 #include <vector>
@@ -34,6 +37,11 @@ struct Scope {
 
 /// Throws ExpressionError.
 Quantified evaluate(const std::string& text, const Scope& scope);
+
+/// The same text with variables, compiled; the result is in `unit` or a plain number. Variables are plain numbers where
+/// that makes a whole, else they have the unit that their name ends in. Throws ExpressionError.
+Formula compile(const std::string& text, const Scope& scope, const std::vector<FormulaVariable>& variables,
+                const std::string& unit);
 
 /// Whether a condition holds: "drive == 'gears' and cylinders > 4". Throws ExpressionError.
 bool holds(const std::string& condition, const Scope& scope);

@@ -88,6 +88,23 @@ class FieldReader final : public Fields {
       blame(*found, "must be one of " + list_of(words) + ", not " + kind_name(value) +
                         did_you_mean(value.text, words));
   }
+  void formula(const std::string& name, const std::vector<FormulaVariable>& variables,
+               const std::string& unit, std::optional<Formula>& formula) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr) return keys_.missing(name, name);
+    const Value& value = found->entry->value;
+    if (value.numeric()) {
+      formula = Formula({{.op = Formula::Op::constant, .value = value.number}});
+    } else if (!value.is(Value::Kind::text)) {
+      blame(*found, "must be an expression in quotes, not " + kind_name(value));
+    } else {
+      try {
+        formula = compile(value.text, context_.scope, variables, unit);
+      } catch (const ExpressionError& error) {
+        blame(*found, error.sentence);
+      }
+    }
+  }
   bool group(const std::string& name, const ListFields& list) override {
     const Found* found = keys_.find(name);
     if (found == nullptr) return false;

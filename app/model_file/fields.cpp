@@ -1,5 +1,6 @@
 #include <drev/app/model_file/fields.hpp>
 #include <drev/core/error.hpp>
+#include <drev/elements/formula.hpp>
 
 namespace drev::app {
 
@@ -45,6 +46,10 @@ void FieldKeys::file(const std::string& name, std::string& /*path*/, Need need) 
 void FieldKeys::texts(const std::string& name, std::vector<std::string>& /*values*/) { plain(name); }
 void FieldKeys::choice(const std::string& name, const std::vector<std::string>& words, int& index) {
   plain(name, Need::optional, words[static_cast<std::size_t>(index)]);
+}
+void FieldKeys::formula(const std::string& name, const std::vector<FormulaVariable>& /*variables*/,
+                        const std::string& /*unit*/, std::optional<Formula>& /*formula*/) {
+  plain(name, Need::required);
 }
 bool FieldKeys::columns(const std::string& name, const std::vector<Column>& /*columns*/) {
   plain(name);

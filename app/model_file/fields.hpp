@@ -5,8 +5,13 @@
 #include <drev/core/ids.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+namespace drev {
+class Formula;
+}
 
 namespace drev::app {
 
@@ -36,6 +41,13 @@ struct Column {
   Need need = Need::required;
 };
 
+/// A variable of a formula: number `number` of its variables times `factor` is what the name counts in its unit.
+struct FormulaVariable {
+  std::string name;
+  int number = 0;
+  double factor = 1.0;
+};
+
 class Fields {
  public:
   explicit Fields(NodeKind kind) : kind(kind) {}
@@ -53,6 +65,9 @@ class Fields {
   virtual void file(const std::string& name, std::string& path, Need need = Need::optional) = 0;
   virtual void texts(const std::string& name, std::vector<std::string>& values) = 0;
   virtual void choice(const std::string& name, const std::vector<std::string>& words, int& index) = 0;
+  /// An expression of these variables, needed, in `unit` or plain; variables of factor 1 stand for themselves.
+  virtual void formula(const std::string& name, const std::vector<FormulaVariable>& variables,
+                       const std::string& unit, std::optional<Formula>& formula) = 0;
   /// Columns of one length; true where they were given.
   virtual bool columns(const std::string& name, const std::vector<Column>& columns) = 0;
   /// A table of its own inside this one; true where it was given and its fields are right.
@@ -95,6 +110,8 @@ class FieldKeys final : public Fields {
   void file(const std::string& name, std::string& path, Need need) override;
   void texts(const std::string& name, std::vector<std::string>& values) override;
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
+  void formula(const std::string& name, const std::vector<FormulaVariable>& variables,
+               const std::string& unit, std::optional<Formula>& formula) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;
   bool group(const std::string& name, const std::function<void(Fields&)>& list) override;
   bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,

@@ -13,6 +13,7 @@
 #include <drev/elements/machines/propeller.hpp>
 #include <drev/elements/machines/speed_governor.hpp>
 #include <drev/elements/machines/torque_curve.hpp>
+#include <drev/elements/machines/torque_function.hpp>
 #include <drev/elements/periodic_curve.hpp>
 #include <drev/models/shafts/shaft_contour.hpp>
 
@@ -43,6 +44,7 @@ void list(Fields& f, TorsionalDamper::Params& p);
 void list(Fields& f, AbsoluteDamper::Params& p);
 void list(Fields& f, Propeller::Params& p);
 void list(Fields& f, TorqueCurve::Params& p);
+void list(Fields& f, TorqueFunction::Params& p);
 void list(Fields& f, Generator::Params& p);
 void list(Fields& f, SpeedGovernor::Params& p);
 void list(Fields& f, PlanetarySet::Params& p);

@@ -1,4 +1,6 @@
 // Fields of the elements that real trains are made of: engines, couplings and dampers, machines, gear sets.
+#include <drev/core/units.hpp>
+
 #include <cmath>
 
 #include "app/model_file/shared_fields.hpp"
@@ -134,6 +136,22 @@ void list(Fields& f, TorqueCurve::Params& p) {
   f.number({"scale", D::none}, p.scale);
 }
 
+void list(Fields& f, TorqueFunction::Params& p) {
+  // Numbers of the formula's variables: 0 angle, 1 speed, 2 time, in SI.
+  const bool turns = f.kind == NodeKind::rotational;
+  const std::vector<FormulaVariable> of_turning{{"angle_rad", 0, 1.0},
+                                                {"angle_deg", 0, to_deg(1.0)},
+                                                {"speed_rad_per_s", 1, 1.0},
+                                                {"speed_rpm", 1, to_rpm(1.0)},
+                                                {"time_s", 2, 1.0}};
+  const std::vector<FormulaVariable> of_moving{
+      {"position_m", 0, 1.0}, {"speed_m_per_s", 1, 1.0}, {"time_s", 2, 1.0}};
+  f.formula("expression", turns ? of_turning : of_moving, turns ? "Nm" : "N", p.formula);
+  f.number({"from_speed", D::angular_speed, D::speed}, p.from_speed);
+  f.number({"to_speed", D::angular_speed, D::speed}, p.to_speed);
+  f.number({"speed_ramp", D::angular_speed, D::speed}, p.speed_ramp);
+}
+
 void list(Fields& f, Generator::Params& p) {
   f.number({"torque", D::torque}, p.torque);
   f.number({"synchronous_stiffness", D::torsional_stiffness}, p.synchronous_stiffness);
@@ -148,6 +166,7 @@ void list(Fields& f, Generator::Params& p) {
 void list(Fields& f, SpeedGovernor::Params& p) {
   f.number({"proportional_gain", D::torsional_damping}, p.proportional_gain);
   f.number({"integral_gain", D::torsional_stiffness}, p.integral_gain);
+  f.number({"actuator_lag", D::time}, p.actuator_lag);
   f.number({"droop", D::none}, p.droop);
   f.number({"rated_torque", D::torque}, p.rated_torque);
   f.number({"rated_speed", D::angular_speed}, p.rated_speed);

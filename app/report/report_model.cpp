@@ -4,6 +4,7 @@
 #include <drev/core/general_force.hpp>
 #include <drev/core/scalar_force.hpp>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -44,7 +45,7 @@ class Drawing {
     nodes_ = &nodes;
     const int n = static_cast<int>(nodes.size());
     for (int i = 0; i < n; ++i) inertia_[place(i)] += terms.mass.row(i).sum();
-    add_matrix(terms.stiffness, "shaft", "stiffness", &terms.damping);
+    if (!add_along_deflection(terms)) add_matrix(terms.stiffness, "shaft", "stiffness", &terms.damping);
     if (terms.stiffness.isZero(0.0)) add_matrix(terms.damping, "damper", "damping");
     for (const ScalarSpec& spec : terms.scalars) add_law(spec);
     for (const LocalRow& row : terms.constraints) add_gear(row);
@@ -63,6 +64,21 @@ class Drawing {
     joints.push_back(
         {{"name", placement_->name}, {"type", type()}, {"kind", kind}, {"nodes", std::move(list)}});
     return joints.back();
+  }
+
+  /// A spring with nodes of its own inside (rubber in time) that says its deflection: one shaft of its static stiffness.
+  bool add_along_deflection(const Terms& terms) {
+    if (terms.outputs.size() != 1 || terms.outputs[0].deflection.size() == 0) return false;
+    std::vector<int> ends, inner;
+    for (int i = 0; i < static_cast<int>(terms.stiffness.rows()); ++i)
+      (terms.outputs[0].deflection[i] != 0.0 ? ends : inner).push_back(i);
+    if (ends.size() != 2 || inner.empty() || terms.stiffness.isZero(0.0)) return false;
+    const Eigen::MatrixXd within = terms.stiffness(inner, inner);
+    const Eigen::VectorXd across = terms.stiffness(inner, ends)(Eigen::all, 1);
+    Json& found = joint("shaft", ends);
+    found["stiffness"] = terms.stiffness(ends[1], ends[1]) - across.dot(within.ldlt().solve(across));
+    if (const double c = -terms.damping(ends[0], ends[1]); c != 0.0) found["damping"] = c;
+    return true;
   }
 
   /// damping: of a shaft beside its stiffness.

@@ -135,6 +135,37 @@ double EngineCylinders::Cylinder::curve(int k, double angle) const {
          (p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle).value);
 }
 
+CubicPiece EngineCylinders::Cylinder::piece(double angle, double direction, double nominal_speed) const {
+  if (engine_.gas_.empty()) return {.terms = {1.0, 0.0, 0.0, 0.0}};
+  const Params& p = engine_.params_;
+  const double firing = p.firing_angles[static_cast<std::size_t>(number_)];
+  CubicPiece found =
+      engine_.gas_.piece(angle - firing, direction, nominal_speed, p.misfiring_cylinder == number_ + 1);
+  found.low += firing;
+  found.high += firing;
+  found.terms[0] -= p.crankcase_pressure;
+  return found;
+}
+
+KnottedLoad::Curves EngineCylinders::Cylinder::curves(double angle) const {
+  const Params& p = engine_.params_;
+  angle -= p.firing_angles[static_cast<std::size_t>(number_)];
+  const CrankSlider::Derivatives x = engine_.crank_.at(angle);
+  const double tangential = p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle).value;
+  return {
+      engine_.gas_.empty() ? engine_.area_ * engine_.crank_.radius * tangential : -engine_.area_ * x.first,
+      -p.oscillating_mass * x.second * x.first};
+}
+
+int EngineCylinders::Cylinder::turns() const {
+  const Params& p = engine_.params_;
+  for (const int turns : {1, p.strokes / 2})
+    if (std::all_of(p.tangential_pressure.begin(), p.tangential_pressure.end(),
+                    [&](const Harmonic& h) { return h.order * turns == std::floor(h.order * turns); }))
+      return turns;
+  return 0;
+}
+
 double EngineCylinders::torque(int k, double angle, double speed) const {
   return cylinders_.at(static_cast<std::size_t>(k))
       .evaluate({.nominal_angle = angle, .speed = speed, .nominal_speed = speed})

@@ -24,6 +24,7 @@
 /// Source: E. J. Nestorides, A Handbook on Torsional Vibration, Cambridge, 1958, chapter 4; IACS UR M53 (half range
 /// by synthesis, misfire).
 #include <drev/core/element.hpp>
+#include <drev/core/law/knotted_load.hpp>
 #include <drev/core/law/speed_scaled_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/elements/engine/crank_slider.hpp>
@@ -75,7 +76,7 @@ class EngineCylinders final : public Element {
   double mean_torque(int k, double speed) const;
 
  private:
-  class Cylinder final : public Load, public SpeedScaledLoad {
+  class Cylinder final : public Load, public SpeedScaledLoad, public KnottedLoad {
    public:
     Cylinder(const EngineCylinders& engine, int number) : engine_(engine), number_(number) {}
     LoadResponse evaluate(const LoadInput& in) const override;
@@ -83,6 +84,11 @@ class EngineCylinders final : public Element {
     /// w^2 of the mass torque, 1 of what the speed does not move, then those of the gas pressure's curves.
     std::vector<double> speed_factors(double speed) const override;
     double curve(int k, double angle) const override;
+    /// P: p - p_c (1 where there are no curves of pressure); S: -A x', or of the tangential pressure; G: -m_osc x' x''.
+    CubicPiece piece(double angle, double direction, double nominal_speed) const override;
+    bool piece_follows_speed() const override { return engine_.gas_.follows_speed(); }
+    Curves curves(double angle) const override;
+    int turns() const override;
 
    private:
     const EngineCylinders& engine_;

@@ -94,6 +94,36 @@ double GasPressure::curve(int k, double angle, bool misfires) const {
   return curves_.curves()[static_cast<std::size_t>(k)].at(angle + params_.firing_tdc).value;
 }
 
+CubicPiece GasPressure::piece(double angle, double direction, double speed, bool misfires) const {
+  constexpr double kOnKnot = 1e-13;  // of the angle, at least of 1 rad
+  const bool up = direction > 0.0;
+  double side = 1.0, at = angle;
+  CubicPiece sum;
+  if (misfires) {
+    // The curve is entered backwards in the half of a period behind the firing dead centre.
+    const double half = 0.5 * period_, near = kOnKnot * std::max(1.0, std::abs(angle));
+    double behind = angle - period_ * std::floor(angle / period_);
+    if (up && period_ - behind <= near) behind -= period_;
+    if (!up && behind <= near) behind += period_;
+    const bool backwards = up ? behind < half - near : behind <= half + near;
+    sum.low = angle - (backwards ? behind : behind - half);
+    sum.high = angle + ((backwards ? half : period_) - behind);
+    if (backwards) side = -1.0, at = -behind;
+  }
+  const std::vector<double> parts = factors(speed);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (parts[k] == 0.0) continue;
+    const double entered = at + params_.firing_tdc;
+    const CubicPiece c = curves_.curves()[k].piece(entered, side * direction);
+    const double below = entered - c.low, above = c.high - entered;
+    sum.low = std::max(sum.low, angle - (side > 0.0 ? below : above));
+    sum.high = std::min(sum.high, angle + (side > 0.0 ? above : below));
+    double factor = parts[k];
+    for (std::size_t j = 0; j < c.terms.size(); ++j, factor *= side) sum.terms[j] += factor * c.terms[j];
+  }
+  return sum;
+}
+
 void GasPressure::check(ParameterCheck& check) const {
   const Params& p = params_;
   if (!sizes_fit_)

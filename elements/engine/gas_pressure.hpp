@@ -41,6 +41,9 @@ class GasPressure {
   /// The pressure at a speed is sum_k factors(speed)[k] curve(k, angle): one factor a curve.
   std::vector<double> factors(double speed) const;
   double curve(int k, double angle, bool misfires) const;
+  /// The pressure about an angle as a cubic, from knot to knot of its curves (a KnottedLoad's piece).
+  CubicPiece piece(double angle, double direction, double speed, bool misfires) const;
+  bool follows_speed() const { return !params_.speed.empty() || !params_.peak_speed.empty(); }
   bool empty() const { return params_.angle.empty(); }
   const Params& params() const { return params_; }
   void check(ParameterCheck& check) const;

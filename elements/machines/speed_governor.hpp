@@ -5,9 +5,16 @@
 ///
 /// K_p: proportional gain, or from the speed droop: K_p = rated_torque/(droop rated_speed). K_i: integral gain, which
 /// takes the lasting deviation away; 0 leaves the droop. The integral of the speed's deviation is the deviation of the
-/// angle, so that the governor is linear, in every method, exactly. The torque acts at the node at once: LIMIT, an
-/// actuator's lag and limits of the torque are left out, and at vibratory frequencies it acts like a damper of K_p,
-/// which a real one with its lag does not.
+/// angle, so that the governor is linear, in every method, exactly. LIMIT: limits of the torque are left out.
+///
+/// An actuator with a lag T follows by T tau' + tau = -K_p q' - K_i q. Without one the governor acts at vibratory
+/// frequencies like a damper of K_p, which a real one does not. The lag is one node more (`ELEMENT_1`), whose matrices
+///
+///   M = (0, m)   C = (0, -a r; -a r, m (1/T + P))   K = (K_p/T + a^2, -m P/T; -m P/T, m P/T)      r = sqrt(m)
+///   k = K_p/T - K_i,   a^2 = k/T/(P - 1/T),   m = (k + a^2) T/P
+///
+/// seen from the governed node are (K_p s + K_i)/(1 + T s) exactly: a factor (s + P) that both numerator and
+/// denominator have cancels; P = 2/T where k > 0, else 1/(2 T). It needs K_i > 0.
 ///
 /// Step dT of the load on an inertia J: J y'' + K_p y' + K_i y = -dT; sigma = K_p/(2 J), w_d^2 = K_i/J - sigma^2,
 ///   speed deviation -dT/(J w_d) exp(-sigma t) sin(w_d t); without K_i: -dT/K_p (1 - exp(-K_p t/J)).
@@ -23,6 +30,7 @@ class SpeedGovernor final : public Element {
   struct Params {
     double proportional_gain = kNotGiven;  ///< K_p [N m s/rad], >= 0; or the three below
     double integral_gain = 0.0;            ///< K_i [N m/rad], >= 0
+    double actuator_lag = 0.0;             ///< T [s], >= 0; 0: none
     double droop = kNotGiven;              ///< speed fall at rated torque over rated speed [-], 0 to 1, not 0
     double rated_torque = kNotGiven;       ///< N m, > 0
     double rated_speed = kNotGiven;        ///< rad/s, > 0
@@ -36,9 +44,15 @@ class SpeedGovernor final : public Element {
   }
   std::string_view type() const override { return "speed governor"; }
   int min_nodes() const override { return 1; }
+  std::vector<NodeKind> internal_nodes() const override {
+    return std::vector<NodeKind>(params_.actuator_lag > 0.0 ? 1 : 0, NodeKind::rotational);
+  }
   void check(ParameterCheck& check) const override {
     const Params& p = params_;
     check.non_negative("integral_gain", p.integral_gain, "N m/rad");
+    check.non_negative("actuator_lag", p.actuator_lag, "s");
+    if (p.actuator_lag > 0.0 && p.integral_gain == 0.0)
+      check.fail("actuator_lag", to_text(p.actuator_lag), "s", "needs an integral_gain > 0");
     if (!std::isnan(p.proportional_gain)) {
       check.non_negative("proportional_gain", p.proportional_gain, "N m s/rad");
       if (!std::isnan(p.droop))
@@ -52,17 +66,33 @@ class SpeedGovernor final : public Element {
     check.positive("rated_speed", p.rated_speed, "rad/s");
   }
   void describe(int nodes, Terms& terms) const override {
+    const double k_p = proportional_gain(), k_i = params_.integral_gain;
     LocalRow b = LocalRow::Zero(nodes);
     b[0] = 1.0;
-    terms.deviation_damping = proportional_gain() * b * b.transpose();
-    terms.stiffness(0, 0) = params_.integral_gain;
-    if (params_.integral_gain > 0.0)
-      terms.speed_ratio_constraints.push_back({.b = b, .holds_deviation = true});
-    terms.outputs.push_back(
-        {.suffix = "", .stiffness = params_.integral_gain * b, .damping = proportional_gain() * b});
+    Eigen::MatrixXd damping = k_p * b * b.transpose();
+    terms.stiffness(0, 0) = k_i;
+    if (params_.actuator_lag > 0.0) add_lag(params_.actuator_lag, k_p, k_i, damping, terms);
+    if (k_i > 0.0) terms.speed_ratio_constraints.push_back({.b = b, .holds_deviation = true});
+    terms.outputs.push_back({.suffix = "", .stiffness = terms.stiffness.row(0), .damping = damping.row(0)});
+    terms.deviation_damping = std::move(damping);
   }
 
  private:
+  /// The matrices above; node 1 is the actuator's.
+  static void add_lag(double lag, double k_p, double k_i, Eigen::MatrixXd& damping, Terms& terms) {
+    const double k = k_p / lag - k_i, pole = (k > 0.0 ? 2.0 : 0.5) / lag;
+    const double a_2 = k / lag / (pole - 1.0 / lag), m = k == 0.0 ? 1.0 : (k + a_2) * lag / pole;
+    terms.mass(1, 1) = m;
+    damping(0, 0) = 0.0;
+    damping(0, 1) = damping(1, 0) = -std::sqrt(a_2 * m);
+    damping(1, 1) = m * (1.0 / lag + pole);
+    terms.stiffness(0, 0) = k_p / lag + a_2;
+    terms.stiffness(0, 1) = terms.stiffness(1, 0) = k == 0.0 ? 0.0 : -m * pole / lag;
+    terms.stiffness(1, 1) = m * pole / lag;
+    LocalRow alone = LocalRow::Zero(terms.mass.rows());
+    alone[1] = 1.0;
+    terms.speed_ratio_constraints.push_back({.b = alone});
+  }
   Params params_;
 };
 

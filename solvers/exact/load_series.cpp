@@ -171,6 +171,7 @@ void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series) {
 }
 
 double LoadSeries::find_kinks(const TaylorSeries& series) {
+  of_kinks_.clear();
   if (loads_.empty()) return 0.0;
   kinks_.clear();
   double contraction = 0.0;
@@ -222,7 +223,6 @@ double LoadSeries::find_kinks(const TaylorSeries& series) {
     if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
     contraction = std::max(contraction, l.contraction);
   }
-  of_kinks_.clear();
   kinks_.add_to(of_kinks_);
   return contraction;
 }
@@ -243,10 +243,11 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   }
   projection_.clear();
   Pass pass;
-  pass.contraction = std::max(find_kinks(series), smooth_.project(series, first, projection_));
+  pass.contraction = find_kinks(series);
+  pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
   if (!laws.empty()) {
     of_loads_ = projection_;
-    if (kinks_.count() > 0) of_loads_ += of_kinks_;
+    if (kinked()) of_loads_ += of_kinks_;
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
@@ -266,10 +267,16 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   };
   smooth_.for_rows(note_rest);
   laws.for_rows(note_rest);
-  if (kinks_.count() > 0) {
+  if (kinked()) {
     // A kink is projected along a path that lacks the rest itself.
     for (const Linear& l : loads_)
       pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
+    smooth_.for_kinked([&](int row, double contraction, double strongest, bool must) {
+      const double rest = rest_of(of_kinks_, row, kTail);
+      pass.residual = std::max(pass.residual, kKinkRest * contraction * rest);
+      if (must || (kPathRest * rest > kMostInside && strongest < 1.0))
+        pass.cut = std::min(pass.cut.value_or(1.0), strongest);
+    });
     projection_ += of_kinks_;
   }
   const auto note_change = [&](int row) {
@@ -334,6 +341,8 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
 void LoadSeries::append_knots(double end, std::vector<double>& s) const {
   for (int i = 0; i < kinks_.count(); ++i)
     if (const double place = kinks_.place(i); place < end) s.push_back(place);
+  for (const double place : smooth_.knot_places())
+    if (place < end) s.push_back(place);
   for (const LoadTerm* term : on_prescribed_) {
     const NodeMap& map = system_.node_map(term->node);
     std::array<double, 3> theta = phi_;
@@ -367,7 +376,7 @@ double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end)
       const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
       sum += 0.5 * l.stretch.angle_slope * turn * turn;
     }
-  return sum + smooth_.slope_work(series, end);
+  return sum + smooth_.slope_work(series, s, end);
 }
 
 }  // namespace drev

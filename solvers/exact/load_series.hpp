@@ -47,6 +47,8 @@ class LoadSeries {
     double residual = 0.0;
     /// The same inside the step, of smooth forces.
     double inside = 0.0;
+    /// s of a knot that leaves too much of the motion inside the step: the step should end there.
+    std::optional<double> cut = {};
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new.
@@ -55,7 +57,7 @@ class LoadSeries {
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
-  bool kinked() const { return kinks_.count() > 0; }
+  bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;
   /// The step became r h; only where nothing was projected.

@@ -15,8 +15,11 @@ void SmoothLoads::add(const LoadTerm& term) {
     cells_.emplace_back(harmonic->orders());
   } else {
     calls_ = true;
+    place.knots = dynamic_cast<const KnottedLoad*>(term.load);
+    if (place.knots != nullptr && place.knots->turns() > 0)
+      place.curves = std::make_shared<const CurveCells>(*place.knots);
   }
-  loads_.push_back(place);
+  loads_.push_back(std::move(place));
 }
 
 void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector& v) {
@@ -24,6 +27,10 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
   for (Place& l : loads_) {
     l.deviation = l.feedback ? l.coeff * along(l.row, z) : 0.0;
     l.angle = l.ratio * assembler.nominal().value + l.deviation;
+    if (l.knots != nullptr) {
+      move_knotted(l, assembler, z, v);
+      continue;
+    }
     const LoadResponse r =
         l.cells >= 0 ? HarmonicCells::value(cells_[idx(l.cells)].at(l.angle)) : assembler.load(*l.term, z, v);
     l.torque = r.torque;
@@ -47,6 +54,7 @@ void SmoothLoads::add_to(double h, const std::array<double, 3>& phi, double* p) 
   phi_ = phi;
   for (const Place& l : loads_) {
     p[l.row] += l.coeff * l.torque;
+    if (l.speed_slope != 0.0) p[stride_ + l.row] += l.coeff * l.speed_slope * l.ratio * 2.0 * phi[2] / h;
     if (l.slope == 0.0) continue;
     for (int k = 1; k < 3; ++k) p[k * stride_ + l.row] += l.coeff * l.slope * l.ratio * phi[idx(k)];
   }
@@ -54,6 +62,12 @@ void SmoothLoads::add_to(double h, const std::array<double, 3>& phi, double* p) 
 
 void SmoothLoads::add_slopes(TaylorSeries& series) const {
   for (const Place& l : loads_) {
+    if (l.speed_slope != 0.0) {
+      const double damping = -l.coeff * l.coeff * l.speed_slope;
+      series.add_row_damping(l.row, damping);
+      series.widen(l.row, 0.0, damping);
+      series.right_side(0)[l.row] -= l.coeff * l.speed_slope * l.rate;
+    }
     if (l.slope == 0.0) continue;
     const double slope = l.coeff * l.coeff * l.slope;
     series.add_row_stiffness(l.row, -slope);
@@ -108,16 +122,19 @@ double SmoothLoads::differ_called(const Place& l, NodeForces& forces) const {
                                                    .deviation = deviation,
                                                    .speed = nominal_speed + l.coeff * rate_[at],
                                                    .nominal_speed = nominal_speed});
-    const double nonlinear = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
-    forces.at(q, l.row) += l.coeff * (r.torque - l.torque - nonlinear);
+    double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+    if (l.speed_slope != 0.0) tangent += l.speed_slope * (nominal_speed + l.coeff * rate_[at] - l.speed);
+    forces.at(q, l.row) += l.coeff * (r.torque - l.torque - tangent);
     if (l.feedback)
-      gain = std::max(gain,
-                      0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
+      gain = std::max(gain, 0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) +
+                                h_ * std::abs(r.dtorque_dspeed - l.speed_slope));
   }
   return gain;
 }
 
-double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProjection& projection) {
+double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProjection& projection,
+                            LegendreProjection& kinks) {
+  places_.clear();
   if (loads_.empty()) return 0.0;
   path_.resize(GaussRule::kNodes * idx(stride_));
   if (calls_) rate_.resize(path_.size());
@@ -125,10 +142,12 @@ double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProj
   if (first) known_.clear();
   forces_ = known_;
   double contraction = 0.0;
-  for (const Place& l : loads_) {
-    if (!l.feedback && !first) continue;
-    NodeForces& forces = l.feedback ? forces_ : known_;
-    const double gain = l.cells >= 0 ? differ_cells(l, forces) : differ_called(l, forces);
+  for (Place& l : loads_) {
+    if (!l.feedback && !first && l.knots == nullptr) continue;
+    NodeForces& forces = l.feedback || l.knots != nullptr ? forces_ : known_;
+    const double gain = l.knots != nullptr ? differ_knotted(l, series, forces, kinks)
+                        : l.cells >= 0     ? differ_cells(l, forces)
+                                           : differ_called(l, forces);
     contraction = std::max(contraction, l.coeff * l.coeff * series.mobility(l.row) * gain);
   }
   projection.add_nodes(forces_);
@@ -136,12 +155,26 @@ double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProj
   return contraction;
 }
 
-double SmoothLoads::slope_work(const TaylorSeries& series, const Vector& end) const {
+double SmoothLoads::slope_work(const TaylorSeries& series, double s, const Vector& end) const {
+  const GaussRule& rule = gauss_rule();
   double sum = 0.0;
   for (const Place& l : loads_) {
-    if (l.slope == 0.0) continue;
-    const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
-    sum += 0.5 * l.slope * turn * turn;
+    if (l.slope != 0.0) {
+      const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
+      sum += 0.5 * l.slope * turn * turn;
+    }
+    if (l.speed_slope == 0.0) continue;
+    double integral = 0.0;  // of (w - w_0) w over s, w from the deviation
+    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+      double rate = 0.0;
+      if (s == 1.0)
+        rate = rate_[q * idx(stride_) + idx(l.row)];
+      else
+        for (int k = series.degree(); k > 0; --k)
+          rate = rate * s * rule.s[q] + k * series.coefficient(k, l.row) / h_;
+      integral += rule.weight[q] * (l.coeff * rate - l.rate) * l.coeff * rate;
+    }
+    sum += l.speed_slope * h_ * s * integral;
   }
   return sum;
 }

@@ -53,6 +53,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
       if (knot && *knot > kNearStart) return {h * *knot * (1.0 + kBehindKnot), true};
       return {h * std::max(0.2, kShorten * std::pow(excess, -1.0 / kProjectionTerms))};
     }
+    if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     contraction_ = std::max(made.contraction, 1e-300);
     // What this pass was off by comes back in the next one times the contraction factor.
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);

@@ -60,6 +60,11 @@ class TaylorSeries {
       row_slopes_[row - n_] += value;
   }
   void add_damping(int slot, double value);
+  /// The same on the diagonal of an unknown's row.
+  void add_row_damping(int row, double value) {
+    c_[position_[idx(system_.diagonal_slots()[idx(row)])]] += value;
+    damped_ = true;
+  }
   /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
   /// The same of a damping along any row, as a rate c/m [1/s].

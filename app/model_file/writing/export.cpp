@@ -2,6 +2,7 @@
 
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/elements/applied_torque.hpp>
+#include <drev/elements/machines/torque_function.hpp>
 
 #include <cmath>
 #include <map>
@@ -131,6 +132,8 @@ class CaseWriter {
       }
       if (!written) refuse(name, "it is an element of C++ whose keys are not registered");
       if (const auto* torque = dynamic_cast<const AppliedTorque*>(placement.element.get()))
+        if (torque->params().torque) refuse(name, "its torque is a function of C++");
+      if (const auto* torque = dynamic_cast<const TorqueFunction*>(placement.element.get()))
         if (torque->params().torque) refuse(name, "its torque is a function of C++");
     }
     return text;

@@ -1,6 +1,7 @@
 #include "app/model_file/writing/field_writer.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/elements/formula.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +98,17 @@ void FieldWriter::texts(const std::string& name, std::vector<std::string>& value
 void FieldWriter::choice(const std::string& name, const std::vector<std::string>& words, int& index) {
   const std::string& word = words[static_cast<std::size_t>(index)];
   if (!is_default(name, word)) add(name, toml_text(word));
+}
+
+void FieldWriter::formula(const std::string& name, const std::vector<FormulaVariable>& variables,
+                          const std::string& /*unit*/, std::optional<Formula>& formula) {
+  if (!formula) return;
+  std::vector<std::string> names;
+  for (const FormulaVariable& v : variables) {
+    names.resize(std::max(names.size(), static_cast<std::size_t>(v.number) + 1));
+    if (v.factor == 1.0) names[static_cast<std::size_t>(v.number)] = v.name;
+  }
+  add(name, toml_text(formula->text(names)));
 }
 
 bool FieldWriter::columns(const std::string& name, const std::vector<Column>& columns) {

@@ -41,6 +41,8 @@ class FieldWriter final : public Fields {
   void file(const std::string& name, std::string& path, Need need) override;
   void texts(const std::string& name, std::vector<std::string>& values) override;
   void choice(const std::string& name, const std::vector<std::string>& words, int& index) override;
+  void formula(const std::string& name, const std::vector<FormulaVariable>& variables,
+               const std::string& unit, std::optional<Formula>& formula) override;
   bool columns(const std::string& name, const std::vector<Column>& columns) override;
   bool group(const std::string& name, const std::function<void(Fields&)>& list) override;
   bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,

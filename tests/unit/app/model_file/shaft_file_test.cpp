@@ -3,6 +3,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/shafts/contour_shaft.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/strength/section_strength.hpp>
 
 #include <cmath>
 #include <numbers>

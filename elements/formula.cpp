@@ -1,0 +1,180 @@
+#include <drev/elements/formula.hpp>
+
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+namespace drev {
+
+namespace {
+
+bool binary(Formula::Op op) {
+  switch (op) {
+    case Formula::Op::add:
+    case Formula::Op::subtract:
+    case Formula::Op::multiply:
+    case Formula::Op::divide:
+    case Formula::Op::smaller:
+    case Formula::Op::larger:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// With the digits that read back to the same double.
+std::string digits(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+constexpr std::size_t kOnStack = 64;  // steps of a formula that needs no heap
+
+}  // namespace
+
+Formula::Formula(std::vector<Step> steps) : steps_(std::move(steps)) {
+  const auto earlier = [](int step, std::size_t i) { return step >= 0 && step < static_cast<int>(i); };
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& s = steps_[i];
+    const bool right = s.op == Op::constant   ? true
+                       : s.op == Op::variable ? s.a >= 0
+                                              : earlier(s.a, i) && (!binary(s.op) || earlier(s.b, i));
+    if (!right) throw std::invalid_argument("a formula's step refers to none before it");
+  }
+}
+
+Dual Formula::at(std::span<const Dual> variables) const {
+  if (steps_.empty()) return {};
+  std::array<Dual, kOnStack> few;
+  std::vector<Dual> many(steps_.size() > kOnStack ? steps_.size() : 0);
+  Dual* r = many.empty() ? few.data() : many.data();
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& s = steps_[i];
+    const auto a = [&]() -> const Dual& { return r[static_cast<std::size_t>(s.a)]; };
+    const auto b = [&]() -> const Dual& { return r[static_cast<std::size_t>(s.b)]; };
+    switch (s.op) {
+      case Op::constant:
+        r[i] = s.value;
+        break;
+      case Op::variable:
+        r[i] = static_cast<std::size_t>(s.a) < variables.size() ? variables[static_cast<std::size_t>(s.a)]
+                                                                : Dual();
+        break;
+      case Op::add:
+        r[i] = a() + b();
+        break;
+      case Op::subtract:
+        r[i] = a() - b();
+        break;
+      case Op::multiply:
+        r[i] = a() * b();
+        break;
+      case Op::divide:
+        r[i] = a() / b();
+        break;
+      case Op::smaller:
+        r[i] = b() < a() ? b() : a();
+        break;
+      case Op::larger:
+        r[i] = b() > a() ? b() : a();
+        break;
+      case Op::negate:
+        r[i] = -a();
+        break;
+      case Op::power:
+        r[i] = pow(a(), s.value);
+        break;
+      case Op::sqrt:
+        r[i] = drev::sqrt(a());
+        break;
+      case Op::abs:
+        r[i] = drev::abs(a());
+        break;
+      case Op::exp:
+        r[i] = drev::exp(a());
+        break;
+      case Op::log:
+        r[i] = drev::log(a());
+        break;
+      case Op::sin:
+        r[i] = drev::sin(a());
+        break;
+      case Op::cos:
+        r[i] = drev::cos(a());
+        break;
+      case Op::tan:
+        r[i] = drev::sin(a()) / drev::cos(a());
+        break;
+    }
+  }
+  return r[steps_.size() - 1];
+}
+
+std::string Formula::text(std::span<const std::string> names) const {
+  if (steps_.empty()) return "0";
+  std::vector<std::string> parts(steps_.size());
+  const auto call = [](const char* name, const std::string& of) {
+    return std::string(name) + "(" + of + ")";
+  };
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& s = steps_[i];
+    const std::string a = s.a >= 0 && s.op != Op::variable ? parts[static_cast<std::size_t>(s.a)] : "";
+    const std::string b = s.b >= 0 ? parts[static_cast<std::size_t>(s.b)] : "";
+    switch (s.op) {
+      case Op::constant:
+        parts[i] = s.value < 0.0 ? "(" + digits(s.value) + ")" : digits(s.value);
+        break;
+      case Op::variable:
+        parts[i] = static_cast<std::size_t>(s.a) < names.size() ? names[static_cast<std::size_t>(s.a)] : "0";
+        break;
+      case Op::add:
+        parts[i] = "(" + a + " + " + b + ")";
+        break;
+      case Op::subtract:
+        parts[i] = "(" + a + " - " + b + ")";
+        break;
+      case Op::multiply:
+        parts[i] = a + " * " + b;
+        break;
+      case Op::divide:
+        parts[i] = "(" + a + " / (" + b + "))";
+        break;
+      case Op::smaller:
+        parts[i] = call("min", a + ", " + b);
+        break;
+      case Op::larger:
+        parts[i] = call("max", a + ", " + b);
+        break;
+      case Op::negate:
+        parts[i] = "(-" + a + ")";
+        break;
+      case Op::power:
+        parts[i] = "((" + a + ")^(" + digits(s.value) + "))";
+        break;
+      case Op::sqrt:
+        parts[i] = call("sqrt", a);
+        break;
+      case Op::abs:
+        parts[i] = call("abs", a);
+        break;
+      case Op::exp:
+        parts[i] = call("exp", a);
+        break;
+      case Op::log:
+        parts[i] = call("log", a);
+        break;
+      case Op::sin:
+        parts[i] = call("sin", a);
+        break;
+      case Op::cos:
+        parts[i] = call("cos", a);
+        break;
+      case Op::tan:
+        parts[i] = call("tan", a);
+        break;
+    }
+  }
+  return parts.back();
+}
+
+}  // namespace drev

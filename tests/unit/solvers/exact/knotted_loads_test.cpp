@@ -1,0 +1,202 @@
+// Exact propagation of loads that say their knots: what they say is the load itself, and a run that passes knots inside
+// its steps is that of the same load without them, which is only called. Covers core/law/knotted_load.hpp,
+// solvers/exact/curve_cells.hpp.
+#include <drev/core/law/knotted_load.hpp>
+#include <drev/core/units.hpp>
+#include <drev/elements/couplings/absolute_damper.hpp>
+#include <drev/elements/dashpot.hpp>
+#include <drev/elements/engine/engine_cylinders.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/elements/shaft_spring.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+
+#include <cmath>
+
+#include "solvers/exact/curve_cells.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// Few points, far from even, so that every knot is a strong one; firing at 0.
+GasPressure::Params rough_gas(Interpolation interpolation = Interpolation::linear) {
+  return {
+      .angle = {deg(0), deg(4), deg(11), deg(30), deg(80), deg(140), deg(360), deg(560), deg(660), deg(700)},
+      .pressure = {70e5, 88e5, 60e5, 22e5, 6e5, 2e5, 1e5, 1.5e5, 14e5, 38e5},
+      .interpolation = interpolation};
+}
+
+EngineCylinders::Params engine_of(GasPressure::Params gas) {
+  return {.bore = 0.1,
+          .stroke = 0.12,
+          .rod = 0.2,
+          .oscillating_mass = 2.0,
+          .firing_angles = EngineCylinders::even_firing("1-3-4-2", 4, deg(10)),
+          .gas = std::move(gas),
+          .crankcase_pressure = 1e5};
+}
+
+/// The engines that differ in what they say.
+std::vector<EngineCylinders::Params> engines() {
+  std::vector<EngineCylinders::Params> all{engine_of(rough_gas()),
+                                           engine_of(rough_gas(Interpolation::cubic))};
+  all.push_back(all[0]);
+  all.back().misfiring_cylinder = 2;
+  all.push_back(all[1]);
+  all.back().misfiring_cylinder = 3;
+  all.push_back(all[0]);  // a curve that does not close
+  all.back().gas.angle.push_back(deg(720));
+  all.back().gas.pressure.push_back(66e5);
+  all.push_back(all[0]);
+  all.back().gas.peak_speed = {100.0, 300.0};
+  all.back().gas.peak_pressure = {80e5, 140e5};
+  all.push_back(all[0]);  // two curves with other angles
+  for (const double angle : {0.0, 5.0, 17.0, 90.0, 300.0, 640.0}) {
+    all.back().gas.angle.push_back(deg(angle));
+    all.back().gas.pressure.push_back(1e5 * (2.0 + 120.0 * std::exp(-angle / 30.0)));
+  }
+  for (std::size_t i = 0; i < all.back().gas.angle.size(); ++i)
+    all.back().gas.load.push_back(i < 10 ? 0.5 : 1.0);
+  all.back().gas.at_load = 0.7;
+  all.push_back(engine_of({}));
+  all.back().mean_tangential_pressure = 3e5;
+  all.back().tangential_pressure = {{0.5, 2e5, 0.3}, {1.0, 4e5, -0.4}, {6.5, 1e5, 2.0}};
+  return all;
+}
+
+/// The same loads without their knots.
+class OnlyCalled final : public Element {
+ public:
+  explicit OnlyCalled(EngineCylinders::Params p) : engine_(std::move(p)) {
+    engine_.describe(nodes(), terms_);
+    for (const LoadSpec& spec : terms_.loads) loads_.emplace_back(*spec.load);
+  }
+  int nodes() const { return static_cast<int>(engine_.params().firing_angles.size()); }
+  std::string_view type() const override { return "engine that is called"; }
+  int min_nodes() const override { return nodes(); }
+  void check(ParameterCheck& check) const override { engine_.check(check); }
+  void describe(int nodes, Terms& terms) const override {
+    engine_.describe(nodes, terms);
+    for (std::size_t i = 0; i < loads_.size(); ++i) terms.loads[i].load = &loads_[i];
+  }
+
+ private:
+  struct Hidden final : Load {
+    explicit Hidden(const Load& l) : load(l) {}
+    LoadResponse evaluate(const LoadInput& in) const override { return load.evaluate(in); }
+    bool depends_on_motion() const override { return load.depends_on_motion(); }
+    const Load& load;
+  };
+  EngineCylinders engine_;
+  Terms terms_{4};
+  std::vector<Hidden> loads_;
+};
+
+template <class Engine>
+System train(const EngineCylinders::Params& p, const Motion* nominal) {
+  Model m("engine");
+  std::vector<NodeRef> throws;
+  for (int k = 0; k < 4; ++k) {
+    const std::string node = "throw_" + std::to_string(k + 1), before = "throw_" + std::to_string(k);
+    m.add_node(node);
+    m.add<Inertia>("J_" + node, {node}, {.inertia = 0.05});
+    m.add<AbsoluteDamper>("drag_" + node, {node}, {.damping = 2.0});
+    if (k > 0) m.add<ShaftSpring>("web_" + node, {before, node}, {.stiffness = 4e5, .damping = 20.0});
+    throws.emplace_back(node);
+  }
+  m.add_node("flywheel");
+  m.add<Inertia>("J", {"flywheel"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"throw_4", "flywheel"}, {.stiffness = 5e5, .damping = 20.0});
+  m.add<Dashpot>("load", {"flywheel"}, {.damping = 3.0});
+  m.add("engine", throws, std::make_shared<const Engine>(p));
+  if (nominal != nullptr) m.set_reference("flywheel", *nominal);
+  return m.build();
+}
+
+}  // namespace
+
+TEST_CASE("A cylinder's pieces and curves are its torque, on both sides of every knot", "[exact]") {
+  for (const EngineCylinders::Params& p : engines()) {
+    const EngineCylinders engine(p);
+    Terms terms(4);
+    engine.describe(4, terms);
+    for (const LoadSpec& spec : terms.loads) {
+      const auto* knots = dynamic_cast<const KnottedLoad*>(spec.load);
+      REQUIRE(knots != nullptr);
+      const CurveCells cells(*knots);
+      const double w = 180.0;
+      const auto torque = [&](double angle) {
+        return spec.load->evaluate({.nominal_angle = angle, .speed = w, .nominal_speed = w}).torque;
+      };
+      for (const double direction : {1.0, -1.0}) {
+        double angle = -31.7;
+        for (int i = 0; i < 60; ++i) {
+          const CubicPiece piece = knots->piece(angle, direction, w);
+          const double bound = direction > 0.0 ? piece.high : piece.low;
+          const double end = std::isfinite(bound) ? bound : angle + 0.1 * direction;
+          REQUIRE(direction * (end - angle) > 0.0);
+          for (const double part : {0.01, 0.3, 0.77, 0.99}) {
+            const double at = angle + part * (end - angle), x = at - angle;
+            const auto& c = piece.terms;
+            const double cubic = c[0] + x * (c[1] + x * (c[2] + x * c[3]));
+            const KnottedLoad::Curves s = knots->curves(at);
+            INFO(at << " " << direction);
+            // The steep end of a curve that does not close is 1e-8 rad wide: rounding of its angle counts there.
+            const double tolerance = std::abs(end - angle) < 1e-6 ? 10.0 : 1e-6;
+            CHECK(std::abs(cubic * s.factor + s.by_speed_squared * w * w - torque(at)) < tolerance);
+            const CurveCells::Values v = CurveCells::values(cells.at(at));
+            CHECK(v.factor ==
+                  Approx(s.factor).margin(1e-12 * std::abs(cells.at(0.0).cell->factor[0]) + 1e-14));
+            CHECK(v.by_speed == Approx(s.by_speed_squared).margin(1e-15));
+          }
+          angle = end;
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("Knots inside the steps of exact propagation: the motion of the same load that is called",
+          "[exact]") {
+  const Motion steady = constant_speed(200.0), rising = run_up(150.0, 220.0, 0.0, 0.1);
+  int k = 0;
+  for (const EngineCylinders::Params& p : engines())
+    for (const Motion* nominal : {&steady, &rising, static_cast<const Motion*>(nullptr)}) {
+      if (nominal == &rising && k != 5 && k != 0) continue;
+      const System system = train<EngineCylinders>(p, nominal), called = train<OnlyCalled>(p, nominal);
+      const auto start = [&](const System& s) {
+        State state = State::initial(s);
+        if (nominal == nullptr) state.v.setConstant(170.0);
+        return state;
+      };
+      State with = start(system), without = start(called);
+      const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = 0.05}, with);
+      const RunSummary other = propagate(called, {.tolerance = 1e-12, .t_end = 0.05}, without);
+      REQUIRE(run.ok());
+      REQUIRE(other.ok());
+      INFO(k << " " << (nominal == nullptr) << ": steps " << run.steps << ", " << other.steps);
+      CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-8 * without.z.lpNorm<Eigen::Infinity>());
+      CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-8 * without.v.lpNorm<Eigen::Infinity>());
+      CHECK(std::abs(run.energy.relative_error()) < 1e-8);
+      if (k == 0) {  // Knots cost a called load many steps.
+        State again = start(called);
+        CHECK(2 * run.steps < propagate(called, {.tolerance = 1e-9, .t_end = 0.05}, again).steps);
+      }
+      if (nominal == nullptr) ++k;
+    }
+}
+
+TEST_CASE("An engine that rocks about rest on its gas pressure: its angle turns back on knots", "[exact]") {
+  const EngineCylinders::Params p = engine_of(rough_gas());
+  const System system = train<EngineCylinders>(p, nullptr), called = train<OnlyCalled>(p, nullptr);
+  State with = State::initial(system), without = with;
+  const RunSummary run = propagate(system, {.tolerance = 1e-8, .t_end = 0.06}, with);
+  const RunSummary other = propagate(called, {.tolerance = 1e-10, .t_end = 0.06}, without);
+  REQUIRE(run.ok());
+  REQUIRE(other.ok());
+  INFO(run.steps << " " << other.steps << " " << with.v.transpose());
+  CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-6 * without.z.lpNorm<Eigen::Infinity>());
+  CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-6 * without.v.lpNorm<Eigen::Infinity>());
+  CHECK(std::abs(run.energy.relative_error()) < 1e-7);
+}
