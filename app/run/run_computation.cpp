@@ -158,10 +158,18 @@ bool find_plan_start(const RunRequest& request, RunPlan& plan) {
   return plan.no_start.empty();
 }
 
+/// Those recorded that a state holds the values of.
+std::vector<std::string> recorded_states(const RunRequest& request) {
+  std::vector<std::string> names;
+  for (const Channel& c : find_channels(request.model.system, request.record, OverRun::taken))
+    if (!c.of_energy()) names.push_back(c.name());
+  return names;
+}
+
 /// Channels whose orders are tracked over a run-up: those recorded, and the deflection.
 std::vector<std::string> tracked_channels(const RunRequest& request) {
   constexpr std::size_t kMostTracked = 24;
-  std::vector<std::string> names = request.record;
+  std::vector<std::string> names = recorded_states(request);
   const std::string& deflection = request.model.model_case.deflection;
   if (!deflection.empty() && std::count(names.begin(), names.end(), deflection) == 0)
     names.insert(names.begin(), deflection);
@@ -212,7 +220,7 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
   for (const RainflowChannel& c : rainflow_channels(request, request.model.system))
     names.push_back(c.channel.name());
   if (request.out || request.report || request.keeps_history)
-    names.insert(names.end(), request.record.begin(), request.record.end());
+    for (std::string& name : recorded_states(request)) names.push_back(std::move(name));
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
