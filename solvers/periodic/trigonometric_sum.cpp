@@ -19,7 +19,8 @@ constexpr double kSameOrder = 1e-9;  // of the highest order: rounding of orders
 constexpr int kPointsAPeriod = 4;    // of the highest order
 constexpr int kFewestPoints = 16;
 constexpr int kRefinements = 20;
-constexpr double kAngleTolerance = 1e-4;  // of the distance of points
+constexpr double kRounding = 1e-13;       // of the sum of the amplitudes, at the least
+constexpr double kAngleTolerance = 4e-4;  // of the distance of points
 
 /// The largest order that all are whole multiples of, by Euclid's algorithm; 0: below `least`.
 double common_order(const std::vector<double>& orders, double least, double same) {
@@ -109,16 +110,16 @@ DREV_WIDEST void mark_tops(int points, double sign, const LaneRow* y, const Lane
     highest = here > highest ? here : highest;
   }
   const Lanes least = highest - slack;
+  const LaneMask bits{1, 2, 4, 8, 16, 32, 64, 128};
   for (int p = 0; p < points; ++p) {
     const Lanes before = sign * y[p > 0 ? p - 1 : points - 1].v, here = sign * y[p].v,
                 after = sign * y[p + 1 < points ? p + 1 : 0].v;
     const LaneMask top =
         (here >= before) & (here >= after) & (here + 0.125 * (2.0 * here - before - after) >= least);
-    unsigned mark = 0;
-    if (any(top))
-      for (int lane = 0; lane < kLanes; ++lane)
-        mark |= top[lane] != 0 ? 1U << static_cast<unsigned>(lane) : 0U;
-    marks[p] = static_cast<unsigned char>(mark);
+    LaneMask mark = top & bits;
+    mark |= __builtin_shufflevector(mark, mark, 4, 5, 6, 7, 0, 1, 2, 3);
+    mark |= __builtin_shufflevector(mark, mark, 2, 3, 0, 1, 2, 3, 0, 1);
+    marks[p] = static_cast<unsigned char>(mark[0] | mark[1]);
   }
 }
 
@@ -159,7 +160,10 @@ DREV_WIDEST void differentiate(int orders, const int* multiples, const LaneRow* 
 
 }  // namespace
 
-void TrigonometricSum::refine(const int* places, int count) {
+/// Of a top's sum and sign.
+int TrigonometricSum::place_of(const Top& top) { return 2 * top.lane + (top.sign > 0.0 ? 0 : 1); }
+
+void TrigonometricSum::refine(const int* places, int count, const Lanes& least) {
   const auto orders = static_cast<int>(multiples_.size());
   Lanes angle{}, start{}, value = Lanes{} - std::numeric_limits<double>::infinity();
   for (int i = 0; i < kLanes; ++i) {
@@ -194,17 +198,21 @@ void TrigonometricSum::refine(const int* places, int count) {
       // Halley's step, where it does not turn Newton's round.
       const double newton = -d.slope[i] / d.bend[i], third = 1.0 + 0.5 * newton * d.twist[i] / d.bend[i];
       const double step = newton / std::max(third, 0.5);
+      // Newton's parabola, and what the third derivative may add to it: not worth following where that is too little.
+      const double reach = std::abs(newton), bound = thirds_[tops_[idx(places[i])].lane];
+      if (d.y[i] + 0.5 * d.slope[i] * newton + bound * reach * reach * reach < least[i] - kRounding * bound)
+        continue;
       if (std::abs(angle[i] + step - start[i]) > step_) continue;
       angle[i] += step;
       if (std::abs(step) < kAngleTolerance * step_)
-        value[i] = std::max(value[i], d.y[i] + step * (d.slope[i] + 0.5 * step * d.bend[i]));
+        value[i] = std::max(
+            value[i], d.y[i] + step * (d.slope[i] + 0.5 * step * (d.bend[i] + step * d.twist[i] / 3.0)));
       else
         open |= bit;
     }
   }
   for (int i = 0; i < count; ++i) {
     Top& top = tops_[idx(places[i])];
-    top.followed = true;
     top.found = value[i];
     top.angle = angle[i];
   }
@@ -225,6 +233,7 @@ void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index f
     third += cubes_[k] * size;
   }
   // Between three points the sum is above the parabola through them by at most this.
+  thirds_ = third;
   slack_ = third * (step_ * step_ * step_ / (9.0 * std::sqrt(3.0)));
   sum_quarters(points_, static_cast<int>(multiples_.size()), even_, by_parity_.data(), cosines_.data(),
                sines_.data(), re_.data(), im_.data(), samples_.data());
@@ -234,6 +243,7 @@ void TrigonometricSum::find_tops(int used, double sign) {
   std::array<unsigned char, 4 * kMostMultiples> marks;
   Lanes highest{};
   mark_tops(points_, sign, samples_.data(), slack_, highest, marks.data());
+  for (int lane = 0; lane < kLanes; ++lane) best_[idx(2 * lane + (sign > 0.0 ? 0 : 1))] = highest[lane];
   for (int p = 0; p < points_; ++p) {
     if (marks[idx(p)] == 0) continue;
     const LaneRow &before = samples_[idx(p > 0 ? p - 1 : points_ - 1)], &here = samples_[idx(p)],
@@ -257,33 +267,33 @@ void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<
     sample(amplitudes, first, used);
     tops_.clear();
     for (const double sign : {1.0, -1.0}) find_tops(used, sign);
-    // The highest first; what a lower one can reach may then be known to be too little.
+    // The highest of each sum and sign first; what the others can reach may then be known to be too little.
     std::sort(tops_.begin(), tops_.end(), [](const Top& a, const Top& b) { return a.value > b.value; });
-    Lanes best[2] = {Lanes{} - std::numeric_limits<double>::infinity(),
-                     Lanes{} - std::numeric_limits<double>::infinity()};
-    for (bool any_left = true; any_left;) {
-      any_left = false;
+    unsigned led = 0;
+    for (Top& top : tops_) {
+      top.leads = (led & (1U << place_of(top))) == 0;
+      led |= 1U << place_of(top);
+    }
+    std::stable_partition(tops_.begin(), tops_.end(), [](const Top& top) { return top.leads; });
+    for (std::size_t next = 0; next < tops_.size();) {
       std::array<int, kLanes> places{};
+      Lanes least{};
       int count = 0;
-      unsigned taken = 0;  // of the sums and signs: one top of each a round
-      for (std::size_t i = 0; i < tops_.size() && count < kLanes; ++i) {
-        Top& top = tops_[i];
-        const unsigned side = top.sign > 0.0 ? 0U : 1U,
-                       bit = 1U << (2U * static_cast<unsigned>(top.lane) + side);
-        if (top.followed || top.value + slack_[top.lane] < best[side][top.lane]) continue;
-        any_left = true;
-        if ((taken & bit) != 0) continue;
-        taken |= bit;
-        places[idx(count++)] = static_cast<int>(i);
+      for (; next < tops_.size() && count < kLanes; ++next) {
+        const double best = best_[idx(place_of(tops_[next]))];
+        if (tops_[next].value + slack_[tops_[next].lane] < best) continue;
+        least[count] = best;
+        places[idx(count++)] = static_cast<int>(next);
       }
       if (count == 0) break;
-      refine(places.data(), count);
+      refine(places.data(), count, least);
       for (int i = 0; i < count; ++i) {
         const Top& top = tops_[idx(places[idx(i)])];
-        Lanes& most = best[top.sign > 0.0 ? 0 : 1];
-        if (!(top.found > most[top.lane])) continue;
-        most[top.lane] = top.found;
         SumExtremes& e = out[static_cast<std::size_t>(first + top.lane)];
+        const double so_far = top.sign > 0.0 ? e.max : -e.min;
+        double& best = best_[idx(place_of(top))];
+        best = std::max(best, top.found);
+        if (!top.leads && !(top.found > so_far)) continue;
         const double angle = (top.angle - kTwoPi * std::floor(top.angle / kTwoPi)) / base_;
         if (top.sign > 0.0)
           e.max = top.found, e.max_angle = angle;

@@ -12,6 +12,7 @@
 #include <drev/core/lanes.hpp>
 
 #include <Eigen/Core>
+#include <array>
 #include <complex>
 #include <string>
 #include <vector>
@@ -43,27 +44,30 @@ class TrigonometricSum {
     int lane;
     double sign, at, value;  // at: in steps
     double found = 0.0, angle = 0.0;
-    bool followed = false;
+    bool leads = false;  // the highest of its sum and sign
   };
   void sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used);
   /// Local maxima (sign 1) and minima (-1) that may be the extremes.
   void find_tops(int used, double sign);
-  /// The tops of up to kLanes places in tops_, each followed to its extremum.
-  void refine(const int* places, int count);
+  /// The tops of up to kLanes places in tops_, each followed to its extremum; those that cannot reach `least`, not to
+  /// their end.
+  void refine(const int* places, int count, const Lanes& least);
+  static int place_of(const Top& top);
 
   double base_ = 0.0, step_ = 0.0;
   int highest_ = 0, points_ = 0;
   std::vector<int> multiples_;
   std::vector<double> cubes_;  // of them
   /// Sums over even and odd multiples n, of cosines and of sines: those of a quarter of the cycle give all four.
-  std::vector<int> by_parity_;           // rows of the orders, even multiples first
-  int even_ = 0;                         // so many of them
-  std::vector<double> cosines_, sines_;  // [point of a quarter][place in by_parity_]
-  LaneArray re_, im_, samples_;          // of kLanes sums: amplitudes by order; values at the points
-  LaneArray top_re_, top_im_;            // amplitudes of the tops that are being followed, by order
-  LaneArray power_re_, power_im_;        // exp(i n angle) at them
-  bool dense_ = false;                   // few multiples between those of the orders
-  Lanes slack_{};                        // of each sum
+  std::vector<int> by_parity_;             // rows of the orders, even multiples first
+  int even_ = 0;                           // so many of them
+  std::vector<double> cosines_, sines_;    // [point of a quarter][place in by_parity_]
+  LaneArray re_, im_, samples_;            // of kLanes sums: amplitudes by order; values at the points
+  LaneArray top_re_, top_im_;              // amplitudes of the tops that are being followed, by order
+  LaneArray power_re_, power_im_;          // exp(i n angle) at them
+  bool dense_ = false;                     // few multiples between those of the orders
+  Lanes slack_{}, thirds_{};               // of each sum
+  std::array<double, 2 * kLanes> best_{};  // largest of the points or found so far, of each sum and sign
   std::vector<Top> tops_;
 };
 
