@@ -15,7 +15,7 @@ using Work = LaneElimination::Work;
 
 template <class Value>
 [[gnu::always_inline]] inline void eliminate(const Work& a, const double* m, const Value* c, const Value* k,
-                                             const Lanes& w, LaneMask& lost) {
+                                             const Lanes& w, Lanes& lost) {
   const Lanes w_2 = w * w;
   const auto entries = a.begin[a.n];
   for (int e = 0; e < entries; ++e) {
@@ -41,7 +41,10 @@ template <class Value>
       terms = of_k + of_c + of_m;
     }
     const Lanes size = p_re * p_re + p_im * p_im;
-    lost |= ~((size > least * terms * terms) & (size <= std::numeric_limits<double>::max()));
+    // Choices between doubles: GCC 12 takes masks of lanes to pieces.
+    const Lanes one = Lanes{} + 1.0, most = Lanes{} + std::numeric_limits<double>::max();
+    lost = size > least * terms * terms ? lost : one;
+    lost = size <= most ? lost : one;
     const Lanes over = 1.0 / size, i_re = p_re * over, i_im = -p_im * over;
     const Lanes known_re = a.x_re[j].v, known_im = a.x_im[j].v;
     for (int e = a.begin[j]; e < a.begin[j + 1]; ++e) {
@@ -75,11 +78,11 @@ template <class Value>
 }
 
 DREV_WIDEST void eliminate_common(const Work& a, const double* m, const double* c, const double* k,
-                                  const Lanes& w, LaneMask& lost) {
+                                  const Lanes& w, Lanes& lost) {
   eliminate(a, m, c, k, w, lost);
 }
 DREV_WIDEST void eliminate_each(const Work& a, const double* m, const LaneRow* c, const LaneRow* k,
-                                const Lanes& w, LaneMask& lost) {
+                                const Lanes& w, Lanes& lost) {
   eliminate(a, m, c, k, w, lost);
 }
 
@@ -117,14 +120,14 @@ LaneElimination::Work LaneElimination::work(LaneArray& re, LaneArray& im) {
 }
 
 void LaneElimination::solve(const double* m, const double* c, const double* k, const Lanes& w, LaneArray& re,
-                            LaneArray& im, LaneMask& lost) {
-  lost = LaneMask{};
+                            LaneArray& im, Lanes& lost) {
+  lost = Lanes{};
   eliminate_common(work(re, im), m, c, k, w, lost);
 }
 
 void LaneElimination::solve(const double* m, const LaneRow* c, const LaneRow* k, const Lanes& w,
-                            LaneArray& re, LaneArray& im, LaneMask& lost) {
-  lost = LaneMask{};
+                            LaneArray& re, LaneArray& im, Lanes& lost) {
+  lost = Lanes{};
   eliminate_each(work(re, im), m, c, k, w, lost);
 }
 

@@ -17,13 +17,13 @@ class LaneElimination {
   /// plan: outlives this.
   explicit LaneElimination(const ComplexElimination& plan);
 
-  /// m, c, k: values of symmetric matrices on the plan's pattern; re, im: b -> x, a row an unknown. lost: set in the
-  /// lanes whose x is not usable: a lost pivot, or values that are not finite.
+  /// m, c, k: values of symmetric matrices on the plan's pattern; re, im: b -> x, a row an unknown. lost: 1 in the
+  /// lanes whose x is not usable: a lost pivot, or values that are not finite; else 0.
   void solve(const double* m, const double* c, const double* k, const Lanes& w, LaneArray& re, LaneArray& im,
-             LaneMask& lost);
+             Lanes& lost);
   /// The same with a C and a K for each lane.
   void solve(const double* m, const LaneRow* c, const LaneRow* k, const Lanes& w, LaneArray& re,
-             LaneArray& im, LaneMask& lost);
+             LaneArray& im, Lanes& lost);
   struct Work;  // of its loops
 
  private:

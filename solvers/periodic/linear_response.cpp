@@ -214,14 +214,14 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   }
   // One or two frequencies are not worth the lanes.
   constexpr int kWorthLanes = 3;
-  LaneMask lost = ~LaneMask{};
+  Lanes lost = Lanes{} + 1.0;
   if (used >= kWorthLanes && own)
     lanes_.solve(mass_.data(), damping_lanes_.data(), stiffness_lanes_.data(), w, re_, im_, lost);
   else if (used >= kWorthLanes)
     lanes_.solve(mass_.data(), damping_here_.data(), stiffness_here_.data(), w, re_, im_, lost);
   std::array<bool, kLanes> singular{};
   for (int lane = 0; lane < used; ++lane)
-    if (lost[lane] != 0) singular[idx(lane)] = !solve_lane(lane, w[lane]);
+    if (lost[lane] != 0.0) singular[idx(lane)] = !solve_lane(lane, w[lane]);
   rows_->find(re_, im_);
   const auto each_lane = [&](const auto& task) {
     for (int lane = 0; lane < used; ++lane) task(lane, static_cast<Eigen::Index>(active_[first + idx(lane)]));

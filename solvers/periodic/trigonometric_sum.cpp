@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -99,27 +100,38 @@ DREV_WIDEST void sum_quarters(int points, int orders, int even, const int* row, 
   }
 }
 
-/// Marks the points that may be next to the largest value of sign y: bit l of marks[p] for lane l. highest: of the
-/// points. A parabola through three points whose middle is the highest rises above it by an eighth of its second
-/// difference at the most.
+constexpr int kWord = 52;  // points in a word of marks: bits of a double's significand
+
+/// Marks the points that may be next to the largest value of sign y: bit p % kWord of marks[p / kWord] in each lane.
+/// highest: of the points. A parabola through three points whose middle is the highest rises above it by an eighth of
+/// its second difference at the most. Written with choices between doubles: GCC 12 takes masks of lanes to pieces.
 DREV_WIDEST void mark_tops(int points, double sign, const LaneRow* y, const Lanes& slack, Lanes& highest,
-                           unsigned char* marks) {
-  highest = sign * y[0].v;
+                           LaneRow* marks) {
+  Lanes most = sign * y[0].v;
   for (int p = 1; p < points; ++p) {
     const Lanes here = sign * y[p].v;
-    highest = here > highest ? here : highest;
+    most = here > most ? here : most;
   }
-  const Lanes least = highest - slack;
-  const LaneMask bits{1, 2, 4, 8, 16, 32, 64, 128};
+  highest = most;
+  const Lanes least = most - slack, none{};
+  Lanes before = sign * y[points - 1].v, here = sign * y[0].v, word{};
+  double bit = 1.0;
   for (int p = 0; p < points; ++p) {
-    const Lanes before = sign * y[p > 0 ? p - 1 : points - 1].v, here = sign * y[p].v,
-                after = sign * y[p + 1 < points ? p + 1 : 0].v;
-    const LaneMask top =
-        (here >= before) & (here >= after) & (here + 0.125 * (2.0 * here - before - after) >= least);
-    LaneMask mark = top & bits;
-    mark |= __builtin_shufflevector(mark, mark, 4, 5, 6, 7, 0, 1, 2, 3);
-    mark |= __builtin_shufflevector(mark, mark, 2, 3, 0, 1, 2, 3, 0, 1);
-    marks[p] = static_cast<unsigned char>(mark[0] | mark[1]);
+    const Lanes after = sign * y[p + 1 < points ? p + 1 : 0].v;
+    const Lanes reach = 1.25 * here - 0.125 * (before + after);
+    // The least of the three differences that must not be negative; not a number: none.
+    const Lanes over_before = here - before, over_after = here - after, over_least = reach - least;
+    Lanes over = over_before < over_after ? over_before : over_after;
+    over = over < over_least ? over : over_least;
+    word += over >= none ? none + bit : none;
+    bit *= 2.0;
+    if (p % kWord == kWord - 1 || p + 1 == points) {
+      marks[p / kWord].v = word;
+      word = none;
+      bit = 1.0;
+    }
+    before = here;
+    here = after;
   }
 }
 
@@ -177,7 +189,7 @@ void TrigonometricSum::refine(const int* places, int count, const Lanes& least) 
   unsigned open = (1U << static_cast<unsigned>(count)) - 1U;
   for (int round = 0; round < kRefinements && open != 0; ++round) {
     Lanes one_re{}, one_im{};
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < count; ++i) {
       one_re[i] = std::cos(angle[i]);
       one_im[i] = std::sin(angle[i]);
       for (std::size_t k = 0; !dense_ && k < multiples_.size(); ++k) {
@@ -240,22 +252,24 @@ void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index f
 }
 
 void TrigonometricSum::find_tops(int used, double sign) {
-  std::array<unsigned char, 4 * kMostMultiples> marks;
+  std::array<LaneRow, 4 * kMostMultiples / kWord + 1> marks;
   Lanes highest{};
   mark_tops(points_, sign, samples_.data(), slack_, highest, marks.data());
   for (int lane = 0; lane < kLanes; ++lane) best_[idx(2 * lane + (sign > 0.0 ? 0 : 1))] = highest[lane];
-  for (int p = 0; p < points_; ++p) {
-    if (marks[idx(p)] == 0) continue;
-    const LaneRow &before = samples_[idx(p > 0 ? p - 1 : points_ - 1)], &here = samples_[idx(p)],
-                  &after = samples_[idx(p + 1 < points_ ? p + 1 : 0)];
-    for (int lane = 0; lane < used; ++lane) {
-      if ((marks[idx(p)] & (1U << static_cast<unsigned>(lane))) == 0 || !(slack_[lane] > 0.0)) continue;
-      const double bend = sign * (2.0 * here.v[lane] - before.v[lane] - after.v[lane]),
-                   tilt = 0.5 * sign * (after.v[lane] - before.v[lane]);
-      const double shift = bend > 0.0 ? tilt / bend : 0.0;
-      Top top{lane, sign, p + shift, sign * here.v[lane] + 0.5 * tilt * shift};
-      if (top.value + slack_[lane] >= highest[lane]) tops_.push_back(top);
-    }
+  for (int lane = 0; lane < used; ++lane) {
+    if (!(slack_[lane] > 0.0)) continue;
+    for (int first = 0; first < points_; first += kWord)
+      for (auto word = static_cast<std::uint64_t>(marks[idx(first / kWord)].v[lane]); word != 0;
+           word &= word - 1) {
+        const int p = first + std::countr_zero(word);
+        const double before = samples_[idx(p > 0 ? p - 1 : points_ - 1)].v[lane],
+                     here = samples_[idx(p)].v[lane],
+                     after = samples_[idx(p + 1 < points_ ? p + 1 : 0)].v[lane];
+        const double bend = sign * (2.0 * here - before - after), tilt = 0.5 * sign * (after - before);
+        const double shift = bend > 0.0 ? tilt / bend : 0.0;
+        Top top{lane, sign, p + shift, sign * here + 0.5 * tilt * shift};
+        if (top.value + slack_[lane] >= highest[lane]) tops_.push_back(top);
+      }
   }
 }
 
