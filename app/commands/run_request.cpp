@@ -271,7 +271,8 @@ RunRequest request_run(const CommandLine& given) {
           line.option("--duration") ? std::optional(duration) : std::nullopt,
           line.option("--events"),
           line.keeps_history,
-          line.list("--rainflow").value_or(std::vector<std::string>{})};
+          line.list("--rainflow").value_or(std::vector<std::string>{}),
+          line.options.contains("--energy")};
 }
 
 }  // namespace drev::app

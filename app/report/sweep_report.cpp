@@ -1,6 +1,7 @@
 #include "app/report/sweep_report.hpp"
 
 #include <drev/core/units.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +90,25 @@ Json sweep_data(const std::string& name, const std::vector<double>& speeds_rpm, 
 }
 
 }  // namespace
+
+std::vector<DrawnLimit> limits_of(const Strength& strength, const std::vector<std::string>& sections,
+                                  const std::vector<double>& speeds) {
+  std::vector<DrawnLimit> limits;
+  for (const SectionStrength& s : strength.sections) {
+    const auto found = std::find(sections.begin(), sections.end(), s.element + ".torque_Nm");
+    if (found == sections.end()) continue;
+    const auto add = [&](const std::string& name, double TorqueLimit::*value) {
+      DrawnLimit limit{static_cast<int>(found - sections.begin()), name,
+                       Vector(static_cast<Eigen::Index>(speeds.size()))};
+      for (std::size_t i = 0; i < speeds.size(); ++i)
+        limit.values[static_cast<Eigen::Index>(i)] = torque_limit(s, speeds[i] / strength.rated_speed).*value;
+      if (!limit.values.array().isNaN().all()) limits.push_back(std::move(limit));
+    };
+    add("permissible", &TorqueLimit::continuous);
+    add("permissible while passed", &TorqueLimit::transient);
+  }
+  return limits;
+}
 
 Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, const std::string& title,
                        const std::string& words, const std::vector<DrawnLimit>& limits,

@@ -5,8 +5,11 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <hdf5.h>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "app/base/output_file.hpp"
@@ -59,7 +62,20 @@ class Hdf5File {
         H5Dcreate2(file_, column.name.c_str(), H5T_NATIVE_DOUBLE, space, links, chunks, H5P_DEFAULT),
         H5Dclose);
     check(columns_.back() >= 0);
-    add_text(columns_.back(), "unit", column.unit);
+    if (!column.unit.empty()) add_text(columns_.back(), "unit", column.unit);
+  }
+
+  void add_texts(const std::string& name, const std::vector<std::string>& texts) {
+    const hsize_t count = texts.size();
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate_simple(1, &count, nullptr), H5Sclose),
+        links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    check(H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0);
+    H5Pset_create_intermediate_group(links, 1);
+    const Handle set(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    std::vector<const char*> characters;
+    for (const std::string& text : texts) characters.push_back(text.c_str());
+    check(set >= 0 &&
+          (count == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, characters.data()) >= 0));
   }
 
   void append(std::size_t column, hsize_t at, const std::vector<double>& values) {
@@ -109,7 +125,78 @@ class Hdf5File {
   std::vector<Handle> columns_;
 };
 
+/// The cells of a line of CSV as csv_cell() writes them; moves past its end.
+std::vector<std::string> cells_of(const std::string& csv, std::size_t& at) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (; at < csv.size(); ++at) {
+    const char c = csv[at];
+    if (c == '"') {
+      if (quoted && at + 1 < csv.size() && csv[at + 1] == '"')
+        cells.back() += csv[++at];
+      else
+        quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (c == '\n' && !quoted) {
+      ++at;
+      break;
+    } else {
+      cells.back() += c;
+    }
+  }
+  for (std::string& cell : cells)
+    if (!cell.empty() && cell.front() == '\'') cell.erase(0, 1);
+  return cells;
+}
+
+/// Numbers, if all cells are; an empty one is not a number.
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& cells) {
+  std::vector<double> numbers;
+  for (const std::string& cell : cells) {
+    char* end = nullptr;
+    numbers.push_back(cell.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                   : std::strtod(cell.c_str(), &end));
+    if (!cell.empty() && *end != '\0') return std::nullopt;
+  }
+  return numbers;
+}
+
 }  // namespace
+
+void write_tables_hdf5(const std::string& path, const std::vector<TableText>& tables,
+                       const std::string& summary) {
+  const std::string extension = ".h5", name = std::filesystem::path(path).filename().string();
+  create_directory(folder_of(path));
+  OutputFile file(folder_of(path), name.substr(0, name.size() - extension.size()), "h5");
+  {
+    Hdf5File h5(file.partial_path());
+    h5.add_text(h5.id(), "drev", DREV_VERSION);
+    h5.add_text(h5.id(), "summary", summary);
+    std::size_t number = 0;
+    for (const TableText& table : tables) {
+      std::size_t at = 0;
+      const std::vector<std::string> names = cells_of(table.csv, at);
+      std::vector<std::vector<std::string>> columns(names.size());
+      while (at < table.csv.size()) {
+        const std::vector<std::string> row = cells_of(table.csv, at);
+        for (std::size_t c = 0; c < columns.size() && c < row.size(); ++c) columns[c].push_back(row[c]);
+      }
+      for (std::size_t c = 0; c < names.size(); ++c) {
+        const std::string place = table.name + "/" + names[c];
+        if (const auto numbers = numbers_of(columns[c])) {
+          h5.add_column({place, ""});
+          if (!numbers->empty()) h5.append(number, 0, *numbers);
+          ++number;
+        } else {
+          h5.add_texts(place, columns[c]);
+        }
+      }
+    }
+    h5.close();
+  }
+  file.commit();
+}
 
 void write_hdf5(const std::string& directory, const std::string& csv,
                 const std::vector<HistoryColumn>& columns, const std::string& summary) {

@@ -321,6 +321,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   std::optional<RainflowWatch> rainflow;
   if (std::vector<RainflowChannel> counted = rainflow_channels(request, system); !counted.empty())
     of_span.push_back(&rainflow.emplace(std::move(counted)));
+  std::optional<ElementTotals> totals;
+  if (request.energy) of_span.push_back(&totals.emplace(system));
   AfterTime figures(result.span.from, std::move(of_span));
   std::optional<Peaks> whole;  // where the figures are of a part of the run
   if (result.span.from > 0.0) observers.insert(observers.begin(), &whole.emplace(torques));
@@ -366,6 +368,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     if (run_up) result.run_up = run_up->result();
     result.sections = sections_of(request, full, torque_peaks, whole ? *whole : torque_peaks);
     if (rainflow) result.rainflow = rainflow->finish();
+    if (totals) result.elements = totals->rows();
     if (result.accuracy) {
       take_figure(*result.accuracy, "peak torque", result.force);
       take_figure(*result.accuracy, "peak deflection", result.deflection);
