@@ -162,7 +162,7 @@ results = {
                                   "1e-2"),
     "class": printed("class", "class.toml", "--speeds", "300:10:1000", "--orders", "2", "--contact", "closed"),
     "shaft": printed("shaft", "shaft.toml"),
-    "counted": printed("run", "class.toml", "--rainflow", "z.force_N"),
+    "counted": printed("run", "class.toml", "--rainflow", "z.force_N", "--energy"),
     "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
     "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "2"),
     "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",
