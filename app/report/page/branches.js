@@ -33,7 +33,6 @@ function piecesOf(curve) {
 
 function showHead() {
   showTitle(page);
-  for (const note of page.notes) byId("warnings").append(make("p", { class: "warning" }, note));
 }
 
 function showFigures() {
@@ -57,6 +56,7 @@ function showFigures() {
         curve.whole ? "yes" : "no",
       ]),
     ),
+    ...page.notes.map((note) => make("p", { class: "note" }, note)),
     make("h3", {}, "Largest half range"),
     table(
       ["section", "half range", "at [rpm]", "curve", "largest heat [W]"],
@@ -189,12 +189,13 @@ function sectionChart(parent, group, s, c) {
     },
     underlay: (context, area, g) => {
       const text = new Labels(context, area);
-      for (const change of result.changes) {
+      result.changes.forEach((change, i) => {
         const x = g.toDomXCoord(change.speed_rpm);
-        if (x < area.x || x > area.x + area.w) continue;
+        if (x < area.x || x > area.x + area.w) return;
         line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
-        text.put(`${change.what} ${sig(change.speed_rpm, 6)}`, x + 3, area.y + 12, style("--quiet"));
-      }
+        // In rows, so that changes close to each other are all named.
+        text.put(`${change.what} ${sig(change.speed_rpm, 6)}`, x + 3, area.y + 12 + 13 * (i % 3), style("--quiet"));
+      });
     },
   });
   chart.section = s.name;
