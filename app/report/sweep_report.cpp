@@ -127,7 +127,7 @@ Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, co
   data["model"] = model_object(m.model_case.model, m.system);
   data["shaft"] = reference_name(m.model_case.model);
   data["criticals_note"] = text_or_null(sweep.modes_note);
-  data["campbell"] = sweep.modes_note.empty() ? campbell_object(request, sweep) : Json();
+  data["campbell"] = sweep.modes.lambda.size() > 0 ? campbell_object(request, sweep) : Json();
   data["sweeps"] = Json::array({sweep_data("", request.speeds_rpm, sweep, limits)});
   for (const SweepBeside& other : beside)
     data["sweeps"].push_back(sweep_data(other.name, request.speeds_rpm, *other.sweep, {}));
