@@ -7,6 +7,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/energy/element_energy.hpp"
+
 namespace drev {
 
 class ChannelFinder {
@@ -70,6 +72,54 @@ class ChannelFinder {
       make_direct(channel);
     }
     return readings;
+  }
+
+  /// ELEMENT.power_W and the like.
+  bool find_energy(const std::string& name, Channel& channel) {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) return false;
+    const auto& elements = system_.element_instances();
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      if (elements[e].name.size() != dot || name.compare(0, dot, elements[e].name) != 0) continue;
+      for (Channel& c : energies_of(static_cast<int>(e)))
+        if (c.name_ == name) {
+          channel = std::move(c);
+          return true;
+        }
+    }
+    return false;
+  }
+  std::vector<Channel> energies_of(int element) {
+    if (energies_.empty())
+      for (ElementEnergy& e : ElementEnergy::of_all(system_))
+        energies_.push_back(std::make_shared<const ElementEnergy>(std::move(e)));
+    const auto& energy = energies_[idx(element)];
+    std::vector<Channel> found;
+    const auto add_one = [&](bool there, const char* what, const char* unit, Channel::Kind kind,
+                             double (ElementEnergy::*of)(const Assembler&, const State&) const) {
+      if (!there) return;
+      Channel c;
+      c.name_ = system_.element_instances()[idx(element)].name + what;
+      c.unit_ = unit;
+      c.kind_ = kind;
+      c.energy_ = energy;
+      c.of_energy_ = of;
+      c.driven_ = of == &ElementEnergy::power && energy->has_loads();
+      if (energy->has_friction() && kind == Channel::Kind::integral) {
+        c.kind_ = Channel::Kind::friction;
+        c.index_ = energy->friction_heat();
+      }
+      found.push_back(std::move(c));
+    };
+    using Kind = Channel::Kind;
+    const ElementEnergy& own = *energy;
+    add_one(own.exchanges(), ".power_W", "W", Kind::energy, &ElementEnergy::power);
+    add_one(own.dissipates(), ".dissipation_W", "W", Kind::energy, &ElementEnergy::dissipation);
+    add_one(own.stores(), ".stored_J", "J", Kind::energy, &ElementEnergy::stored);
+    add_one(own.moves(), ".kinetic_J", "J", Kind::energy, &ElementEnergy::kinetic);
+    add_one(own.exchanges() && !own.has_friction(), ".work_J", "J", Kind::integral, &ElementEnergy::power);
+    add_one(own.dissipates(), ".dissipated_J", "J", Kind::integral, &ElementEnergy::dissipation);
+    return found;
   }
 
  private:
@@ -159,6 +209,7 @@ class ChannelFinder {
 
   const System& system_;
   const std::set<std::string>* wanted_;
+  std::vector<std::shared_ptr<const ElementEnergy>> energies_;  // of all elements, once any is asked for
 };
 
 namespace {
@@ -336,28 +387,48 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
     }
     case Kind::ideal_ratio:
       return ideal_ratio_torque(assembler, state, index_);
+    case Kind::energy:
+      return integrand(assembler, state);
+    case Kind::integral:
+      throw SolverError(system.name() + ": " + name_ +
+                        " is summed up over a run; no single state holds its value (Recorder does)");
   }
   return 0.0;
 }
 
+double Channel::integrand(const Assembler& assembler, const State& state) const {
+  return ((*energy_).*of_energy_)(assembler, state);
+}
+
 std::vector<Channel> all_channels(const System& system) { return ChannelFinder(system).channels; }
 
-std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names) {
+std::vector<Channel> energy_channels(const System& system) {
+  const std::set<std::string> none;
+  ChannelFinder finder(system, &none);
+  std::vector<Channel> all;
+  for (int e = 0; e < static_cast<int>(system.element_instances().size()); ++e)
+    for (Channel& c : finder.energies_of(e)) all.push_back(std::move(c));
+  return all;
+}
+
+std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names,
+                                   OverRun integrals) {
   const std::set<std::string> wanted(names.begin(), names.end());
-  const ChannelFinder finder(system, &wanted);
+  ChannelFinder finder(system, &wanted);
   std::unordered_map<std::string, std::vector<std::size_t>> by_name;
   for (std::size_t i = 0; i < finder.channels.size(); ++i) by_name[finder.channels[i].name()].push_back(i);
   std::vector<std::string> known;  // for the error alone
   const auto hint = [&](const std::string& name) {
     if (known.empty())
-      for (const Channel& c : all_channels(system)) known.push_back(c.name());
+      for (const auto& list : {all_channels(system), energy_channels(system)})
+        for (const Channel& c : list) known.push_back(c.name());
     return did_you_mean(name, known);
   };
   std::vector<Channel> found;
   std::vector<Finding> findings;
   for (const std::string& name : names) {
     const auto it = by_name.find(name);
-    Channel difference;
+    Channel difference, energy;
     if (it != by_name.end()) {
       found.push_back(finder.channels[it->second.front()]);
       if (it->second.size() > 1)
@@ -370,7 +441,12 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
       findings.push_back(
           {system.name(), "channel", name, "",
            "can be read as " + std::to_string(readings) + " pairs of nodes; rename one of them"});
-    else
+    else if (finder.find_energy(name, energy)) {
+      if (energy.over_run() && integrals == OverRun::refused)
+        findings.push_back({system.name(), "channel", name, "",
+                            "is summed up over a run: it can be recorded, but not be taken here"});
+      found.push_back(std::move(energy));
+    } else
       findings.push_back({system.name(), "channel", name, "", "is no channel of this model" + hint(name)});
   }
   if (!findings.empty()) throw ModelError(findings);

@@ -8,6 +8,14 @@
 ///   ELEMENT.torque_Nm, ELEMENT.force_N                                      force the element carries
 ///   ELEMENT.slip_speed_rad_per_s (_m_per_s), ELEMENT.state, ELEMENT.heat_J    dry friction (friction.hpp)
 ///   ELEMENT.deflection_m (_rad)                                             x of a scalar element
+///   ELEMENT.power_W, ELEMENT.dissipation_W    power that the element gives the train; that it turns into heat
+///   ELEMENT.stored_J, ELEMENT.kinetic_J       elastic energy in it; kinetic energy of its inertia
+///   ELEMENT.work_J, ELEMENT.dissipated_J      power and dissipation summed up since the start of the run
+///
+/// Power and kinetic energy are of the actual speeds, nominal and deviation together: power > 0 of what drives, < 0
+/// of what takes; dissipation >= 0 of passive elements. Over any time work = -dissipated - change of stored, of
+/// elements that do not vary by themselves (equations: core/energy/element_energy.hpp). Elements that neither store,
+/// lose nor give have none. Of dry friction dissipated_J is heat_J.
 ///
 /// Signs: a shaft's or spring's torque is k (q_b - q_a) + c (q_b' - q_a'), Rayleigh damping not included; a
 /// mesh's force is positive on the front flank (x > 0); a load's torque is as it enters the right-hand side;
@@ -15,6 +23,7 @@
 /// applied to the prescribed node to make it move as given.
 #include <drev/core/state.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,22 +31,30 @@
 namespace drev {
 
 class Assembler;
+class ElementEnergy;
 
 class Channel {
  public:
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
-  /// Value at a state; the assembler must stand at the state's time.
+  /// Value at a state; the assembler must stand at the state's time. Throws SolverError where over_run().
   double evaluate(const Assembler& assembler, const State& state) const;
   /// Its rate of change at a state: of motions, deflections and forces of laws that follow x and x' alone;
   /// none for others (accelerations, reactions, loads, ideal gears, laws that follow a phase).
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
+  /// Whether it is an integral over the run of its integrand() [W]: no state holds its value, but a Recorder
+  /// (recorder.hpp) and ChannelValues (channel_values.hpp) do.
+  bool over_run() const { return kind_ == Kind::integral; }
+  double integrand(const Assembler& assembler, const State& state) const;
+  /// Whether it is one of the channels of energy and power.
+  bool of_energy() const { return energy_ != nullptr; }
+
   /// Whether evaluate() reads the state's accelerations, or rate() does.
   bool value_needs_acceleration() const;
   /// Whether the value jumps or kinks where a load does.
   bool follows_loads() const {
-    return kind_ == Kind::load || kind_ == Kind::friction || value_needs_acceleration();
+    return kind_ == Kind::load || kind_ == Kind::friction || driven_ || value_needs_acceleration();
   }
   bool rate_needs_acceleration() const { return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty(); }
 
@@ -66,7 +83,9 @@ class Channel {
     load,
     ideal_ratio,
     friction,
-    slip
+    slip,
+    energy,
+    integral
   };
   std::string name_, unit_;
   Kind kind_ = Kind::value;
@@ -76,14 +95,24 @@ class Channel {
   bool direct_ = false;
   std::vector<Entry> z_, v_;
   std::vector<Entry> u_, u_rate_;  ///< of an output, over known motions
+  /// Of energy and integral: whose, what it gives, and whether loads have a part in it.
+  std::shared_ptr<const ElementEnergy> energy_;
+  double (ElementEnergy::*of_energy_)(const Assembler&, const State&) const = nullptr;
+  bool driven_ = false;
 };
 
-/// Every channel of a system, in the order of its nodes and elements (differences left out).
+/// Every channel of a system, in the order of its nodes and elements (differences and energies left out).
 std::vector<Channel> all_channels(const System& system);
+/// Those of energy and power, in the order of the elements.
+std::vector<Channel> energy_channels(const System& system);
+
+/// Whether channels that are integrals over the run are taken.
+enum class OverRun { refused, taken };
 
 /// Channels by name; a difference is found too. Throws ModelError that lists every unknown name with the
-/// nearest known one.
-std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names);
+/// nearest known one, and every integral over the run where these are refused.
+std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names,
+                                   OverRun integrals = OverRun::refused);
 Channel find_channel(const System& system, const std::string& name);
 
 /// Torque that must act on prescribed node k beside the model's own terms to move it as given.

@@ -97,9 +97,6 @@ void SystemBuilder::keep_entries(const std::vector<int>& nodes, const Eigen::Mat
         sum.add(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], matrix(i, j));
 }
 
-namespace {
-
-/// The piece k x + c x' of a law that is nothing else; null for other laws.
 const LawPiece* straight_line(const ScalarSpec& s) {
   const std::span<const LawPiece> pieces = linear_pieces(s);
   if (pieces.size() != 1) return nullptr;
@@ -107,8 +104,6 @@ const LawPiece* straight_line(const ScalarSpec& s) {
   const bool straight = p.bounds.empty() && p.y_0 == 0.0 && p.elastic_0 == 0.0 && p.elastic_k == p.k;
   return straight ? &p : nullptr;
 }
-
-}  // namespace
 
 void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms& terms) {
   const ElementId id{element};
@@ -179,30 +174,22 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
 }
 
 std::vector<OutputTerm> System::outputs() const {
-  const NameIndex by_name(node_count(), [this](int i) -> const std::string& { return node_names()[idx(i)]; });
   std::vector<OutputTerm> outputs;
-  ElementParts parts;
-  for (std::size_t e = 0; e < element_instances().size(); ++e) {
-    const ElementInstance& p = element_instances()[e];
-    std::vector<int> nodes;
-    for (const NodeRef& ref : p.nodes) nodes.push_back(ref.id ? index(*ref.id) : by_name.find(ref.name));
-    for (const NodeId id : p.internal) nodes.push_back(index(id));
-    const ElementId id{static_cast<int>(e)};
-    parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
-      for (const OutputSpec& o : terms.outputs) {
-        outputs.push_back({id, o.suffix, over_nodes(o.stiffness, of_part), over_nodes(o.damping, of_part)});
-        if (o.deflection.size() > 0)
-          outputs.push_back({id, o.suffix, over_nodes(o.deflection, of_part), {}, false, true});
+  for_each_stated(*this, [&](int element, const Terms& terms, const std::vector<int>& of_part) {
+    const ElementId id{element};
+    for (const OutputSpec& o : terms.outputs) {
+      outputs.push_back({id, o.suffix, over_nodes(o.stiffness, of_part), over_nodes(o.damping, of_part)});
+      if (o.deflection.size() > 0)
+        outputs.push_back({id, o.suffix, over_nodes(o.deflection, of_part), {}, false, true});
+    }
+    for (const ScalarSpec& s : terms.scalars)
+      if (const LawPiece* line = straight_line(s)) {
+        const bool along = s.along_line_of_action;
+        outputs.push_back(
+            {id, "", over_nodes(line->k * s.b, of_part), over_nodes(line->c * s.b, of_part), along});
+        outputs.push_back({id, "", over_nodes(s.b, of_part), {}, along, true});
       }
-      for (const ScalarSpec& s : terms.scalars)
-        if (const LawPiece* line = straight_line(s)) {
-          const bool along = s.along_line_of_action;
-          outputs.push_back(
-              {id, "", over_nodes(line->k * s.b, of_part), over_nodes(line->c * s.b, of_part), along});
-          outputs.push_back({id, "", over_nodes(s.b, of_part), {}, along, true});
-        }
-    });
-  }
+  });
   return outputs;
 }
 

@@ -21,7 +21,7 @@ int campbell_command(const CommandLine& line) {
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
-  if (!sweep.modes_note.empty())
+  if (sweep.modes.lambda.size() == 0 && !sweep.modes_note.empty())
     throw SolverError("campbell of " + request.model.entry->name + ": " + sweep.modes_note);
   if (const auto out = line.option("--out")) {
     create_directory(*out);

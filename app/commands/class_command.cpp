@@ -22,27 +22,20 @@ ClassCase judged_case(const std::string& name, SweepRequest request) {
   return found;
 }
 
-/// Limits of the first case, drawn into the charts.
-std::vector<DrawnLimit> drawn_limits(const ClassCase& c) {
-  std::vector<DrawnLimit> drawn;
-  for (const SectionJudgement& judged : c.judgement.sections) {
-    const auto add = [&](const std::string& name, double TorqueLimit::*value) {
-      DrawnLimit limit{judged.section, name, Vector(static_cast<Eigen::Index>(judged.limits.size()))};
-      for (std::size_t i = 0; i < judged.limits.size(); ++i)
-        limit.values[static_cast<Eigen::Index>(i)] = judged.limits[i].*value;
-      if (!limit.values.array().isNaN().all()) drawn.push_back(std::move(limit));
-    };
-    add("permissible", &TorqueLimit::continuous);
-    add("permissible while passed", &TorqueLimit::transient);
-  }
-  return drawn;
+std::vector<std::string> names_of(const LinearSweep& sweep) {
+  std::vector<std::string> names;
+  for (const SweepSection& section : sweep.sections) names.push_back(section.name);
+  return names;
 }
 
 Json report_data(const CommandLine& line, const std::vector<ClassCase>& cases, const Json& judged) {
   std::vector<SweepBeside> beside;
   for (std::size_t i = 1; i < cases.size(); ++i) beside.push_back({cases[i].name, &cases[i].sweep});
   Json data = sweep_report_data(cases.front().request, cases.front().sweep, "torsional vibration calculation",
-                                words_of(line), drawn_limits(cases.front()), beside);
+                                words_of(line),
+                                limits_of(*cases.front().request.model.model_case.strength,
+                                          names_of(cases.front().sweep), cases.front().sweep.speeds),
+                                beside);
   data["class"] = judged;
   return data;
 }

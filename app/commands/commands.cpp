@@ -19,9 +19,10 @@ const std::vector<CommandEntry>& commands() {
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
   static const OptionEntry sections{"--record", "CHANNEL,...",
                                     "Sections; default: every torque and force of an element", commas};
-  static const OptionEntry sweep_report{
-      "--report", "FILE",
-      "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, criticals, Campbell diagram"};
+  static const OptionEntry sweep_report{"--report", "FILE",
+                                        "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, "
+                                        "criticals, Campbell diagram; of contacts: "
+                                        "branches, stability, folds"};
   static const std::vector<CommandEntry> table{
       {.name = "run",
        .summary = "Simulates a model in time, or several, and prints what it found",
@@ -51,6 +52,8 @@ const std::vector<CommandEntry>& commands() {
             {"--rainflow", "CHANNEL,...",
              "Counts load cycles (ASTM E1049) of channels; sections with an S-N line are counted anyway",
              commas},
+            {"--energy", "",
+             "Work, heat and largest stored energy of each element over the span of the figures", none},
             {"--every", "SECONDS",
              "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
             {"--format",
@@ -106,7 +109,7 @@ const std::vector<CommandEntry>& commands() {
                     "Of a model with contacts: relative error of a motion; default: 1e-5"},
                    {"--out", "DIR",
                     "Creates DIR with sweep.csv (of contacts: branches.csv), orders.csv, criticals.csv "
-                    "(changes.csv) and summary.json"},
+                    "(changes.csv) and summary.json; or FILE.h5 with the same tables"},
                    sweep_report,
                    run,
                    plugin},

@@ -41,7 +41,8 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
   for (const char* option : {"--record", "--rainflow"}) {
     if (!line.list(option)) continue;
     try {
-      find_channels(model.system, *line.list(option));
+      const bool recorded = option == std::string("--record");
+      find_channels(model.system, *line.list(option), recorded ? OverRun::taken : OverRun::refused);
     } catch (const ModelError& error) {
       for (Finding finding : error.findings()) {
         if (!all_parameters_right) finding.range += " (with the parameters that are right)";
@@ -271,7 +272,8 @@ RunRequest request_run(const CommandLine& given) {
           line.option("--duration") ? std::optional(duration) : std::nullopt,
           line.option("--events"),
           line.keeps_history,
-          line.list("--rainflow").value_or(std::vector<std::string>{})};
+          line.list("--rainflow").value_or(std::vector<std::string>{}),
+          line.options.contains("--energy")};
 }
 
 }  // namespace drev::app

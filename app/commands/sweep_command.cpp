@@ -10,12 +10,42 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/sweep_request.hpp"
+#include "app/report/branches_report.hpp"
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/sweep_report.hpp"
 #include "app/results/branches_result.hpp"
+#include "app/results/history_hdf5.hpp"
 
 namespace drev::app {
+
+namespace {
+
+bool is_hdf5(const std::string& out) { return out.ends_with(".h5"); }
+
+/// DIR/NAME.csv of each table and DIR/summary.json, or one HDF5 file.
+void write_tables(const std::string& out, const std::vector<TableText>& tables, const std::string& summary) {
+  if (is_hdf5(out)) return write_tables_hdf5(out, tables, summary);
+  create_directory(out);
+  for (const TableText& table : tables) write_file(out, table.name, "csv", table.csv);
+  write_file(out, "summary", "json", summary);
+}
+
+/// Limits of the model's sections, where it says any.
+std::vector<DrawnLimit> model_limits(const ModelRequest& model, const std::vector<std::string>& sections,
+                                     const std::vector<double>& speeds) {
+  const auto& strength = model.model_case.strength;
+  return strength ? limits_of(*strength, sections, speeds) : std::vector<DrawnLimit>{};
+}
+
+template <class Sections>
+std::vector<std::string> names_of(const Sections& sections) {
+  std::vector<std::string> names;
+  for (const auto& section : sections) names.push_back(section.name);
+  return names;
+}
+
+}  // namespace
 
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
   std::vector<Finding> findings = line.findings;
@@ -35,7 +65,7 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
   options.balance = line.option("--balance").value_or("");
   if (const auto out = line.option("--out"); out && model)
     for (const std::string& name : written)
-      check_output("--out", *out + name, model->model_case.files, findings);
+      check_output("--out", is_hdf5(*out) ? *out : *out + name, model->model_case.files, findings);
   if (const auto report = line.option("--report")) {
     if (const auto why = why_no_report(*report))
       findings.push_back({kCommandLine, "--report", *report, "", *why});
@@ -74,27 +104,31 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
   if (request.absolute_sum)
     findings.push_back(
         {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
-  if (line.option("--report"))
-    findings.push_back(
-        {kCommandLine, "--report", "", "", "is for linear models (or --contact closed); take --out"});
   const auto out = line.option("--out");
   if (out)
-    for (const char* name : {"/branches.csv", "/orders.csv", "/changes.csv", "/summary.json"})
-      check_output("--out", *out + name, request.model.model_case.files, findings);
+    for (const char* name : {"/branches.csv", "/changes.csv"})
+      check_output("--out", is_hdf5(*out) ? *out : *out + name, request.model.model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   Progress shown;
   options.progress = [&](double part) {
     shown.update(part);
     return !interrupted();
   };
+  std::optional<ReportFile> report;
+  if (const auto file = line.option("--report")) report.emplace(*file);
   const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
   const Json object = line.json || out ? branches_object(request.model, options, sweep) : Json();
-  if (out) {
-    create_directory(*out);
-    write_file(*out, "branches", "csv", motions_as_csv(sweep));
-    write_file(*out, "orders", "csv", motion_orders_as_csv(sweep));
-    write_file(*out, "changes", "csv", changes_as_csv(sweep));
-    write_file(*out, "summary", "json", json_text(object));
+  if (out)
+    write_tables(*out,
+                 {{"branches", motions_as_csv(sweep)},
+                  {"orders", motion_orders_as_csv(sweep)},
+                  {"changes", changes_as_csv(sweep)}},
+                 json_text(object));
+  if (report) {
+    const Json data =
+        branches_report_data(request.model, options, sweep, words_of(line),
+                             model_limits(request.model, names_of(sweep.sections), sweep.speeds));
+    report->commit(report_page({block_text(data)}, ReportPage::branches));
   }
   print(line.json ? json_text(object) : branches_as_text(request.model, options, sweep));
   return kSuccess;
@@ -115,17 +149,17 @@ int sweep_command(const CommandLine& line) {
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
-  if (const auto out = line.option("--out")) {
-    create_directory(*out);
-    write_file(*out, "sweep", "csv", sweep_as_csv(request, sweep));
-    write_file(*out, "orders", "csv", orders_as_csv(request, sweep));
-    write_file(*out, "criticals", "csv", criticals_as_csv(sweep));
-    write_file(*out, "summary", "json", json_text(sweep_object(request, sweep)));
+  if (const auto out = line.option("--out"))
+    write_tables(*out,
+                 {{"sweep", sweep_as_csv(request, sweep)},
+                  {"orders", orders_as_csv(request, sweep)},
+                  {"criticals", criticals_as_csv(sweep)}},
+                 json_text(sweep_object(request, sweep)));
+  if (report) {
+    const Json data = sweep_report_data(request, sweep, "vibration by orders over speed", words_of(line),
+                                        model_limits(request.model, names_of(sweep.sections), sweep.speeds));
+    report->commit(report_page({block_text(data)}, ReportPage::sweep));
   }
-  if (report)
-    report->commit(report_page(
-        {block_text(sweep_report_data(request, sweep, "vibration by orders over speed", words_of(line)))},
-        ReportPage::sweep));
   print(line.json ? json_text(sweep_object(request, sweep)) : sweep_as_text(request, sweep));
   return kSuccess;
 }

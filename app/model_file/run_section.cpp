@@ -149,7 +149,9 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
       origin.emplace(asked[i], i);
       continue;
     }
-    if (all.empty()) all = all_channels(system);
+    // Energies are meant where the pattern says so: "*" alone is motions and forces.
+    const bool energies = asked[i].ends_with("_W") || asked[i].ends_with("_J");
+    all = energies ? energy_channels(system) : all_channels(system);
     const std::size_t before = found.size();
     for (const Channel& channel : all)
       if (fits_pattern(asked[i], channel.name())) found.push_back(channel.name());
@@ -157,7 +159,7 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
       context.findings.push_back(fault_at(place(i), "run." + key, "\"" + asked[i] + "\" fits no channel"));
   }
   try {
-    find_channels(system, single);
+    find_channels(system, single, key == "record" ? OverRun::taken : OverRun::refused);
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
       finding.place = place(origin[finding.value]).text() + ": run." + key;

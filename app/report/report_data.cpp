@@ -29,9 +29,11 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
   if (request.start != Start::rest) text += std::string(" --start ") + to_text(request.start);
   if (request.settle) text += " --settle " + (request.settle->time ? to_text(*request.settle->time) : "auto");
   text += " --method " + method.name;
-  if (request.accuracy) return text + " --accuracy " + to_text(*request.accuracy);
+  if (request.accuracy)
+    return text + " --accuracy " + to_text(*request.accuracy) + (request.energy ? " --energy" : "");
   if (method.step > 0.0) text += " --step " + to_text(method.step);
   if (method.tolerance > 0.0) text += " --tolerance " + to_text(method.tolerance);
+  if (request.energy) text += " --energy";
   if (result.reduction.used) text += " --reduce " + to_text(*request.reduce);
   return text;
 }

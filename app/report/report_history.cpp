@@ -25,8 +25,9 @@ std::size_t even(std::size_t n) { return n - n % 2; }
 }  // namespace
 
 ReportHistory::ReportHistory(const System& system, const std::vector<std::string>& channels, double every)
-    : channels_(find_channels(system, channels)), every_(every) {
-  for (const Channel& channel : channels_) series_.push_back({channel.name(), channel.unit(), {}, {}, {}});
+    : channels_(find_channels(system, channels, OverRun::taken)), every_(every) {
+  for (const Channel& channel : channels_.channels())
+    series_.push_back({channel.name(), channel.unit(), {}, {}, {}});
   for (const char* name : {"kinetic", "stored"}) series_.push_back({name, "J", {}, {}, {}});
   places_ = even(std::clamp<std::size_t>(kPlaces / series_.size(), 512, kMostPlaces));
   tail_places_ = std::clamp<std::size_t>(kTail / series_.size(), 1024, kMostTail);
@@ -45,11 +46,13 @@ ReportHistory::ReportHistory(const System& system, const std::vector<std::string
 
 void ReportHistory::start(const Assembler& assembler, const EvaluatedState& point) {
   start_ = point.state.t;
+  channels_.start(assembler, point);
   sample(assembler, point);
 }
 
 void ReportHistory::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double h = to.state.t - from.state.t;
+  channels_.step(assembler, from, to);
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     const double x0 = from.inputs[terms_[i]].x, x1 = to.inputs[terms_[i]].x;
     bands_[i].front.back() += static_cast<float>(h * share_above(x0, x1, gaps_[i].high));
@@ -79,9 +82,9 @@ void ReportHistory::sample(const Assembler& assembler, const EvaluatedState& poi
   if (drifting_ >= 0) angle_[place] += assembler.node_motion(drifting_, state).value / drifting_ratio_;
   for (std::size_t s = 0; s < series_.size(); ++s) {
     double value = 0.0;
-    if (s < channels_.size()) {
-      value = channels_[s].evaluate(assembler, state);
-    } else if (s == channels_.size()) {
+    if (s < channel_count()) {
+      value = channels_.value(s, assembler, point);
+    } else if (s == channel_count()) {
       assembler.multiply_mass(state.v, product_);
       value = 0.5 * state.v.dot(product_);
     } else {

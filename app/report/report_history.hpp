@@ -11,9 +11,8 @@
 /// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
 /// and stored energy [J].
 #include <drev/core/assembler.hpp>
-#include <drev/core/channel.hpp>
+#include <drev/solvers/run/channel_values.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
-#include <drev/solvers/run/observer.hpp>
 
 #include <memory>
 #include <string>
@@ -26,8 +25,13 @@ class ReportHistory final : public Observer {
   /// every >= 0 [s]; 0: every step, for methods whose steps an output time would cut.
   ReportHistory(const System& system, const std::vector<std::string>& channels, double every);
 
+  void look_through(StepMotion& motion) override { channels_.look_through(motion); }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    channels_.restart(assembler, point);
+  }
+  bool watches_loads() const override { return channels_.watches_loads(); }
   double next_stop(double t) const override;
 
   /// One curve: a channel, or an energy.
@@ -49,7 +53,7 @@ class ReportHistory final : public Observer {
   const std::vector<double>& times() const { return times_; }  ///< s, first of each group
   const std::vector<Series>& series() const { return series_; }
   const std::vector<Band>& bands() const { return bands_; }
-  std::size_t channel_count() const { return channels_.size(); }
+  std::size_t channel_count() const { return channels_.channels().size(); }
 
   std::size_t tail_size() const { return tail_times_.size(); }
   /// Sample i of the tail, the oldest first.
@@ -65,7 +69,7 @@ class ReportHistory final : public Observer {
   void open_group(double t);
   void join_neighbours();
 
-  std::vector<Channel> channels_;
+  ChannelValues channels_;
   double every_ = 0.0, start_ = 0.0, end_ = 0.0;
   std::size_t places_, tail_places_, oldest_ = 0;
   int drifting_ = -1;  // node of a part that may drift from its nominal speed

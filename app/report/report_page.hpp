@@ -8,7 +8,7 @@
 
 namespace drev::app {
 
-enum class ReportPage { run, sweep, judged, shaft };
+enum class ReportPage { run, sweep, branches, judged, shaft };
 
 /// blocks: the text of one or two data blocks of runs (report_data.hpp), or of one sweep (sweep_report.hpp).
 std::string report_page(const std::vector<std::string>& blocks, ReportPage kind = ReportPage::run);

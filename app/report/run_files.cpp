@@ -112,7 +112,7 @@ void RunFiles::write_summary(const RunResult& result, bool commit) {
   summary_->commit();
   if (!request_.hdf5) return note_old_hdf5();
   std::vector<HistoryColumn> columns;
-  for (const Channel& channel : find_channels(request_.model.system, request_.record))
+  for (const Channel& channel : find_channels(request_.model.system, request_.record, OverRun::taken))
     columns.push_back({channel.name(), channel.unit()});
   write_hdf5(*request_.out, history_->path(), columns, summary);
 }

@@ -1,6 +1,7 @@
 #include "app/report/sweep_report.hpp"
 
 #include <drev/core/units.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -90,6 +91,25 @@ Json sweep_data(const std::string& name, const std::vector<double>& speeds_rpm, 
 
 }  // namespace
 
+std::vector<DrawnLimit> limits_of(const Strength& strength, const std::vector<std::string>& sections,
+                                  const std::vector<double>& speeds) {
+  std::vector<DrawnLimit> limits;
+  for (const SectionStrength& s : strength.sections) {
+    const auto found = std::find(sections.begin(), sections.end(), s.element + ".torque_Nm");
+    if (found == sections.end()) continue;
+    const auto add = [&](const std::string& name, double TorqueLimit::*value) {
+      DrawnLimit limit{static_cast<int>(found - sections.begin()), name,
+                       Vector(static_cast<Eigen::Index>(speeds.size()))};
+      for (std::size_t i = 0; i < speeds.size(); ++i)
+        limit.values[static_cast<Eigen::Index>(i)] = torque_limit(s, speeds[i] / strength.rated_speed).*value;
+      if (!limit.values.array().isNaN().all()) limits.push_back(std::move(limit));
+    };
+    add("permissible", &TorqueLimit::continuous);
+    add("permissible while passed", &TorqueLimit::transient);
+  }
+  return limits;
+}
+
 Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, const std::string& title,
                        const std::string& words, const std::vector<DrawnLimit>& limits,
                        const std::vector<SweepBeside>& beside) {
@@ -107,7 +127,7 @@ Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, co
   data["model"] = model_object(m.model_case.model, m.system);
   data["shaft"] = reference_name(m.model_case.model);
   data["criticals_note"] = text_or_null(sweep.modes_note);
-  data["campbell"] = sweep.modes_note.empty() ? campbell_object(request, sweep) : Json();
+  data["campbell"] = sweep.modes.lambda.size() > 0 ? campbell_object(request, sweep) : Json();
   data["sweeps"] = Json::array({sweep_data("", request.speeds_rpm, sweep, limits)});
   for (const SweepBeside& other : beside)
     data["sweeps"].push_back(sweep_data(other.name, request.speeds_rpm, *other.sweep, {}));

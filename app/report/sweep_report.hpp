@@ -1,6 +1,8 @@
 #pragma once
 /// The report of a sweep: one page with amplitudes over speed, by order and in sum, orders at a speed, criticals
 /// and the Campbell diagram.
+#include <drev/solvers/strength/section_strength.hpp>
+
 #include <string>
 #include <vector>
 
@@ -14,6 +16,11 @@ struct DrawnLimit {
   std::string name;
   Vector values;  ///< over the speeds, in the section's unit; not finite where there is none
 };
+
+/// Torques that sections may carry, continuously and while a range is passed, over the speeds [rad/s]; of those among
+/// the channels `sections` that have a limit.
+std::vector<DrawnLimit> limits_of(const Strength& strength, const std::vector<std::string>& sections,
+                                  const std::vector<double>& speeds);
 
 /// A sweep of the same speeds and sections that is drawn beside the first: one cylinder misfiring.
 struct SweepBeside {

@@ -123,41 +123,7 @@ double largest_left_over(const NonlinearSweep& sweep, std::size_t part) {
 
 std::string notes_text(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
   std::string text;
-  double error = 0.0;
-  bool judged = true;
-  for (const SweptBranch& branch : sweep.branches)
-    for (const SweptMotion& motion : branch.motions) {
-      if (motion.asked) error = std::max(error, motion.error);
-      judged = judged && motion.judged;
-    }
-  if (!sweep.branches.empty())
-    text += wrap("Largest error of a motion at the speeds asked for: " + digits(error, 1) +
-                     " of its section's largest value" +
-                     (error > options.tolerance
-                          ? ", more than the " + short_digits(options.tolerance, 2) + " asked for"
-                          : std::string()) +
-                     ".",
-                 0);
-  if (!judged) text += wrap("Stability is not judged with more than 200 unknowns.", 0);
-  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
-    if (!sweep.branches[b].whole)
-      text += wrap("Curve " + std::to_string(b + 1) + " could not be followed to its end.", 0);
-  if (!sweep.unsolved.empty()) {
-    std::vector<std::string> speeds;
-    for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
-    text += wrap("No periodic motion was found at " + join(speeds) + " rpm.", 0);
-  }
-  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
-    if (const double left = largest_left_over(sweep, f); left > kLeftOver)
-      text +=
-          wrap("Mean torque does not balance: up to " + digits(left, kFigureDigits) +
-                   " N m are left over on the part of " + sweep.floating_parts[f] +
-                   " (referred to the reference shaft). " +
-                   (options.balance.empty()
-                        ? "The motions are those of the train that this speeds up; --balance NODE takes it "
-                          "up at a node."
-                        : "It is taken up at " + options.balance + "."),
-               0);
+  for (const std::string& note : branches_notes(options, sweep)) text += wrap(note, 0);
   return text;
 }
 
@@ -215,6 +181,44 @@ Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
 std::string table_cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
 
 }  // namespace
+
+std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
+  std::vector<std::string> notes;
+  double error = 0.0;
+  bool judged = true;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions) {
+      if (motion.asked) error = std::max(error, motion.error);
+      judged = judged && motion.judged;
+    }
+  if (!sweep.branches.empty())
+    notes.push_back("Largest error of a motion at the speeds asked for: " + digits(error, 1) +
+                    " of its section's largest value" +
+                    (error > options.tolerance
+                         ? ", more than the " + short_digits(options.tolerance, 2) + " asked for"
+                         : std::string()) +
+                    ".");
+  if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    if (!sweep.branches[b].whole)
+      notes.push_back("Curve " + std::to_string(b + 1) + " could not be followed to its end.");
+  if (!sweep.unsolved.empty()) {
+    std::vector<std::string> speeds;
+    for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
+    notes.push_back("No periodic motion was found at " + join(speeds) + " rpm.");
+  }
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
+    if (const double left = largest_left_over(sweep, f); left > kLeftOver)
+      notes.push_back(
+          "Mean torque does not balance: up to " + digits(left, kFigureDigits) +
+          " N m are left over on the part of " + sweep.floating_parts[f] +
+          " (referred to the reference shaft). " +
+          (options.balance.empty()
+               ? "The motions are those of the train that this speeds up; --balance NODE takes it "
+                 "up at a node."
+               : "It is taken up at " + options.balance + "."));
+  return notes;
+}
 
 std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,
                              const NonlinearSweep& sweep) {

@@ -10,6 +10,8 @@
 
 namespace drev::app {
 
+/// Sentences on errors, stability, mean torque that does not balance, and what was not found.
+std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep);
 std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,
                              const NonlinearSweep& sweep);
 /// As docs/results.schema.json describes it, kind "branches".

@@ -1,5 +1,5 @@
 #pragma once
-/// history.h5: history.csv as HDF5, made of it when the run is complete. A dataset time_s and one for each
+/// Results as HDF5. history.h5: history.csv as HDF5, made of it when the run is complete. A dataset time_s and one for each
 /// channel, by its name, with the attribute "unit"; the file's attributes are "drev" (version) and "summary"
 /// (summary.json as text).
 #include <string>
@@ -15,5 +15,15 @@ struct HistoryColumn {
 /// stays what it was if that fails. Throws OutputError.
 void write_hdf5(const std::string& directory, const std::string& csv,
                 const std::vector<HistoryColumn>& columns, const std::string& summary);
+
+/// A table that is written beside others into one file: its text as CSV, the header in the first line.
+struct TableText {
+  std::string name, csv;
+};
+/// PATH: a group for each table, in it a dataset for each column by its name, of numbers (an empty cell: not a
+/// number), or of texts where a cell is neither. The file's attributes are those of history.h5. What stands at the
+/// path stays what it was if that fails. Throws OutputError.
+void write_tables_hdf5(const std::string& path, const std::vector<TableText>& tables,
+                       const std::string& summary);
 
 }  // namespace drev::app

@@ -143,6 +143,18 @@ Json rainflow_array(const RunResult& r) {
   return list;
 }
 
+Json elements_array(const RunRequest& request, const RunResult& r) {
+  if (!request.energy) return nullptr;
+  Json list = Json::array();
+  for (const ElementTotals::Row& row : r.elements)
+    list.push_back({{"element", row.element},
+                    {"work_J", number(row.work)},
+                    {"dissipated_J", number(row.dissipated)},
+                    {"mean_dissipation_W", number(row.mean_loss())},
+                    {"largest_stored_J", number(row.largest_stored)}});
+  return list;
+}
+
 Json span_object(const RunResult& r) {
   return {{"from_s", number(r.span.from)},
           {"to_s", number(r.summary.t_end)},
@@ -168,14 +180,25 @@ Json run_up_object(const SpeedsPassed& up) {
                          {"speed_rpm", number(to_rpm(c.speed))},
                          {"static", number(c.answer)}});
   for (const double speed : up.orders.speed) speeds.push_back(number(to_rpm(speed)));
-  for (std::size_t c = 0; c < up.orders.channels.size(); ++c)
+  for (std::size_t c = 0; c < up.orders.channels.size(); ++c) {
+    Json phases = Json::array();
+    for (const std::vector<double>& order : up.orders.phase[c]) {
+      Json over_windows = Json::array();
+      for (const double phase : order) over_windows.push_back(number(to_deg(phase)));
+      phases.push_back(std::move(over_windows));
+    }
     channels.push_back({{"name", up.orders.channels[c]},
                         {"unit", up.orders.units[c]},
-                        {"amplitude", up.orders.amplitude[c]}});
+                        {"amplitude", up.orders.amplitude[c]},
+                        {"phase_deg", std::move(phases)}});
+  }
   return {{"slowest_rpm", number(to_rpm(up.range.slowest))},
           {"fastest_rpm", number(to_rpm(up.range.fastest))},
           {"criticals", std::move(criticals)},
           {"turns", up.turns},
+          {"window", "hann"},
+          {"bandwidth_orders", OrderTracking::kBandwidth / up.turns},
+          {"resolution_orders", OrderTracking::kResolution / up.turns},
           {"orders", up.orders.orders},
           {"time_s", up.orders.time},
           {"speed_rpm", std::move(speeds)},
@@ -194,11 +217,12 @@ bool all_checked(const RunResult& r) {
   return any && all;
 }
 
-Json results_object(const RunResult& r) {
+Json results_object(const RunRequest& request, const RunResult& r) {
   Json results;
   results["of"] = span_object(r);
   results["sections"] = sections_array(r);
   results["rainflow"] = rainflow_array(r);
+  results["elements"] = elements_array(request, r);
   results["checked"] = all_checked(r);
   results["deflection_deg"] = in_unit(r.deflection, "rad", to_deg(1.0));
   results["deflection_m"] = in_unit(r.deflection, "m");
@@ -300,7 +324,7 @@ Json run_object(const RunRequest& request, const RunResult& r) {
   object["reduction"] = reduction_object(request.reduce, r.reduction);
   object["notes"] = notes_of(r);
   object["speed"] = speed_object(r);
-  object["results"] = results_object(r);
+  object["results"] = results_object(request, r);
   object["run_up"] = r.run_up ? run_up_object(*r.run_up) : Json();
   object["accuracy"] = r.accuracy ? accuracy_object(*request.accuracy, *r.accuracy) : Json();
   object["energy_error"] = r.status == "failed" ? Json() : number(s.energy.relative_error());

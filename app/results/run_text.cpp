@@ -280,6 +280,22 @@ std::string rainflow_rows(const RunResult& r) {
   return text;
 }
 
+/// Work, heat and stored energy by element; those that lose most first.
+std::string element_rows(const RunResult& r) {
+  if (r.elements.empty()) return {};
+  std::vector<ElementTotals::Row> rows = r.elements;
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
+    return a.dissipated.value_or(0.0) > b.dissipated.value_or(0.0);
+  });
+  const auto cell = [](const std::optional<double>& value) { return value ? digits(*value, 6) : "-"; };
+  std::vector<std::vector<std::string>> table{
+      {"element", "work [J]", "dissipated [J]", "mean dissipation [W]", "largest stored [J]"}};
+  for (const ElementTotals::Row& row : rows)
+    table.push_back(
+        {row.element, cell(row.work), cell(row.dissipated), cell(row.mean_loss()), cell(row.largest_stored)});
+  return "\n" + columns_text(table) + "\n";
+}
+
 }  // namespace
 
 std::string warning_of(const RunResult& r) {
@@ -334,7 +350,7 @@ std::string run_as_text(const RunRequest& request, const RunResult& r) {
     text += labelled("Largest values", "none: the run failed at " + short_digits(s.t_end, 6) + " s");
   text += force_rows(request.model.model_case, r) + contact_rows(r) + friction_rows(s);
   if (r.run_up) text += run_up_rows(*r.run_up);
-  text += rainflow_rows(r);
+  text += rainflow_rows(r) + element_rows(r);
   text += energy_row(s.energy);
   text += labelled("Method", method_text(r) + ", to t = " + short_digits(s.t_end, 6) + " s");
   text += labelled("Why this method", r.method_reason);

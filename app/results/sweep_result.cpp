@@ -53,7 +53,8 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
 }
 
 std::string criticals_text(const LinearSweep& sweep) {
-  if (!sweep.modes_note.empty()) return wrap("Criticals: " + sweep.modes_note, 0);
+  const std::string note = sweep.modes_note.empty() ? "" : wrap("Criticals: " + sweep.modes_note, 0);
+  if (sweep.criticals.empty() && !note.empty()) return note;
   if (sweep.criticals.empty())
     return "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<SweepCritical> shown = sweep.criticals;
@@ -72,7 +73,7 @@ std::string criticals_text(const LinearSweep& sweep) {
   if (shown.size() < sweep.criticals.size())
     text += "... the " + std::to_string(shown.size()) + " largest of " +
             std::to_string(sweep.criticals.size()) + "; --json and --out have all\n";
-  return text;
+  return note + text;
 }
 
 Json numbers(const Vector& values, double factor = 1.0) {

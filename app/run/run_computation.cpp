@@ -158,10 +158,18 @@ bool find_plan_start(const RunRequest& request, RunPlan& plan) {
   return plan.no_start.empty();
 }
 
+/// Those recorded that a state holds the values of.
+std::vector<std::string> recorded_states(const RunRequest& request) {
+  std::vector<std::string> names;
+  for (const Channel& c : find_channels(request.model.system, request.record, OverRun::taken))
+    if (!c.of_energy()) names.push_back(c.name());
+  return names;
+}
+
 /// Channels whose orders are tracked over a run-up: those recorded, and the deflection.
 std::vector<std::string> tracked_channels(const RunRequest& request) {
   constexpr std::size_t kMostTracked = 24;
-  std::vector<std::string> names = request.record;
+  std::vector<std::string> names = recorded_states(request);
   const std::string& deflection = request.model.model_case.deflection;
   if (!deflection.empty() && std::count(names.begin(), names.end(), deflection) == 0)
     names.insert(names.begin(), deflection);
@@ -212,7 +220,7 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
   for (const RainflowChannel& c : rainflow_channels(request, request.model.system))
     names.push_back(c.channel.name());
   if (request.out || request.report || request.keeps_history)
-    names.insert(names.end(), request.record.begin(), request.record.end());
+    for (std::string& name : recorded_states(request)) names.push_back(std::move(name));
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
@@ -313,6 +321,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   std::optional<RainflowWatch> rainflow;
   if (std::vector<RainflowChannel> counted = rainflow_channels(request, system); !counted.empty())
     of_span.push_back(&rainflow.emplace(std::move(counted)));
+  std::optional<ElementTotals> totals;
+  if (request.energy) of_span.push_back(&totals.emplace(system));
   AfterTime figures(result.span.from, std::move(of_span));
   std::optional<Peaks> whole;  // where the figures are of a part of the run
   if (result.span.from > 0.0) observers.insert(observers.begin(), &whole.emplace(torques));
@@ -358,6 +368,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     if (run_up) result.run_up = run_up->result();
     result.sections = sections_of(request, full, torque_peaks, whole ? *whole : torque_peaks);
     if (rainflow) result.rainflow = rainflow->finish();
+    if (totals) result.elements = totals->rows();
     if (result.accuracy) {
       take_figure(*result.accuracy, "peak torque", result.force);
       take_figure(*result.accuracy, "peak deflection", result.deflection);

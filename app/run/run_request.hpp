@@ -31,6 +31,7 @@ struct RunRequest {
   std::optional<std::string> events = {};  ///< file of the contact events, .csv
   bool keeps_history = false;              ///< what runs it keeps the recorded channels, without a file
   std::vector<std::string> rainflow = {};  ///< channels counted beside the sections with an S-N line
+  bool energy = false;                     ///< work, heat and stored energy of each element, too
 };
 
 }  // namespace drev::app

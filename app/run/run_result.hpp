@@ -4,6 +4,7 @@
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/element_totals.hpp>
 #include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peak.hpp>
 #include <drev/solvers/run/run_summary.hpp>
@@ -81,6 +82,7 @@ struct RunResult {
   std::vector<Contacts> contacts;
   std::vector<SectionPeaks> sections;           ///< of the model's torques
   std::vector<RainflowWatch::Result> rainflow;  ///< load cycles over the span
+  std::vector<ElementTotals::Row> elements;     ///< energies over the span, where they were asked for
   double modes_time = 0.0, static_time = 0.0, reduction_time = 0.0, accuracy_time = 0.0,
          run_time = 0.0;  ///< s of wall time
 

@@ -37,6 +37,7 @@ class ComplexElimination {
   int size() const { return n_; }
 
  private:
+  friend class LaneElimination;
   using Complex = std::complex<double>;
   struct Pivoted;
   bool factorize_pivoted(const Vector& m, const Vector& c, const Vector& k, Complex s);

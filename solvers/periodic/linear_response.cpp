@@ -34,7 +34,11 @@ std::string element_name(const System& system, ElementId id) {
 
 LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& options,
                                const std::vector<double>& orders, std::vector<Finding>& findings)
-    : system_(system), assembler_(system), orders_(orders), elimination_(system.pattern()) {
+    : system_(system),
+      assembler_(system),
+      orders_(orders),
+      elimination_(system.pattern()),
+      lanes_(elimination_) {
   check_model(options.close_contacts, findings);
   content_.emplace(system, orders, findings);
   for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system.row_of(load->node));
@@ -44,8 +48,9 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   sections_ = find_section_rows(system, options.sections, findings);
   direction_ = reference_direction(system_);
   if (findings.empty()) mean_.emplace(system_, damping_, stiffness_, options.balance, findings);
+  rows_.emplace(system_, sections_);
   z_.resize(idx(system.size()));
-  p_.resize(idx(system.size()));
+  for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()));
 }
 
 void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& findings) const {
@@ -146,63 +151,123 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
   point.twist.setZero(orders, count);
   point.heat.setZero(count);
   point.input_power = point.dissipated_power = 0.0;
-  const int* outer = system_.pattern().outerIndexPtr();
-  const int* inner = system_.pattern().innerIndexPtr();
-  for (Eigen::Index k = 0; k < orders; ++k) {
+  active_.clear();
+  for (int k = 0; k < static_cast<int>(orders); ++k) {
     if (only >= 0 && k != only) continue;
-    std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
-    bool any = false;
-    for (std::size_t l = 0; l < contents.size(); ++l) {
-      const Complex c = contents[l].amplitudes[static_cast<std::size_t>(k)];
-      if (c == 0.0) continue;
-      any = true;
-      for (const Entry& e : load_rows_[l]) z_[idx(e.index)] += e.coeff * c;
-    }
-    if (!any) continue;
-    p_ = z_;
-    const Complex s(0.0, direction_ * orders_[static_cast<std::size_t>(k)] * speed);
-    const bool complex_stiffness = !system_.frequency_terms().empty();
-    if (complex_stiffness) add_frequency_terms(std::abs(s.imag()));
-    const Vector& damping_values = complex_stiffness ? damping_at_omega_ : damping_here_;
-    if (!elimination_.factorize(mass_, damping_values,
-                                complex_stiffness ? stiffness_at_omega_ : stiffness_here_, s)) {
-      point.amplitude.row(k).setConstant(std::numeric_limits<double>::infinity());
-      point.twist.row(k).setConstant(std::numeric_limits<double>::infinity());
-      point.heat.setConstant(std::numeric_limits<double>::infinity());
-      continue;
-    }
-    elimination_.solve(z_.data());
-    const double rate = std::norm(s);
-    for (Eigen::Index c = 0; c < count; ++c) {
-      const Section& section = sections_[static_cast<std::size_t>(c)];
-      const Complex damping = product(section.damping, z_), twist = product(section.twist, z_);
-      // s is imaginary: s times a number turns it.
-      point.amplitude(k, c) =
-          product(section.stiffness, z_) + Complex(-s.imag() * damping.imag(), s.imag() * damping.real());
-      point.twist(k, c) = twist;
-      if (section.frequency_term >= 0) {
-        // The matrices' torque and what is beyond them; heat = w/2 Im(T conj x). At a negative s k* is conjugate.
-        const auto& term = system_.frequency_terms()[idx(section.frequency_term)];
-        const Complex beyond = beyond_[idx(section.frequency_term)];
-        point.amplitude(k, c) += (s.imag() > 0.0 ? beyond : std::conj(beyond)) * product(term.z, z_);
-        point.heat[c] += 0.5 * s.imag() * (point.amplitude(k, c) * std::conj(twist)).imag();
-        continue;
-      }
-      const Complex damper = product(section.damper, z_);
-      point.heat[c] += 0.5 * rate * (damper.real() * twist.real() + damper.imag() * twist.imag());
-    }
-    double dissipated = 0.0, input = 0.0;
-    for (int j = 0; j < system_.size(); ++j) {
-      const Complex z = z_[idx(j)], p = p_[idx(j)];
-      input += s.imag() * (z.real() * p.imag() - z.imag() * p.real());
-      for (int e = outer[j]; e < outer[j + 1]; ++e) {
-        const Complex other = z_[idx(inner[e])];
-        dissipated += damping_values[e] * (z.real() * other.real() + z.imag() * other.imag());
-      }
-    }
-    point.input_power += 0.5 * input;
-    point.dissipated_power += 0.5 * rate * dissipated;
+    const bool any = std::any_of(contents.begin(), contents.end(), [k](const OrderContent::Content& c) {
+      return c.amplitudes[static_cast<std::size_t>(k)] != 0.0;
+    });
+    if (any) active_.push_back(k);
   }
+  for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, point);
+}
+
+bool LinearResponse::solve_lane(int lane, double omega) {
+  for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = {p_re_[i].v[lane], p_im_[i].v[lane]};
+  const bool own = !system_.frequency_terms().empty();
+  if (own) add_frequency_terms(std::abs(omega));
+  const bool solved = elimination_.factorize(mass_, own ? damping_at_omega_ : damping_here_,
+                                             own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
+  if (solved)
+    elimination_.solve(z_.data());
+  else
+    std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    re_[i].v[lane] = z_[i].real();
+    im_[i].v[lane] = z_[i].imag();
+  }
+  return solved;
+}
+
+void LinearResponse::solve_orders(double speed, std::size_t first, Point& point) {
+  const auto& contents = content_->at(direction_ * speed);
+  const int used = static_cast<int>(std::min<std::size_t>(kLanes, active_.size() - first));
+  Lanes w{};
+  // Lanes that are not needed repeat the first.
+  for (int lane = 0; lane < kLanes; ++lane)
+    w[lane] = direction_ * orders_[idx(active_[first + idx(lane < used ? lane : 0)])] * speed;
+  std::fill(p_re_.begin(), p_re_.end(), LaneRow{});
+  std::fill(p_im_.begin(), p_im_.end(), LaneRow{});
+  for (int lane = 0; lane < used; ++lane)
+    for (std::size_t l = 0; l < contents.size(); ++l) {
+      const Complex c = contents[l].amplitudes[idx(active_[first + idx(lane)])];
+      for (const Entry& e : load_rows_[l]) {
+        p_re_[idx(e.index)].v[lane] += e.coeff * c.real();
+        p_im_[idx(e.index)].v[lane] += e.coeff * c.imag();
+      }
+    }
+  re_ = p_re_;
+  im_ = p_im_;
+  const bool own = !system_.frequency_terms().empty();
+  if (own) {
+    damping_lanes_.resize(static_cast<std::size_t>(damping_here_.size()));
+    stiffness_lanes_.resize(damping_lanes_.size());
+    beyond_lanes_.resize(system_.frequency_terms().size());
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (lane < used) add_frequency_terms(std::abs(w[lane]));
+      for (std::size_t e = 0; e < damping_lanes_.size(); ++e) {
+        damping_lanes_[e].v[lane] = damping_at_omega_[static_cast<Eigen::Index>(e)];
+        stiffness_lanes_[e].v[lane] = stiffness_at_omega_[static_cast<Eigen::Index>(e)];
+      }
+      for (std::size_t t = 0; t < beyond_.size(); ++t) beyond_lanes_[t][idx(lane)] = beyond_[t];
+    }
+  }
+  // One or two frequencies are not worth the lanes.
+  constexpr int kWorthLanes = 3;
+  Lanes lost = Lanes{} + 1.0;
+  if (used >= kWorthLanes && own)
+    lanes_.solve(mass_.data(), damping_lanes_.data(), stiffness_lanes_.data(), w, re_, im_, lost);
+  else if (used >= kWorthLanes)
+    lanes_.solve(mass_.data(), damping_here_.data(), stiffness_here_.data(), w, re_, im_, lost);
+  std::array<bool, kLanes> singular{};
+  for (int lane = 0; lane < used; ++lane)
+    if (lost[lane] != 0.0) singular[idx(lane)] = !solve_lane(lane, w[lane]);
+  rows_->find(re_, im_);
+  const auto each_lane = [&](const auto& task) {
+    for (int lane = 0; lane < used; ++lane) task(lane, static_cast<Eigen::Index>(active_[first + idx(lane)]));
+  };
+  for (std::size_t s = 0; s < sections_.size(); ++s) {
+    const Section& section = sections_[s];
+    const auto c = static_cast<Eigen::Index>(s);
+    using Row = LaneSections::Row;
+    const LaneSections::Number elastic = rows_->of(s, Row::stiffness), rate = rows_->of(s, Row::damping),
+                               twist = rows_->of(s, Row::twist), damper = rows_->of(s, Row::damper);
+    // i w times a number turns it.
+    Lanes re = elastic.re - w * rate.im, im = elastic.im + w * rate.re;
+    Lanes heat = 0.5 * w * w * (damper.re * twist.re + damper.im * twist.im);
+    if (section.frequency_term >= 0) {
+      // The matrices' torque and what is beyond them; heat = w/2 Im(T conj x). At a negative w k* is conjugate.
+      const LaneSections::Number own_row = rows_->of(s, Row::beyond);
+      Lanes k_re{}, k_im{};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const Complex k = beyond_lanes_[idx(section.frequency_term)][idx(lane)];
+        k_re[lane] = k.real();
+        k_im[lane] = w[lane] > 0.0 ? k.imag() : -k.imag();
+      }
+      re += k_re * own_row.re - k_im * own_row.im;
+      im += k_re * own_row.im + k_im * own_row.re;
+      heat = 0.5 * w * (im * twist.re - re * twist.im);
+    }
+    each_lane([&](int lane, Eigen::Index k) {
+      point.amplitude(k, c) = {re[lane], im[lane]};
+      point.twist(k, c) = {twist.re[lane], twist.im[lane]};
+      point.heat[c] += heat[lane];
+    });
+  }
+  Lanes input{}, dissipated{};
+  if (own)
+    lane_powers(system_.pattern(), damping_lanes_.data(), w, p_re_, p_im_, re_, im_, input, dissipated);
+  else
+    lane_powers(system_.pattern(), damping_here_.data(), w, p_re_, p_im_, re_, im_, input, dissipated);
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  each_lane([&](int lane, Eigen::Index k) {
+    point.input_power += input[lane];
+    point.dissipated_power += dissipated[lane];
+    if (!singular[idx(lane)]) return;
+    point.amplitude.row(k).setConstant(kInfinite);
+    point.twist.row(k).setConstant(kInfinite);
+    point.heat.setConstant(kInfinite);
+  });
 }
 
 }  // namespace drev

@@ -4,7 +4,10 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
-#include "solvers/linear/complex_elimination.hpp"
+#include <array>
+
+#include "solvers/linear/lane_elimination.hpp"
+#include "solvers/periodic/lane_sections.hpp"
 #include "solvers/periodic/mean_equilibrium.hpp"
 #include "solvers/periodic/order_content.hpp"
 #include "solvers/periodic/section_rows.hpp"
@@ -42,6 +45,10 @@ class LinearResponse {
   /// Adds the complex stiffnesses at a frequency [rad/s], > 0, to what it factors: Re k* b b' to the stiffness,
   /// Im k*/omega b b' to the damping.
   void add_frequency_terms(double omega);
+  /// The amplitudes at up to kLanes orders of those numbered in active_, from place `first` on.
+  void solve_orders(double speed, std::size_t first, Point& point);
+  /// One lane by the elimination with pivots, b -> x; false: singular, and x = 0.
+  bool solve_lane(int lane, double omega);
 
   const System& system_;
   Assembler assembler_;
@@ -53,9 +60,15 @@ class LinearResponse {
   Vector damping_at_omega_, stiffness_at_omega_;  // with complex stiffnesses; unused without
   std::vector<std::complex<double>> beyond_;      // of each frequency term, at the last frequency
   ComplexElimination elimination_;
+  LaneElimination lanes_;
+  std::optional<LaneSections> rows_;
+  std::vector<int> active_;                    // numbers of the orders that any load has
+  LaneArray damping_lanes_, stiffness_lanes_;  // with complex stiffnesses, of each lane; unused without
+  std::vector<std::array<std::complex<double>, kLanes>> beyond_lanes_;
+  LaneArray re_, im_, p_re_, p_im_;  // the solution, and its right side
   std::optional<MeanEquilibrium> mean_;
   std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
-  std::vector<std::complex<double>> z_, p_;
+  std::vector<std::complex<double>> z_;
 };
 
 }  // namespace drev

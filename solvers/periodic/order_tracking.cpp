@@ -22,7 +22,8 @@ OrderTracking::OrderTracking(const System& system, const std::vector<std::string
     tracks_.units.push_back(channel.unit());
   }
   for (const double order : tracks_.orders) highest_ = std::max(highest_, order);
-  tracks_.amplitude.assign(channels_.size(), std::vector<std::vector<double>>(tracks_.orders.size()));
+  for (auto* values : {&tracks_.amplitude, &tracks_.phase})
+    values->assign(channels_.size(), std::vector<std::vector<double>>(tracks_.orders.size()));
   values_.resize(channels_.size());
   turns_.resize(tracks_.orders.size());
 }
@@ -42,10 +43,11 @@ void OrderTracking::open(double begin) {
 }
 
 void OrderTracking::start(const Assembler& assembler, const EvaluatedState& point) {
-  turned_ = 0.0;
+  const MotionPoint& phi = assembler.nominal();
+  turned_ = phi.rate < 0.0 ? -phi.value : phi.value;
   windows_.clear();
   look(assembler, point);
-  open(0.0);
+  open(turned_);
 }
 
 void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*from*/,
@@ -90,8 +92,10 @@ void OrderTracking::close(const Window& window) {
   tracks_.speed.push_back(window.weights / window.time);
   std::size_t place = 0;
   for (std::size_t c = 0; c < channels_.size(); ++c)
-    for (std::size_t k = 0; k < turns_.size(); ++k)
-      tracks_.amplitude[c][k].push_back(2.0 * std::abs(window.sums[place++]) / window.weights);
+    for (std::size_t k = 0; k < turns_.size(); ++k, ++place) {
+      tracks_.amplitude[c][k].push_back(2.0 * std::abs(window.sums[place]) / window.weights);
+      tracks_.phase[c][k].push_back(std::arg(window.sums[place]));
+    }
 }
 
 double OrderTracking::next_stop(double /*t*/) const {

@@ -1,13 +1,15 @@
 #pragma once
-/// OrderTracking: amplitudes of orders over a run whose nominal speed changes, window by window of the nominal
+/// OrderTracking: amplitudes and phases of orders over a run whose nominal speed changes, window by window of the nominal
 /// angle phi of the reference shaft.
 ///
-///   A_o = |2 int w(phi) y exp(-i o phi) dphi / int w dphi|,   w = sin^2(pi (phi - phi_a) / W)
+///   A_o exp(i p_o) = 2 int w(phi) y exp(-i o phi) dphi / int w dphi,   w = sin^2(pi (phi - phi_a) / W)
 ///
+/// y is about A_o cos(o phi + p_o) there; phi is counted in the sense in which the shaft turns at the start.
 /// over windows of W, each beginning half of one after the last (Hann's window in the angle). An order that the
 /// channel holds with a constant amplitude comes out exactly; another order o' leaks nothing where (o - o') W /
 /// (2 pi) is a whole number of at least 2. A resonance that swings freely is none of the orders, and is left
-/// out as far as it differs from them. An amplitude that changes inside a window comes out as its mean there.
+/// out as far as it differs from them. Bandwidth (equivalent noise bandwidth of the window): 1.5 / turns orders;
+/// orders are told apart from 2 / turns on (kBandwidth, kResolution). An amplitude that changes inside a window comes out as its mean there.
 ///
 /// Source: K. R. Fyfe, E. D. S. Munck, Analysis of computed order tracking, Mechanical Systems and Signal
 /// Processing 11(2), 1997, doi:10.1006/mssp.1996.0056. Deviation: the angle is known, so that nothing is
@@ -28,10 +30,13 @@ struct OrderTracks {
   std::vector<double> speed;   ///< rad/s, mean of |phi'| over it, weighted as the window
   /// [channel][order][window], in the channel's unit.
   std::vector<std::vector<std::vector<double>>> amplitude;
+  std::vector<std::vector<std::vector<double>>> phase;  ///< p_o [rad], -pi to pi
 };
 
 class OrderTracking final : public Observer {
  public:
+  /// Orders times the turns of a window: equivalent noise bandwidth; the least distance at which orders do not leak.
+  static constexpr double kBandwidth = 1.5, kResolution = 2.0;
   /// channels: unknown ones throw ModelError. orders: > 0. turns: of the reference shaft in a window, > 0.
   /// own_times: asks for points close enough for the highest order; false: for methods whose steps that would
   /// cut, the ends of steps are the points.

@@ -3,12 +3,14 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
+#include "solvers/periodic/damped_pairs.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
 #include "solvers/run/bracketed_maximum.hpp"
@@ -17,7 +19,10 @@ namespace drev {
 
 namespace {
 
-constexpr int kMostUnknowns = 400;      // of damped modes, dense
+constexpr int kMostUnknowns = 400;      // of damped modes, dense; of more they are followed one by one
+constexpr int kFirstModes = 16;         // of these, sought first, and
+constexpr int kMostModes = 128;         // at the most
+constexpr double kSameMode = 1e-9;      // of lambda
 constexpr int kModeSpeeds = 9;          // at which the modes are sought where loads follow the speed
 constexpr double kUndamped = 1e-9;      // damping ratio that is rounding
 constexpr double kTooDamped = 0.7;      // beyond it an order has no resonance
@@ -71,6 +76,43 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
       const auto mode = static_cast<Eigen::Index>(m);
       modes.lambda(mode, i) = set.modes[static_cast<std::size_t>(to[m])].lambda;
       shapes.col(mode) = set.shapes.col(to[m]);
+    }
+  }
+  return modes;
+}
+
+/// The same for systems of many unknowns: the undamped modes up to the highest frequency of an order, each followed
+/// to its damped mode (damped_pairs.hpp). Those that do not close in, or on one that is there already, are 0.
+SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
+                        double highest, const std::function<void()>& pause) {
+  const bool follows = response.content().follows_speed() && speeds.size() > 1;
+  const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
+  ModeSet undamped;
+  for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {
+    undamped = solve_modes(system, {.count = count});
+    if (count == std::min(all, kMostModes) || undamped.omega(count - 1) > highest) break;
+  }
+  DampedPairs pairs(system);
+  SweepModes modes;
+  modes.speeds.resize(columns);
+  modes.lambda.setZero(undamped.count(), columns);
+  std::vector<Eigen::VectorXcd> shapes;
+  std::vector<std::complex<double>> last;
+  for (int m = 0; m < undamped.count(); ++m) {
+    shapes.emplace_back(undamped.vectors.col(m).cast<std::complex<double>>());
+    last.emplace_back(0.0, undamped.omega(m));
+  }
+  for (int i = 0; i < columns; ++i) {
+    const double part = columns > 1 ? static_cast<double>(i) / (columns - 1) : 0.5;
+    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
+    const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
+    for (std::size_t m = 0; m < shapes.size(); ++m) {
+      const auto mode = static_cast<Eigen::Index>(m);
+      pause();
+      if (!pairs.refine(damping, last[m], shapes[m]) || !(last[m].imag() > 0.0)) continue;
+      const bool known =
+          ((modes.lambda.col(i).head(mode).array() - last[m]).abs() < kSameMode * std::abs(last[m])).any();
+      if (!known) modes.lambda(mode, i) = last[m];
     }
   }
   return modes;
@@ -238,17 +280,20 @@ class Search {
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
-  if (system.size() > kMostUnknowns) {
-    sweep.modes_note =
-        "damped modes are not sought with more than " + std::to_string(kMostUnknowns) +
-        " unknowns: a resonance that is narrower than the distance of the speeds can be missed";
-  } else {
-    try {
-      sweep.modes = follow_modes(system, response, sweep.speeds, pause);
-    } catch (const SolverError& error) {
-      sweep.modes_note = std::string(error.what()) +
-                         ": a resonance that is narrower than the distance of the speeds can be missed";
-    }
+  try {
+    const double highest = sweep.orders.back() * sweep.speeds.back();
+    sweep.modes = system.size() > kMostUnknowns ? follow_pairs(system, response, sweep.speeds, highest, pause)
+                                                : follow_modes(system, response, sweep.speeds, pause);
+    const Eigen::Index count = sweep.modes.lambda.rows();
+    if (system.size() > kMostUnknowns && count == kMostModes &&
+        sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)
+      sweep.modes_note =
+          "only the lowest " + std::to_string(kMostModes) +
+          " modes are sought: a resonance above them that is narrower than the distance of the "
+          "speeds can be missed";
+  } catch (const SolverError& error) {
+    sweep.modes_note = std::string(error.what()) +
+                       ": a resonance that is narrower than the distance of the speeds can be missed";
   }
   Search search(response, sum, pause, sweep);
   search.seed();

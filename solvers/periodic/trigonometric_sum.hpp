@@ -5,10 +5,14 @@
 ///
 /// The sum is taken at 4 max(n_k) even points of the cycle. About each local maximum of the points it is above the
 /// parabola through three of them by at most B h^3 / (9 sqrt 3), B = sum n_k^3 |a_k|, h their distance; all that
-/// this leaves possible are refined by Halley's method on y' = 0. Smallest values are the largest of -y.
+/// this leaves possible are refined by Halley's method on y' = 0. Smallest values are the largest of -y. Sums and
+/// refinements are made kLanes at a time (core/lanes.hpp).
 ///
 /// Accuracy: rounding, about 1e-15 sum |a_k| for the value; half of the digits for its angle.
+#include <drev/core/lanes.hpp>
+
 #include <Eigen/Core>
+#include <array>
 #include <complex>
 #include <string>
 #include <vector>
@@ -35,25 +39,36 @@ class TrigonometricSum {
   void extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out);
 
  private:
-  double refine(const std::complex<double>* a, double angle, double sign, double& value) const;
-  double largest(const std::complex<double>* a, Eigen::Index column, double sign, double& angle);
+  /// A local maximum of sign y: where, what the parabola through three points gives, and what was found of it.
+  struct Top {
+    int lane;
+    double sign, at, value;  // at: in steps
+    double found = 0.0, angle = 0.0;
+    bool leads = false;  // the highest of its sum and sign
+  };
+  void sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used);
+  /// Local maxima (sign 1) and minima (-1) that may be the extremes.
+  void find_tops(int used, double sign);
+  /// The tops of up to kLanes places in tops_, each followed to its extremum; those that cannot reach `least`, not to
+  /// their end.
+  void refine(const int* places, int count, const Lanes& least);
+  static int place_of(const Top& top);
 
   double base_ = 0.0, step_ = 0.0;
-  int highest_ = 0;
-  struct Top {
-    double at, value;  // a local maximum: place in steps, value of the parabola
-  };
+  int highest_ = 0, points_ = 0;
   std::vector<int> multiples_;
   std::vector<double> cubes_;  // of them
-  std::vector<Top> tops_;
   /// Sums over even and odd multiples n, of cosines and of sines: those of a quarter of the cycle give all four.
-  struct Group {
-    std::vector<Eigen::Index> rows;  // of the orders
-    Eigen::MatrixXd cosines, sines;  // points of a quarter x orders
-    Eigen::MatrixXd real, imaginary, of_cosines, of_sines;
-  };
-  Group even_, odd_;
-  Eigen::MatrixXd samples_;
+  std::vector<int> by_parity_;             // rows of the orders, even multiples first
+  int even_ = 0;                           // so many of them
+  std::vector<double> cosines_, sines_;    // [point of a quarter][place in by_parity_]
+  LaneArray re_, im_, samples_;            // of kLanes sums: amplitudes by order; values at the points
+  LaneArray top_re_, top_im_;              // amplitudes of the tops that are being followed, by order
+  LaneArray power_re_, power_im_;          // exp(i n angle) at them
+  bool dense_ = false;                     // few multiples between those of the orders
+  Lanes slack_{}, thirds_{};               // of each sum
+  std::array<double, 2 * kLanes> best_{};  // largest of the points or found so far, of each sum and sign
+  std::vector<Top> tops_;
 };
 
 }  // namespace drev

@@ -1,8 +1,8 @@
 #pragma once
 /// Keeps chosen channels at chosen times k * every, from the start on, and at no other. Constant steps are
-/// cut so that they end there; controlled steps and exact propagation show their polynomial there.
-#include <drev/core/channel.hpp>
-#include <drev/solvers/run/observer.hpp>
+/// cut so that they end there; controlled steps and exact propagation show their polynomial there. Channels that are
+/// integrals over the run are taken, too (channel_values.hpp).
+#include <drev/solvers/run/channel_values.hpp>
 
 #include <functional>
 #include <string>
@@ -23,12 +23,17 @@ class Recorder final : public Observer {
     sink_ = std::move(sink);
   }
 
+  void look_through(StepMotion& motion) override { values_.look_through(motion); }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
-  bool needs_acceleration() const override;
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    values_.restart(assembler, point);
+  }
+  bool needs_acceleration() const override { return values_.needs_acceleration(); }
+  bool watches_loads() const override { return values_.watches_loads(); }
 
-  const std::vector<Channel>& channels() const { return channels_; }
+  const std::vector<Channel>& channels() const { return values_.channels(); }
   const std::vector<double>& times() const { return times_; }
   /// Samples of channel c, one per time.
   const std::vector<double>& samples(std::size_t c) const { return samples_[c]; }
@@ -36,7 +41,7 @@ class Recorder final : public Observer {
  private:
   void record(const Assembler& assembler, const EvaluatedState& point);
 
-  std::vector<Channel> channels_;
+  ChannelValues values_;
   double every_ = 0.0, start_ = 0.0;
   long next_ = 0;
   std::vector<double> times_, row_;

@@ -245,6 +245,17 @@ class Chart {
   }
 }
 
+/// A short line in the colour and dashes of a curve.
+function keyMark(color, dash) {
+  const mark = draw(
+    "line",
+    { x1: 0, x2: 22, y1: 5, y2: 5, "stroke-width": 2, ...(dash ? { "stroke-dasharray": dash.join(" ") } : {}) },
+  );
+  mark.style.stroke = `var(${color})`;
+  const svg = draw("svg", { class: "mark", width: 22, height: 10, "aria-hidden": "true" }, mark);
+  return svg;
+}
+
 /// Ticks of a logarithmic axis: powers of ten, at most five of them named.
 function decades(low, high) {
   const first = Math.ceil(Math.log10(low) - 1e-9),

@@ -28,6 +28,30 @@ function showFooter(data) {
   );
 }
 
+/// Title, contents and footer of a page of one block.
+function showTitle(page) {
+  document.title = `drev: ${page.model_name}, ${page.title}`;
+  byId("title").append(`${page.model_name}: ${page.title}`);
+  byId("subtitle").append(page.about);
+  showContents();
+  showFooter(page);
+}
+
+/// The command that gives it again, and the model's parameters.
+function showInputTable(page) {
+  byId("inputs").append(
+    make("p", {}, make("code", {}, page.command)),
+    table(
+      ["parameter", "value", "unit", "default", "range", "meaning"],
+      page.inputs.map((input) => {
+        const row = [input.name, input.value, input.unit, input.default, input.range, input.meaning];
+        row.changed = input.value !== input.default;
+        return row;
+      }),
+    ),
+  );
+}
+
 /// The train, with a line below it that says how it is drawn.
 function trainFigure(model) {
   const held = model.nodes.filter((node) => node.held).map((node) => node.name);

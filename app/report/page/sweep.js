@@ -33,12 +33,8 @@ const chiefOrders = (s) =>
     .slice(0, NAMED_ORDERS);
 
 function showHead() {
-  document.title = `drev: ${page.model_name}, ${page.title}`;
-  byId("title").append(`${page.model_name}: ${page.title}`);
-  byId("subtitle").append(page.about);
+  showTitle(page);
   for (const note of page.notes) byId("warnings").append(make("p", { class: "warning" }, note));
-  showContents();
-  showFooter(page);
 }
 
 function showFigures() {
@@ -178,17 +174,6 @@ function sectionChart(parent, group, s, index) {
     },
   });
   chart.section = s.name;
-}
-
-/// A short line in the colour and dashes of a curve.
-function keyMark(color, dash) {
-  const mark = draw(
-    "line",
-    { x1: 0, x2: 22, y1: 5, y2: 5, "stroke-width": 2, ...(dash ? { "stroke-dasharray": dash.join(" ") } : {}) },
-  );
-  mark.style.stroke = `var(${color})`;
-  const svg = draw("svg", { class: "mark", width: 22, height: 10, "aria-hidden": "true" }, mark);
-  return svg;
 }
 
 function showCharts() {
@@ -343,15 +328,5 @@ function showDiagram() {
 }
 
 function showParameters() {
-  byId("inputs").append(
-    make("p", {}, make("code", {}, page.command)),
-    table(
-      ["parameter", "value", "unit", "default", "range", "meaning"],
-      page.inputs.map((input) => {
-        const row = [input.name, input.value, input.unit, input.default, input.range, input.meaning];
-        row.changed = input.value !== input.default;
-        return row;
-      }),
-    ),
-  );
+  showInputTable(page);
 }

@@ -178,6 +178,7 @@ function showSections(section, run) {
       ),
     );
   }
+  showElements(section, run);
   if (!counted.length) return;
   section.append(
     make("h3", {}, headed(run, "Load cycles (rainflow, ASTM E1049)")),
@@ -201,6 +202,28 @@ function showSections(section, run) {
           c.classes.map((one) => [sig(one.mean_range), sig(one.cycles, 6)]),
         ),
       ),
+    ),
+  );
+}
+
+/// Work, heat and stored energy of each element, where they were asked for.
+function showElements(section, run) {
+  const elements = run.result.results.elements ?? [];
+  if (!elements.length) return;
+  const cell = (value) => (value === null ? "–" : sig(value, 5));
+  section.append(
+    make("h3", {}, headed(run, "Energy of elements")),
+    table(
+      ["element", "work [J]", "dissipated [J]", "mean dissipation [W]", "largest stored [J]"],
+      [...elements]
+        .sort((a, b) => (b.dissipated_J ?? 0) - (a.dissipated_J ?? 0))
+        .map((e) => [
+          e.element,
+          cell(e.work_J),
+          cell(e.dissipated_J),
+          cell(e.mean_dissipation_W),
+          cell(e.largest_stored_J),
+        ]),
     ),
   );
 }

@@ -1,6 +1,7 @@
 // Reports of sweeps: the page holds the numbers of the JSON, in the frame that reports of runs have.
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/report/report_page.hpp"
@@ -68,4 +69,53 @@ TEST_CASE("The report of a sweep holds what its JSON says", "[sweep][report]") {
   const auto refused = drev_command({"sweep", kEngineFile, "--speeds", "900", "--report", "sweep.txt"});
   CHECK(refused.exit_code == 2);
   CHECK(contains(refused.err, "--report"));
+}
+
+TEST_CASE("The report of a sweep with contacts holds its branches and limits", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string model = (folder / "pair.toml").string(), file = (folder / "branches.html").string();
+  std::ofstream(model) << read_file(DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml");
+  const std::vector<std::string> words{"sweep", model, "--speeds", "1500:250:2500"};
+  std::vector<std::string> reported = words, as_json = words;
+  reported.insert(reported.end(), {"--report", file, "--quiet"});
+  as_json.emplace_back("--json");
+  REQUIRE(drev_command(reported).exit_code == 0);
+  const std::vector<std::string> blocks = drev::app::blocks_of(read_file(file));
+  REQUIRE(blocks.size() == 1);
+  const nlohmann::json data = nlohmann::json::parse(blocks.front());
+  const nlohmann::json json = nlohmann::json::parse(drev_command(as_json).out);
+  CHECK(json.at("changes").size() == 3);
+  CHECK(data.at("result").at("branches") == json.at("branches"));
+  CHECK(data.at("result").at("changes") == json.at("changes"));
+  CHECK(data.at("command") == "drev sweep " + model + " --speeds 1500:250:2500");
+  CHECK(data.at("limits").size() == json.at("sections").size());
+  const auto refused = drev_command({"report", file, "--out", (folder / "again.html").string()});
+  CHECK(refused.exit_code == 2);
+  CHECK(contains(refused.err, "is the report of a sweep"));
+}
+
+TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "limits.html").string();
+  REQUIRE(drev_command({"sweep", DREV_SOURCE_DIR "/models/genset/genset.toml", "--speeds", "1400,1500,1600",
+                        "--contact", "closed", "--report", file, "--quiet"})
+              .exit_code == 0);
+  const nlohmann::json data = nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front());
+  std::size_t limits = 0;
+  for (const nlohmann::json& section : data.at("sweeps").at(0).at("sections"))
+    for (const nlohmann::json& limit : section.at("limits")) {
+      ++limits;
+      CHECK(contains(limit.at("name").get<std::string>(), "permissible"));
+    }
+  // As many as the judgement draws of the same sections.
+  const std::string judged = (folder / "class.html").string();
+  REQUIRE(drev_command({"class", DREV_SOURCE_DIR "/models/genset/genset.toml", "--speeds", "1400,1500,1600",
+                        "--contact", "closed", "--report", judged, "--quiet"})
+              .exit_code == 0);
+  const nlohmann::json of_class = nlohmann::json::parse(drev::app::blocks_of(read_file(judged)).front());
+  std::size_t expected = 0;
+  for (const nlohmann::json& section : of_class.at("sweeps").at(0).at("sections"))
+    expected += section.at("limits").size();
+  CHECK(limits == expected);
+  CHECK(limits > 2);
 }

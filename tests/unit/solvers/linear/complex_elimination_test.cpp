@@ -1,10 +1,11 @@
-// Complex elimination against dense solutions of the same matrices.
+// Complex elimination, one frequency or eight at once, against dense solutions of the same matrices.
 #include "solvers/linear/complex_elimination.hpp"
 
 #include <Eigen/LU>
 #include <complex>
 #include <random>
 
+#include "solvers/linear/lane_elimination.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -83,4 +84,36 @@ TEST_CASE("A pivot lost at an antiresonance does not spoil the solution", "[comp
   const double w = std::sqrt(a.k[a.place(0, 0)] / a.m[a.place(0, 0)]);
   REQUIRE(std::abs(a.at({0.0, w})(0, 0)) < 1e-12);
   check_against_dense(a, {0.0, w}, 1e-12);
+}
+
+TEST_CASE("Eight frequencies at once are solved as dense matrices are; a lost pivot is told",
+          "[complex_elimination]") {
+  const Matrices a(6, {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {4, 1}, {5, 0}, {5, 3}}, 1e-3),
+      undamped(3, {{0, 1}, {1, 2}}, 0.0);
+  for (const Matrices* m : {&a, &undamped}) {
+    const Eigen::Index n = m->pattern.rows();
+    const ComplexElimination plan(m->pattern);
+    LaneElimination lanes(plan);
+    LaneArray re(static_cast<std::size_t>(n)), im(re.size());
+    Eigen::VectorXcd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      b[i] = Complex(1.0 + static_cast<double>(i), -0.3 * static_cast<double>(i));
+      re[static_cast<std::size_t>(i)].v = Lanes{} + b[i].real();
+      im[static_cast<std::size_t>(i)].v = Lanes{} + b[i].imag();
+    }
+    Lanes w{1.0, -1.0, 4.0, 9.0, 12.0, 20.0, 31.0, 55.0}, lost{};
+    // The end of the undamped chain swings against its spring alone: its pivot is zero.
+    if (m == &undamped) w[3] = std::sqrt(m->k[m->place(0, 0)] / m->m[m->place(0, 0)]);
+    lanes.solve(m->m.data(), m->c.data(), m->k.data(), w, re, im, lost);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      INFO("w = " << w[lane]);
+      CHECK((lost[lane] != 0.0) == (m == &undamped && lane == 3));
+      if (lost[lane] != 0.0) continue;
+      const Eigen::VectorXcd x = m->at({0.0, w[lane]}).partialPivLu().solve(b);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        CHECK(std::abs(Complex(re[row].v[lane], im[row].v[lane]) - x[i]) < 1e-11 * x.norm());
+      }
+    }
+  }
 }

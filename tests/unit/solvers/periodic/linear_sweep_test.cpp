@@ -1,6 +1,6 @@
 // Linear sweeps against closed forms, exact propagation and brute force.
-// Covers solvers/periodic/linear_response.hpp, order_content.hpp, trigonometric_sum.hpp and sweep_peaks.hpp
-// through sweep_linear(), and solvers/run/bracketed_maximum.hpp.
+// Covers solvers/periodic/linear_response.hpp, order_content.hpp, trigonometric_sum.hpp, lane_sections.hpp,
+// damped_pairs.hpp and sweep_peaks.hpp through sweep_linear(), and solvers/run/bracketed_maximum.hpp.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
@@ -365,4 +365,47 @@ TEST_CASE("A bracketed maximum is found to the root of rounding", "[linear_sweep
   CHECK(std::abs(2.0 * (found.at - 1.3) * std::exp(-std::pow(found.at - 1.3, 2)) - 0.1) < 1e-7);
   CHECK(looks < 40);
   CHECK(bracketed_maximum(0.0, 0.0, 2.0, 1e-9, [](double t) { return t; }).at == Approx(2.0).epsilon(1e-8));
+}
+
+TEST_CASE("Criticals of a chain of 500 discs: damped modes one by one, peaks between the speeds",
+          "[linear_sweep]") {
+  // Uniform chain from a wall to a free end: w_j = 2 sqrt(k/J) sin((2 j - 1) pi / (2 (2 n + 1))); damping b k of each
+  // shaft gives the damping ratio b w_j / 2.
+  constexpr int kDiscs = 500;
+  constexpr double kStiffness = 1e6, kInertia = 0.04, kDamping = 4e-5;
+  Model m("chain");
+  for (int i = 0; i < kDiscs; ++i) {
+    const std::string node = "n" + std::to_string(i);
+    m.add_node(node);
+    m.add<Inertia>("J" + node, {node}, {.inertia = kInertia});
+    if (i == 0)
+      m.add<ShaftSpring>("k0", {"wall", node}, {.stiffness = kStiffness, .damping = kDamping * kStiffness});
+    else
+      m.add<ShaftSpring>("k" + std::to_string(i), {"n" + std::to_string(i - 1), node},
+                         {.stiffness = kStiffness, .damping = kDamping * kStiffness});
+  }
+  m.add_node("wall");
+  m.constant_speed("wall", 60.0);
+  m.add<EngineOrderTorque>("gas", {"n" + std::to_string(kDiscs - 1)},
+                           {.harmonics = {{1.0, 100.0, 0.0}}, .twist_feedback = false});
+  const LinearSweep sweep = sweep_linear(
+      m.build(), {.speeds = {20.0, 40.0, 60.0, 80.0}, .orders = {1.0}, .sections = {"k0.torque_Nm"}});
+  CHECK(sweep.modes_note.empty());
+  std::vector<double> expected;  // of order 1, between the speeds
+  for (int j = 1; j < 20; ++j) {
+    const double w =
+        2.0 * std::sqrt(kStiffness / kInertia) * std::sin((2 * j - 1) * kPi / (2.0 * (2 * kDiscs + 1)));
+    if (w > 20.0 && w < 80.0) expected.push_back(w);
+  }
+  REQUIRE(expected.size() == 2);
+  REQUIRE(sweep.criticals.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double ratio = 0.5 * kDamping * expected[i];
+    CHECK(sweep.criticals[i].damping_ratio == Approx(ratio).epsilon(1e-8));
+    CHECK(hz(sweep.criticals[i].frequency_Hz) ==
+          Approx(expected[i] * std::sqrt(1.0 - ratio * ratio)).epsilon(1e-10));
+    CHECK(sweep.criticals[i].speed == Approx(expected[i]).epsilon(2e-5));
+    // Far above what the speeds of the grid show.
+    CHECK(sweep.criticals[i].amplitude > 20.0 * sweep.sections[0].half_range().minCoeff());
+  }
 }

@@ -77,6 +77,30 @@ std::vector<SweptChange> changes_of(const NonlinearSweep& sweep, BranchChange ki
   return found;
 }
 
+/// A motion of a branch by another program: speed, deflection and its rate where phi = 0, largest |multiplier|, extremes of
+/// samples of the deflection.
+struct BranchRow {
+  double speed, x, v, multiplier, low, high;
+};
+
+/// Rows of a table between two speeds: the first, and each that stands `every` rows after one.
+std::vector<BranchRow> branch_rows(const std::string& name, int every, double from, double to) {
+  std::vector<BranchRow> rows;
+  std::ifstream file(DREV_SOURCE_DIR "/tests/published/data/" + name);
+  std::string line;
+  std::getline(file, line);
+  for (int i = 0; std::getline(file, line); ++i) {
+    if (i % every != 0) continue;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    BranchRow row{};
+    std::string contact;
+    words >> row.speed >> row.x >> row.v >> row.multiplier >> contact >> row.low >> row.high;
+    if (row.speed >= from && row.speed <= to) rows.push_back(row);
+  }
+  return rows;
+}
+
 /// Motions at a speed that was asked for.
 std::vector<SweptMotion> motions_at(const NonlinearSweep& sweep, double speed) {
   std::vector<SweptMotion> found;
@@ -89,26 +113,9 @@ std::vector<SweptMotion> motions_at(const NonlinearSweep& sweep, double speed) {
 }  // namespace
 
 TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stability", "[nonlinear_sweep]") {
-  struct Row {
-    double speed, x, v, multiplier, low, high;
-  };
-  std::vector<Row> rows;
+  const std::vector<BranchRow> rows = branch_rows("gear_pair_branch.csv", 6, 0.62, 1.58);
   std::set<double> speeds{0.62, 1.58};
-  std::ifstream file(DREV_SOURCE_DIR "/tests/published/data/gear_pair_branch.csv");
-  std::string line;
-  std::getline(file, line);
-  for (int i = 0; std::getline(file, line); ++i) {
-    if (i % 6 != 0) continue;
-    for (char& c : line)
-      if (c == ',') c = ' ';
-    std::istringstream words(line);
-    Row row{};
-    std::string contact;
-    words >> row.speed >> row.x >> row.v >> row.multiplier >> contact >> row.low >> row.high;
-    if (row.speed < 0.62 || row.speed > 1.58) continue;
-    rows.push_back(row);
-    speeds.insert(row.speed);
-  }
+  for (const BranchRow& row : rows) speeds.insert(row.speed);
   REQUIRE(rows.size() > 25);
   const NonlinearSweep sweep =
       sweep_nonlinear(Pair{}.build(), {.speeds = {speeds.begin(), speeds.end()}, .tolerance = 1e-5});
@@ -117,7 +124,7 @@ TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stabi
   REQUIRE(sweep.branches.size() == 1);
   CHECK(sweep.branches[0].whole);
   int unstable = 0;
-  for (const Row& row : rows) {
+  for (const BranchRow& row : rows) {
     INFO("w = " << row.speed << ", x = " << row.x);
     const SweptMotion* nearest = nullptr;
     const std::vector<SweptMotion> here = motions_at(sweep, row.speed);
@@ -157,6 +164,43 @@ TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stabi
   const double root = std::sqrt(1.99 * 1.99 - 3.0);
   CHECK(opens[0].speed == Approx(std::sqrt((1.99 - root) / 1.5)).margin(1e-7));
   CHECK(opens[1].speed == Approx(std::sqrt((1.99 + root) / 1.5)).margin(1e-7));
+}
+
+TEST_CASE("Gear pair with a stepped stiffness: four folds and both period doublings to 8 digits",
+          "[nonlinear_sweep][once]") {
+  const Pair pair{.damping = 0.06,
+                  .mean = 1.0,
+                  .error = 0.0,
+                  .stiffness = MeshStiffness::step(1.0 / 1.3, 1.5 / 1.3, 1.6)};
+  const std::vector<BranchRow> rows = branch_rows("gear_pair_parametric_branch.csv", 1, 0.62, 2.2);
+  REQUIRE(rows.size() > 20);
+  std::set<double> speeds{0.62, 2.2};
+  for (const BranchRow& row : rows) speeds.insert(row.speed);
+  const NonlinearSweep sweep = sweep_nonlinear(
+      pair.build(), {.speeds = {speeds.begin(), speeds.end()}, .tolerance = 1e-3, .runs = false});
+  for (const BranchRow& row : rows) {
+    INFO("w = " << row.speed << ", x = " << row.x);
+    const SweptMotion* nearest = nullptr;
+    const std::vector<SweptMotion> here = motions_at(sweep, row.speed);
+    for (const SweptMotion& motion : here)
+      if (nearest == nullptr || std::abs(motion.z[0] - row.x) < std::abs(nearest->z[0] - row.x))
+        nearest = &motion;
+    REQUIRE(nearest != nullptr);
+    const double error = nearest->error * std::max(row.high, -row.low) + 2e-10;
+    CHECK(std::abs(nearest->z[0] - row.x) <= error);
+    CHECK(nearest->stable == (row.multiplier < 1.0));
+    CHECK(nearest->separates == (row.low < 1.0));
+  }
+  // Shooting over closed-form pieces, to 10 digits and more.
+  const double doublings[] = {1.8995014585153895, 2.096347210241158};
+  const std::vector<SweptChange> doubled = changes_of(sweep, BranchChange::period_doubling);
+  for (const double speed : doublings)
+    CHECK(std::any_of(doubled.begin(), doubled.end(),
+                      [&](const SweptChange& c) { return std::abs(c.speed - speed) < 1e-8; }));
+  const double folds[] = {0.7191966624, 0.8019014568, 0.8552207151, 0.9525330678};
+  const std::vector<SweptChange> turned = changes_of(sweep, BranchChange::fold);
+  REQUIRE(turned.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(turned[i].speed == Approx(folds[i]).margin(8e-9));
 }
 
 TEST_CASE("Gear pair, 60 speeds: every one is solved", "[nonlinear_sweep]") {

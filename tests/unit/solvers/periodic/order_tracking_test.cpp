@@ -3,9 +3,12 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/periodic/order_tracking.hpp>
+#include <drev/solvers/run/after_time.hpp>
+#include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "tests/catch.hpp"
 
@@ -67,5 +70,68 @@ TEST_CASE("Windows are whole turns: a load that is its own order comes out exact
     CHECK(std::abs(tracks.amplitude[0][1][i] - 3.0) < 1e-3);
     CHECK(std::abs(tracks.amplitude[0][2][i] - 1.0) < 1e-3);
     CHECK(std::abs(tracks.speed[i] - (20.0 + tracks.time[i])) < 1e-2);
+  }
+}
+
+TEST_CASE(
+    "A run-up through a resonance: the motion itself, and amplitude and phase of its order by the window") {
+  // x'' + 0.02 x' + x = cos(alpha t^2 / 2 + p) on a shaft that runs up at alpha: the disc's own inertia torque is taken
+  // off by a constant one. References: a separate program (Runge-Kutta of order 8 at 1e-13, Gauss's rule over the
+  // angle), which also gives amplitudes through rectangular windows that were computed elsewhere, to their 7 digits.
+  const double alpha = 1e-3;
+  const auto model = [&](double phase) {
+    Model m("resonance");
+    const NodeId end = m.add_node("end"), disc = m.add_node("disc");
+    m.set_reference(end, run_up(0.0, 1.26, 0.0, 1260.0));
+    m.hold(end);
+    m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+    m.add<ShaftSpring>("shaft", {end, disc}, {.stiffness = 1.0, .damping = 0.02});
+    m.add<EngineOrderTorque>("load", {disc},
+                             {.harmonics = {{.order = 1.0, .amplitude = 1.0, .phase = phase}},
+                              .mean = alpha,
+                              .twist_feedback = false});
+    return m.build();
+  };
+  const double speeds[] = {0.9, 1.0, 1.05, 1.1, 1.2};
+  std::vector<std::unique_ptr<OrderTracking>> trackers;
+  std::vector<std::unique_ptr<AfterTime>> later;
+  std::vector<std::vector<double>> parts;  // imaginary, then real part of the complex motion, every 10 s
+  for (const double phase : {-0.25 * kTwoPi, 0.0}) {
+    const System system = model(phase);
+    Recorder recorder(system, {"disc.angle_rad"}, 10.0);
+    std::vector<Observer*> observers{&recorder};
+    if (parts.empty())
+      for (const double w : speeds) {
+        // A window of four turns with its middle where the speed is w.
+        const double middle = 0.5 * w * w / alpha;
+        trackers.push_back(std::make_unique<OrderTracking>(system, std::vector<std::string>{"disc.angle_rad"},
+                                                           std::vector<double>{1.0}, 4.0, true));
+        later.push_back(std::make_unique<AfterTime>(std::sqrt(2.0 * (middle - 2.0 * kTwoPi) / alpha),
+                                                    std::vector<Observer*>{trackers.back().get()}));
+        observers.push_back(later.back().get());
+      }
+    REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-13}, {.t_end = 1260.0}, observers).ok());
+    parts.push_back(recorder.samples(0));
+  }
+  const std::pair<double, double> motion[] = {
+      {0.8, 2.764951332},   {0.9, 5.068443328},   {0.95, 8.462379217},
+      {1.0, 16.750317053},  {1.02, 21.867109336}, {1.04, 26.682614433},
+      {1.05, 28.094979333}, {1.1, 10.799320982},  {1.2, 6.504213071}};
+  for (const auto& [w, amplitude] : motion) {
+    INFO("speed " << w);
+    const auto i = static_cast<std::size_t>(std::lround(w / alpha / 10.0));
+    CHECK(std::hypot(parts[0][i], parts[1][i]) == Approx(amplitude).margin(2e-9));
+  }
+  const std::pair<double, double> tracked[] = {{5.075893480937, -99.98964447},
+                                               {16.717416271797, -144.05470021},
+                                               {27.583322795447, 138.12741599},
+                                               {9.676310694937, -43.55155789},
+                                               {5.192055066565, 138.40411836}};
+  for (std::size_t i = 0; i < trackers.size(); ++i) {
+    INFO("speed " << speeds[i]);
+    const OrderTracks& tracks = trackers[i]->tracks();
+    REQUIRE_FALSE(tracks.speed.empty());
+    CHECK(tracks.amplitude[0][0][0] == Approx(tracked[i].first).epsilon(1e-5));
+    CHECK(to_deg(tracks.phase[0][0][0]) == Approx(tracked[i].second).margin(1e-3));
   }
 }

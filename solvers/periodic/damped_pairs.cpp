@@ -1,0 +1,62 @@
+#include "solvers/periodic/damped_pairs.hpp"
+
+#include <drev/core/assembler.hpp>
+
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int kMostSteps = 25;
+constexpr double kSettled = 1e-12;  // of lambda
+
+/// A x, A's values on the pattern.
+Eigen::VectorXcd product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
+  Eigen::VectorXcd y = Eigen::VectorXcd::Zero(x.size());
+  const int *outer = pattern.outerIndexPtr(), *inner = pattern.innerIndexPtr();
+  for (int j = 0; j < pattern.cols(); ++j)
+    for (int e = outer[j]; e < outer[j + 1]; ++e) y[inner[e]] += values[e] * x[j];
+  return y;
+}
+
+}  // namespace
+
+DampedPairs::DampedPairs(const System& system) : pattern_(system.pattern()), elimination_(system.pattern()) {
+  const Assembler assembler(system);
+  assembler.contact_values({1.0, 0.0, 0.0}, Contact::closed, mass_);
+  assembler.contact_values({0.0, 1.0, 0.0}, Contact::closed, damping_);
+  assembler.contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness_);
+}
+
+bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXcd& shape) {
+  Complex at = lambda;  // where S is factored: off a mode that is met exactly
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!elimination_.factorize(mass_, damping, stiffness_, at)) {
+      if (at != lambda) return false;
+      at = lambda * (1.0 + 1e-9);
+      continue;
+    }
+    Eigen::VectorXcd next =
+        product(pattern_, damping, shape) + 2.0 * lambda * product(pattern_, mass_, shape);
+    elimination_.solve(next.data());
+    if (!next.allFinite() || next.norm() == 0.0) return false;
+    shape = next / next.norm();
+    const auto form = [&](const Vector& values) -> Complex {
+      return (shape.transpose() * product(pattern_, values, shape))(0, 0);
+    };
+    const Complex a = form(mass_), c = form(damping), k = form(stiffness_);
+    const Complex root = std::sqrt(c * c - 4.0 * a * k);
+    const Complex one = (-c + root) / (2.0 * a), other = (-c - root) / (2.0 * a);
+    const Complex found = std::abs(one - lambda) < std::abs(other - lambda) ? one : other;
+    const double moved = std::abs(found - lambda);
+    at = lambda = found;
+    if (!std::isfinite(moved)) return false;
+    if (moved <= kSettled * std::abs(lambda)) return true;
+  }
+  return false;
+}
+
+}  // namespace drev
