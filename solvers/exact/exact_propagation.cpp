@@ -222,7 +222,8 @@ class ExactRun final : public StepMotion {
     friction_states_.resize(idx(friction_.count()), FrictionState::open);
     for (int i = 0; i < friction_.count(); ++i) {
       const FrictionState to = friction_.state(i);
-      if (to == std::exchange(friction_states_[idx(i)], to) || t == options_.t_start) continue;
+      if (to == std::exchange(friction_states_[idx(i)], to) || t == options_.t_start || !friction_.reports(i))
+        continue;
       ++summary_.friction_changes;
       if (summary_.friction_events.size() < RunSummary::kMostFrictionEvents)
         summary_.friction_events.push_back(

@@ -1,5 +1,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
@@ -12,6 +13,7 @@
 #include <string>
 
 #include "core/dense_eigen.hpp"
+#include "solvers/modes/tied_system.hpp"
 
 namespace drev {
 
@@ -56,6 +58,10 @@ DampedMode to_mode(std::complex<double> lambda) {
 }  // namespace
 
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options) {
+  if (const auto tied = tied_system(system)) {
+    if (options.damping.size() > 0) refuse_friction(system, "a damping by speed");
+    return solve_damped_modes(tied->system, options);
+  }
   const int n = system.size();
   if (n > options.size_limit)
     throw ModelError({{system.name() + "/damped modes", "unknowns", std::to_string(n), "",
