@@ -11,6 +11,8 @@ namespace drev {
 
 namespace {
 
+constexpr double kRounding = 1e-13;  // of the terms of a sum
+
 /// A quantity over the variables z >= 0 and the free torques f.
 struct Affine {
   double constant = 0.0;
@@ -65,7 +67,12 @@ class FrictionProblem {
         q[k] += c.sign * a_0[c.of_acceleration];
         m.row(k) += c.sign * a_z.row(c.of_acceleration);
       }
+      const double rounding = c.of_acceleration >= 0 ? p_.rounding[c.of_acceleration] * scale_[c.of_acceleration]
+                                                     : kRounding * (std::abs(c.w.constant) + lambda_0.norm());
+      if (std::abs(q[k]) <= rounding) q[k] = 0.0;
     }
+    const double nothing = kRounding * (nz > 0 ? m.cwiseAbs().maxCoeff() : 0.0);
+    m = (m.array().abs() > nothing).select(m, 0.0);
     const auto found = q.allFinite() && m.allFinite() ? solve_complementarity(m, q) : std::nullopt;
     if (!found)
       throw SolverError(

@@ -1,5 +1,6 @@
 #include "solvers/contact/linear_complementarity.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace drev {
@@ -7,15 +8,19 @@ namespace drev {
 namespace {
 
 constexpr double kPivot = 1e-11;  // of the largest entry of M: smaller ones are rounding
-constexpr double kSame = 1e-13;   // of the largest entry: ratios that are equal but for rounding
+constexpr double kSame = 1e-12;   // relative: ratios that are equal but for rounding
+constexpr int kTries = 4;         // with other artificial columns
 
 /// Rows w - M z - 1 z_0 = q; columns w, z, z_0, q.
 class Lemke {
  public:
-  Lemke(const Eigen::MatrixXd& m, const Eigen::VectorXd& q) : n_(q.size()), table_(n_, 2 * n_ + 2) {
+  Lemke(const Eigen::MatrixXd& m, const Eigen::VectorXd& q, int number)
+      : n_(q.size()), table_(n_, 2 * n_ + 2) {
     const double largest = q.lpNorm<Eigen::Infinity>();
     scale_ = largest > 0.0 ? largest : 1.0;
     table_ << Eigen::MatrixXd::Identity(n_, n_), -m, -Eigen::VectorXd::Ones(n_), q / scale_;
+    for (Eigen::Index i = 0; i < n_; ++i)  // not in step with anything in M
+      table_(i, 2 * n_) *= 1.0 + number * std::fmod(0.618033988749895 * static_cast<double>(i + 1), 1.0);
     smallest_ = kPivot * std::max(1.0, m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0.0);
     for (Eigen::Index i = 0; i < n_; ++i) basis_.push_back(i);
   }
@@ -49,13 +54,15 @@ class Lemke {
  private:
   /// Whether row a over its divisor is lexicographically less than row b over its own.
   bool precedes(Eigen::Index a, Eigen::Index b, double divisor_a, double divisor_b) const {
-    const double right = table_(a, 2 * n_ + 1) / divisor_a - table_(b, 2 * n_ + 1) / divisor_b;
-    if (std::abs(right) > kSame) return right < 0.0;
-    for (Eigen::Index j = 0; j < n_; ++j) {
-      const double difference = table_(a, j) / divisor_a - table_(b, j) / divisor_b;
-      if (std::abs(difference) > kSame) return difference < 0.0;
+    for (Eigen::Index j = -1; j < n_; ++j) {
+      const Eigen::Index column = j < 0 ? 2 * n_ + 1 : j;
+      const double of_a = table_(a, column) / divisor_a, of_b = table_(b, column) / divisor_b;
+      if (!same(of_a, of_b)) return of_a < of_b;
     }
     return false;
+  }
+  static bool same(double a, double b) {
+    return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
   }
   Eigen::Index leaving_row(Eigen::Index entering) const {
     Eigen::Index row = -1;
@@ -68,7 +75,7 @@ class Lemke {
     const double least = table_(row, 2 * n_ + 1) / table_(row, entering);
     for (Eigen::Index i = 0; i < n_; ++i)
       if (basis_[static_cast<std::size_t>(i)] == 2 * n_ && table_(i, entering) > smallest_ &&
-          table_(i, 2 * n_ + 1) / table_(i, entering) <= least + kSame)
+          same(table_(i, 2 * n_ + 1) / table_(i, entering), least))
         row = i;
     return row;
   }
@@ -89,7 +96,9 @@ class Lemke {
 
 std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
                                                            const Eigen::VectorXd& q) {
-  return Lemke(m, q).solve();
+  for (int number = 0; number < kTries; ++number)
+    if (auto found = Lemke(m, q, number).solve()) return found;
+  return std::nullopt;
 }
 
 }  // namespace drev

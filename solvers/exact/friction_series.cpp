@@ -144,7 +144,8 @@ void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
     c.loose = c.root = false;
     at_rest[i] = c.stuck || c.tied;
   }
-  check_ties(assembler, point.state.v);
+  if (!located_) check_ties(assembler, point.state.v);
+  located_ = true;
   resolve(assembler, point, at_rest);
 }
 
