@@ -239,7 +239,8 @@ void SystemBuilder::set_initial() {
       for (std::size_t k = 0; k < 2; ++k) by[k] = set_by[idx(map[k]->unknown)];
       if (by[0] < 0 && by[1] < 0) continue;
       const std::size_t from = by[0] >= 0 ? 0 : 1, to = 1 - from;
-      const double factor = -term.nodes[from].coeff * map[from]->coeff / (term.nodes[to].coeff * map[to]->coeff);
+      const double factor =
+          -term.nodes[from].coeff * map[from]->coeff / (term.nodes[to].coeff * map[to]->coeff);
       const auto follow = [&](Vector& x, const char* what, const char* unit) {
         double& other = x[map[to]->unknown];
         const double value = factor * x[map[from]->unknown];

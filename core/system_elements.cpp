@@ -218,7 +218,8 @@ void check_friction(const Friction& friction, ParameterCheck check) {
   for (const double torque : torques) check.non_negative("sliding torque", torque, "N m");
   check.all_finite("breakpoints", friction.breakpoints(), "s");
   if (const GearLoss* loss = friction.gear_loss())
-    for (const auto* values : {&loss->forward, &loss->backward, &loss->bearing_forward, &loss->bearing_backward})
+    for (const auto* values :
+         {&loss->forward, &loss->backward, &loss->bearing_forward, &loss->bearing_backward})
       if (values->size() != loss->speeds.size())
         check.fail("gear loss", std::to_string(values->size()), "points", "must be as many as speeds");
   if (!(friction.break_away() >= 1.0))

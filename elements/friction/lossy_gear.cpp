@@ -33,11 +33,10 @@ void LossyGear::check(ParameterCheck& check) const {
     if (!p.speeds.empty() && p.speeds.front() != 0.0)
       check.fail("speeds", to_text(p.speeds.front()), "rad/s", "must begin at 0");
     bool fit = true;
-    for (const auto& [name, values] :
-         {std::pair{"efficiencies_forward", &loss_.forward},
-          std::pair{"efficiencies_backward", &loss_.backward},
-          std::pair{"bearing_torques_forward", &loss_.bearing_forward},
-          std::pair{"bearing_torques_backward", &loss_.bearing_backward}}) {
+    for (const auto& [name, values] : {std::pair{"efficiencies_forward", &loss_.forward},
+                                       std::pair{"efficiencies_backward", &loss_.backward},
+                                       std::pair{"bearing_torques_forward", &loss_.bearing_forward},
+                                       std::pair{"bearing_torques_backward", &loss_.bearing_backward}}) {
       if (values->size() == p.speeds.size()) continue;
       fit = false;
       check.fail(name, std::to_string(values->size()) + " points", "",
@@ -47,8 +46,7 @@ void LossyGear::check(ParameterCheck& check) const {
   }
   for (std::size_t i = 0; i < loss_.speeds.size(); ++i) {
     const double f = loss_.forward[i], b = loss_.backward[i];
-    if (!(f > 0.0 && f <= 1.0))
-      check.fail("efficiency_forward", to_text(f), "", "must be > 0 and <= 1");
+    if (!(f > 0.0 && f <= 1.0)) check.fail("efficiency_forward", to_text(f), "", "must be > 0 and <= 1");
     if (!(b <= 1.0) || std::isinf(b))
       check.fail("efficiency_backward", to_text(b), "", "must be finite and <= 1; <= 0: self-locking");
     check.non_negative("bearing_torque_forward", loss_.bearing_forward[i], "N m");
@@ -58,7 +56,8 @@ void LossyGear::check(ParameterCheck& check) const {
     if (forward + backward < -1e-12 * std::abs(backward))
       check.fail("bearing_torque_backward", to_text(loss_.bearing_backward[i]), "N m",
                  "would make the gear give power where its direction changes: (1 - efficiency_backward) "
-                 "bearing_torque_forward + (1 - efficiency_forward) efficiency_backward bearing_torque_backward must "
+                 "bearing_torque_forward + (1 - efficiency_forward) efficiency_backward "
+                 "bearing_torque_backward must "
                  "be >= 0");
   }
 }

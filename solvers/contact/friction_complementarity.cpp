@@ -23,7 +23,8 @@ class FrictionProblem {
  public:
   FrictionProblem(const BoxComplementarity& p, const std::vector<GearLossRow>& gears)
       : p_(p), gears_(gears), n_(p.r.size()), gear_of_(static_cast<std::size_t>(p.r.size()), -1) {
-    for (std::size_t g = 0; g < gears.size(); ++g) gear_of_[static_cast<std::size_t>(gears[g].loss)] = static_cast<int>(g);
+    for (std::size_t g = 0; g < gears.size(); ++g)
+      gear_of_[static_cast<std::size_t>(gears[g].loss)] = static_cast<int>(g);
     count();
     state();
   }
@@ -53,6 +54,7 @@ class FrictionProblem {
     const Eigen::MatrixXd lambda_z = z_part + f_part * f_z;
     const Eigen::VectorXd a_0 = r_ - w_ * lambda_0;
     const Eigen::MatrixXd a_z = -(w_ * lambda_z);
+    const double largest = std::max(r_.lpNorm<Eigen::Infinity>(), lambda_0.lpNorm<Eigen::Infinity>());
     Eigen::VectorXd q(nz);
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(nz, nz);
     for (Eigen::Index k = 0; k < nz; ++k) {
@@ -67,24 +69,28 @@ class FrictionProblem {
         q[k] += c.sign * a_0[c.of_acceleration];
         m.row(k) += c.sign * a_z.row(c.of_acceleration);
       }
-      const double rounding = c.of_acceleration >= 0 ? p_.rounding[c.of_acceleration] * scale_[c.of_acceleration]
-                                                     : kRounding * (std::abs(c.w.constant) + lambda_0.norm());
+      const Eigen::Index of = c.of_acceleration;
+      const double rounding = std::max(of >= 0 ? p_.rounding[of] * scale_[of] : 0.0, kRounding * largest);
       if (std::abs(q[k]) <= rounding) q[k] = 0.0;
     }
-    const double nothing = kRounding * (nz > 0 ? m.cwiseAbs().maxCoeff() : 0.0);
+    const double nothing = kRounding * (1.0 + (nz > 0 ? lambda_z.cwiseAbs().maxCoeff() : 0.0));
     m = (m.array().abs() > nothing).select(m, 0.0);
     const auto found = q.allFinite() && m.allFinite() ? solve_complementarity(m, q) : std::nullopt;
     if (!found)
       throw SolverError(
-          "the torques of dry friction and lossy gears have no solution at this instant: a self-locking gear jams (an "
-          "efficiency_backward below 0 with a load of large inertia), or contacts are tied to each other within rounding");
+          "the torques of dry friction and lossy gears have no solution at this instant: a self-locking gear "
+          "jams (an "
+          "efficiency_backward below 0 with a load of large inertia), or contacts are tied to each other "
+          "within rounding");
     FrictionSolution result;
     result.lambda = lambda_0 + lambda_z * found->z;
     result.a = a_0 + a_z * found->z;
     result.a = result.a.cwiseQuotient(scale_);
     result.lambda = result.lambda.cwiseProduct(scale_);
     for (const Eigen::Index i : free_) result.a[i] = 0.0;
-    const auto holds = [&](int variable) { return variable >= 0 && !found->basic[static_cast<std::size_t>(variable)]; };
+    const auto holds = [&](int variable) {
+      return variable >= 0 && !found->basic[static_cast<std::size_t>(variable)];
+    };
     for (Eigen::Index i = 0; i < n_; ++i) {
       const Variables& v = of_[static_cast<std::size_t>(i)];
       int side = v.fixed;
@@ -158,7 +164,8 @@ class FrictionProblem {
   }
 
   Affine affine(double constant = 0.0) const {
-    return {constant, Eigen::VectorXd::Zero(variables_), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()))};
+    return {constant, Eigen::VectorXd::Zero(variables_),
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free_.size()))};
   }
   static void add(Affine& to, const Affine& other, double factor) {
     to.constant += factor * other.constant;

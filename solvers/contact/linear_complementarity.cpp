@@ -41,7 +41,8 @@ class Lemke {
         if (row < 0 || round == most) return std::nullopt;
       }
     }
-    ComplementarySolution found{Eigen::VectorXd::Zero(n_), std::vector<char>(static_cast<std::size_t>(n_), 0)};
+    ComplementarySolution found{Eigen::VectorXd::Zero(n_),
+                                std::vector<char>(static_cast<std::size_t>(n_), 0)};
     for (Eigen::Index i = 0; i < n_; ++i) {
       const Eigen::Index variable = basis_[static_cast<std::size_t>(i)];
       if (variable < n_ || variable == 2 * n_) continue;

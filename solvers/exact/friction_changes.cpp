@@ -149,8 +149,8 @@ std::vector<double> moved_to(std::vector<double> g, double from) {
 }
 
 /// First s at which both are below zero; at 0 one of them holds (falls < 0).
-std::optional<double> first_both_below(const std::vector<double>* a, bool a_holds, const std::vector<double>* b,
-                                       double end) {
+std::optional<double> first_both_below(const std::vector<double>* a, bool a_holds,
+                                       const std::vector<double>* b, double end) {
   constexpr int kMostTurns = 100;
   if (!a_holds) std::swap(a, b);
   double from = 0.0;
@@ -284,7 +284,8 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
   const auto m = static_cast<Eigen::Index>(of.size());
   const std::vector<Eigen::Index> rows(of.begin(), of.end());
   for (GearLossRow& g : gears)  // rows of the system, until here
-    for (Eigen::Index* row : {&g.loss, &g.tie}) *row = std::find(rows.begin(), rows.end(), *row) - rows.begin();
+    for (Eigen::Index* row : {&g.loss, &g.tie})
+      *row = std::find(rows.begin(), rows.end(), *row) - rows.begin();
   BoxComplementarity problem{.w = w_(rows, rows),
                              .r = Vector(m),
                              .low = Vector::Constant(m, -kInfinity),

@@ -18,7 +18,8 @@ constexpr double kOnBound = 1e-11;     // of the torques that a bound is summed 
 constexpr double kSameBound = 1e-9;    // the same of two lines that meet
 
 /// Coefficient d of the product of two series.
-double product_at(const std::vector<double>& a, const std::vector<double>& b, std::size_t d, std::size_t first = 0) {
+double product_at(const std::vector<double>& a, const std::vector<double>& b, std::size_t d,
+                  std::size_t first = 0) {
   double sum = 0.0;
   for (std::size_t j = first; j <= d && j < a.size(); ++j)
     if (d - j < b.size()) sum += a[j] * b[d - j];
@@ -43,9 +44,10 @@ void FrictionSeries::find_gears() {
         left -= column.dot(Eigen::MatrixXd(w_(before, before)).ldlt().solve(column));
       }
       if (!(left > kClosesLoop * w_(row, row)))
-        throw SolverError(system_.name() + ": " +
-                          system_.element_instances()[idx(index(element(static_cast<int>(i))))].name +
-                          " closes a loop of gears, whose torques rigid bodies do not determine; put a shaft between");
+        throw SolverError(
+            system_.name() + ": " +
+            system_.element_instances()[idx(index(element(static_cast<int>(i))))].name +
+            " closes a loop of gears, whose torques rigid bodies do not determine; put a shaft between");
       ties.push_back(i);
     }
     if (law(i).gear_loss() == nullptr) continue;
@@ -72,7 +74,8 @@ void FrictionSeries::check_ties(const Assembler& assembler, const Vector& v) con
   }
 }
 
-FrictionSeries::LossValues FrictionSeries::loss_values(const Contact& c, const GearLoss& loss, int line) const {
+FrictionSeries::LossValues FrictionSeries::loss_values(const Contact& c, const GearLoss& loss,
+                                                       int line) const {
   const auto on_segment = [&](const std::vector<double>& values) {
     const auto k = idx(c.segment);
     if (k + 1 >= values.size()) return LossLine{values[k], 0.0};
@@ -141,8 +144,7 @@ GearLossRow FrictionSeries::gear_derivative(std::size_t i, const Change& change,
     return row;
   }
   const bool chosen = static_cast<int>(i) == change.contact && change.what == What::slip_ends;
-  const bool rests = c.tied || chosen ||
-                     std::any_of(c.bounds.begin(), c.bounds.end(), [&](const Bound& b) {
+  const bool rests = c.tied || chosen || std::any_of(c.bounds.begin(), c.bounds.end(), [&](const Bound& b) {
                        return b.what == What::slip_ends && zero_before(b, order + 1);
                      });
   row.turns = rests ? 0 : c.sign;
@@ -179,7 +181,8 @@ void FrictionSeries::add_gear(const TaylorSeries& series, std::size_t i, int k, 
     c.rest_tie = products - sign * c.bearing[d];
     c.rest_loss = -c.rest_tie;
   } else {
-    for (std::size_t j = 1; j <= d; ++j) products += c.efficiency[j] * (tie.torque[d - j] + sign * c.bearing[d - j]);
+    for (std::size_t j = 1; j <= d; ++j)
+      products += c.efficiency[j] * (tie.torque[d - j] + sign * c.bearing[d - j]);
     c.unit_tie = 1.0;
     c.unit_loss = efficiency - 1.0;
     c.rest_tie = 0.0;
@@ -202,7 +205,8 @@ void FrictionSeries::factor_series() {
     for (Eigen::Index r = 0; r < m; ++r) {
       const auto row = static_cast<Eigen::Index>(stuck_[static_cast<std::size_t>(r)]);
       w(r, j) = w_(row, static_cast<Eigen::Index>(of));
-      if (line) w(r, j) = contacts_[idx(loss)].unit_tie * w(r, j) + contacts_[idx(loss)].unit_loss * w_(row, loss);
+      if (line)
+        w(r, j) = contacts_[idx(loss)].unit_tie * w(r, j) + contacts_[idx(loss)].unit_loss * w_(row, loss);
     }
   }
   series_inverse_ = w.partialPivLu().inverse();
@@ -241,7 +245,8 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
   const double rounding = c.torque_rounding + contacts_[idx(c.tie)].torque_rounding;
   if (!c.stuck) {
     const int other = 1 - c.line;
-    c.bounds.push_back({.what = What::drive_turns, .g = loss_gap(c, loss, other, c.sign, size), .line = other});
+    c.bounds.push_back(
+        {.what = What::drive_turns, .g = loss_gap(c, loss, other, c.sign, size), .line = other});
     clean(c.bounds.back(), size, kOnBound * size[0] + rounding, 0.0, c.line_root);
     return;
   }

@@ -253,7 +253,8 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const int begin = system_.frictions()[i].history_begin;
     point.state.history[begin + FrictionHistory::kTorque] = torque[static_cast<Eigen::Index>(i)];
     point.state.history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
-    if (contacts_[i].tie >= 0) note_gear(i, slip_of(contacts_[i], assembler, point.state.v), point.state.history);
+    if (contacts_[i].tie >= 0)
+      note_gear(i, slip_of(contacts_[i], assembler, point.state.v), point.state.history);
   }
 }
 

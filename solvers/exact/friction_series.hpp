@@ -43,8 +43,14 @@ class FrictionSeries final : public TermForces {
   struct Change {
     double s = 0.0;
     int contact = 0;
-    enum class What { slip_ends, bound_high, bound_low, knot_above, knot_below, drive_turns } what =
-        What::slip_ends;
+    enum class What {
+      slip_ends,
+      bound_high,
+      bound_low,
+      knot_above,
+      knot_below,
+      drive_turns
+    } what = What::slip_ends;
     int order = 0;  ///< s = 0: of the first coefficient of the bound that is not zero
   };
 
@@ -125,10 +131,10 @@ class FrictionSeries final : public TermForces {
     // Of gears: a tie knows its loss, a loss its tie.
     bool rigid = false;
     int tie = -1, loss = -1;
-    int line = 0;           // that its loss is on where it is not stuck: 0 shaft 1 drives, 1 shaft 2
+    int line = 0;            // that its loss is on where it is not stuck: 0 shaft 1 drives, 1 shaft 2
     bool line_root = false;  // it is where the two lines meet at s = 0
-    double unit_tie = 1.0, unit_loss = 0.0;  // torques per unit of the gear's unknown
-    double rest_tie = 0.0, rest_loss = 0.0;  // and without it, of the degree that is worked at
+    double unit_tie = 1.0, unit_loss = 0.0;   // torques per unit of the gear's unknown
+    double rest_tie = 0.0, rest_loss = 0.0;   // and without it, of the degree that is worked at
     std::vector<double> efficiency, bearing;  // of that line, along the step
   };
   /// A value of a gear's losses over |w|, on a segment.

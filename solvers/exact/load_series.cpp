@@ -255,7 +255,11 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(forces.coefficient(j, row));
     const double rest = tail * relative_move(series, row);
-    return std::isfinite(rest) ? rest : 0.0;
+    if (std::isfinite(rest)) return rest;
+    // Nothing moves: friction holds the train, and when it lets go is told by the force itself.
+    double size = 0.0;
+    for (int j = 0; j <= kProjectionDegree; ++j) size += std::abs(forces.coefficient(j, row));
+    return size > 0.0 ? tail / size : 0.0;
   };
   // The path is off inside the step; of that, the contraction factor comes back at its end.
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);

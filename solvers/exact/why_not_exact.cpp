@@ -15,8 +15,8 @@ std::optional<std::string> why_not_exact(const System& system) {
     if (f.friction->rigid())
       for (const Entry& e : f.nodes)
         if (system.node_map(e.index).prescribed >= 0)
-          return name(f.element) + " is a lossy gear with a given motion of " + system.node_names()[idx(e.index)] +
-                 ": put a shaft between, or take an ideal gear";
+          return name(f.element) + " is a lossy gear with a given motion of " +
+                 system.node_names()[idx(e.index)] + ": put a shaft between, or take an ideal gear";
     bool moves = false;
     for (const Entry& e : f.nodes) moves = moves || system.node_map(e.index).prescribed < 0;
     if (!moves) return name(f.element) + " rubs between nodes whose motion is given: leave it out";

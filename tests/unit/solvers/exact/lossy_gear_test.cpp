@@ -88,7 +88,8 @@ TEST_CASE("Lossy gear: efficiency by quadrant (case G2)") {
     const double a_b = first ? 10.0 / 3.5 : 10.0 / 9.5;
     CHECK(r.state.v[1] == Approx(0.5 * a_b).epsilon(1e-14));
     CHECK(value(system, r.state, "gear.driving_shaft") == (first ? 1.0 : 2.0));
-    const double in = value(system, r.state, "gear.torque_in_Nm"), out = value(system, r.state, "gear.torque_out_Nm");
+    const double in = value(system, r.state, "gear.torque_in_Nm"),
+                 out = value(system, r.state, "gear.torque_out_Nm");
     CHECK(in == Approx((first ? 10.0 : 0.0) - 2.0 * a_b).epsilon(1e-13));
     CHECK(out == Approx(1.5 * a_b - (first ? 0.0 : 10.0)).epsilon(1e-13));
     CHECK((first ? out / (2.0 * in) : 2.0 * in / out) == Approx(0.5).epsilon(1e-13));
