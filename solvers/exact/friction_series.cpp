@@ -17,6 +17,7 @@ constexpr double kAtRest = 1e-13;  // of the speeds that a slip speed is summed 
 constexpr double kLocked = 1e-9;   // the same of a freewheel that rounding turns backward
 constexpr double kNoAcceleration = 1e-12;  // of the terms that a slip acceleration is summed from
 constexpr double kSumRounding = 1e-14;     // of a sum, relative to its terms
+constexpr double kGrowing = 4.0;           // torque inside a step over that at its start
 constexpr double kDependent = 1e-10;       // of W_ii: what the stuck contacts leave of it
 
 double value_of(const std::vector<Entry>& row, const double* x) {
@@ -253,6 +254,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const int begin = system_.frictions()[i].history_begin;
     point.state.history[begin + FrictionHistory::kTorque] = torque[static_cast<Eigen::Index>(i)];
     point.state.history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
+    contacts_[i].torque[0] = torque[static_cast<Eigen::Index>(i)];  // what add_to() judges a gear's slopes by
     if (contacts_[i].tie >= 0)
       note_gear(i, slip_of(contacts_[i], assembler, point.state.v), point.state.history);
   }
@@ -329,7 +331,7 @@ void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, doubl
     if (c.tie >= 0) {
       const LossValues v = loss_values(c, *law(i).gear_loss(), c.line);
       const double torque = std::abs(c.torque[0]) + std::abs(contacts_[idx(c.tie)].torque[0]);
-      series.widen_damping((std::abs(v.bearing.slope) + std::abs(v.efficiency.slope) * torque) *
+      series.widen_damping((std::abs(v.bearing.slope) + kGrowing * std::abs(v.efficiency.slope) * torque) *
                            w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
       continue;
     }
