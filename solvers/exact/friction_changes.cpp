@@ -313,6 +313,7 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     problem.rounding[k] = patience_ * kSameSlope * (std::abs(problem.r[k]) + (chosen ? own : all));
   }
   const FrictionSolution found = solve(problem, gears);
+  if (gears_) problem.rounding += patience_ * kSameSlope * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
   begin_stuck();
   take(of, found, problem, gears);
   factor_stuck();

@@ -232,6 +232,8 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
       }
     }
     if (m > 0) found = solve(problem, gears);
+    if (m > 0 && gears_)  // through ties, torques accelerate contacts far from them
+      problem.rounding += kNoAcceleration * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
     // One breaks away at a time, the fastest: what it then carries is less, and the others are asked again.
     Contact* fastest = nullptr;
     double largest = 0.0;

@@ -2,26 +2,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/friction/friction_train.hpp"
+#include "tests/stability/friction/gear_equations.hpp"
 
 namespace drev::test {
 
 namespace {
 
 using TrainContact = FrictionTrain::Contact;
-using TrainGear = FrictionTrain::Gear;
 constexpr double kPi2 = 6.283185307179586;
 constexpr double kTrialTime = 1e-6;   // s, over which combinations are tried
 constexpr double kRestSpeed = 1e-9;   // rad/s
 constexpr double kTrialNoise = 1e-7;  // of a torque or speed change, in a trial
 
 enum class ContactMode { stuck, forward, backward, open };
-
-struct GearMode {
-  int turns = 0;   // sign of the speed of a; 0: stuck
-  int drives = 0;  // 0: a, 1: b
-  bool rests = false, beyond = false;
-};
 
 struct TrainPoint {
   double t = 0.0;
@@ -152,18 +145,7 @@ class EventSplitting {
         w[r + 1][m] = mode.turns * loss.backward * loss.bearing_backward;
       }
     }
-    for (std::size_t k = 0; k < m; ++k) {
-      std::size_t best = k;
-      for (std::size_t r = k; r < m; ++r)
-        if (std::abs(w[r][k]) > std::abs(w[best][k])) best = r;
-      if (std::abs(w[best][k]) < 1e-9) return false;
-      std::swap(w[k], w[best]);
-      for (std::size_t r = 0; r < m; ++r) {
-        if (r == k) continue;
-        const double factor = w[r][k] / w[k][k];
-        for (std::size_t s = k; s <= m; ++s) w[r][s] -= factor * w[k][s];
-      }
-    }
+    if (!eliminate(w)) return false;
     in_.resize(gears_.size());
     out_.resize(gears_.size());
     for (std::size_t k = 0; k < m; ++k) {
@@ -177,21 +159,8 @@ class EventSplitting {
     return true;
   }
 
-  static TrainGear::Loss loss_at(const TrainGear& g, double speed) {
-    if (g.knot_speed == 0.0) return g.loss;
-    const double part = std::min(1.0, std::abs(speed) / g.knot_speed);
-    const auto between = [part](double a, double b) { return a + part * (b - a); };
-    return {between(g.loss.forward, g.far.forward), between(g.loss.backward, g.far.backward),
-            between(g.loss.bearing_forward, g.far.bearing_forward),
-            between(g.loss.bearing_backward, g.far.bearing_backward)};
-  }
   double speed_of(const TrainGear& g, const std::vector<double>& speed) const {
     return speed[static_cast<std::size_t>(g.a)];
-  }
-  /// Torque that a must put in for it to turn that way with this torque out and this shaft driving.
-  static double asks(const TrainGear::Loss& loss, int turns, int drives, double out) {
-    return drives == 0 ? (out + turns * loss.bearing_forward) / loss.forward
-                       : loss.backward * (out + turns * loss.bearing_backward);
   }
   /// By how much a gear's condition on its torques (of the last evaluate()) is broken, > 0.
   double gear_broken(std::size_t g, double speed) const {
