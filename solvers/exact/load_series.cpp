@@ -21,8 +21,6 @@ constexpr int kTail = 4;
 constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between the bounds of its pieces
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
-// Of a force on a train that friction holds at rest: less of it is as good as rounding.
-constexpr double kForceRounding = 1e-12;
 // Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
 constexpr double kKinkInside = 1e-4;
 // A kink that leaves more of the motion than this inside the step ends it.
@@ -257,11 +255,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(forces.coefficient(j, row));
     const double rest = tail * relative_move(series, row);
-    if (std::isfinite(rest)) return rest;
-    // Nothing moves: friction holds the train, and when it lets go is told by the force itself.
-    double size = 0.0;
-    for (int j = 0; j <= kProjectionDegree; ++j) size += std::abs(forces.coefficient(j, row));
-    return tail > kForceRounding * size ? tail / size : 0.0;
+    return std::isfinite(rest) ? rest : 0.0;
   };
   // The path is off inside the step; of that, the contraction factor comes back at its end.
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
