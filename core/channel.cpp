@@ -180,14 +180,24 @@ class ChannelFinder {
   void add_friction(int number) {
     using History = FrictionHistory;
     const FrictionTerm& term = system_.frictions()[idx(number)];
+    if (term.friction->rigid()) return;
     const bool turns = rotational(term.nodes);
     const std::string name = element(term.element);
     const auto of_history = [&](const std::string& what, const std::string& unit, int which) {
       add(name + what, unit, Channel::Kind::friction, term.history_begin + which);
     };
-    of_history(force_name(turns), force_unit(turns), History::kTorque);
     of_history(".state", "-", History::kState);
     of_history(".heat_J", "J", History::kHeat);
+    if (const int tie = tie_of(system_, number); tie >= 0) {
+      of_history(".torque_in_Nm", "N m", History::kTorqueIn);
+      of_history(".torque_out_Nm", "N m", History::kTorqueOut);
+      of_history(".loss_torque_Nm", "N m", History::kTorque);
+      of_history(".loss_power_W", "W", History::kPower);
+      add(name + ".driving_shaft", "-", Channel::Kind::friction,
+          system_.frictions()[idx(tie)].history_begin + History::kState);
+      return;
+    }
+    of_history(force_name(turns), force_unit(turns), History::kTorque);
     add(name + (turns ? ".slip_speed_rad_per_s" : ".slip_speed_m_per_s"), turns ? "rad/s" : "m/s",
         Channel::Kind::slip, number);
   }

@@ -226,6 +226,37 @@ void SystemBuilder::set_initial() {
     v = initial.rate / map.coeff;
     by = node;
   }
+  // The two sides of a tie move as one: what is given for one holds for the other.
+  bool again = true;
+  while (again) {
+    again = false;
+    for (const FrictionTerm& term : system_.frictions_) {
+      if (!term.friction->rigid() || term.nodes.size() != 2) continue;
+      const NodeMap* map[2];
+      for (std::size_t k = 0; k < 2; ++k) map[k] = &system_.node_map_[idx(term.nodes[k].index)];
+      if (map[0]->unknown < 0 || map[1]->unknown < 0) continue;
+      int by[2];
+      for (std::size_t k = 0; k < 2; ++k) by[k] = set_by[idx(map[k]->unknown)];
+      if (by[0] < 0 && by[1] < 0) continue;
+      const std::size_t from = by[0] >= 0 ? 0 : 1, to = 1 - from;
+      const double factor =
+          -term.nodes[from].coeff * map[from]->coeff / (term.nodes[to].coeff * map[to]->coeff);
+      const auto follow = [&](Vector& x, const char* what, const char* unit) {
+        double& other = x[map[to]->unknown];
+        const double value = factor * x[map[from]->unknown];
+        if (by[to] >= 0 && differ(map[to]->coeff * other, map[to]->coeff * value))
+          ParameterCheck(place(node_name(by[to])), findings_)
+              .fail(what, to_text(map[to]->coeff * other), unit,
+                    "but that of " + node_name(by[from]) + " gives " + to_text(map[to]->coeff * value));
+        if (by[to] < 0) other = value;
+      };
+      follow(system_.initial_v_, "initial rate", "rad/s");
+      if (by[to] >= 0) continue;
+      follow(system_.initial_z_, "initial deviation", "rad");
+      set_by[idx(map[to]->unknown)] = by[from];
+      again = true;
+    }
+  }
 }
 
 System SystemBuilder::constrained() {

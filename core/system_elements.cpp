@@ -169,7 +169,7 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
   }
   for (const FrictionSpec& f : terms.frictions) {
     system_.frictions_.push_back({id, f.friction, over_nodes(f.b, nodes), system_.history_size_});
-    system_.history_size_ += FrictionHistory::kSize;
+    system_.history_size_ += FrictionHistory::size(*f.friction);
   }
 }
 
@@ -204,6 +204,11 @@ void check_friction(const Friction& friction, ParameterCheck check) {
                "must begin at 0, with a sliding torque for each");
   for (const double torque : torques) check.non_negative("sliding torque", torque, "N m");
   check.all_finite("breakpoints", friction.breakpoints(), "s");
+  if (const GearLoss* loss = friction.gear_loss())
+    for (const auto* values :
+         {&loss->forward, &loss->backward, &loss->bearing_forward, &loss->bearing_backward})
+      if (values->size() != loss->speeds.size())
+        check.fail("gear loss", std::to_string(values->size()), "points", "must be as many as speeds");
   if (!(friction.break_away() >= 1.0))
     check.fail("break-away ratio", to_text(friction.break_away()), "", "must be >= 1");
 }
@@ -288,6 +293,9 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
       fail("friction", "", "is missing (a null pointer)");
     else
       check_friction(*f.friction, ParameterCheck(place(p.name), findings_));
+    if (f.friction && f.friction->gear_loss() &&
+        (&f == terms.frictions.data() || !(&f - 1)->friction || !(&f - 1)->friction->rigid()))
+      fail("gear loss", "", "must be stated just behind the tie of its gear");
   }
   for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) row("closure", c.b, false);
   for (const LocalRow& b : terms.constraints) {

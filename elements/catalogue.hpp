@@ -14,6 +14,7 @@
 #include <drev/elements/friction/clutch.hpp>
 #include <drev/elements/friction/coulomb_joint.hpp>
 #include <drev/elements/friction/freewheel.hpp>
+#include <drev/elements/friction/lossy_gear.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/ground_spring.hpp>

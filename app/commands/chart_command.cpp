@@ -1,3 +1,4 @@
+#include <drev/core/law/friction.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
 #include <cstdio>
@@ -43,6 +44,10 @@ ChartRequest request_chart(const CommandLine& line) {
     else if (name != kExact)
       check_step_scheme("--methods", at == name.npos ? name : name.substr(0, at), findings);
   }
+  if (model && !model->system.frictions().empty())
+    findings.push_back({model->system.name(), "chart", "", "",
+                        *why_not_friction(model->system, "every other method that a chart would compare") +
+                            ", in drev run, with --tolerance and --accuracy for its error"});
   double limit = 1.0;
   if (line.option("--limit")) limit = read_time("--limit", *line.option("--limit"), kLimit, "", findings);
   if (const auto out = line.option("--out"); out && model)

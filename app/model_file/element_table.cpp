@@ -163,7 +163,8 @@ std::vector<ElementType>& table() {
                                         row<Brake>("brake"),
                                         row<CoulombJoint>("coulomb_joint"),
                                         row<BearingFriction>("bearing_friction"),
-                                        row<Freewheel>("freewheel")};
+                                        row<Freewheel>("freewheel"),
+                                        row<LossyGear>("lossy_gear")};
   return types;
 }
 

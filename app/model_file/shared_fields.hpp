@@ -7,6 +7,7 @@
 #include <drev/elements/engine/engine_cylinders.hpp>
 #include <drev/elements/friction/dry_friction.hpp>
 #include <drev/elements/friction/freewheel.hpp>
+#include <drev/elements/friction/lossy_gear.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/machines/generator.hpp>
@@ -51,5 +52,6 @@ void list(Fields& f, PlanetarySet::Params& p);
 void list(Fields& f, ShaftContour& p);
 void list(Fields& f, DryFriction::Params& p);
 void list(Fields& f, Freewheel::Params& p);
+void list(Fields& f, LossyGear::Params& p);
 
 }  // namespace drev::app

@@ -272,4 +272,21 @@ void list(Fields& f, DryFriction::Params& p) {
 
 void list(Fields& /*f*/, Freewheel::Params& /*p*/) {}
 
+void list(Fields& f, LossyGear::Params& p) {
+  const bool read = f.reading();
+  f.number({"ratio", D::none}, p.ratio, Need::required);
+  if (read || p.speeds.empty()) {
+    f.number({"efficiency_forward", D::none}, p.efficiency_forward);
+    f.number({"efficiency_backward", D::none}, p.efficiency_backward);
+    f.number({"bearing_torque_forward", D::torque}, p.bearing_torque_forward);
+    f.number({"bearing_torque_backward", D::torque}, p.bearing_torque_backward);
+  }
+  if (read || !p.speeds.empty())
+    f.columns("losses", {{{"speed", D::angular_speed}, &p.speeds},
+                         {{"efficiency_forward", D::none}, &p.efficiencies_forward},
+                         {{"efficiency_backward", D::none}, &p.efficiencies_backward},
+                         {{"bearing_torque_forward", D::torque}, &p.bearing_torques_forward},
+                         {{"bearing_torque_backward", D::torque}, &p.bearing_torques_backward}});
+}
+
 }  // namespace drev::app

@@ -2,6 +2,7 @@
 
 #include <drev/core/element.hpp>
 #include <drev/core/general_force.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/core/scalar_force.hpp>
 
 #include <Eigen/Cholesky>
@@ -49,6 +50,7 @@ class Drawing {
     if (terms.stiffness.isZero(0.0)) add_matrix(terms.damping, "damper", "damping");
     for (const ScalarSpec& spec : terms.scalars) add_law(spec);
     for (const LocalRow& row : terms.constraints) add_gear(row);
+    for (const FrictionSpec& spec : terms.frictions) add_friction(spec);
     for (const GeneralForce* general : terms.generals)
       if (general != nullptr) add_other();
     for (const LoadSpec& load : terms.loads)
@@ -118,6 +120,17 @@ class Drawing {
       if (row[i] != 0.0) local.push_back(i);
     if (local.size() != 2) return add_other();
     joint("gear", local)["ratio"] = -row[local[0]] / row[local[1]];
+  }
+
+  /// A lossy gear is drawn by its tie.
+  void add_friction(const FrictionSpec& spec) {
+    if (spec.friction->gear_loss()) return;
+    if (spec.friction->rigid()) return add_gear(spec.b);
+    std::vector<int> local;
+    for (int i = 0; i < static_cast<int>(spec.b.size()); ++i)
+      if (spec.b[i] != 0.0) local.push_back(i);
+    if (local.size() > 2) return add_other();
+    joint("friction", local)["one_way"] = spec.friction->one_way();
   }
 
   void add_other() {

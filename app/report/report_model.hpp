@@ -3,7 +3,7 @@
 ///
 /// All of it is read from what the elements say of themselves (Element::describe), so that one's own elements
 /// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
-/// a constraint is an ideal gear.
+/// a constraint is an ideal gear, dry friction a clutch.
 #include <drev/core/system.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
@@ -12,7 +12,7 @@
 namespace drev::app {
 
 /// {nodes: [{name, turns, ratio, inertia, held}], joints: [{name, type, kind, nodes, ...}], loads: [{name,
-/// type, node}], unknowns}. kind of a joint: shaft, mesh, gear, spring (a law), damper, other; one node: to
+/// type, node}], unknowns}. kind of a joint: shaft, mesh, gear, spring (a law), damper, friction, other; one node: to
 /// ground.
 Json model_object(const Model& model, const System& system);
 

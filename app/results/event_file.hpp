@@ -4,8 +4,11 @@
 ///   time_s,element,flank,contact,rate,rate_unit
 ///   0.00132914,mesh_1,front,lost,-0.00071,m/s
 ///
-/// flank: front or back; contact: made or lost; rate: of the deflection, positive towards the front flank, m/s along the
-/// line of action or rad/s. 17 significant digits, element names as csv_cell() has them.
+///   0.8301047,clutch,,stuck,0,rad/s
+///
+/// flank: front or back; contact: made or lost; of dry friction, without a flank: stuck, sliding forward, sliding backward
+/// or open, of a freewheel locked or released, of a lossy gear stuck, turning forward or turning backward. rate: of the deflection, positive towards the front flank, m/s along the
+/// line of action or rad/s; of friction the slip speed. 17 significant digits, element names as csv_cell() has them.
 #include <drev/solvers/run/contact_events.hpp>
 
 #include <string>
@@ -29,7 +32,8 @@ class EventFile : public RowFile {
   struct Law {
     std::string element, rate_unit;
   };
-  std::vector<Law> laws_;
+  std::vector<Law> laws_, frictions_;
+  std::vector<const Friction*> friction_laws_;
 };
 
 }  // namespace drev::app

@@ -18,6 +18,10 @@ const char* to_text(FrictionState state) {
   return "";
 }
 
+int tie_of(const System& system, int loss) {
+  return system.frictions()[idx(loss)].friction->gear_loss() ? loss - 1 : -1;
+}
+
 std::optional<std::string> why_not_friction(const System& system, const std::string& what) {
   if (system.frictions().empty()) return std::nullopt;
   const ElementInstance& first = system.element_instances()[idx(index(system.frictions().front().element))];

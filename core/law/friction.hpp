@@ -4,6 +4,8 @@
 ///   sliding    lambda = sign(w) g(t) tau(|w|)
 ///   stuck      w = 0 exactly, and lambda takes whatever that needs, |lambda| <= g(t) r tau(0)
 ///   one-way    w >= 0: sliding (overrunning) carries nothing, stuck (locked) any lambda <= 0
+///   tie        w = 0 always, by any lambda
+///   gear loss  bounds of lambda that follow the torque of the tie stated just before it (GearLoss)
 ///
 /// f = b lambda stands on the left side of the equation of motion. g is the engagement, tau the sliding torque, r
 /// the break-away ratio.
@@ -18,6 +20,22 @@
 namespace drev {
 
 class System;
+
+/// What a gear between shafts 1 and 2 loses, over |w|, w the speed of shaft 1. tau_1 is the torque that shaft 1 puts in,
+/// P the torque that comes out, referred to shaft 1:
+///
+///   shaft 1 drives    P = eta_f tau_1 - sign(w) tau_f
+///   shaft 2 drives    tau_1 = eta_b (P + sign(w) tau_b)
+///
+/// The loss torque lambda = tau_1 - P is the larger of the two for w > 0, the lesser for w < 0, and whatever lies
+/// between those two bounds at w = 0. It takes up power in every state where (1 - eta_b) tau_f + (1 - eta_f) eta_b tau_b
+/// >= 0. Values are linear between the speeds and constant beyond.
+struct GearLoss {
+  std::vector<double> speeds{0.0};    ///< |w| [rad/s], ascending from 0
+  std::vector<double> forward{1.0};   ///< eta_f [-], > 0, <= 1
+  std::vector<double> backward{1.0};  ///< eta_b [-], <= 1; <= 0: no load turns shaft 2 by itself
+  std::vector<double> bearing_forward{0.0}, bearing_backward{0.0};  ///< tau_f, tau_b at shaft 1 [N m], >= 0
+};
 
 class Friction {
  public:
@@ -38,6 +56,10 @@ class Friction {
   virtual std::vector<double> breakpoints() const { return {}; }
   /// A freewheel: it locks where w would become negative.
   virtual bool one_way() const { return false; }
+  /// The tie of a gear: it holds w = 0 by any torque.
+  virtual bool rigid() const { return false; }
+  /// Of a gear, b the speed of its shaft 1; null: friction of its own.
+  virtual const GearLoss* gear_loss() const { return nullptr; }
 };
 
 /// State of a friction contact, as its channel ELEMENT.state gives it.
@@ -55,7 +77,15 @@ struct FrictionHistory {
   static constexpr int kState = 1;   ///< of FrictionState
   static constexpr int kHeat = 2;    ///< J, dissipated since the start of the run
   static constexpr int kSize = 3;
+  // Of a tie, kTorque is P and kState the shaft that drives (1 or 2). Of a gear loss also:
+  static constexpr int kTorqueIn = 3;   ///< tau_1 [N m]
+  static constexpr int kTorqueOut = 4;  ///< that shaft 2 gets [N m]
+  static constexpr int kPower = 5;      ///< loss [W]
+  static int size(const Friction& friction) { return friction.gear_loss() ? 6 : kSize; }
 };
+
+/// The tie of the gear whose loss is frictions()[loss]; -1 where it is none.
+int tie_of(const System& system, int loss);
 
 /// Throws SolverError where the system has dry friction: `what` (a method or computation) does not take it.
 void refuse_friction(const System& system, const std::string& what);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/contact/box_complementarity.hpp"
+#include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/friction_series.hpp"
 
@@ -37,7 +37,7 @@ void FrictionSeries::note_changes(double t, bool at_start, RunSummary& summary) 
   noted_.resize(contacts_.size(), FrictionState::open);
   for (int i = 0; i < count(); ++i) {
     const FrictionState to = state(i);
-    if (to == std::exchange(noted_[idx(i)], to) || at_start) continue;
+    if (to == std::exchange(noted_[idx(i)], to) || at_start || contacts_[idx(i)].rigid) continue;
     ++summary.friction_changes;
     if (summary.friction_events.size() < RunSummary::kMostFrictionEvents)
       summary.friction_events.push_back(
@@ -86,7 +86,9 @@ void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
 void FrictionSeries::find_bounds(std::size_t i) {
   Contact& c = contacts_[i];
   c.bounds.clear();
-  if (c.open || c.tied) return;
+  if (c.open || c.rigid) return;
+  if (c.tie >= 0) find_gear_bounds(i);
+  if (c.tied || (c.stuck && c.tie >= 0)) return;
   using What = Change::What;
   if (c.stuck) {
     const Limits most = limits(i, false);
@@ -150,28 +152,73 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
   }
 }
 
+namespace {
+
+/// The polynomial g(from + s).
+std::vector<double> moved_to(std::vector<double> g, double from) {
+  for (std::size_t i = 0; i + 1 < g.size(); ++i)
+    for (std::size_t k = g.size() - 1; k-- > i;) g[k] += from * g[k + 1];
+  return g;
+}
+
+/// First s at which both are below zero; at 0 one of them holds (falls < 0).
+std::optional<double> first_both_below(const std::vector<double>* a, bool a_holds,
+                                       const std::vector<double>* b, double end) {
+  constexpr int kMostTurns = 100;
+  if (!a_holds) std::swap(a, b);
+  double from = 0.0;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const auto s = from == 0.0 ? first_crossing(*a, end) : first_crossing(moved_to(*a, from), end - from);
+    if (!s) return std::nullopt;
+    from += *s;
+    if (polynomial_value(*b, from) <= 0.0) return from;
+    std::swap(a, b);
+  }
+  return from;
+}
+
+}  // namespace
+
 std::optional<FrictionSeries::Change> FrictionSeries::change_at_once() const {
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    for (const Bound& b : contacts_[i].bounds)
-      if (b.falls >= 0) return Change{0.0, static_cast<int>(i), b.what, b.falls};
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const std::vector<Bound>& bounds = contacts_[i].bounds;
+    for (std::size_t k = 0; k < bounds.size(); ++k) {
+      int falls = bounds[k].falls;
+      if (two_lines(bounds, k)) {
+        falls = falls < 0 || bounds[k + 1].falls < 0 ? -1 : std::max(falls, bounds[k + 1].falls);
+        ++k;
+      }
+      if (falls >= 0) return Change{0.0, static_cast<int>(i), bounds[k].what, falls};
+    }
+  }
   return std::nullopt;
 }
 
 std::optional<FrictionSeries::Change> FrictionSeries::first_change(double end) const {
   std::optional<Change> first;
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    for (const Bound& b : contacts_[i].bounds)
-      if (const auto s = first_crossing(b.g, end)) {
-        first = Change{*s, static_cast<int>(i), b.what, 0};
-        end = *s;
-      }
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const std::vector<Bound>& bounds = contacts_[i].bounds;
+    for (std::size_t k = 0; k < bounds.size(); ++k) {
+      const Bound& b = bounds[k];
+      std::optional<double> s;
+      if (two_lines(bounds, k))
+        s = first_both_below(&b.g, b.falls < 0, &bounds[++k].g, end);
+      else
+        s = first_crossing(b.g, end);
+      if (!s) continue;
+      first = Change{*s, static_cast<int>(i), b.what, 0};
+      end = *s;
+    }
+  }
   return first;
 }
 
 double FrictionSeries::beyond_end(const Change& change) const {
+  const Bound* nearest = nullptr;  // of a gear's two lines, that which holds longer
   for (const Bound& b : contacts_[idx(change.contact)].bounds)
-    if (b.what == change.what) return -polynomial_value(b.g, 1.0) / polynomial_slope(b.g, 1.0);
-  return 1.0;
+    if (b.what == change.what && (!nearest || polynomial_value(b.g, 1.0) > polynomial_value(nearest->g, 1.0)))
+      nearest = &b;
+  return nearest ? -polynomial_value(nearest->g, 1.0) / polynomial_slope(nearest->g, 1.0) : 1.0;
 }
 
 bool FrictionSeries::pass(const Change& change, const Assembler& assembler, EvaluatedState& point) {
@@ -184,6 +231,10 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
   const bool bound = change.what != What::slip_ends;
   const int order = bound ? change.order : std::max(0, change.order - 1);
   if (bound && change.s > 0.0) {  // the series behind it tells by its derivatives
+    if (change.what == What::drive_turns) {
+      c.line_root = true;
+      return false;
+    }
     c.root = true;
     c.root_bound = change.what == What::bound_high ? 1 : -1;
     return false;
@@ -207,7 +258,7 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
   std::vector<char> at_rest(contacts_.size(), 0);
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     at_rest[i] = contacts_[i].stuck || contacts_[i].tied || (contacts_[i].root && !contacts_[i].open);
-  if (!breaks_away) at_rest[idx(change.contact)] = 1;
+  if (!breaks_away && change.what != What::drive_turns) at_rest[idx(change.contact)] = 1;
   resolve(assembler, point, at_rest);
   return true;
 }
@@ -216,12 +267,17 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
   const auto level = idx(order);
   std::vector<std::size_t> of;
   std::vector<int> sides;  // bits: 1 near the high bound, 2 near the low one
+  std::vector<GearLossRow> gears;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
     const bool chosen = static_cast<int>(i) == change.contact;
     int near = 0;
     if (c.open) continue;
-    if (c.tied) {
+    if (c.rigid) {
+      // It stays.
+    } else if (c.tie >= 0) {
+      gears.push_back(gear_derivative(i, change, order));
+    } else if (c.tied) {
       near = c.sign > 0 ? 1 : 2;
     } else if (c.stuck) {
       for (const Bound& b : c.bounds) {
@@ -240,6 +296,9 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
   }
   const auto m = static_cast<Eigen::Index>(of.size());
   const std::vector<Eigen::Index> rows(of.begin(), of.end());
+  for (GearLossRow& g : gears)  // rows of the system, until here
+    for (Eigen::Index* row : {&g.loss, &g.tie})
+      *row = std::find(rows.begin(), rows.end(), *row) - rows.begin();
   BoxComplementarity problem{.w = w_(rows, rows),
                              .r = Vector(m),
                              .low = Vector::Constant(m, -kInfinity),
@@ -266,17 +325,19 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     const double all = problem.w.row(k).lpNorm<1>() * largest;
     problem.rounding[k] = patience_ * kSameSlope * (std::abs(problem.r[k]) + (chosen ? own : all));
   }
-  const BoxSolution found = solve(problem);
-  stuck_.clear();
-  take(of, found, problem);
+  const FrictionSolution found = solve(problem, gears);
+  if (gears_) problem.rounding += patience_ * kSameSlope * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
+  begin_stuck();
+  take(of, found, problem, gears);
   factor_stuck();
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    point.state.history[system_.frictions()[i].history_begin + FrictionHistory::kState] =
-        static_cast<int>(state(static_cast<int>(i)));
+    if (!contacts_[i].rigid)
+      point.state.history[system_.frictions()[i].history_begin + FrictionHistory::kState] =
+          static_cast<int>(state(static_cast<int>(i)));
 }
 
 void FrictionSeries::forget_roots() {
-  for (Contact& c : contacts_) c.root = c.loose = false;
+  for (Contact& c : contacts_) c.root = c.loose = c.line_root = false;
   patience_ = 1.0;
 }
 
@@ -305,6 +366,7 @@ void FrictionSeries::write(double s, const Vector& start, Vector& history) const
     history[begin + FrictionHistory::kTorque] = polynomial_value(contacts_[i].torque, s);
     history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
     history[begin + FrictionHistory::kHeat] = start[begin + FrictionHistory::kHeat] + heat(contacts_[i], s);
+    if (contacts_[i].tie >= 0) note_gear(i, polynomial_value(contacts_[i].slip, s), history);
   }
 }
 

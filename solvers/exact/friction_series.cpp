@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/contact/box_complementarity.hpp"
+#include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/run/run_verdict.hpp"
 
 namespace drev {
@@ -17,6 +17,7 @@ constexpr double kAtRest = 1e-13;  // of the speeds that a slip speed is summed 
 constexpr double kLocked = 1e-9;   // the same of a freewheel that rounding turns backward
 constexpr double kNoAcceleration = 1e-12;  // of the terms that a slip acceleration is summed from
 constexpr double kSumRounding = 1e-14;     // of a sum, relative to its terms
+constexpr double kGrowing = 4.0;           // torque inside a step over that at its start
 constexpr double kDependent = 1e-10;       // of W_ii: what the stuck contacts leave of it
 
 double value_of(const std::vector<Entry>& row, const double* x) {
@@ -84,6 +85,7 @@ FrictionSeries::FrictionSeries(const System& system) : system_(system) {
       w_(i, j) = value_of(contacts_[static_cast<std::size_t>(i)].z, column.data());
   }
   w_ = (0.5 * (w_ + w_.transpose())).eval();
+  find_gears();
 }
 
 double FrictionSeries::slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const {
@@ -93,6 +95,7 @@ double FrictionSeries::slip_of(const Contact& c, const Assembler& assembler, con
 }
 
 FrictionSeries::Limits FrictionSeries::limits(std::size_t i, bool loose) const {
+  if (law(i).rigid() || contacts_[i].tie >= 0) return {-kInfinite, kInfinite};
   if (law(i).one_way()) return {-kInfinite, 0.0};
   const double torque = law(i).sliding_torques().front();
   const double most = loose ? torque : torque * law(i).break_away();
@@ -142,6 +145,8 @@ void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
     c.loose = c.root = false;
     at_rest[i] = c.stuck || c.tied;
   }
+  if (!located_) check_ties(assembler, point.state.v);
+  located_ = true;
   resolve(assembler, point, at_rest);
 }
 
@@ -156,6 +161,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
   const Vector sizes = force_sizes(system_, point);
   Vector acceleration(static_cast<Eigen::Index>(n)), torque = Vector::Zero(static_cast<Eigen::Index>(n));
   std::vector<std::size_t> resting;
+  std::vector<GearLossRow> gears;
   if (point.state.v.size() > 0)
     speed_scale_ = std::max(speed_scale_, point.state.v.lpNorm<Eigen::Infinity>());
   for (std::size_t i = 0; i < n; ++i) {
@@ -167,6 +173,10 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     for (const Entry& e : c.u) acceleration[row] += e.coeff * assembler.prescribed(e.index).acceleration;
     c.speed_rounding = patience_ * kSumRounding * size_of(c.gain, sizes.data());
     c.torque_rounding = c.speed_rounding / w_(row, row);
+    if (c.rigid) {
+      resting.push_back(i);
+      continue;
+    }
     const double slip = slip_of(c, assembler, point.state.v);
     double size = size_of(c.z, point.state.v.data()) + std::abs(c.nominal * assembler.nominal().rate);
     for (const Entry& e : c.u) size += std::abs(e.coeff * assembler.prescribed(e.index).rate);
@@ -177,6 +187,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     if (at_rest[i] || locks || std::abs(slip) <= kAtRest * std::max(size, speed_scale_)) {
       resting.push_back(i);
       c.segment = 0;
+      if (c.tie >= 0) gears.push_back(gear_at(i, 0.0, true));
       continue;
     }
     c.root = false;
@@ -187,7 +198,12 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
                         " turns in the direction that it locks, at " + to_text(slip) +
                         " rad/s: the speeds at the start must fit it");
     find_segment(i, slip);
-    torque[row] = sliding(i, slip);
+    if (c.tie >= 0) {
+      resting.push_back(i);
+      gears.push_back(gear_at(i, slip, false));
+    } else {
+      torque[row] = sliding(i, slip);
+    }
   }
   acceleration -= w_ * torque;
   const auto m = static_cast<Eigen::Index>(resting.size());
@@ -197,7 +213,9 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
                              .low = Vector::Zero(m),
                              .high = Vector::Zero(m),
                              .rounding = Vector::Zero(m)};
-  BoxSolution found;
+  for (GearLossRow& g : gears)  // rows of the system, until here
+    for (Eigen::Index* row : {&g.loss, &g.tie}) *row = std::find(of.begin(), of.end(), *row) - of.begin();
+  FrictionSolution found;
   for (bool settled = false; !settled;) {
     for (Eigen::Index k = 0; k < m; ++k) {
       const std::size_t i = resting[static_cast<std::size_t>(k)];
@@ -209,10 +227,13 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
       for (Eigen::Index j = 0; j < m; ++j) {
         const std::size_t o = resting[static_cast<std::size_t>(j)];
         const double other = contacts_[o].capacity[0] * limits(o, false).high;
+        if (!std::isfinite(other)) continue;
         problem.rounding[k] += kNoAcceleration * std::abs(problem.w(k, j) * other);
       }
     }
-    if (m > 0) found = solve(problem);
+    if (m > 0) found = solve(problem, gears);
+    if (m > 0 && gears_)  // through ties, torques accelerate contacts far from them
+      problem.rounding += kNoAcceleration * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
     // One breaks away at a time, the fastest: what it then carries is less, and the others are asked again.
     Contact* fastest = nullptr;
     double largest = 0.0;
@@ -227,28 +248,44 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     settled = fastest == nullptr;
     if (fastest) fastest->loose = true;
   }
-  stuck_.clear();
-  if (m > 0) take(resting, found, problem);
+  begin_stuck();
+  if (m > 0) take(resting, found, problem, gears);
   factor_stuck();
   for (Eigen::Index k = 0; k < m; ++k) torque[of[static_cast<std::size_t>(k)]] = found.lambda[k];
   for (std::size_t i = 0; i < n; ++i) {
     const int begin = system_.frictions()[i].history_begin;
     point.state.history[begin + FrictionHistory::kTorque] = torque[static_cast<Eigen::Index>(i)];
     point.state.history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
+    contacts_[i].torque[0] = torque[static_cast<Eigen::Index>(i)];  // what add_to() judges a gear's slopes by
+    if (contacts_[i].tie >= 0)
+      note_gear(i, slip_of(contacts_[i], assembler, point.state.v), point.state.history);
   }
 }
 
-void FrictionSeries::take(const std::vector<std::size_t>& of, const BoxSolution& solution,
-                          const BoxComplementarity& problem) {
+void FrictionSeries::begin_stuck() {
+  stuck_.clear();
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+    if (contacts_[i].rigid) stuck_.push_back(i);
+}
+
+void FrictionSeries::take(const std::vector<std::size_t>& of, const FrictionSolution& solution,
+                          const BoxComplementarity& problem, const std::vector<GearLossRow>& gears) {
+  std::vector<char> turns(of.size(), 0);
+  for (std::size_t g = 0; g < gears.size(); ++g) {
+    const auto k = static_cast<std::size_t>(gears[g].loss);
+    turns[k] = gears[g].turns != 0;
+    if (solution.line[g] >= 0) contacts_[of[k]].line = solution.line[g];
+  }
   for (const bool between : {true, false})
     for (std::size_t k = 0; k < of.size(); ++k) {
-      if ((solution.free[k] != 0) != between) continue;
+      if ((solution.side[k] == 0) != between) continue;
       const auto row = static_cast<Eigen::Index>(k);
       Contact& c = contacts_[of[k]];
+      if (c.rigid || turns[k]) continue;
       c.root = true;
       c.stuck = c.tied = false;
       const double a = solution.a[row];
-      const bool at_high = solution.lambda[row] == problem.high[row];
+      const bool at_high = solution.side[k] > 0;
       if (!between && std::abs(a) > problem.rounding[row]) {
         c.sign = a > 0.0 ? 1 : -1;
         c.segment = 0;
@@ -274,6 +311,8 @@ bool FrictionSeries::depends_on_stuck(std::size_t i) const {
 }
 
 void FrictionSeries::factor_stuck() {
+  any_on_line_ = gears_ && std::any_of(contacts_.begin(), contacts_.end(),
+                                       [this](const Contact& c) { return on_line(c); });
   if (stuck_.empty()) return;
   const std::vector<Eigen::Index> s(stuck_.begin(), stuck_.end());
   const Eigen::MatrixXd w = w_(s, s);
@@ -291,6 +330,13 @@ void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, doubl
       for (std::size_t k = 0; k < 2; ++k)
         c.known[k] += static_cast<double>(k + 1) / h * e.coeff * known.prescribed(e.index)[k + 1];
     if (c.open || c.stuck || c.tied) continue;
+    if (c.tie >= 0) {
+      const LossValues v = loss_values(c, *law(i).gear_loss(), c.line);
+      const double torque = std::abs(c.torque[0]) + std::abs(contacts_[idx(c.tie)].torque[0]);
+      series.widen_damping((std::abs(v.bearing.slope) + kGrowing * std::abs(v.efficiency.slope) * torque) *
+                           w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+      continue;
+    }
     const double slope = sliding_line(law(i), c.segment).slope;
     if (slope != 0.0)
       series.widen_damping(std::abs(slope) * std::max(g.value, g.value + g.slope * h) *
@@ -308,7 +354,7 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
     if (d >= c.torque.size()) c.torque.resize(d + 1);
     if (d >= c.slip.size()) c.slip.resize(d + 1);
     c.torque[d] = 0.0;
-    if (c.open || c.stuck) continue;
+    if (c.open || c.stuck || c.tie >= 0) continue;
     const double g = d < 2 ? c.capacity[d] : 0.0;
     if (c.tied) {
       c.torque[d] = g * c.bound;
@@ -323,6 +369,11 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
     }
     if (c.torque[d] != 0.0) apply(c, c.torque[d]);
   }
+  if (any_on_line_) {
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+      if (on_line(contacts_[i])) add_gear(series, i, k, factor, term);
+    if (d == 0) factor_series();
+  }
   if (stuck_.empty()) return;
   const auto m = static_cast<Eigen::Index>(stuck_.size());
   Vector rest(m);
@@ -330,16 +381,24 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
     const Contact& c = contacts_[stuck_[static_cast<std::size_t>(j)]];
     rest[j] = value_of(c.z, term) / factor + (d == 0 ? c.known[1] / h_ : 0.0);
   }
-  const Vector torque = stuck_inverse_ * rest;
+  const Vector torque = (any_on_line_ ? series_inverse_ : stuck_inverse_) * rest;
+  const auto hold_by = [&](Contact& c, double more) {
+    c.torque[d] += more;
+    for (const Entry& e : c.gain) {
+      term[e.index] -= factor * e.coeff * more;
+      // What rounding leaves of a node that is held at rest is no motion.
+      if (std::abs(term[e.index]) <= kSumRounding * std::abs(factor * e.coeff * more)) term[e.index] = 0.0;
+    }
+  };
   for (Eigen::Index j = 0; j < m; ++j) {
     Contact& c = contacts_[stuck_[static_cast<std::size_t>(j)]];
-    c.torque[d] = torque[j];
-    for (const Entry& e : c.gain) {
-      term[e.index] -= factor * e.coeff * torque[j];
-      // What rounding leaves of a node that is held at rest is no motion.
-      if (std::abs(term[e.index]) <= kSumRounding * std::abs(factor * e.coeff * torque[j]))
-        term[e.index] = 0.0;
+    if (c.loss < 0 || contacts_[idx(c.loss)].stuck) {
+      hold_by(c, torque[j]);
+      continue;
     }
+    Contact& loss = contacts_[idx(c.loss)];
+    hold_by(c, loss.unit_tie * torque[j]);
+    if (loss.unit_loss != 0.0) hold_by(loss, loss.unit_loss * torque[j]);
   }
 }
 

@@ -14,6 +14,12 @@
 /// at rest (box_complementarity.hpp), first of the accelerations. Contacts that it leaves on a bound with zero
 /// acceleration are decided by the same problem of the next derivative, along the series that holds there, and
 /// so on: a contact that just reaches its bound slides, if its torque would go on to rise.
+///
+/// A gear with losses is a tie, always among the stuck ones, and a contact whose torque on a bound is a multiple of its
+/// tie's: with one unknown x for both (the torque of the shaft that drives) the force b_tie lambda_tie + b_loss
+/// lambda_loss has a direction of its own, so that the matrix of the stuck ones is not symmetric then. Efficiencies that
+/// follow the speed multiply two series. Which shaft drives is one more bound. (friction_gears.cpp,
+/// friction_complementarity.hpp)
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
@@ -27,7 +33,8 @@
 namespace drev {
 
 struct BoxComplementarity;
-struct BoxSolution;
+struct FrictionSolution;
+struct GearLossRow;
 
 class FrictionSeries final : public TermForces {
  public:
@@ -37,7 +44,14 @@ class FrictionSeries final : public TermForces {
   struct Change {
     double s = 0.0;
     int contact = 0;
-    enum class What { slip_ends, bound_high, bound_low, knot_above, knot_below } what = What::slip_ends;
+    enum class What {
+      slip_ends,
+      bound_high,
+      bound_low,
+      knot_above,
+      knot_below,
+      drive_turns
+    } what = What::slip_ends;
     int order = 0;  ///< s = 0: of the first coefficient of the bound that is not zero
   };
 
@@ -48,6 +62,7 @@ class FrictionSeries final : public TermForces {
     contacts_ = other.contacts_;
     stuck_ = other.stuck_;
     stuck_inverse_ = other.stuck_inverse_;
+    any_on_line_ = other.any_on_line_;
     speed_scale_ = other.speed_scale_;
   }
 
@@ -83,7 +98,8 @@ class FrictionSeries final : public TermForces {
   double energy_of_rounding(double duration) const;
 
   FrictionState state(int contact) const;
-  /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing.
+  /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing, and nothing of
+  /// ties, which have no state.
   void note_changes(double t, bool at_start, RunSummary& summary);
   ElementId element(int contact) const { return system_.frictions()[idx(contact)].element; }
   int count() const { return static_cast<int>(contacts_.size()); }
@@ -93,6 +109,7 @@ class FrictionSeries final : public TermForces {
     Change::What what;
     std::vector<double> g;  // > 0 while it holds
     int falls = -1;         // at s = 0: its first coefficient that is not zero, which is negative
+    int line = -1;          // of a gear: whose bound g is
   };
   struct Contact {
     std::vector<Entry> z, u;  // slip speed over unknowns and known motions
@@ -113,6 +130,21 @@ class FrictionSeries final : public TermForces {
     std::array<double, 2> capacity{}, known{};  // g(s), known part of w
     std::vector<double> torque, slip, slip_size;
     std::vector<Bound> bounds;
+    // Of gears: a tie knows its loss, a loss its tie.
+    bool rigid = false;
+    int tie = -1, loss = -1;
+    int line = 0;            // that its loss is on where it is not stuck: 0 shaft 1 drives, 1 shaft 2
+    bool line_root = false;  // it is where the two lines meet at s = 0
+    double unit_tie = 1.0, unit_loss = 0.0;   // torques per unit of the gear's unknown
+    double rest_tie = 0.0, rest_loss = 0.0;   // and without it, of the degree that is worked at
+    std::vector<double> efficiency, bearing;  // of that line, along the step
+  };
+  /// A value of a gear's losses over |w|, on a segment.
+  struct LossLine {
+    double at_zero = 0.0, slope = 0.0;
+  };
+  struct LossValues {
+    LossLine efficiency, bearing;
   };
   struct Limits {
     double low = 0.0, high = 0.0;
@@ -125,20 +157,41 @@ class FrictionSeries final : public TermForces {
   double slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const;
   void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest);
   void pass_derivative(const Change& change, int order, EvaluatedState& point);
-  void take(const std::vector<std::size_t>& of, const BoxSolution& solution,
-            const BoxComplementarity& problem);
+  void take(const std::vector<std::size_t>& of, const FrictionSolution& solution,
+            const BoxComplementarity& problem, const std::vector<GearLossRow>& gears);
+  void begin_stuck();
   bool depends_on_stuck(std::size_t i) const;
   void factor_stuck();
   void find_bounds(std::size_t i);
   static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it);
   double heat(const Contact& contact, double s) const;
+  // Of gears: friction_gears.cpp.
+  void find_gears();
+  bool on_line(const Contact& c) const { return c.tie >= 0 && !c.stuck; }
+  LossValues loss_values(const Contact& c, const GearLoss& loss, int line) const;
+  void check_ties(const Assembler& assembler, const Vector& v) const;
+  GearLossRow gear_at(std::size_t i, double speed, bool at_rest) const;
+  GearLossRow gear_derivative(std::size_t i, const Change& change, int order) const;
+  void add_gear(const TaylorSeries& series, std::size_t i, int k, double factor, double* term);
+  void factor_series();
+  std::vector<double> loss_gap(const Contact& c, const GearLoss& loss, int line, int sign,
+                               std::vector<double>& size) const;
+  void find_gear_bounds(std::size_t i);
+  void note_gear(std::size_t i, double speed, Vector& history) const;
+  /// Whether bounds[k] and the next one are a gear's two lines: at rest, it holds while either does.
+  static bool two_lines(const std::vector<Bound>& bounds, std::size_t k) {
+    return k + 1 < bounds.size() && bounds[k].line == 0 && bounds[k + 1].line == 1 &&
+           bounds[k].what == bounds[k + 1].what;
+  }
+  static bool zero_before(const Bound& bound, int order);
 
   const System& system_;
   std::vector<Contact> contacts_;
   std::vector<FrictionState> noted_;
-  Eigen::MatrixXd w_, stuck_inverse_;
+  Eigen::MatrixXd w_, stuck_inverse_, series_inverse_;  // the last: with the gears' directions
   std::vector<std::size_t> stuck_;
   double h_ = 1.0;
+  bool gears_ = false, any_on_line_ = false, located_ = false;
   double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to
 };

@@ -1,4 +1,5 @@
 // What of a system forbids exact propagation: one sentence each, with what to use instead. And what of its options.
+#include <drev/core/law/friction.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
 #include "solvers/run/run_checks.hpp"
@@ -11,6 +12,11 @@ std::optional<std::string> why_not_exact(const System& system) {
     return name(g.element) +
            " is a general element, whose force and history the series does not know; take an implicit method";
   for (const FrictionTerm& f : system.frictions()) {
+    if (f.friction->rigid())
+      for (const Entry& e : f.nodes)
+        if (system.node_map(e.index).prescribed >= 0)
+          return name(f.element) + " is a lossy gear with a given motion of " +
+                 system.node_names()[idx(e.index)] + ": put a shaft between, or take an ideal gear";
     bool moves = false;
     for (const Entry& e : f.nodes) moves = moves || system.node_map(e.index).prescribed < 0;
     if (!moves) return name(f.element) + " rubs between nodes whose motion is given: leave it out";

@@ -1,6 +1,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
@@ -13,6 +14,7 @@
 #include <string>
 
 #include "core/dense_eigen.hpp"
+#include "solvers/modes/tied_system.hpp"
 
 namespace drev {
 
@@ -58,6 +60,10 @@ DampedMode to_mode(std::complex<double> lambda) {
 
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options) {
   refuse_controllers(system, "the solution for damped modes");
+  if (const auto tied = tied_system(system)) {
+    if (options.damping.size() > 0) refuse_friction(system, "a damping by speed");
+    return solve_damped_modes(tied->system, options);
+  }
   const int n = system.size();
   if (n > options.size_limit)
     throw ModelError({{system.name() + "/damped modes", "unknowns", std::to_string(n), "",

@@ -9,6 +9,7 @@
 
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/modes/modal_problem.hpp"
+#include "solvers/modes/tied_system.hpp"
 
 namespace drev {
 
@@ -146,6 +147,12 @@ double ModeSet::omega(int mode) const { return hz(frequency_Hz[idx(mode)]); }
 
 ModeSet solve_modes(const System& system, const ModesOptions& options) {
   refuse_controllers(system, "the solution for modes");
+  if (const auto tied = tied_system(system)) {
+    ModeSet modes = solve_modes(tied->system, options);
+    modes.vectors = tied->basis * modes.vectors;
+    if (modes.rigid_vectors.size() > 0) modes.rigid_vectors = tied->basis * modes.rigid_vectors;
+    return modes;
+  }
   const int n = system.size();
   ModeSet modes;
   modes.contact = options.contact;

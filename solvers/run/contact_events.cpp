@@ -1,3 +1,4 @@
+#include <drev/core/assembler.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/solvers/run/contact_events.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
@@ -47,8 +48,34 @@ void ContactEvents::note_side(std::size_t law, int side, double t, double rate) 
   }
 }
 
-void ContactEvents::step(const Assembler& /*assembler*/, const EvaluatedState& from,
-                         const EvaluatedState& to) {
+void ContactEvents::start(const Assembler& /*assembler*/, const EvaluatedState& point) {
+  states_.clear();
+  for (const FrictionTerm& term : system_.frictions())
+    states_.push_back(point.state.history[term.history_begin + FrictionHistory::kState]);
+}
+
+/// A state holds over a step: it begins where the step does.
+void ContactEvents::note_frictions(const Assembler& assembler, const EvaluatedState& from,
+                                   const EvaluatedState& to) {
+  for (std::size_t i = 0; i < system_.frictions().size(); ++i) {
+    const FrictionTerm& term = system_.frictions()[i];
+    const double state = to.state.history[term.history_begin + FrictionHistory::kState];
+    if (term.friction->rigid() || state == states_[i]) continue;
+    states_[i] = state;
+    ContactEvent event{.t = from.state.t, .law = 0};
+    event.friction = static_cast<int>(i);
+    event.becomes = static_cast<FrictionState>(static_cast<int>(state));
+    if (event.becomes != FrictionState::stuck)
+      for (const Entry& e : term.nodes)
+        event.rate += e.coeff * (assembler.node_motion(e.index, from.state).rate +
+                                 system_.ratio(e.index) * assembler.nominal().rate);
+    note(event);
+  }
+}
+
+void ContactEvents::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
+  if (!(to.state.t > from.state.t)) return;
+  note_frictions(assembler, from, to);
   const double h = to.state.t - from.state.t;
   for (std::size_t j = 0; j < system_.scalars().size(); ++j) {
     const auto gap = system_.scalars()[j].force->gap();

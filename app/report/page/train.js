@@ -122,6 +122,14 @@ function dashpot(x0, y0, x1, y1) {
   });
 }
 
+/// Dry friction: two plates, each on its rod.
+const plates = (x0, y0, x1, y1) => {
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+  const [u, v] = [(2 * (x1 - x0)) / length, (2 * (y1 - y0)) / length];
+  const plate = (x, y, s) =>
+    `M${x} ${y}L${(x0 + x1) / 2 + s * u} ${(y0 + y1) / 2 + s * v}m${-4 * v} ${4 * u}l${8 * v} ${-8 * u}`;
+  return draw("path", { class: "law", d: plate(x0, y0, -1) + plate(x1, y1, 1) });
+};
 /// A zigzag between two points.
 function zigzag(x0, y0, x1, y1, size = 4) {
   const points = [];
@@ -225,7 +233,7 @@ function drawTrain(model) {
           "g",
           {},
           draw("title", {}, jointText(joint)),
-          joint.kind === "damper" ? dashpot(x0, foot - 20, x0, foot) : zigzag(x0, foot - 20, x0, foot, 4),
+          ({ damper: dashpot, friction: plates }[joint.kind] || zigzag)(x0, foot - 20, x0, foot),
           ground(x0, foot),
         ),
       );
@@ -251,6 +259,7 @@ function drawTrain(model) {
         ),
       );
     else if (joint.kind === "damper") svg.append(draw("g", {}, title, dashpot(x0, y0, x1, y1)));
+    else if (joint.kind === "friction") svg.append(draw("g", {}, title, plates(x0, y0, x1, y1)));
     else svg.append(draw("g", {}, title, zigzag(x0, y0, x1, y1, joint.kind === "spring" ? 6 : 3)));
   }
   const grounded = new Set(

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/stability/friction/friction_train.hpp"
+#include "tests/stability/friction/gear_equations.hpp"
 
 namespace drev::test {
 
@@ -29,6 +29,7 @@ class EventSplitting {
         m_(train.contacts.size()),
         step_(step),
         modes_(m_),
+        gears_(train.gears.size()),
         side_(train.springs.size()) {
     now_ = {0.0, train.angle, train.speed};
     for (const TrainContact& c : train.contacts)
@@ -107,35 +108,69 @@ class EventSplitting {
     }
     a.resize(n_);
     for (std::size_t i = 0; i < n_; ++i) a[i] = force[i] / train_.inertia[i];
-    // W lambda = slip accelerations, by elimination with pivots.
-    const std::size_t m = stuck.size();
-    std::vector<std::vector<double>> w(m, std::vector<double>(m + 1));
-    for (std::size_t r = 0; r < m; ++r) {
-      std::vector<double> unit(n_, 0.0);
-      apply(train_.contacts[stuck[r]], -1.0, unit);
-      for (std::size_t i = 0; i < n_; ++i) unit[i] /= train_.inertia[i];
-      for (std::size_t s = 0; s < m; ++s) w[s][r] = slip(train_.contacts[stuck[s]], unit);
-      w[r][m] = slip(train_.contacts[stuck[r]], a);
+    // Unknown torques, each with the accelerations that it makes; conditions on accelerations and torques.
+    const std::size_t m = stuck.size() + 2 * gears_.size();
+    if (m == 0) return true;
+    std::vector<std::vector<double>> makes(m, std::vector<double>(n_)), w(m, std::vector<double>(m + 1));
+    for (std::size_t r = 0; r < stuck.size(); ++r) apply(train_.contacts[stuck[r]], 1.0, makes[r]);
+    for (std::size_t g = 0; g < gears_.size(); ++g) {
+      const TrainGear& gear = train_.gears[g];
+      makes[stuck.size() + 2 * g][static_cast<std::size_t>(gear.a)] = -1.0;
+      makes[stuck.size() + 2 * g + 1][static_cast<std::size_t>(gear.b)] = 1.0 / gear.ratio;
     }
-    for (std::size_t k = 0; k < m; ++k) {
-      std::size_t best = k;
-      for (std::size_t r = k; r < m; ++r)
-        if (std::abs(w[r][k]) > std::abs(w[best][k])) best = r;
-      if (std::abs(w[best][k]) < 1e-9) return false;
-      std::swap(w[k], w[best]);
-      for (std::size_t r = 0; r < m; ++r) {
-        if (r == k) continue;
-        const double factor = w[r][k] / w[k][k];
-        for (std::size_t s = k; s <= m; ++s) w[r][s] -= factor * w[k][s];
+    for (std::vector<double>& of : makes)
+      for (std::size_t i = 0; i < n_; ++i) of[i] /= train_.inertia[i];
+    for (std::size_t r = 0; r < stuck.size(); ++r) {
+      for (std::size_t s = 0; s < m; ++s) w[r][s] = slip(train_.contacts[stuck[r]], makes[s]);
+      w[r][m] = -slip(train_.contacts[stuck[r]], a);
+    }
+    for (std::size_t g = 0; g < gears_.size(); ++g) {
+      const TrainGear& gear = train_.gears[g];
+      const std::size_t r = stuck.size() + 2 * g, in = r, out = r + 1;
+      const auto ea = static_cast<std::size_t>(gear.a), eb = static_cast<std::size_t>(gear.b);
+      for (std::size_t s = 0; s < m; ++s) w[r][s] = makes[s][eb] - gear.ratio * makes[s][ea];
+      w[r][m] = gear.ratio * a[ea] - a[eb];
+      const GearMode& mode = gears_[g];
+      if (mode.turns == 0) {
+        for (std::size_t s = 0; s < m; ++s) w[r + 1][s] = makes[s][ea];
+        w[r + 1][m] = -a[ea];
+        continue;
+      }
+      const TrainGear::Loss loss = loss_at(gear, p.speed[ea]);
+      if (mode.drives == 0) {
+        w[r + 1][out] = 1.0, w[r + 1][in] = -loss.forward;
+        w[r + 1][m] = -mode.turns * loss.bearing_forward;
+      } else {
+        w[r + 1][in] = 1.0, w[r + 1][out] = -loss.backward;
+        w[r + 1][m] = mode.turns * loss.backward * loss.bearing_backward;
       }
     }
+    if (!eliminate(w)) return false;
+    in_.resize(gears_.size());
+    out_.resize(gears_.size());
     for (std::size_t k = 0; k < m; ++k) {
-      torque[stuck[k]] = w[k][m] / w[k][k];
-      std::vector<double> own(n_, 0.0);
-      apply(train_.contacts[stuck[k]], torque[stuck[k]], own);
-      for (std::size_t i = 0; i < n_; ++i) a[i] += own[i] / train_.inertia[i];
+      const double x = w[k][m] / w[k][k];
+      if (k < stuck.size())
+        torque[stuck[k]] = x;
+      else
+        ((k - stuck.size()) % 2 == 0 ? in_ : out_)[(k - stuck.size()) / 2] = x;
+      for (std::size_t i = 0; i < n_; ++i) a[i] += x * makes[k][i];
     }
     return true;
+  }
+
+  double speed_of(const TrainGear& g, const std::vector<double>& speed) const {
+    return speed[static_cast<std::size_t>(g.a)];
+  }
+  /// By how much a gear's condition on its torques (of the last evaluate()) is broken, > 0.
+  double gear_broken(std::size_t g, double speed) const {
+    const TrainGear::Loss loss = loss_at(train_.gears[g], speed);
+    const GearMode& mode = gears_[g];
+    const auto asked = [&](int turns, int drives) { return asks(loss, turns, drives, out_[g]); };
+    if (mode.turns == 0)
+      return std::max(in_[g] - std::max(asked(1, 0), asked(1, 1)),
+                      std::min(asked(-1, 0), asked(-1, 1)) - in_[g]);
+    return mode.turns * (asked(mode.turns, 1 - mode.drives) - in_[g]);
   }
 
   TrainPoint stepped(const TrainPoint& from, double h) const {
@@ -171,8 +206,19 @@ class EventSplitting {
     return {-most, most};
   }
 
-  /// By how much a contact's or spring's condition is broken, > 0; numbered contacts first, then springs.
+  /// By how much a contact's or spring's condition is broken, > 0; numbered contacts first, then springs,
+  /// then gears.
   double broken(std::size_t i, const TrainPoint& p, const std::vector<double>& torque) const {
+    if (i >= m_ + side_.size()) {
+      const std::size_t g = i - m_ - side_.size();
+      const GearMode& mode = gears_[g];
+      const double w = speed_of(train_.gears[g], p.speed), knot = train_.gears[g].knot_speed;
+      double wrong = gear_broken(g, w);
+      if (mode.turns != 0 && !mode.rests) wrong = std::max(wrong, -mode.turns * w);
+      if (knot > 0.0 && mode.turns != 0)
+        wrong = std::max(wrong, (std::abs(w) - knot) * (mode.beyond ? -1.0 : 1.0));
+      return wrong;
+    }
     if (i >= m_) {
       const FrictionTrain::Spring& s = train_.springs[i - m_];
       if (s.half_gap == 0.0) return -1.0;
@@ -207,7 +253,13 @@ class EventSplitting {
 
   /// Modes behind an event of contact `who` (-1: none): contacts that move keep theirs.
   void choose(int who) {
-    const bool releases = who >= 0 && modes_[static_cast<std::size_t>(who)] == ContactMode::stuck && started_;
+    const int gear = who - static_cast<int>(m_ + side_.size());  // >= 0: of a gear
+    const GearMode gear_was = gear >= 0 ? gears_[static_cast<std::size_t>(gear)] : GearMode{};
+    const bool gear_stops =
+        gear >= 0 &&
+        gear_was.turns * speed_of(train_.gears[static_cast<std::size_t>(gear)], now_.speed) < 0.0;
+    const bool releases =
+        who >= 0 && gear < 0 && modes_[static_cast<std::size_t>(who)] == ContactMode::stuck && started_;
     std::vector<std::size_t> at_rest;
     resting_.assign(m_, 0);
     beyond_.resize(m_, 0);
@@ -228,10 +280,20 @@ class EventSplitting {
       modes_[i] = w > 0.0 ? ContactMode::forward : ContactMode::backward;
       beyond_[i] = std::abs(w) > c.knot_speed;
     }
+    for (std::size_t g = 0; g < gears_.size(); ++g) {
+      const double w = speed_of(train_.gears[g], now_.speed);
+      GearMode& mode = gears_[g];
+      const bool rests = std::abs(w) < kRestSpeed || (started_ && mode.turns == 0) ||
+                         (static_cast<int>(g) == gear && gear_stops);
+      mode = {rests ? 0 : w > 0.0 ? 1 : -1, 0, rests, !rests && std::abs(w) > train_.gears[g].knot_speed};
+    }
     started_ = true;
     const std::vector<ContactMode> before = modes_;
+    const std::vector<GearMode> gears_before = gears_;
+    std::vector<GearMode> chosen_gears = gears_;
     std::size_t combinations = 1;
     for (std::size_t k = 0; k < at_rest.size(); ++k) combinations *= 3;
+    for (const GearMode& g : gears_before) combinations *= g.rests ? 5 : 2;
     double best = 1e300;
     int most_stuck = -1;
     std::vector<ContactMode> chosen = modes_;
@@ -248,34 +310,64 @@ class EventSplitting {
             allowed && !(releases && static_cast<int>(i) == who && modes_[i] == ContactMode::stuck) &&
             !(train_.contacts[i].kind == TrainContact::Kind::freewheel && modes_[i] == ContactMode::backward);
       }
+      for (std::size_t g = 0; g < gears_.size(); ++g) {
+        gears_[g] = gears_before[g];
+        const std::size_t options = gears_before[g].rests ? 5 : 2, option = rest % options;
+        rest /= options;
+        gears_[g].drives = static_cast<int>(option % 2);
+        if (gears_before[g].rests) gears_[g].turns = option == 4 ? 0 : option < 2 ? 1 : -1;
+        gears_[g].rests = false;
+        stuck += gears_[g].turns == 0;
+        if (static_cast<int>(g) != gear || gear_stops) continue;
+        // It lets go, or its other shaft drives.
+        allowed =
+            allowed && (gear_was.turns == 0 ? gears_[g].turns != 0 : gears_[g].drives != gear_was.drives);
+      }
       if (!allowed) continue;
       std::fill(resting_.begin(), resting_.end(), 0);
-      const double wrong = violation(at_rest);
+      const double wrong = violation(at_rest, gears_before);
       const bool better = wrong < kTrialNoise ? best >= kTrialNoise || stuck > most_stuck : wrong < best;
       if (!better) continue;
       best = wrong;
       most_stuck = stuck;
       chosen = modes_;
       chosen_resting = resting_;
+      chosen_gears = gears_;
     }
     modes_ = chosen;
+    gears_ = chosen_gears;
     resting_ = chosen_resting;
     for (const std::size_t i : at_rest) {
       events_ += modes_[i] != before[i];
       if (modes_[i] != ContactMode::stuck) continue;
     }
+    for (std::size_t g = 0; g < gears_.size(); ++g) events_ += gears_before[g].rests && gears_[g].turns != 0;
     hold();
   }
 
   /// Largest broken condition over a trial step, relative to torques and speed changes there.
-  double violation(const std::vector<std::size_t>& at_rest) {
+  double violation(const std::vector<std::size_t>& at_rest, const std::vector<GearMode>& gears_before) {
     std::vector<double> a, torque;
     if (!evaluate(now_, a, torque)) return 1e299;
     double size = 1.0, wrong = 0.0;
+    for (std::size_t i = 0; i < m_; ++i) size = std::max(size, std::abs(torque[i]));
+    for (std::size_t g = 0; g < gears_.size(); ++g) {
+      size = std::max({size, std::abs(in_[g]), std::abs(out_[g])});
+      wrong = std::max(wrong, gear_broken(g, speed_of(train_.gears[g], now_.speed)) / size);
+    }
     const TrainPoint end = stepped(now_, kTrialTime);
     std::vector<double> torque_end;
     evaluate(end, a, torque_end);
-    for (std::size_t i = 0; i < m_; ++i) size = std::max(size, std::abs(torque[i]));
+    double scale = 0.0;
+    for (std::size_t k = 0; k < n_; ++k) scale = std::max(scale, kTrialTime * size / train_.inertia[k]);
+    for (std::size_t g = 0; g < gears_.size(); ++g) {
+      const TrainGear& gear = train_.gears[g];
+      wrong = std::max(wrong, gear_broken(g, speed_of(gear, end.speed)) / size);
+      if (!gears_before[g].rests || gears_[g].turns == 0) continue;
+      const double w = speed_of(gear, end.speed) - speed_of(gear, now_.speed);
+      wrong = std::max(wrong, -gears_[g].turns * w / scale);
+      gears_[g].rests = std::abs(w) < 1e-11 * scale;
+    }
     for (const std::size_t i : at_rest) {
       const TrainContact& c = train_.contacts[i];
       if (modes_[i] == ContactMode::stuck) {
@@ -286,8 +378,6 @@ class EventSplitting {
       }
       const double w = slip(c, end.speed) - slip(c, now_.speed);
       const double along = modes_[i] == ContactMode::forward ? w : -w;
-      double scale = 0.0;
-      for (std::size_t k = 0; k < n_; ++k) scale = std::max(scale, kTrialTime * size / train_.inertia[k]);
       wrong = std::max(wrong, -along / scale);
       resting_[i] = std::abs(w) < 1e-11 * scale / kTrialTime * kTrialTime;
     }
@@ -296,7 +386,22 @@ class EventSplitting {
 
   /// Slip of the stuck contacts to zero, at constant momentum.
   void hold() {
-    for (int pass = 0; pass < 50; ++pass)
+    const auto turn_back = [this](const std::vector<double>& row) {
+      double w = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < n_; ++k) {
+        w += row[k] * now_.speed[k];
+        size += row[k] * row[k] / train_.inertia[k];
+      }
+      for (std::size_t k = 0; k < n_; ++k) now_.speed[k] -= w / size * row[k] / train_.inertia[k];
+    };
+    for (int pass = 0; pass < (gears_.empty() ? 50 : 400); ++pass) {
+      for (std::size_t g = 0; g < gears_.size(); ++g) {
+        std::vector<double> row(n_, 0.0);
+        row[static_cast<std::size_t>(train_.gears[g].a)] = 1.0;
+        if (gears_[g].turns == 0) turn_back(row);
+        row[static_cast<std::size_t>(train_.gears[g].b)] = -1.0 / train_.gears[g].ratio;
+        turn_back(row);
+      }
       for (std::size_t i = 0; i < m_; ++i) {
         if (modes_[i] != ContactMode::stuck) continue;
         const TrainContact& c = train_.contacts[i];
@@ -306,6 +411,7 @@ class EventSplitting {
         const double factor = slip(c, now_.speed) / slip(c, unit);
         for (std::size_t k = 0; k < n_; ++k) now_.speed[k] -= factor * unit[k];
       }
+    }
   }
 
   void advance(double stop) {
@@ -314,7 +420,7 @@ class EventSplitting {
     const auto worst = [&](const TrainPoint& p) {
       int who = -1;
       evaluate(p, a, torque);
-      for (std::size_t i = 0; i < m_ + side_.size(); ++i)
+      for (std::size_t i = 0; i < m_ + side_.size() + gears_.size(); ++i)
         if (broken(i, p, torque) > 1e-12) who = static_cast<int>(i);
       return who;
     };
@@ -335,6 +441,8 @@ class EventSplitting {
     }
     now_ = stepped(now_, bad);
     find_sides();
+    if (who >= static_cast<int>(m_ + side_.size()))
+      return pass_gear(static_cast<std::size_t>(who) - m_ - side_.size(), who);
     if (who >= static_cast<int>(m_)) return;
     const auto k = static_cast<std::size_t>(who);
     const TrainContact& c = train_.contacts[k];
@@ -347,11 +455,25 @@ class EventSplitting {
     choose(who);
   }
 
+  void pass_gear(std::size_t g, int who) {
+    GearMode& mode = gears_[g];
+    const double w = speed_of(train_.gears[g], now_.speed), knot = train_.gears[g].knot_speed;
+    std::vector<double> a, torque;
+    evaluate(now_, a, torque);
+    if (mode.turns != 0 && knot > 0.0 && std::abs(std::abs(w) - knot) < 1e-6 && gear_broken(g, w) <= 1e-12) {
+      mode.beyond = !mode.beyond;
+      return;
+    }
+    choose(who);
+  }
+
   const FrictionTrain& train_;
   std::size_t n_, m_;
   double step_;
   TrainPoint now_;
   std::vector<ContactMode> modes_;
+  std::vector<GearMode> gears_;
+  mutable std::vector<double> in_, out_;  // torques of the gears, of the last evaluate()
   std::vector<char> resting_, beyond_;
   std::vector<int> side_;
   std::vector<double> stops_;

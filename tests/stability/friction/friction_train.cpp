@@ -51,6 +51,18 @@ FrictionTrain::Contact random_contact(TrainRandom& random, FrictionTrain::Contac
   return c;
 }
 
+FrictionTrain::Gear random_gear(TrainRandom& random, int a, int b) {
+  const bool bearing = random.chance(0.6);
+  const auto loss = [&] {
+    return FrictionTrain::Gear::Loss{random.even(0.3, 1.0), random.even(0.1, 1.0),
+                                     bearing ? random.even(0.0, 3.0) : 0.0,
+                                     bearing ? random.even(0.0, 3.0) : 0.0};
+  };
+  FrictionTrain::Gear gear{a, b, (random.chance(0.5) ? 1.0 : -1.0) * random.scaled(0.3, 3.0), loss()};
+  if (random.chance(0.3)) gear.knot_speed = random.even(1.0, 15.0), gear.far = loss();
+  return gear;
+}
+
 }  // namespace
 
 FrictionTrain random_friction_train(unsigned seed) {
@@ -67,7 +79,10 @@ FrictionTrain random_friction_train(unsigned seed) {
   }
   for (int i = 0; i + 1 < n; ++i) {
     const double which = random.even(0.0, 1.0);
-    if (which < 0.5) {
+    if (random.chance(0.3)) {
+      train.gears.push_back(random_gear(random, i, i + 1));
+      train.speed[idx(i + 1)] = train.gears.back().ratio * train.speed[idx(i)];
+    } else if (which < 0.5) {
       const bool gap = random.chance(0.4);
       train.springs.push_back({i, i + 1, random.scaled(1e2, 1e4), gap ? 0.0 : random.even(0.0, 0.5),
                                gap ? random.scaled(1e-3, 2e-2) : 0.0});
@@ -88,18 +103,20 @@ FrictionTrain random_friction_train(unsigned seed) {
     if (random.chance(0.2))
       train.contacts.push_back(random_contact(random, Kind::brake, i, -1, train.duration));
   }
-  if (train.contacts.empty())
+  if (train.contacts.empty() && train.gears.empty())
     train.contacts.push_back(random_contact(random, Kind::brake, 0, -1, train.duration));
   // Where contacts close a loop (side by side, or over the ground), rigid bodies do not tell how they share a torque
   // at rest, and so not which breaks away first.
   std::vector<int> part(idx(n + 1));
   for (int i = 0; i <= n; ++i) part[idx(i)] = i;
   bool loop = false;
-  for (const FrictionTrain::Contact& c : train.contacts) {
-    const int a = part[idx(c.a)], b = part[idx(c.b < 0 ? n : c.b)];
+  const auto join = [&](int first, int second) {
+    const int a = part[idx(first)], b = part[idx(second < 0 ? n : second)];
     loop = loop || a == b;
     std::replace(part.begin(), part.end(), a, b);
-  }
+  };
+  for (const FrictionTrain::Contact& c : train.contacts) join(c.a, c.b);
+  for (const FrictionTrain::Gear& g : train.gears) join(g.a, g.b), join(g.a, -1);  // it holds itself, too
   for (FrictionTrain::Contact& c : train.contacts)
     if (loop) c.break_away = 1.0;
   return train;
@@ -130,6 +147,21 @@ Model to_model(const FrictionTrain& train) {
       m.add(
           "spring" + std::to_string(i), nodes,
           std::make_shared<ShaftSpring>(ShaftSpring::Params{.stiffness = s.stiffness, .damping = s.damping}));
+  }
+  for (std::size_t i = 0; i < train.gears.size(); ++i) {
+    const FrictionTrain::Gear& g = train.gears[i];
+    LossyGear::Params p{.ratio = g.ratio};
+    if (g.knot_speed > 0.0) {
+      p.speeds = {0.0, g.knot_speed};
+      p.efficiencies_forward = {g.loss.forward, g.far.forward};
+      p.efficiencies_backward = {g.loss.backward, g.far.backward};
+      p.bearing_torques_forward = {g.loss.bearing_forward, g.far.bearing_forward};
+      p.bearing_torques_backward = {g.loss.bearing_backward, g.far.bearing_backward};
+    } else {
+      p.efficiency_forward = g.loss.forward, p.efficiency_backward = g.loss.backward;
+      p.bearing_torque_forward = g.loss.bearing_forward, p.bearing_torque_backward = g.loss.bearing_backward;
+    }
+    m.add<LossyGear>("gear" + std::to_string(i), {name(g.a), name(g.b)}, std::move(p));
   }
   for (std::size_t i = 0; i < train.contacts.size(); ++i) {
     const FrictionTrain::Contact& c = train.contacts[i];

@@ -1,5 +1,5 @@
 #pragma once
-/// Random trains with clutches, brakes, joints, bearings, freewheels and backlash, and their motion by a code of its
+/// Random trains with clutches, brakes, joints, bearings, freewheels, lossy gears and backlash, and their motion by a code of its
 /// own: classical Runge-Kutta in short steps, each event placed by bisection, and which contacts stick behind it found
 /// by trying every combination over a trial step. It shares nothing with drev but the description below.
 #include <drev/core/model.hpp>
@@ -21,6 +21,18 @@ struct FrictionTrain {
     double knot_speed, far_torque;  ///< sliding torque at that slip speed and beyond; 0: constant
     std::vector<double> times = {}, parts = {};  ///< of the engagement; empty: 1
   };
+  /// Speed of b = ratio times that of a. Efficiencies and bearing torques (at a) of a and b driving; at that speed of
+  /// a and beyond those of `far`, linear between; 0: constant.
+  struct Gear {
+    struct Loss {
+      double forward, backward, bearing_forward, bearing_backward;
+    };
+    int a, b;
+    double ratio;
+    Loss loss;
+    double knot_speed = 0.0;
+    Loss far = {};
+  };
   struct Drive {
     double mean, amplitude, frequency_Hz;
   };
@@ -28,6 +40,7 @@ struct FrictionTrain {
   std::vector<Drive> drives;  ///< of every node
   std::vector<Spring> springs;
   std::vector<Contact> contacts;
+  std::vector<Gear> gears;
   double duration = 0.2;  ///< s
 };
 

@@ -4,6 +4,7 @@
 #include <drev/elements/friction/clutch.hpp>
 #include <drev/elements/friction/coulomb_joint.hpp>
 #include <drev/elements/friction/freewheel.hpp>
+#include <drev/elements/friction/lossy_gear.hpp>
 
 #include "tests/catch.hpp"
 #include "tests/unit/elements/checks.hpp"
@@ -39,4 +40,40 @@ TEST_CASE("Dry friction: bad input is named") {
   CHECK(test::contains(findings({.slip_speeds = {0.0}, .sliding_torques = {1.0, 2.0}}), "as many"));
   CHECK(test::contains(findings({.torque = 1.0, .break_away_ratio = 0.9}), "must be finite and >= 1"));
   CHECK(test::contains(findings({.torque = 1.0, .engagement = TimeTable({0.0}, {-1.0})}), "engagement"));
+}
+
+TEST_CASE("Lossy gear: terms, table, bad input") {
+  const LossyGear gear({.ratio = -0.5,
+                        .speeds = {0.0, 10.0},
+                        .efficiencies_forward = {0.9, 0.95},
+                        .efficiencies_backward = {0.8, 0.9}});
+  CHECK(check_element(gear, 2).failures == std::vector<std::string>{});
+  CHECK(gear.gear_loss()->bearing_forward == std::vector<double>{0.0, 0.0});
+  const Terms terms = test::described(gear, 2);
+  REQUIRE(terms.frictions.size() == 2);
+  CHECK(terms.frictions[0].friction->rigid());
+  CHECK(terms.frictions[0].b == LocalRow(Eigen::Vector2d(1.0, 2.0)));
+  CHECK(terms.frictions[1].b == LocalRow(Eigen::Vector2d(1.0, 0.0)));
+  const auto findings = [](LossyGear::Params p) { return test::findings(LossyGear(std::move(p))); };
+  const auto of = [&](double forward, double backward, double bearing_backward = 0.0) {
+    return findings({.ratio = 1.0,
+                     .efficiency_forward = forward,
+                     .efficiency_backward = backward,
+                     .bearing_torque_backward = bearing_backward});
+  };
+  CHECK(of(0.9, 0.8).empty());
+  CHECK(of(0.9, -0.3).empty());
+  CHECK(test::contains(findings({}), "ratio = NaN"));
+  CHECK(test::contains(of(0.0, 0.5), "must be > 0 and <= 1"));
+  CHECK(test::contains(of(0.9, 1.1), "must be finite and <= 1"));
+  CHECK(test::contains(of(0.9, 0.5, -1.0), "must be >= 0"));
+  CHECK(test::contains(of(0.9, -0.3, 1.0), "give power"));
+  CHECK(test::contains(findings({.ratio = 1.0, .speeds = {0.0, 1.0}, .efficiencies_forward = {0.9}}),
+                       "must be as many as speeds"));
+  CHECK(test::contains(findings({.ratio = 1.0,
+                                 .efficiency_forward = 0.9,
+                                 .speeds = {1.0},
+                                 .efficiencies_forward = {0.9},
+                                 .efficiencies_backward = {0.9}}),
+                       "must begin at 0"));
 }

@@ -38,6 +38,35 @@ TEST_CASE("A run writes each contact made or lost, as many as it located") {
   CHECK(json.at("contact_changes") == rows);
 }
 
+TEST_CASE("Friction events of a run are rows of the file: what sticks and slides, when") {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "events.csv").string();
+  const auto run = drev_command(
+      {"run", DREV_SOURCE_DIR "/models/vehicle_clutch/vehicle_clutch.toml", "--events", file, "--json"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const Json events = Json::parse(run.out).at("results").at("friction").at("events");
+  std::istringstream text(read_file(file));
+  std::string line;
+  std::getline(text, line);
+  for (const Json& event : events) {
+    REQUIRE(std::getline(text, line));
+    CHECK(std::stod(line) == Approx(event.at("time_s").get<double>()).epsilon(1e-12));
+    CHECK(contains(line, "," + event.at("element").get<std::string>() + ",," +
+                             event.at("becomes").get<std::string>() + ","));
+    CHECK(line.ends_with(",rad/s"));
+  }
+  CHECK(events.size() == 4);
+  CHECK(!std::getline(text, line));
+}
+
+TEST_CASE("A chart of a model with dry friction says what takes it") {
+  const auto run = drev_command({"chart", DREV_SOURCE_DIR "/models/vehicle_clutch/vehicle_clutch.toml"});
+  CHECK(run.exit_code == 2);
+  CHECK(contains(run.err, "which sticks and slips"));
+  CHECK(contains(run.err, "take exact propagation"));
+}
+
 TEST_CASE("A file of contact events is refused where it cannot be written") {
   const TemporaryFolder folder;
   const auto refused = [&](std::vector<std::string> words, const char* why) {

@@ -11,6 +11,7 @@
 #include <drev/solvers/statics.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -124,7 +125,8 @@ TEST_CASE("Friction: free decay stops at the turning points of Coulomb friction 
 }
 
 TEST_CASE("Friction: forced Coulomb oscillator, sliding and with stops (case F8, Den Hartog)") {
-  const auto settled = [](double b, double r, double cycles, double& peak) {
+  std::vector<FrictionEvent> events;  // of the last cycle, from its start on
+  const auto settled = [&events](double b, double r, double cycles, double& peak) {
     Model m("forced");
     m.add_node("n");
     m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
@@ -139,6 +141,8 @@ TEST_CASE("Friction: forced Coulomb oscillator, sliding and with stops (case F8,
     const RunSummary last = propagate(
         system, {.tolerance = 1e-13, .t_start = t_end, .t_end = t_end + 2.0 * kPi / b}, state, {&recorder});
     for (const double x : recorder.samples(0)) peak = std::max(peak, std::abs(x));
+    events = last.friction_events;
+    for (FrictionEvent& e : events) e.t -= t_end;
     return last.friction_changes;
   };
   double peak = 0.0;
@@ -147,6 +151,13 @@ TEST_CASE("Friction: forced Coulomb oscillator, sliding and with stops (case F8,
   peak = 0.0;
   settled(0.25, 0.5, 10.0, peak);
   CHECK(peak == Approx(0.691464065).epsilon(2e-5));
+  // One stop in each half cycle: it slides from 5.51 to 10.74 of 8 pi, and half a cycle later the other way.
+  REQUIRE(events.size() == 4);
+  std::vector<double> times;
+  for (const FrictionEvent& e : events) times.push_back(std::fmod(e.t, 4.0 * kPi));
+  std::sort(times.begin(), times.end());
+  for (const std::size_t i : {0u, 1u}) CHECK(times[i] == Approx(5.512570943).epsilon(2e-7));
+  for (const std::size_t i : {2u, 3u}) CHECK(times[i] == Approx(10.739176161).epsilon(2e-7));
 }
 
 TEST_CASE("Friction: two clutches side by side carry together, and slip together") {

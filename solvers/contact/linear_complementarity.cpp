@@ -1,0 +1,105 @@
+#include "solvers/contact/linear_complementarity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+constexpr double kPivot = 1e-11;  // of the largest entry of M: smaller ones are rounding
+constexpr double kSame = 1e-12;   // relative: ratios that are equal but for rounding
+constexpr int kTries = 4;         // with other artificial columns
+
+/// Rows w - M z - 1 z_0 = q; columns w, z, z_0, q.
+class Lemke {
+ public:
+  Lemke(const Eigen::MatrixXd& m, const Eigen::VectorXd& q, int number)
+      : n_(q.size()), table_(n_, 2 * n_ + 2) {
+    const double largest = q.lpNorm<Eigen::Infinity>();
+    scale_ = largest > 0.0 ? largest : 1.0;
+    table_ << Eigen::MatrixXd::Identity(n_, n_), -m, -Eigen::VectorXd::Ones(n_), q / scale_;
+    for (Eigen::Index i = 0; i < n_; ++i)  // not in step with anything in M
+      table_(i, 2 * n_) *= 1.0 + number * std::fmod(0.618033988749895 * static_cast<double>(i + 1), 1.0);
+    smallest_ = kPivot * std::max(1.0, m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0.0);
+    for (Eigen::Index i = 0; i < n_; ++i) basis_.push_back(i);
+  }
+
+  std::optional<ComplementarySolution> solve() {
+    if (n_ > 0 && table_.col(2 * n_ + 1).minCoeff() < 0.0) {
+      Eigen::Index row = 0;
+      for (Eigen::Index i = 1; i < n_; ++i)
+        if (precedes(i, row, table_(i, 2 * n_) * -1.0, table_(row, 2 * n_) * -1.0)) row = i;
+      Eigen::Index entering = 2 * n_;
+      const Eigen::Index most = 50 + 20 * n_ * n_;
+      for (Eigen::Index round = 0;; ++round) {
+        const Eigen::Index leaving = basis_[static_cast<std::size_t>(row)];
+        pivot(row, entering);
+        if (leaving == 2 * n_) break;
+        entering = leaving < n_ ? leaving + n_ : leaving - n_;
+        row = leaving_row(entering);
+        if (row < 0 || round == most) return std::nullopt;
+      }
+    }
+    ComplementarySolution found{Eigen::VectorXd::Zero(n_),
+                                std::vector<char>(static_cast<std::size_t>(n_), 0)};
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const Eigen::Index variable = basis_[static_cast<std::size_t>(i)];
+      if (variable < n_ || variable == 2 * n_) continue;
+      found.z[variable - n_] = std::max(0.0, scale_ * table_(i, 2 * n_ + 1));
+      found.basic[static_cast<std::size_t>(variable - n_)] = 1;
+    }
+    return found;
+  }
+
+ private:
+  /// Whether row a over its divisor is lexicographically less than row b over its own.
+  bool precedes(Eigen::Index a, Eigen::Index b, double divisor_a, double divisor_b) const {
+    for (Eigen::Index j = -1; j < n_; ++j) {
+      const Eigen::Index column = j < 0 ? 2 * n_ + 1 : j;
+      const double of_a = table_(a, column) / divisor_a, of_b = table_(b, column) / divisor_b;
+      if (!same(of_a, of_b)) return of_a < of_b;
+    }
+    return false;
+  }
+  static bool same(double a, double b) {
+    return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
+  }
+  Eigen::Index leaving_row(Eigen::Index entering) const {
+    Eigen::Index row = -1;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      if (!(table_(i, entering) > smallest_)) continue;
+      if (row < 0 || precedes(i, row, table_(i, entering), table_(row, entering))) row = i;
+    }
+    if (row < 0) return row;
+    // z_0 leaves where it may: the problem is solved.
+    const double least = table_(row, 2 * n_ + 1) / table_(row, entering);
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (basis_[static_cast<std::size_t>(i)] == 2 * n_ && table_(i, entering) > smallest_ &&
+          same(table_(i, 2 * n_ + 1) / table_(i, entering), least))
+        row = i;
+    return row;
+  }
+  void pivot(Eigen::Index row, Eigen::Index column) {
+    table_.row(row) /= table_(row, column);
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (i != row && table_(i, column) != 0.0) table_.row(i) -= table_(i, column) * table_.row(row);
+    basis_[static_cast<std::size_t>(row)] = column;
+  }
+
+  Eigen::Index n_;
+  Eigen::MatrixXd table_;
+  double scale_ = 1.0, smallest_ = kPivot;
+  std::vector<Eigen::Index> basis_;
+};
+
+}  // namespace
+
+std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
+                                                           const Eigen::VectorXd& q) {
+  for (int number = 0; number < kTries; ++number)
+    if (auto found = Lemke(m, q, number).solve()) return found;
+  return std::nullopt;
+}
+
+}  // namespace drev

@@ -1,0 +1,26 @@
+#pragma once
+/// The linear complementarity problem: find z with
+///
+///   w = M z + q >= 0,      z >= 0,      w_i z_i = 0 for every i
+///
+/// by Lemke's method: complementary pivots from an artificial variable, with the lexicographic rule of choice, so that
+/// it ends although ratios are equal (a train at rest without load). It finds a solution where M is a P-matrix or
+/// copositive-plus and the problem can be solved at all.
+///
+/// Source: R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem, Academic Press, 1992, chapter 4.
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace drev {
+
+struct ComplementarySolution {
+  Eigen::VectorXd z;
+  std::vector<char> basic;  ///< 1: w_i = 0 is what holds; 0: z_i = 0 exactly
+};
+
+/// nullopt: the method ends on a ray, so that there is no solution or M is none of the matrices above.
+std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
+                                                           const Eigen::VectorXd& q);
+
+}  // namespace drev
