@@ -1,6 +1,7 @@
 #pragma once
 /// An element's terms as they are stated: all at once or part by part. Internal.
 #include <drev/core/element.hpp>
+#include <drev/core/law/law_piece.hpp>
 #include <drev/core/system.hpp>
 
 #include <algorithm>
