@@ -8,7 +8,7 @@
 #include "app/base/interrupt.hpp"
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
-#include "solvers/run/processor_time.hpp"
+#include "solvers/accuracy/processor_time.hpp"
 
 namespace drev::app {
 

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "solvers/accuracy/accuracy_observers.hpp"
+#include "solvers/accuracy/processor_time.hpp"
 #include "solvers/accuracy/run_statistics.hpp"
-#include "solvers/run/processor_time.hpp"
 
 namespace drev {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/run/processor_time.hpp"
+#include "solvers/accuracy/processor_time.hpp"
 
 namespace drev {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/periodic/bracketed_maximum.hpp"
 #include "solvers/periodic/law_balance.hpp"
-#include "solvers/run/bracketed_maximum.hpp"
 
 namespace drev {
 

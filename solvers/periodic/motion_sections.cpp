@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/run/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_maximum.hpp"
 
 namespace drev {
 

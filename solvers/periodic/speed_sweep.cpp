@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "solvers/run/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_maximum.hpp"
 
 namespace drev {
 

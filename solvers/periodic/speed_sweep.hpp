@@ -13,7 +13,7 @@ struct SpeedSweep {
   };
   std::vector<Point> curve;  ///< at the speeds given
   /// Of each channel: where its amplitude is largest, sought between the neighbours of the largest point
-  /// of the curve (solvers/run/bracketed_maximum.hpp), to 1e-4 of their distance. A resonance narrower than the grid can be missed.
+  /// of the curve (solvers/periodic/bracketed_maximum.hpp), to 1e-4 of their distance. A resonance narrower than the grid can be missed.
   struct Worst {
     double speed = 0.0, amplitude = 0.0;
   };

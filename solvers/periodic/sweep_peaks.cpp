@@ -10,10 +10,10 @@
 #include <limits>
 #include <map>
 
+#include "solvers/periodic/bracketed_maximum.hpp"
 #include "solvers/periodic/damped_pairs.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
-#include "solvers/run/bracketed_maximum.hpp"
 
 namespace drev {
 

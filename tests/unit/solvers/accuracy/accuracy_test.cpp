@@ -1,6 +1,6 @@
 // Figures with their errors against closed forms.
 // Covers solvers/accuracy/accuracy_observers.hpp, solvers/accuracy/run_statistics.hpp and solvers/run/estimate.hpp
-// through run_to_accuracy(), solvers/run/processor_time.hpp.
+// through run_to_accuracy(), solvers/accuracy/processor_time.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
