@@ -18,7 +18,7 @@ namespace drev {
 
 namespace {
 
-constexpr double kSafety = 2.0;           // on the difference of two runs
+constexpr double kSafety = 3.0;           // on the difference of two runs: accelerations were 2.6 of them off
 constexpr double kFolded = 3.0;           // on what folds back more with half the samples
 constexpr double kLeastOrder = 0.25;      // of a difference over the one before: second order
 constexpr double kRounding = 1e-14;       // relative, before growth
