@@ -25,9 +25,9 @@ struct GearLossRow {
     double slope = 0.0, constant = 0.0;
     int number = 0;
   };
-  Eigen::Index loss = 0, tie = 0;  ///< rows of the problem
+  Eigen::Index loss = 0, tie = 0;         ///< rows of the problem
   std::vector<Line> high = {}, low = {};  ///< one or two each; none: no such bound
-  int turns = 0;                   ///< 1: stands on high, -1: on low; 0: at rest
+  int turns = 0;                          ///< 1: stands on high, -1: on low; 0: at rest
 };
 
 struct FrictionSolution {
