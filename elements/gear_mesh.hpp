@@ -92,7 +92,7 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
   BacklashLaw law_;
   double radius_1_, radius_2_, teeth_per_radian_;
   std::vector<LawPiece> pieces_;
-  std::vector<LoadOrder> orders_;  // of the stiffness over its mean, per revolution of gear 1
+  std::vector<ScaleOrder> orders_;  // of the stiffness over its mean, per revolution of gear 1
 };
 
 }  // namespace drev

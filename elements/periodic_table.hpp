@@ -7,7 +7,6 @@
 /// not start at zero; the first one is not repeated at the end. Evenly spaced tables are looked up
 /// in constant time, others by bisection.
 #include <drev/core/error.hpp>
-#include <drev/core/load_table.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/curve.hpp>
 
@@ -17,6 +16,8 @@
 #include <vector>
 
 namespace drev {
+
+struct LoadTable;
 
 /// The straight stretch of a table about an argument; it holds from low to high.
 struct TableStretch {

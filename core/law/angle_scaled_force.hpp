@@ -5,19 +5,22 @@
 ///   r(theta) = value + slope (theta - angle) + sum cosine_i cos(order_i theta) + sine_i sin(order_i theta)
 ///
 /// between two of its knots. Laws without it are sampled.
-#include <drev/core/law/harmonic_load.hpp>
-
 #include <limits>
 #include <span>
 
 namespace drev {
+
+struct ScaleOrder {
+  double order = 0.0;               ///< per revolution, > 0
+  double cosine = 0.0, sine = 0.0;  ///< of order theta [-]
+};
 
 struct ScaleStretch {
   double value = 1.0;  ///< at the angle it was asked for, without the orders
   double slope = 0.0;  ///< 1/rad
   double low = -std::numeric_limits<double>::infinity();  ///< holds from here [rad]
   double high = std::numeric_limits<double>::infinity();  ///< to here
-  std::span<const LoadOrder> orders = {};                 ///< they live as long as the law
+  std::span<const ScaleOrder> orders = {};                ///< they live as long as the law
 };
 
 class AngleScaledForce {

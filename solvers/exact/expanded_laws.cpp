@@ -124,12 +124,13 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
 }
 
 void ExpandedLaws::start_scale(Law& law) const {
+  law.varies = law.stretch.slope != 0.0 || !law.stretch.orders.empty();
   law.r[0] = law.stretch.value;
   const std::size_t orders = law.stretch.orders.size();
   law.cosine.assign(orders * capacity(), 0.0);
   law.sine.assign(orders * capacity(), 0.0);
   for (std::size_t i = 0; i < orders; ++i) {
-    const LoadOrder& o = law.stretch.orders[i];
+    const ScaleOrder& o = law.stretch.orders[i];
     const double c = std::cos(o.order * law.angle), s = std::sin(o.order * law.angle);
     law.cosine[i * capacity()] = c;
     law.sine[i * capacity()] = s;
@@ -141,7 +142,7 @@ void ExpandedLaws::start_scale(Law& law) const {
 void ExpandedLaws::add_scale(Law& law, int m) {
   law.r[idx(m)] = law.stretch.slope * law.theta[idx(m)];
   for (std::size_t i = 0; i < law.stretch.orders.size(); ++i) {
-    const LoadOrder& o = law.stretch.orders[i];
+    const ScaleOrder& o = law.stretch.orders[i];
     double* c = law.cosine.data() + i * capacity();
     double* s = law.sine.data() + i * capacity();
     double of_c = 0.0, of_s = 0.0;
@@ -174,11 +175,11 @@ void ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double*
     if (m == 0) add_term(law, series, 0);
     add_term(law, series, m + 1);
     double y = law.k * law.r[0] * law.x[idx(m)];
-    if (law.scaled != nullptr) {
+    if (law.varies) {
       if (m > 0) add_scale(law, m);
       y = law.k * product_term(law.r, law.x, m);
     }
-    y += law.y_0 * (m == 0 || law.scaled != nullptr ? law.r[idx(m)] : 0.0);
+    y += law.y_0 * (m == 0 || law.varies ? law.r[idx(m)] : 0.0);
     double rate = law.c * (m + 1) * law.x[idx(m + 1)];
     // x x' is half the rate of x^2.
     if (law.g != 0.0) rate += 0.5 * law.g * (m + 1) * product_term(law.x, law.x, m + 1);
@@ -191,7 +192,7 @@ void ExpandedLaws::expand(const TaylorSeries& series) {
   for (Law& law : laws_) {
     if (!law.works && law.scaled == nullptr) continue;
     for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
-    if (law.scaled == nullptr) continue;
+    if (!law.varies) continue;
     for (int m = 1; m <= series.degree(); ++m) add_scale(law, m);
   }
 }
@@ -220,7 +221,7 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
 bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) const {
   for (const Law& law : laws_) {
     if (law.index != index) continue;
-    scale.assign(law.r.begin(), law.r.begin() + series.degree() + 1);
+    scale.assign(law.r.begin(), law.r.begin() + (law.varies ? series.degree() : 0) + 1);
     return true;
   }
   return false;
@@ -260,7 +261,7 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
     if (!law.works) continue;
     const std::span<const double> x = std::span(law.x).first(terms);
-    const std::span<const double> r = std::span(law.r).first(law.scaled != nullptr ? terms : 1);
+    const std::span<const double> r = std::span(law.r).first(law.varies ? terms : 1);
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
       const double at = s * rule.s[q];
       const double deflection = polynomial_value(x, at), rate = polynomial_slope(x, at) / h_;

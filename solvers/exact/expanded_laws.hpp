@@ -69,6 +69,7 @@ class ExpandedLaws final : public TermForces {
     std::vector<Entry> gain;                   // M^-1 b over unknowns
     double direction = 1.0;                    // in which the angle went last
     bool turned = false;                       // at rest, once
+    bool varies = false;                       // r over this step
     // Of the step: the piece about `origin`, where its elastic force is zero.
     bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
