@@ -1,3 +1,4 @@
+#include <drev/core/load_table.hpp>
 #include <drev/elements/periodic_curve.hpp>
 
 #include <algorithm>
