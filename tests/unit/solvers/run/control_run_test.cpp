@@ -54,7 +54,7 @@ class TestController final : public SampledController {
   std::function<Sampled()> begin_;
 };
 
-constexpr double kInertia = 2.0, kGain = 30.0, kIntegral = 400.0, kLoad = 5.0, kStep = 0.01;
+constexpr double kDiscInertia = 2.0, kGain = 30.0, kIntegral = 400.0, kLoad = 5.0, kStep = 0.01;
 constexpr double kNominal = 100.0;  // rad/s
 
 /// y_k = K_p e_k + K_i I_k, I_k = I_{k-1} + h e_k, e = w_n - w.
@@ -71,7 +71,7 @@ System governed(Hold hold = Hold::zero_order) {
   Model model("governed");
   const NodeId engine = model.add_node("engine");
   model.set_reference(engine, constant_speed(kNominal));
-  model.add<Inertia>("J", {engine}, {.inertia = kInertia});
+  model.add<Inertia>("J", {engine}, {.inertia = kDiscInertia});
   model.add<AppliedTorque>("load", {engine}, {.table = TimeTable({0.0}, {-kLoad})});
   model.add("governor", {engine},
             std::make_shared<TestController>(
@@ -82,9 +82,9 @@ System governed(Hold hold = Hold::zero_order) {
 /// The deviation of the speed at t_k, by the z-transform of the loop: w_{k+1} = (2 - a - b) w_k - (1 - a) w_{k-1} with
 /// a = K_p h/J, b = K_i h^2/J, w_0 = 0, w_1 = -h L/J; its roots are r exp(+-i phi).
 double speed_at(int k) {
-  const double a = kGain * kStep / kInertia, b = kIntegral * kStep * kStep / kInertia;
+  const double a = kGain * kStep / kDiscInertia, b = kIntegral * kStep * kStep / kDiscInertia;
   const double r = std::sqrt(1.0 - a), phi = std::acos((2.0 - a - b) / (2.0 * r));
-  return -kStep * kLoad / kInertia * std::pow(r, k - 1) * std::sin(k * phi) / std::sin(phi);
+  return -kStep * kLoad / kDiscInertia * std::pow(r, k - 1) * std::sin(k * phi) / std::sin(phi);
 }
 
 std::vector<double> speeds_of(const System& system, const Method& method, double t_end) {
@@ -99,7 +99,7 @@ std::vector<double> speeds_of(const System& system, const Method& method, double
 
 TEST_CASE("A sampled PI governor gives the motion of its z-transform, by every kind of method") {
   const System system = governed();
-  const double largest = kStep * kLoad / kInertia;
+  const double largest = kStep * kLoad / kDiscInertia;
   for (const auto& [method, tolerance] : std::vector<std::pair<Method, double>>{
            {{.name = kExact, .tolerance = 1e-12}, 1e-13},
            {{.step = kStep / 3.0}, 1e-12},  // average acceleration is exact where the torque is constant
@@ -125,7 +125,7 @@ TEST_CASE("A first-order hold follows a ramp from its second communication point
   constexpr double kRate = 7.0;
   Model model("ramp");
   const NodeId disc = model.add_node("engine");
-  model.add<Inertia>("J", {disc}, {.inertia = kInertia});
+  model.add<Inertia>("J", {disc}, {.inertia = kDiscInertia});
   model.add(
       "ramp", {disc},
       std::make_shared<TestController>(kStep, Hold::first_order, std::vector<std::string>{"time_s"}, [] {
@@ -133,7 +133,7 @@ TEST_CASE("A first-order hold follows a ramp from its second communication point
       }));
   const std::vector<double> speeds = speeds_of(model.build(), {.name = kExact, .tolerance = 1e-12}, 0.5);
   // Zero over the first step, then the ramp itself: J w = rate (t^2 - h^2)/2.
-  const double expected = kRate * (0.25 - kStep * kStep) / (2.0 * kInertia);
+  const double expected = kRate * (0.25 - kStep * kStep) / (2.0 * kDiscInertia);
   CHECK(std::abs(speeds[50] - expected) < 1e-13);
 }
 
