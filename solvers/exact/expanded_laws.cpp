@@ -64,7 +64,7 @@ ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(s
 void ExpandedLaws::locate_as(const ExpandedLaws& other) {
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     laws_[i].direction = other.laws_[i].direction;
-    laws_[i].turned = other.laws_[i].turned;
+    laws_[i].turned_at = other.laws_[i].turned_at;
   }
 }
 
@@ -73,7 +73,8 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
   active_ = false;
   known_degree_ = 0;
   h_ = h;
-  assembler_.set_time(start.state.t);
+  t_ = start.state.t;
+  assembler_.set_time(t_);
   for (Law& law : laws_) {
     const ScalarTerm& term = *law.term;
     const ScalarInput& in = start.inputs[idx(law.index)];
@@ -108,10 +109,7 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
       if (map.prescribed >= 0) add_known(map.coeff, assembler_.prescribed(map.prescribed));
       double rate = law.known_angle[1] / h;
       for (const Entry& e : law.phase_row) rate += e.coeff * start.state.v[e.index];
-      if (rate != 0.0) {
-        law.direction = rate > 0.0 ? 1.0 : -1.0;
-        law.turned = false;
-      }
+      if (rate != 0.0 && law.turned_at != t_) law.direction = rate > 0.0 ? 1.0 : -1.0;
       law.stretch = law.scaled->scale_stretch(law.angle, law.direction);
     }
     start_scale(law);
@@ -200,7 +198,7 @@ void ExpandedLaws::expand(const TaylorSeries& series) {
 bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   bool any = false;
   for (Law& law : laws_) {
-    if (law.scaled == nullptr || law.turned) continue;
+    if (law.scaled == nullptr || law.turned_at == t_) continue;
     const double near = kOnKnot * std::max(1.0, std::abs(law.angle));
     const double to_knot = law.direction > 0.0 ? law.angle - law.stretch.low : law.stretch.high - law.angle;
     if (!(to_knot < near)) continue;
@@ -213,7 +211,8 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
       if (std::abs(law.theta[idx(m)]) > kOnKnot * largest) lead = law.theta[idx(m)];
     if (!(lead * law.direction < 0.0)) continue;
     law.direction = -law.direction;
-    law.turned = any = true;
+    law.turned_at = t_;
+    any = true;
   }
   return any;
 }

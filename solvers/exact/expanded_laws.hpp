@@ -14,6 +14,7 @@
 #include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -64,12 +65,12 @@ class ExpandedLaws final : public TermForces {
   struct Law {
     int index = 0;
     const ScalarTerm* term = nullptr;
-    const AngleScaledForce* scaled = nullptr;  // null: r = 1
-    std::vector<Entry> phase_row;              // its phase node's deviation
-    std::vector<Entry> gain;                   // M^-1 b over unknowns
-    double direction = 1.0;                    // in which the angle went last
-    bool turned = false;                       // at rest, once
-    bool varies = false;                       // r over this step
+    const AngleScaledForce* scaled = nullptr;                     // null: r = 1
+    std::vector<Entry> phase_row;                                 // its phase node's deviation
+    std::vector<Entry> gain;                                      // M^-1 b over unknowns
+    double direction = 1.0;                                       // in which the angle went last
+    double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
+    bool varies = false;                                          // r over this step
     // Of the step: the piece about `origin`, where its elastic force is zero.
     bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
@@ -88,7 +89,7 @@ class ExpandedLaws final : public TermForces {
   std::vector<Law> laws_;
   bool active_ = false;
   int known_degree_ = 0;
-  double h_ = 0.0, knot_clearance_ = 0.0;
+  double t_ = 0.0, h_ = 0.0, knot_clearance_ = 0.0;
 };
 
 }  // namespace drev
