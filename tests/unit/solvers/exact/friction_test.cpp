@@ -220,15 +220,16 @@ TEST_CASE("Friction: a train held at rest lets go when its harmonic load says so
     m.add<BearingFriction>("bearing", {"n"}, {.torque = 5.0});
     m.add<AppliedTorque>("load", {"n"}, {.harmonics = {{3.0, 6.0, -0.5 * kPi}}});
     m.set_initial("n", 0.0, speed);
-    const Ran r = run(m.build(), 0.1);
+    const System system = m.build();
     const double lets_go = std::asin(5.0 / 6.0) / (6.0 * kPi);
+    CHECK(run(system, 0.999 * lets_go).summary.steps < 20);
+    const Ran r = run(system, 0.1);
     const auto& events = r.summary.friction_events;
     const auto slides = std::find_if(events.begin(), events.end(), [](const FrictionEvent& e) {
       return e.becomes == "sliding forward" && e.t > 1e-6;
     });
     REQUIRE(slides != events.end());
     CHECK(slides->t == Approx(lets_go).epsilon(1e-9));
-    CHECK(r.summary.steps < 40);
     // J v = int (6 sin - 5) dt
     const double omega = 6.0 * kPi;
     const double v =
