@@ -19,15 +19,13 @@ namespace drev {
 namespace {
 
 constexpr double kWatchedAngle = 0.3;  // omega h between points that observers see
-constexpr double kProjectedParts = kProjectionDegree;
-constexpr double kGrowth = 1.5;  // of the step after one that had to be shortened
+constexpr double kGrowth = 1.5;        // of the step after one that had to be shortened
 constexpr int kMaxCuts = 20;
 constexpr double kShortest = 1e-6;    // of the largest step
 constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the step
-constexpr double kRetreat = 1.0 / 16.0;  // of the step where the series overflowed
-constexpr double kTimeRounding = 4e-16;  // of the time
-constexpr double kSameTime = 1e-14;      // relative to the run's times
+constexpr double kRetreat = 1.0 / 16.0;                     // of the step where the series overflowed
+constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;  // of the time; of the run's times
 constexpr double kEnergyTolerance = 1e-6;
 constexpr double kNoProgress = 1e-12;  // relative to the largest step
 
@@ -206,8 +204,9 @@ class ExactRun final : public StepMotion {
       friction_.hold(assembler_, now_.state.v);
       if (end.friction) pass_friction(*end.friction);
     }
-    if (!progress_.goes_on(summary_.steps, now_.state.t))
-      end_interrupted(summary_, system_.name(), now_.state.t);
+    if (!progress_.goes_on(summary_.steps, t_new)) end_interrupted(summary_, system_.name(), t_new);
+    if (!progress_.would_end(summary_.steps, t_new))
+      throw SolverError(at_time(system_.name(), t_new) + Progress::kNoEnd + to_text(largest_step_) + " s");
   }
 
   void pass_friction(const FrictionSeries::Change& change) {
@@ -286,8 +285,9 @@ class ExactRun final : public StepMotion {
     const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
-    double parts = std::ceil(fastest_ * length / kWatchedAngle);
-    if (known_.projected()) parts = std::max(parts, kProjectedParts);  // what projection holds swings faster
+    // What projection holds swings faster.
+    const double parts =
+        std::max(std::ceil(fastest_ * length / kWatchedAngle), known_.projected() ? kProjectionDegree : 0.0);
     const auto clear = [&](const std::optional<LawSeries::Change>& change, double s, double t,
                            double otherwise) {
       return change ? t_0 + length * laws_.clear_of_change(*change, s) / end.s : t + otherwise;

@@ -97,6 +97,8 @@ class FrictionSeries final : public TermForces {
   /// Of a train that friction holds at rest: what rounding of its forces moves over a time [s], as an energy [J].
   double energy_of_rounding(double duration) const;
 
+  /// Some contact is stuck, or a tie: its torque follows from the forces.
+  bool holds() const { return !stuck_.empty(); }
   FrictionState state(int contact) const;
   /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing, and nothing of
   /// ties, which have no state.

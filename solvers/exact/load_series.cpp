@@ -21,6 +21,8 @@ constexpr int kTail = 4;
 constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between the bounds of its pieces
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
+// Of the largest force so far: rounding of the projection's coefficients.
+constexpr double kForceRounding = 4e-15;
 // Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
 constexpr double kKinkInside = 1e-4;
 // A kink that leaves more of the motion than this inside the step ends it.
@@ -43,6 +45,7 @@ LoadSeries::LoadSeries(const System& system)
       last_(stride_),
       of_loads_(stride_),
       of_kinks_(stride_),
+      largest_force_(idx(stride_)),
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
@@ -234,7 +237,25 @@ double LoadSeries::relative_move(const TaylorSeries& series, int row) const {
   return move / scale;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first) {
+/// Of the largest force on the row so far, what a held contact's torque is off by. Coefficients of smooth forces fall
+/// from degree to degree at an even rate: the next one tells, where the tail would ask for far shorter steps.
+double LoadSeries::held_rest(const LegendreProjection& forces, int row) const {
+  const auto larger = [&](int j) {
+    return std::max(std::abs(forces.coefficient(j, row)), std::abs(forces.coefficient(j - 1, row)));
+  };
+  const double last = larger(kProjectionDegree), before = larger(kProjectionDegree - 2);
+  if (!(last > kForceRounding * largest_force_[idx(row)])) return 0.0;
+  return last * std::min(1.0, last / before) / largest_force_[idx(row)];
+}
+
+void LoadSeries::note_forces(int row) {
+  double size = 0.0;
+  for (int k = 0; k < 3; ++k) size += std::abs(p_[idx(k * stride_ + row)]);
+  for (int j = 0; j < kProjectionTerms; ++j) size += std::abs(projection_.coefficient(j, row));
+  largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size);
+}
+
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -256,14 +277,23 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(forces.coefficient(j, row));
     const double rest = tail * relative_move(series, row);
+    if (held) {  // where friction leaves no motion but rounding, the forces themselves are the measure
+      const double of_force = held_rest(forces, row);
+      return std::isfinite(rest) ? std::min(rest, of_force) : of_force;
+    }
     return std::isfinite(rest) ? rest : 0.0;
   };
+  if (held) {
+    smooth_.for_rows([&](int row, bool) { note_forces(row); });
+    laws.for_rows([&](int row, bool) { note_forces(row); });
+  }
   // The path is off inside the step; of that, the contraction factor comes back at its end.
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
   const auto note_rest = [&](int row, bool analytic) {
     const double rest = rest_of(projection_, row, analytic ? kAnalyticTail : kTail);
     pass.inside = std::max(pass.inside, kPathRest * rest);
     pass.residual = std::max(pass.residual, at_end * rest);
+    if (held) pass.torque = std::max(pass.torque, held_rest(projection_, row));
   };
   smooth_.for_rows(note_rest);
   laws.for_rows(note_rest);
@@ -283,7 +313,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     double size = 0.0;
     for (int j = 0; j < kProjectionTerms; ++j)
       size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
-    if (size > 0.0) pass.change = std::max(pass.change, size * relative_move(series, row));
+    if (!(size > 0.0)) return;
+    const double moves = size * relative_move(series, row), force = largest_force_[idx(row)];
+    pass.change = std::max(pass.change, held && force > 0.0 ? std::min(moves, size / force) : moves);
   };
   for (const Linear& l : loads_) note_change(l.row);
   smooth_.for_rows([&](int row, bool) { note_change(row); });

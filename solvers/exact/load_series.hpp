@@ -49,10 +49,13 @@ class LoadSeries {
     double inside = 0.0;
     /// s of a knot that leaves too much of the motion inside the step: the step should end there.
     std::optional<double> cut = {};
+    /// Where friction holds: of the largest force on a row so far, what the projection lacks of it. It tells when
+    /// a contact lets go, also where nothing moves.
+    double torque = 0.0;
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
-  /// first: the step is new.
-  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first);
+  /// first: the step is new. held: some friction contact is stuck.
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
@@ -105,6 +108,8 @@ class LoadSeries {
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const;
+  double held_rest(const LegendreProjection& forces, int row) const;
+  void note_forces(int row);
 
   const System& system_;
   Assembler assembler_;
@@ -118,6 +123,7 @@ class LoadSeries {
   LegendreProjection projection_, last_;  // of this pass, and the last
   LegendreProjection of_loads_;           // of this pass, where there are laws too
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
+  std::vector<double> largest_force_;     // by row, of steps in which friction held
   KinkMoments kinks_;
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};

@@ -11,6 +11,7 @@ constexpr double kShorten = 0.9;        // of the step at which the loads' rest 
 constexpr double kLoosest = 1e-3;       // tolerance of a pass that is not the last
 constexpr double kPassesAgree = 1e-15;  // of the motion: rounding of what is projected
 constexpr double kInside = 0.01;        // of the tolerance: what the motion inside the step may be off by
+constexpr double kTorqueRest = 1e-10;   // of the forces on a train that friction holds
 constexpr double kJump = 1e-4;          // of the tolerance: error allowed per undeclared discontinuity
 constexpr double kBehindKnot = 1e-3;    // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;     // of the step: a knot that its nodes see
@@ -44,9 +45,9 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (expanded.turns_back(series)) return {h, true};
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
-    const LoadSeries::Pass made = known.project(series, smooth, pass == 0);
-    const double excess = std::max(made.residual / std::max(share, kJump * limits.tolerance),
-                                   made.inside / (kInside * limits.tolerance));
+    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
+    const double excess = std::max({made.residual / std::max(share, kJump * limits.tolerance),
+                                    made.inside / (kInside * limits.tolerance), made.torque / kTorqueRest});
     if (excess > 1.0 && h > limits.shortest) {
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);

@@ -211,6 +211,41 @@ TEST_CASE("Friction: a train that is held at rest stays there, and its energy is
   CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-15);
 }
 
+TEST_CASE("Friction: a train held at rest lets go when its harmonic load says so, at a few steps a cycle") {
+  // 6 sin(2 pi f t) = 5 N m. A speed that is rounding stops at once; it is no measure of the motion to come.
+  for (const double speed : {0.0, 1e-20}) {
+    Model m("held");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 0.1});
+    m.add<BearingFriction>("bearing", {"n"}, {.torque = 5.0});
+    m.add<AppliedTorque>("load", {"n"}, {.harmonics = {{3.0, 6.0, -0.5 * kPi}}});
+    m.set_initial("n", 0.0, speed);
+    const System system = m.build();
+    const double lets_go = std::asin(5.0 / 6.0) / (6.0 * kPi);
+    CHECK(run(system, 0.999 * lets_go).summary.steps < 20);
+    const Ran r = run(system, 0.1);
+    const auto& events = r.summary.friction_events;
+    const auto slides = std::find_if(events.begin(), events.end(), [](const FrictionEvent& e) {
+      return e.becomes == "sliding forward" && e.t > 1e-6;
+    });
+    REQUIRE(slides != events.end());
+    CHECK(slides->t == Approx(lets_go).epsilon(1e-9));
+    // J v = int (6 sin - 5) dt
+    const double omega = 6.0 * kPi;
+    const double v =
+        (6.0 / omega * (std::cos(omega * lets_go) - std::cos(omega * 0.1)) - 5.0 * (0.1 - lets_go)) / 0.1;
+    CHECK(r.state.v[0] == Approx(v).epsilon(1e-9));
+  }
+  Model m = two_inertias(0.3, 0.0, 0.7, 0.0);
+  m.add<CoulombJoint>("joint", {"a", "b"}, {.torque = 50.0});
+  m.add<Brake>("brake_a", {"a"}, {.torque = 5.0});
+  m.add<Brake>("brake_b", {"b"}, {.torque = 5.0});
+  m.add<AppliedTorque>("load", {"a"}, {.harmonics = {{30.0, 4.0, 0.3}}});
+  const Ran r = run(m.build(), 1.0);
+  CHECK(r.summary.friction_changes == 0);
+  CHECK(r.summary.steps < 20 * 30);
+}
+
 TEST_CASE("Friction: a stuck clutch costs no more than the shaft that it could be") {
   Model m = two_inertias(0.3, 1.0, 0.7, 1.0);
   m.add<GroundSpring>("spring", {"b"}, {.stiffness = 300.0});

@@ -163,3 +163,10 @@ TEST_CASE("Same fault, same message: a step that fails in its last part, halved 
   CHECK(lockstep.state.z[0] == Approx(state.z[0]).epsilon(1e-12));
   CHECK(lockstep.state.v[0] == Approx(state.v[0]).epsilon(1e-12));
 }
+
+TEST_CASE("A run that would take 1e12 steps ends with an error that says so") {
+  const System system = unit_oscillator().build();
+  CHECK_THROWS_WITH(propagate(system, {.t_end = 1e14}), Catch::Contains("would not end"));
+  State state = State::initial(system);
+  CHECK(propagate(system, {.t_end = 1e4}, state).ok());
+}
