@@ -14,6 +14,7 @@ namespace drev {
 namespace {
 
 constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
+constexpr double kContinuous = 1e-9;   // of a scale, at its knots
 constexpr double kLeastRate = 1e-6;    // at a knot, of the mean rate to it
 constexpr double kOnKnot = 1e-12;      // of the angle, at least of 1 rad
 
@@ -34,7 +35,13 @@ double term_or_zero(const std::vector<double>& series, int m) {
 
 bool ExpandedLaws::takes(const ScalarTerm& term) {
   if (term.force->pieces().empty() || !linear_pieces(term).empty()) return false;
-  return term.phase_node < 0 || dynamic_cast<const AngleScaledForce*>(term.force) != nullptr;
+  if (term.phase_node < 0) return true;
+  const auto* scaled = dynamic_cast<const AngleScaledForce*>(term.force);
+  if (scaled == nullptr) return false;
+  const ScaleStretch before = scaled->scale_stretch(0.0, 1.0);
+  if (std::isinf(before.high)) return true;
+  const double end = before.value + before.slope * before.high;
+  return std::abs(scaled->scale_stretch(before.high, 1.0).value - end) <= kContinuous * std::abs(end);
 }
 
 ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(system) {
@@ -239,7 +246,15 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
       g[0] = std::max(0.0, side * (bound - law.angle));
       if (g[0] == 0.0 && law.direction * side > 0.0)
         continue;  // no stretch is that short: on the knot, past it
-      if (g[0] < kOnKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) g[0] = 0.0;
+      if (g[0] < kOnKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) {
+        // On the knot behind: the first term that is not rounding leads away from it (turns_back()).
+        double largest = 0.0;
+        for (std::size_t k = 1; k < g.size(); ++k) largest = std::max(largest, std::abs(g[k]));
+        std::size_t lead = 0;
+        g[0] = 0.0;
+        while (lead < g.size() && std::abs(g[lead]) <= kOnKnot * largest) g[lead++] = 0.0;
+        if (lead == g.size() || g[lead] < 0.0) continue;
+      }
       if (const auto s = first_crossing(g, end)) {
         first = s;
         end = *s;

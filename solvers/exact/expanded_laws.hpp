@@ -30,7 +30,8 @@ class LoadSeries;
 class ExpandedLaws final : public TermForces {
  public:
   explicit ExpandedLaws(const System& system);
-  /// The law is one of these: it states pieces, and what scales them, and a method for linear pieces does not do.
+  /// The law is one of these: it states pieces, and what scales them, without jumps (beside a jump rounding of the angle
+  /// may tell the wrong side), and a method for linear pieces does not do.
   static bool takes(const ScalarTerm& term);
 
   bool empty() const { return laws_.empty(); }
