@@ -10,8 +10,8 @@ namespace drev {
 namespace {
 
 constexpr std::size_t n = CurveCells::kTerms;
-constexpr double kOverlap = 1.3;  // reach over half the width
-constexpr double kTail = 1e-14;   // of the largest coefficient
+constexpr double kOverlap = 1.3;     // reach over half the width
+constexpr double kCellTail = 1e-14;  // of the largest coefficient
 constexpr std::size_t kFewest = 8, kMost = 1024;
 
 /// Chebyshev coefficients a_j of values at the nodes cos(pi (q + 1/2)/n), as powers of (x/reach).
@@ -65,7 +65,7 @@ bool CurveCells::fill(const KnottedLoad& load, std::size_t count) {
     cell.factor = to_powers(a[0], reach_);
     cell.by_speed = to_powers(a[1], reach_);
   }
-  return tail[0] <= kTail * largest[0] && tail[1] <= kTail * largest[1];
+  return tail[0] <= kCellTail * largest[0] && tail[1] <= kCellTail * largest[1];
 }
 
 CurveCells::Place CurveCells::at(double angle) const {

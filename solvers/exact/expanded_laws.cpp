@@ -13,10 +13,10 @@ namespace drev {
 
 namespace {
 
-constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
-constexpr double kContinuous = 1e-9;   // of a scale, at its knots
-constexpr double kLeastRate = 1e-6;    // at a knot, of the mean rate to it
-constexpr double kOnKnot = 1e-12;      // of the angle, at least of 1 rad
+constexpr double kClearOfKnot = 2e-15;  // of an angle, at least of 1 rad: beside a knot
+constexpr double kContinuous = 1e-9;    // of a scale, at its knots
+constexpr double kLeastRate = 1e-6;     // at a knot, of the mean rate to it
+constexpr double kOnLawKnot = 1e-12;    // of the angle, at least of 1 rad
 
 std::size_t capacity() { return static_cast<std::size_t>(TaylorSeries::kMaxDegree) + 1; }
 
@@ -206,7 +206,7 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   bool any = false;
   for (Law& law : laws_) {
     if (law.scaled == nullptr || law.turned_at == t_) continue;
-    const double near = kOnKnot * std::max(1.0, std::abs(law.angle));
+    const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
     const double to_knot = law.direction > 0.0 ? law.angle - law.stretch.low : law.stretch.high - law.angle;
     if (!(to_knot < near)) continue;
     double largest = 0.0, lead = 0.0;
@@ -215,7 +215,7 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
       largest = std::max(largest, std::abs(law.theta[idx(m)]));
     }
     for (int m = 1; m <= series.degree() && lead == 0.0; ++m)
-      if (std::abs(law.theta[idx(m)]) > kOnKnot * largest) lead = law.theta[idx(m)];
+      if (std::abs(law.theta[idx(m)]) > kOnLawKnot * largest) lead = law.theta[idx(m)];
     if (!(lead * law.direction < 0.0)) continue;
     law.direction = -law.direction;
     law.turned_at = t_;
@@ -246,20 +246,20 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
       g[0] = std::max(0.0, side * (bound - law.angle));
       if (g[0] == 0.0 && law.direction * side > 0.0)
         continue;  // no stretch is that short: on the knot, past it
-      if (g[0] < kOnKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) {
+      if (g[0] < kOnLawKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) {
         // On the knot behind: the first term that is not rounding leads away from it (turns_back()).
         double largest = 0.0;
         for (std::size_t k = 1; k < g.size(); ++k) largest = std::max(largest, std::abs(g[k]));
         std::size_t lead = 0;
         g[0] = 0.0;
-        while (lead < g.size() && std::abs(g[lead]) <= kOnKnot * largest) g[lead++] = 0.0;
+        while (lead < g.size() && std::abs(g[lead]) <= kOnLawKnot * largest) g[lead++] = 0.0;
         if (lead == g.size() || g[lead] < 0.0) continue;
       }
       if (const auto s = first_crossing(g, end)) {
         first = s;
         end = *s;
         const double rate = std::max(std::abs(polynomial_slope(g, end)), kLeastRate * std::abs(g[0]));
-        knot_clearance_ = kAngleClear * std::max(1.0, std::abs(law.angle)) * h_ / rate;
+        knot_clearance_ = kClearOfKnot * std::max(1.0, std::abs(law.angle)) * h_ / rate;
       }
     }
   }

@@ -12,10 +12,10 @@ namespace drev {
 
 namespace {
 
-constexpr double kClosesLoop = 1e-10;  // of W_ii: what the other ties leave of a tie
-constexpr double kFits = 1e-9;         // relative, of the speeds at the start
-constexpr double kOnBound = 1e-11;     // of the torques that a bound is summed from
-constexpr double kSameBound = 1e-9;    // the same of two lines that meet
+constexpr double kClosesLoop = 1e-10;   // of W_ii: what the other ties leave of a tie
+constexpr double kFits = 1e-9;          // relative, of the speeds at the start
+constexpr double kOnGearBound = 1e-11;  // of the torques that a bound is summed from
+constexpr double kSameBound = 1e-9;     // the same of two lines that meet
 
 /// Coefficient d of the product of two series.
 double product_at(const std::vector<double>& a, const std::vector<double>& b, std::size_t d,
@@ -247,7 +247,7 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
     const int other = 1 - c.line;
     c.bounds.push_back(
         {.what = What::drive_turns, .g = loss_gap(c, loss, other, c.sign, size), .line = other});
-    clean(c.bounds.back(), size, kOnBound * size[0] + rounding, 0.0, c.line_root);
+    clean(c.bounds.back(), size, kOnGearBound * size[0] + rounding, 0.0, c.line_root);
     return;
   }
   for (const What what : {What::bound_high, What::bound_low}) {
@@ -262,7 +262,7 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
     const double nearest = std::max(both[0].g[0], both[1].g[0]);
     for (const int line : {0, 1}) {
       const bool on_it = root && both[line].g[0] >= nearest - kSameBound * sizes[line][0];
-      clean(both[line], sizes[line], kOnBound * sizes[line][0] + rounding, 0.0, on_it);
+      clean(both[line], sizes[line], kOnGearBound * sizes[line][0] + rounding, 0.0, on_it);
       c.bounds.push_back(std::move(both[line]));
     }
   }

@@ -10,9 +10,9 @@ namespace drev {
 namespace {
 
 constexpr std::size_t n = GaussRule::kNodes, kRoom = whole_lanes(GaussRule::kNodes);
-constexpr int kMostKnots = 64;     // of a load in a step; more end it
-constexpr double kNearEnd = 1e-6;  // of the step: a knot so close to its ends need not end it
-constexpr int kMaxNewton = 20;
+constexpr int kMostKnots = 64;         // of a load in a step; more end it
+constexpr double kNearSpanEnd = 1e-6;  // of the step: a knot so close to its ends need not end it
+constexpr int kMaxKnotNewton = 20;
 
 struct Cubic {
   double value, slope;
@@ -36,7 +36,7 @@ Cubic polynomial_at(const std::vector<double>& terms, double s) {
 double place_of(const std::vector<double>& terms, double target, double from, double start, double end) {
   double low = from, high = 1.0;
   double s = std::clamp(from + (1.0 - from) * (target - start) / (end - start), low, high);
-  for (int i = 0; i < kMaxNewton; ++i) {
+  for (int i = 0; i < kMaxKnotNewton; ++i) {
     const Cubic f = polynomial_at(terms, s);
     ((f.value < target) == (end > start) ? low : high) = s;
     double next = s - (f.value - target) / f.slope;
@@ -193,7 +193,7 @@ double SmoothLoads::pass_knots(Place& l, const TaylorSeries& series, double end,
     const double size = jump + std::abs((next.terms[1] - before.slope) * factor * end);
     if (l.feedback) gain = std::max(gain, 0.5 * h_ * h_ * jump / std::abs(end));
     l.unfinished = count == kMostKnots;
-    if (to > kNearEnd && to < 1.0 - kNearEnd && (size > strength || l.unfinished)) {
+    if (to > kNearSpanEnd && to < 1.0 - kNearSpanEnd && (size > strength || l.unfinished)) {
       strength = size;
       l.strongest = to;
     }

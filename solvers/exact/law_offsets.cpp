@@ -11,7 +11,7 @@ namespace drev {
 
 namespace {
 // What is left of rounding in the last coefficients: of an offset, and of the angle that it is looked up at.
-constexpr double kRounding = 2e-14, kAngleRounding = 1e-15;
+constexpr double kOffsetRounding = 2e-14, kAngleRounding = 1e-15;
 }  // namespace
 
 LawOffsets::LawOffsets(const System& system) : system_(system), offsets_(system.scalars().size()) {
@@ -37,7 +37,7 @@ double LawOffsets::expand(const TaylorSeries& series, double t, double h) {
       rounding = std::max(rounding, std::abs(at_node.de_dangle * angle));
     }
     if (largest == 0.0) continue;
-    const double known_to = kRounding * largest + kAngleRounding * rounding;
+    const double known_to = kOffsetRounding * largest + kAngleRounding * rounding;
     const NodePolynomial polynomial = through_nodes(values, known_to);
     offsets_[j].assign(polynomial.power.begin(), polynomial.power.end());
     double scale = largest;

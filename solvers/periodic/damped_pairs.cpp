@@ -11,10 +11,10 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 25;
-constexpr double kSettled = 1e-12;  // of lambda
+constexpr double kPairSettled = 1e-12;  // of lambda
 
 /// A x, A's values on the pattern.
-Eigen::VectorXcd product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
+Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
   Eigen::VectorXcd y = Eigen::VectorXcd::Zero(x.size());
   const int *outer = pattern.outerIndexPtr(), *inner = pattern.innerIndexPtr();
   for (int j = 0; j < pattern.cols(); ++j)
@@ -40,12 +40,12 @@ bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXc
       continue;
     }
     Eigen::VectorXcd next =
-        product(pattern_, damping, shape) + 2.0 * lambda * product(pattern_, mass_, shape);
+        pair_product(pattern_, damping, shape) + 2.0 * lambda * pair_product(pattern_, mass_, shape);
     elimination_.solve(next.data());
     if (!next.allFinite() || next.norm() == 0.0) return false;
     shape = next / next.norm();
     const auto form = [&](const Vector& values) -> Complex {
-      return (shape.transpose() * product(pattern_, values, shape))(0, 0);
+      return (shape.transpose() * pair_product(pattern_, values, shape))(0, 0);
     };
     const Complex a = form(mass_), c = form(damping), k = form(stiffness_);
     const Complex root = std::sqrt(c * c - 4.0 * a * k);
@@ -54,7 +54,7 @@ bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXc
     const double moved = std::abs(found - lambda);
     at = lambda = found;
     if (!std::isfinite(moved)) return false;
-    if (moved <= kSettled * std::abs(lambda)) return true;
+    if (moved <= kPairSettled * std::abs(lambda)) return true;
   }
   return false;
 }
