@@ -9,18 +9,18 @@ namespace drev {
 
 namespace {
 
-constexpr std::size_t n = CurveCells::kTerms;
-constexpr double kOverlap = 1.3;     // reach over half the width
-constexpr double kCellTail = 1e-14;  // of the largest coefficient
+constexpr std::size_t kOfCell = CurveCells::kTerms;  // n
+constexpr double kOverlap = 1.3;                     // reach over half the width
+constexpr double kCellTail = 1e-14;                  // of the largest coefficient
 constexpr std::size_t kFewest = 8, kMost = 1024;
 
 /// Chebyshev coefficients a_j of values at the nodes cos(pi (q + 1/2)/n), as powers of (x/reach).
-std::array<double, n> to_powers(const std::array<double, n>& a, double reach) {
-  std::array<double, n> power{}, below{}, now{}, next{};
+std::array<double, kOfCell> to_powers(const std::array<double, kOfCell>& a, double reach) {
+  std::array<double, kOfCell> power{}, below{}, now{}, next{};
   below[0] = 1.0, now[1] = 1.0;  // T_0, T_1
   power[0] = a[0], power[1] = a[1];
-  for (std::size_t j = 2; j < n; ++j) {
-    for (std::size_t k = 0; k < n; ++k) next[k] = (k > 0 ? 2.0 * now[k - 1] : 0.0) - below[k];
+  for (std::size_t j = 2; j < kOfCell; ++j) {
+    for (std::size_t k = 0; k < kOfCell; ++k) next[k] = (k > 0 ? 2.0 * now[k - 1] : 0.0) - below[k];
     for (std::size_t k = 0; k <= j; ++k) power[k] += a[j] * next[k];
     below = now;
     now = next;
@@ -47,19 +47,19 @@ bool CurveCells::fill(const KnottedLoad& load, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     Cell& cell = cells_[i];
     cell.centre = (static_cast<double>(i) + 0.5) * width_;
-    std::array<std::array<double, n>, 2> a{};
-    for (std::size_t q = 0; q < n; ++q) {
-      const double angle = kPi * (static_cast<double>(q) + 0.5) / static_cast<double>(n);
+    std::array<std::array<double, kOfCell>, 2> a{};
+    for (std::size_t q = 0; q < kOfCell; ++q) {
+      const double angle = kPi * (static_cast<double>(q) + 0.5) / static_cast<double>(kOfCell);
       const KnottedLoad::Curves c = load.curves(cell.centre + reach_ * std::cos(angle));
-      for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t j = 0; j < kOfCell; ++j) {
         const double weight =
-            (j > 0 ? 2.0 : 1.0) / static_cast<double>(n) * std::cos(static_cast<double>(j) * angle);
+            (j > 0 ? 2.0 : 1.0) / static_cast<double>(kOfCell) * std::cos(static_cast<double>(j) * angle);
         a[0][j] += weight * c.factor;
         a[1][j] += weight * c.by_speed_squared;
       }
     }
     for (std::size_t f = 0; f < 2; ++f) {
-      tail[f] = std::max(tail[f], std::abs(a[f][n - 1]) + std::abs(a[f][n - 2]));
+      tail[f] = std::max(tail[f], std::abs(a[f][kOfCell - 1]) + std::abs(a[f][kOfCell - 2]));
       for (const double c : a[f]) largest[f] = std::max(largest[f], std::abs(c));
     }
     cell.factor = to_powers(a[0], reach_);
@@ -79,7 +79,7 @@ CurveCells::Place CurveCells::at(double angle) const {
 CurveCells::Values CurveCells::values(const Place& place) {
   Values v;
   const double x = place.distance;
-  for (std::size_t k = n; k-- > 0;) {
+  for (std::size_t k = kOfCell; k-- > 0;) {
     v.factor_slope = v.factor_slope * x + v.factor;
     v.factor = v.factor * x + place.cell->factor[k];
     v.by_speed_slope = v.by_speed_slope * x + v.by_speed;

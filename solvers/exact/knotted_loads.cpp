@@ -9,7 +9,7 @@ namespace drev {
 
 namespace {
 
-constexpr std::size_t n = GaussRule::kNodes, kRoom = whole_lanes(GaussRule::kNodes);
+constexpr std::size_t kNodes = GaussRule::kNodes, kRoom = whole_lanes(GaussRule::kNodes);
 constexpr int kMostKnots = 64;         // of a load in a step; more end it
 constexpr double kNearSpanEnd = 1e-6;  // of the step: a knot so close to its ends need not end it
 constexpr int kMaxKnotNewton = 20;
@@ -94,7 +94,7 @@ void SmoothLoads::move_knotted(Place& l, const Assembler& assembler, const Vecto
 void SmoothLoads::sample(const Place& l, const CubicPiece& piece, double about, const double* s,
                          Samples& at) const {
   if (!l.pieced) {
-    for (std::size_t q = 0; q < n; ++q) {
+    for (std::size_t q = 0; q < kNodes; ++q) {
       const double nominal_turn = l.ratio * (phi_[1] + phi_[2] * s[q]) * s[q];
       const LoadResponse r =
           l.term->load->evaluate({.t = t_ + h_ * s[q],
@@ -108,11 +108,11 @@ void SmoothLoads::sample(const Place& l, const CubicPiece& piece, double about, 
     }
     return;
   }
-  const double middle = at.turn[n / 2];
+  const double middle = at.turn[kNodes / 2];
   const CurveCells::Place place = l.curves->at(l.angle + middle);
   std::array<double, kRoom> distance{}, factor, factor_slope, by_speed, by_speed_slope;
   double farthest = 0.0;
-  for (std::size_t q = 0; q < n; ++q) {
+  for (std::size_t q = 0; q < kNodes; ++q) {
     distance[q] = place.distance + (at.turn[q] - middle);
     farthest = std::max(farthest, std::abs(distance[q]));
   }
@@ -122,7 +122,7 @@ void SmoothLoads::sample(const Place& l, const CubicPiece& piece, double about, 
     polynomial_values(kRoom, CurveCells::kTerms, place.cell->by_speed.data(), distance.data(),
                       by_speed.data(), by_speed_slope.data());
   } else {
-    for (std::size_t q = 0; q < n; ++q) {
+    for (std::size_t q = 0; q < kNodes; ++q) {
       const CurveCells::Values c = CurveCells::values(l.curves->at(l.angle + at.turn[q]));
       factor[q] = c.factor;
       factor_slope[q] = c.factor_slope;
@@ -131,7 +131,7 @@ void SmoothLoads::sample(const Place& l, const CubicPiece& piece, double about, 
     }
   }
   const double from_about = l.angle - about, per_time = 1.0 / h_;
-  for (std::size_t q = 0; q < n; ++q) {
+  for (std::size_t q = 0; q < kNodes; ++q) {
     const Cubic p = cubic_at(piece, from_about + at.turn[q]);
     const double speed = at.rate[q] * per_time, square = speed * speed;
     at.torque[q] = p.value * factor[q] + by_speed[q] * square;
@@ -147,14 +147,14 @@ double SmoothLoads::add_interval(Place& l, const CubicPiece& piece, double about
   const GaussRule& rule = gauss_rule();
   std::array<double, kRoom> s{};
   const double length = to - from;
-  for (std::size_t q = 0; q < n; ++q) s[q] = from + length * rule.s[q];
+  for (std::size_t q = 0; q < kNodes; ++q) s[q] = from + length * rule.s[q];
   Samples at;
   polynomial_values(kRoom, static_cast<int>(turn_.size()), turn_.data(), s.data(), at.turn.data(),
                     at.rate.data());
   sample(l, piece, about, s.data(), at);
   double slope = 0.0, speed_slope = 0.0;
   std::array<double, kProjectionTerms> sum{};
-  for (std::size_t q = 0; q < n; ++q) {
+  for (std::size_t q = 0; q < kNodes; ++q) {
     const double u = 2.0 * s[q] - 1.0;
     double below = rule.weight[q] * beyond_tangent(l, at, q), now = u * below;
     sum[0] += below;
@@ -215,7 +215,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   l.strongest = 1.0;
   Samples at;
   double low = 0.0, high = 0.0, slowest = 1e300, fastest = -1e300;
-  for (std::size_t q = 0; q < n; ++q) {
+  for (std::size_t q = 0; q < kNodes; ++q) {
     const double s = rule.s[q];
     const std::size_t place = q * idx(stride_) + idx(l.row);
     at.turn[q] = l.ratio * (phi_[1] + phi_[2] * s) * s;
@@ -252,7 +252,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   }
   sample(l, l.piece, l.about, rule.s.data(), at);
   double slope = 0.0, speed_slope = 0.0;
-  for (std::size_t q = 0; q < n; ++q) {
+  for (std::size_t q = 0; q < kNodes; ++q) {
     forces.at(q, l.row) += l.coeff * beyond_tangent(l, at, q);
     slope = std::max(slope, std::abs(at.slope[q] - l.slope));
     speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q] - l.speed_slope));
