@@ -1,5 +1,4 @@
 #include <drev/advice/advise.hpp>
-#include <drev/advice/recipe.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <limits>
 
 #include "advice/evidence.hpp"
+#include "advice/recipe.hpp"
 #include "advice/simplify.hpp"
 
 namespace drev {
@@ -17,7 +17,7 @@ namespace {
 constexpr double kAccuracy = 0.05;       // of a figure's own error, over what is allowed
 constexpr double kEnoughSeconds = 0.01;  // of processor time measured
 constexpr int kRepeats = 3;
-constexpr double kMostCost = 3.0;     // of a rung over the full model; dearer ones are given up
+constexpr double kMostCost = 3.0;     // of a rung over the full model; more expensive ones are given up
 constexpr double kDear = 0.5;         // cost of few modes over that of all, with their static shapes
 constexpr double kStaticPart = 0.25;  // of the static shapes of loads, over what is allowed
 constexpr double kAsCheap = 1.25;     // times the least cost: no difference that would last

@@ -18,7 +18,11 @@ class ClosedFlank final : public Element, public ScalarForce, public AngleScaled
       : closed_(std::move(closed)),
         offset_(offset),
         pieces_(closed_->pieces().begin(), closed_->pieces().end()) {
-    for (LawPiece& p : pieces_) p.y_0 -= p.k * offset_, p.elastic_0 -= p.elastic_k * offset_;
+    for (LawPiece& p : pieces_) {
+      p.y_0 -= p.k * offset_, p.elastic_0 -= p.elastic_k * offset_;
+      for (LawBound& b : p.bounds) b.a -= b.b_x * offset_;
+    }
+    for (const double kink : closed_->kinks()) kinks_.push_back(kink + offset_);
   }
 
   std::string_view type() const override { return "closed flank"; }
@@ -36,6 +40,7 @@ class ClosedFlank final : public Element, public ScalarForce, public AngleScaled
   }
   double closed_stiffness() const override { return closed_->closed_stiffness(); }
   double closed_damping() const override { return closed_->closed_damping(); }
+  std::span<const double> kinks() const override { return kinks_; }
   bool varies() const override { return closed_->varies(); }
   Offset offset(double nominal_angle) const override { return closed_->offset(nominal_angle); }
   std::span<const LawPiece> pieces() const override { return pieces_; }
@@ -50,7 +55,8 @@ class ClosedFlank final : public Element, public ScalarForce, public AngleScaled
  private:
   std::shared_ptr<const GearMesh> closed_;
   double offset_;
-  std::vector<LawPiece> pieces_;  // one, without bounds
+  std::vector<LawPiece> pieces_;  // one; more where the stiffness follows the load
+  std::vector<double> kinks_;
 };
 
 }  // namespace drev

@@ -70,7 +70,7 @@ std::string Evidence::parametric() const {
   std::string text;
   for (const ScalarTerm& term : system_.scalars()) {
     const ElementInstance& p = system_.element_instances()[idx(index(term.element))];
-    const auto* mesh = dynamic_cast<const GearMesh*>(p.element.get());
+    const auto* mesh = dynamic_cast<const GearMesh*>(term.force);  // on bearings, too
     if (mesh == nullptr || !mesh->params().stiffness.varies()) continue;
     const double tooth = to_hz(mesh->params().teeth_1 * std::abs(system_.ratio(term.phase_node)) * speed);
     double nearest = 0.0;

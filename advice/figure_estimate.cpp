@@ -1,4 +1,5 @@
-#include <drev/advice/figure_estimate.hpp>
+#include "advice/figure_estimate.hpp"
+
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/run/after_time.hpp>

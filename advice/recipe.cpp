@@ -1,4 +1,5 @@
-#include <drev/advice/recipe.hpp>
+#include "advice/recipe.hpp"
+
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>

@@ -1,9 +1,10 @@
 #pragma once
 /// A model as it is to be run for one figure: what is simplified, and by which method.
-#include <drev/advice/figure_estimate.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
 
 #include <optional>
+
+#include "advice/figure_estimate.hpp"
 
 namespace drev {
 

@@ -98,7 +98,7 @@ void set_starts(Model& to, const Starts& starts) {
 /// Parts of the model that the elements with `ties` hold together, per node.
 std::vector<int> parts_of(const Model& model, const System& system,
                           const std::function<bool(const ElementInstance&)>& ties) {
-  std::vector<Closure> speed_ratio_constraints;
+  std::vector<RatioRow> speed_ratio_constraints;
   for (const ElementInstance& p : model.element_instances()) {
     if (!ties(p)) continue;
     std::vector<int> nodes;

@@ -28,6 +28,11 @@ if(DREV_SANITIZE)
   add_link_options(-fsanitize=${DREV_SANITIZE})
 endif()
 
+# pip install has someone waiting: no warnings, and g++ clears away no memory before it has used 1 GiB.
+if(SKBUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options("SHELL:--param ggc-min-heapsize=1048576")
+endif()
+
 # "text" + std::string makes g++ 12 and 13 warn of overlaps and sizes that cannot occur (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
   set(DREV_NO_WARNINGS -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)
@@ -40,8 +45,10 @@ set(DREV_PRECOMPILED <Eigen/Dense> <Eigen/SparseCore> <functional> <memory> <str
 # Language level and warnings; further arguments: what to precompile, or REUSE_FROM <target>.
 function(drev_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion ${DREV_NO_WARNINGS}
-    $<$<BOOL:${DREV_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(NOT SKBUILD)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion ${DREV_NO_WARNINGS}
+      $<$<BOOL:${DREV_WARNINGS_AS_ERRORS}>:-Werror>)
+  endif()
   if(NOT DREV_PRECOMPILE OR NOT ARGN)
     return()
   elseif(ARGV1 STREQUAL "REUSE_FROM")

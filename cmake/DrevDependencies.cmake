@@ -1,4 +1,4 @@
-# Finds what drev links: Eigen, CHOLMOD and KLU (SuiteSparse) and ARPACK, as Debian packages them, and HDF5 for
+# Finds what drev links: Eigen, CHOLMOD and KLU (SuiteSparse), ARPACK and LAPACK, as Debian packages them, and HDF5 for
 # drev::report. Used by the build and, installed, by find_package(drev). SuiteSparse 5 ships no CMake package
 # files, and CMake's own module for HDF5 wants a C compiler, so libraries are found by name.
 function(drev_find_library target header)  # names of the library
@@ -27,10 +27,19 @@ endif()
 drev_find_library(cholmod cholmod.h cholmod)
 drev_find_library(klu klu.h klu)
 drev_find_library(arpack arpack.h arpack)
+# CHOLMOD and ARPACK stand on LAPACK: it is there where they are. It has no header (core/dense/lapack.hpp).
+find_library(DREV_lapack_LIBRARY lapack)
+mark_as_advanced(DREV_lapack_LIBRARY)
+if(NOT DREV_lapack_LIBRARY)
+  list(APPEND DREV_MISSING "LAPACK")
+elseif(NOT TARGET drev_deps::lapack)
+  add_library(drev_deps::lapack INTERFACE IMPORTED GLOBAL)
+  set_target_properties(drev_deps::lapack PROPERTIES INTERFACE_LINK_LIBRARIES "${DREV_lapack_LIBRARY}")
+endif()
 if(DREV_MISSING)
   list(JOIN DREV_MISSING ", " DREV_MISSING)
   set(DREV_MISSING "drev needs ${DREV_MISSING}; on Debian or Ubuntu: \
-apt-get install libeigen3-dev libsuitesparse-dev libarpack2-dev")
+apt-get install libeigen3-dev libsuitesparse-dev libarpack2-dev liblapack-dev")
   if(NOT CMAKE_FIND_PACKAGE_NAME STREQUAL "drev")
     message(FATAL_ERROR "${DREV_MISSING}")
   endif()

@@ -13,6 +13,7 @@ foreach(header IN LISTS DREV_PUBLIC_HEADERS)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION include/drev/${folder})
 endforeach()
+install(FILES ${DREV_HEADERS_STAMP} DESTINATION include/drev)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/drevConfig.cmake.in
   ${PROJECT_BINARY_DIR}/drevConfig.cmake INSTALL_DESTINATION ${drev_cmake_dir})

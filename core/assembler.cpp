@@ -1,13 +1,18 @@
 #include <drev/core/assembler.hpp>
+#include <drev/core/law/varying_inertia.hpp>
 
 namespace drev {
 
 Assembler::Assembler(const System& system)
-    : system_(system), u_(system.prescribed().size()), tables_(system.table_loads()) {
+    : system_(system),
+      u_(system.prescribed().size()),
+      tables_(system.table_loads()),
+      knotted_(system.knotted_loads()) {
   if (const int m = system.loaded_rows(); m > 0) {
     const auto rows = system.rows().topRows(m).cwiseAbs();
     row_gain_ = std::max(1.0, (rows.transpose() * rows.rowwise().sum()).maxCoeff());
     z_and_rows_.resize(system.size() + m);
+    v_and_rows_.resize(system.size() + m);
     p_and_rows_.resize(system.size() + m);
   }
   set_time(0.0);
@@ -15,7 +20,7 @@ Assembler::Assembler(const System& system)
 
 void Assembler::set_time(double t) {
   t_ = t;
-  known_found_ = false;
+  known_found_ = stands_ = false;
   if (system_.reference()) nominal_ = system_.reference()->at(t);
   if (system_.any_prescribed_moves())
     for (std::size_t k = 0; k < u_.size(); ++k)
@@ -25,6 +30,7 @@ void Assembler::set_time(double t) {
 void Assembler::stand_at_angle(double phi) {
   nominal_ = {phi, 0.0, 0.0};
   known_found_ = false;
+  stands_ = true;
   for (MotionPoint& u : u_) u.rate = u.acceleration = 0.0;
 }
 
@@ -47,6 +53,16 @@ LoadResponse Assembler::load(const LoadTerm& term, const Vector& z, const Vector
   const double q_dot = over_coeff(map, v, &MotionPoint::rate);
   const double rate = n * nominal_.rate;
   return term.load->evaluate({t_, n * nominal_.value, map.coeff * q, rate + map.coeff * q_dot, rate});
+}
+
+double Assembler::load_torque(const LoadTerm& term, const State& s) const {
+  double torque = load(term, s.z, s.v).torque;
+  if (system_.varying_inertias().empty()) return torque;
+  const auto* inertia = dynamic_cast<const VaryingInertia*>(term.load);
+  if (inertia == nullptr || !inertia->inertia_varies()) return torque;
+  const double nominal = system_.ratio(term.node) * nominal_.acceleration;
+  return torque - inertia->inertia_beyond(node_angle(term.node, s.z)) *
+                      (nominal + node_motion(term.node, s).acceleration);
 }
 
 void Assembler::external_of_motions(Vector& p) const {
@@ -74,37 +90,71 @@ void Assembler::external_known(Vector& p) const {
   }
 }
 
-void Assembler::add_tables(const Vector& z, Vector& p) const {
+void Assembler::add_looked_up(const Vector& z, const Vector& v, Vector& p) const {
+  const TableLoads& tables = system_.table_loads();
+  const KnottedLoads& knotted = system_.knotted_loads();
+  const auto add = [&](const Vector& at_z, const Vector& at_v, Vector& to) {
+    if (tables.size() > 0) {
+      tables.look_up(at_z.data(), tables_);
+      tables.add_to(tables_, to.data());
+    }
+    if (knotted.size() > 0) {
+      knotted.look_up(at_z.data(), at_v.data(), knotted_);
+      knotted.add_to(knotted_, to.data());
+    }
+  };
   const int m = system_.loaded_rows();
-  if (m == 0) {
-    system_.table_loads().look_up(z.data(), tables_);
-    system_.table_loads().add_to(tables_, p.data());
-    return;
-  }
+  if (m == 0) return add(z, v, p);
   const auto rows = system_.rows().topRows(m);
   z_and_rows_.head(z.size()) = z;
   z_and_rows_.tail(m).noalias() = rows * z;
+  v_and_rows_.head(v.size()) = v;
+  v_and_rows_.tail(m).noalias() = rows * v;
   p_and_rows_.setZero();
-  system_.table_loads().look_up(z_and_rows_.data(), tables_);
-  system_.table_loads().add_to(tables_, p_and_rows_.data());
+  add(z_and_rows_, v_and_rows_, p_and_rows_);
   p += p_and_rows_.head(z.size());
   p.noalias() += rows.transpose() * p_and_rows_.tail(m);
 }
 
+void Assembler::add_varying_inertia(const Vector& z, const Vector& v, Vector& p) const {
+  if (stands_) return;
+  const SparseMatrix& pattern = system_.pattern();
+  for (const VaryingInertiaRow& row : system_.varying_inertias()) {
+    double beyond = 0.0, nominal = 0.0;  // of the unknown; what the nominal acceleration makes of it
+    for (const VaryingInertiaRow::Part& part : row.parts) {
+      const double coeff = system_.node_map(part.node).coeff;
+      const double inertia = coeff * part.inertia->inertia_beyond(node_angle(part.node, z));
+      beyond += coeff * inertia;
+      nominal += inertia * system_.ratio(part.node) * nominal_.acceleration;
+    }
+    double rest = p[row.unknown];
+    for (int s = pattern.outerIndexPtr()[row.unknown]; s < pattern.outerIndexPtr()[row.unknown + 1]; ++s) {
+      const int k = pattern.innerIndexPtr()[s];
+      rest -= system_.stiffness_values()[s] * z[k] + system_.damping_values()[s] * v[k];
+    }
+    for (const Entry& law : row.laws) rest -= law.coeff * respond(system_.scalars()[idx(law.index)], z, v).y;
+    const double part = row.constant / (row.constant + beyond);  // D
+    p[row.unknown] += (part - 1.0) * rest - part * nominal;
+  }
+}
+
 void Assembler::external(const Vector& z, const Vector& v, Vector& p) const {
-  const bool tables = system_.table_loads().size() > 0;
-  if (!tables && system_.moving_loads().empty()) return external_known(p);
+  const bool tables = system_.table_loads().size() > 0, knotted = system_.knotted_loads().size() > 0;
+  if (!tables && !knotted && system_.moving_loads().empty() && system_.varying_inertias().empty())
+    return external_known(p);
   if (!known_found_) {
     external_known(known_);
     if (tables) system_.table_loads().set_nominal(nominal_.value, tables_);
+    if (knotted) system_.knotted_loads().set_nominal(t_, nominal_, knotted_);
     known_found_ = true;
   }
   p = known_;
-  if (tables) add_tables(z, p);
+  if (tables || knotted) add_looked_up(z, v, p);
   for (const int l : system_.moving_loads()) {
     const LoadTerm& term = system_.loads()[idx(l)];
     add_torque(system_.node_map(term.node), load(term, z, v).torque, p);
   }
+  if (!system_.varying_inertias().empty()) add_varying_inertia(z, v, p);
 }
 
 void Assembler::add_given(const ScalarTerm& term, ScalarInput& in) const {

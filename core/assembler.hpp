@@ -7,6 +7,7 @@
 #include <drev/core/state.hpp>
 #include <drev/core/weights.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace drev {
@@ -36,12 +37,17 @@ class Assembler {
   /// The same without the loads: what known motions alone put on the right side.
   void external_of_motions(Vector& p) const;
   /// Bound of how any load's torque follows its unknown about where external() was last [N m/rad or N/m];
-  /// infinite where there are loads whose steepness is not known.
-  double load_steepness() const {
-    return system_.moving_loads().empty() ? row_gain_ * tables_.steepest
-                                          : std::numeric_limits<double>::infinity();
+  /// infinite where there are loads whose steepness is not known. rate: how much an unknown's rate changes with it
+  /// [1/s]. Of a load that says its knots (KnottedLoads) it is that up to the next knot.
+  double load_steepness(double rate) const {
+    if (!system_.moving_loads().empty() || !system_.varying_inertias().empty())
+      return std::numeric_limits<double>::infinity();
+    const double by_rate = knotted_.steepest_by_speed > 0.0 ? rate * knotted_.steepest_by_speed : 0.0;
+    return row_gain_ * std::max(tables_.steepest, knotted_.steepest + by_rate);
   }
   LoadResponse load(const LoadTerm& term, const Vector& z, const Vector& v) const;
+  /// Torque [N m] (force [N]) of a load on its node, that of an inertia which follows the angle included.
+  double load_torque(const LoadTerm& term, const State& s) const;
   /// p += what a torque on a node that is not prescribed gives.
   void add_torque(const NodeMap& map, double torque, Vector& p) const {
     if (map.unknown >= 0)
@@ -100,7 +106,8 @@ class Assembler {
     if (map.unknown >= 0) return z[map.unknown];
     return map.row < 0 ? u_[idx(map.prescribed)].*known : system_.rows().row(map.row).dot(z);
   }
-  void add_tables(const Vector& z, Vector& p) const;
+  void add_looked_up(const Vector& z, const Vector& v, Vector& p) const;
+  void add_varying_inertia(const Vector& z, const Vector& v, Vector& p) const;
   void external_known(Vector& p) const;  // the part of p that is the same for all motions
   void multiply_diagonal(const Vector& values, const Vector& x, Vector& out) const;
   LocalResponse respond(const GeneralTerm& g, const Vector& z, const Vector& v, const Vector& history,
@@ -114,11 +121,13 @@ class Assembler {
   MotionPoint nominal_;
   std::vector<MotionPoint> u_;
   double row_gain_ = 1.0;  // bound of how a torque per deviation of loaded rows acts on the unknowns
-  // Kept for one time where loads follow the motion: external_known(), and the tables.
+  bool stands_ = false;
+  // Kept for one time where loads follow the motion: external_known(), tables and knotted loads.
   mutable bool known_found_ = false;
   mutable Vector known_;
   mutable TableLoads::Values tables_;
-  mutable Vector z_and_rows_, p_and_rows_;  // unknowns, then loaded rows
+  mutable KnottedLoads::Values knotted_;
+  mutable Vector z_and_rows_, v_and_rows_, p_and_rows_;  // unknowns, then loaded rows
 };
 
 }  // namespace drev

@@ -11,6 +11,12 @@
 
 namespace drev {
 
+static bool follows_deflection_alone(const ScalarTerm& term) {
+  const std::span<const LawPiece> pieces = linear_pieces(term);
+  return !pieces.empty() &&
+         std::all_of(pieces.begin(), pieces.end(), [](const LawPiece& p) { return p.c == 0.0; });
+}
+
 class ChannelFinder {
  public:
   /// Makes every channel, or those wanted alone: all those of a large model take several times its memory.
@@ -105,6 +111,7 @@ class ChannelFinder {
       c.energy_ = energy;
       c.of_energy_ = of;
       c.driven_ = of == &ElementEnergy::power && energy->has_loads();
+      c.inertial_ = c.driven_ && !system_.varying_inertias().empty();
       if (energy->has_friction() && kind == Channel::Kind::integral) {
         c.kind_ = Channel::Kind::friction;
         c.index_ = energy->friction_heat();
@@ -132,6 +139,8 @@ class ChannelFinder {
     c.kind_ = kind;
     c.index_ = index;
     c.along_line_of_action_ = along_line_of_action;
+    if (kind == Channel::Kind::force) c.damped_ = !follows_deflection_alone(system_.scalars()[idx(index)]);
+    c.inertial_ = kind == Channel::Kind::load && !system_.varying_inertias().empty();
     make_direct(c, output);
     channels.push_back(std::move(c));
   }
@@ -241,7 +250,7 @@ Vector node_residual(const Assembler& assembler, const State& s) {
     const double y = assembler.respond(term, s.z, s.v).y;
     for (const Entry& e : term.nodes) r[e.index] += e.coeff * y;
   }
-  for (const LoadTerm& term : system.loads()) r[term.node] -= assembler.load(term, s.z, s.v).torque;
+  for (const LoadTerm& term : system.loads()) r[term.node] -= assembler.load_torque(term, s);
   for (const FrictionTerm& term : system.frictions())
     for (const Entry& e : term.nodes)
       r[e.index] += e.coeff * s.history[term.history_begin + FrictionHistory::kTorque];
@@ -339,6 +348,7 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
       if (term.phase_node >= 0) return std::nullopt;  // its stiffness or its offset moves by itself
       const ScalarInput in = assembler.input(term, state.z, state.v);
       const ScalarResponse r = term.force->evaluate(in);
+      if (!damped_) return r.dy_dx * in.x_dot;
       double x_dot_dot = 0.0;
       for (const Entry& e : term.z) x_dot_dot += e.coeff * state.a[e.index];
       for (const Entry& e : term.u) x_dot_dot += e.coeff * assembler.prescribed(e.index).acceleration;
@@ -350,7 +360,7 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
 }
 
 bool Channel::value_needs_acceleration() const {
-  return kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
+  return inertial_ || kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
 }
 
 double Channel::over_unknowns(const State& state) const {
@@ -385,7 +395,7 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
     case Kind::deflection:
       return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x;
     case Kind::load:
-      return assembler.load(system.loads()[idx(index_)], state.z, state.v).torque;
+      return assembler.load_torque(system.loads()[idx(index_)], state);
     case Kind::friction:
       return state.history[index_];
     case Kind::slip: {

@@ -56,7 +56,9 @@ class Channel {
   bool follows_loads() const {
     return kind_ == Kind::load || kind_ == Kind::friction || driven_ || value_needs_acceleration();
   }
-  bool rate_needs_acceleration() const { return kind_ == Kind::force || kind_ == Kind::rate || !v_.empty(); }
+  bool rate_needs_acceleration() const {
+    return (kind_ == Kind::force && damped_) || kind_ == Kind::rate || !v_.empty();
+  }
 
   /// For a value that is sum z_row z + sum v_row v and nothing else.
   bool is_linear() const { return direct_; }
@@ -99,6 +101,8 @@ class Channel {
   std::shared_ptr<const ElementEnergy> energy_;
   double (ElementEnergy::*of_energy_)(const Assembler&, const State&) const = nullptr;
   bool driven_ = false;
+  bool damped_ = false;    ///< of a force: it follows the rate of the deflection
+  bool inertial_ = false;  ///< of a load, or its energy: inertias that follow an angle may be among it
 };
 
 /// Every channel of a system, in the order of its nodes and elements (differences and energies left out).

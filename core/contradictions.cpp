@@ -1,32 +1,21 @@
 #include "core/contradictions.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/core/law/piecewise_law.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include "core/element_parts.hpp"
+#include "core/law/agreement.hpp"
 
 namespace drev {
 
 namespace {
-
-constexpr double kAgree = 1e-9;  // relative to the size of the terms
-constexpr double kNear = 1e-6;   // beside a bound: of the range, or of its own place
-constexpr double kParts[] = {kNear, 0.1, 0.4, 0.8, 1.0 - kNear};
-
-/// The point at a part f of a range, 0 < f < 1; an infinite side is entered by the scale of the other one.
-double inside(const Interval& r, double f) {
-  const double beyond = f / (1.0 - f), before = (1.0 - f) / f;
-  const bool low = std::isfinite(r.low), high = std::isfinite(r.high);
-  if (low && high) return r.low + f * (r.high - r.low);
-  if (low) return r.low + (r.low != 0.0 ? std::abs(r.low) : 1.0) * beyond;
-  if (high) return r.high - (r.high != 0.0 ? std::abs(r.high) : 1.0) * before;
-  return beyond - before;
-}
-
-bool agree(double a, double b, double size) { return std::abs(a - b) <= kAgree * size; }
 
 std::string where(const ScalarInput& in) {
   return " at x = " + to_text(in.x) + ", x_dot = " + to_text(in.x_dot);
@@ -135,8 +124,11 @@ class PieceComparison {
   /// The law's energy may differ from that of the pieces by a constant.
   void compare_energy(const ScalarResponse& called, int number, const ScalarInput& in) {
     const double own = derived_.evaluate(in.x, in.x_dot).stored_energy;
+    const LawPiece& piece = pieces_[static_cast<std::size_t>(number)];
     const double expected = own + energy_constant_,
-                 size = std::abs(own) + std::abs(energy_constant_) + called.stored_energy;
+                 of_rounding =
+                     std::abs((piece.elastic_0 + piece.elastic_k * in.x) * in.x),  // of x and of bounds
+        size = std::abs(own) + std::abs(energy_constant_) + called.stored_energy + of_rounding;
     if (!agree(called.stored_energy, expected, size))
       found_.push_back({"pieces", "piece " + std::to_string(number) +
                                       " gives stored_energy = " + to_text(expected) + ", the call " +
@@ -200,7 +192,7 @@ void PieceComparison::closed_slopes() {
 void compare_gap(const ScalarForce& law, std::vector<Contradiction>& found) {
   const std::optional<Gap> gap = law.gap();
   if (!gap || !(gap->low < gap->high)) return;
-  for (const double part : kParts) {
+  for (const double part : kPartsOfRange) {
     const ScalarInput in{.x = inside({gap->low, gap->high}, part)};
     if (const double y = law.evaluate(in).y; y != 0.0)
       found.push_back({"gap", "the call gives y = " + to_text(y) + " inside it" + where(in)});
@@ -214,73 +206,41 @@ void compare_gap(const ScalarForce& law, std::vector<Contradiction>& found) {
   }
 }
 
-std::string where(const LoadInput& in) {
-  return " at t = " + to_text(in.t) + ", angle = " + to_text(in.nominal_angle + in.deviation);
-}
-
-double angle_of(const Load& load, const LoadInput& in) {
-  return in.nominal_angle + (load.depends_on_motion() ? in.deviation : 0.0);
-}
-
-/// A stretch about an input, or one of the load's table, against the call at the input and at its ends.
-class StretchComparison {
- public:
-  StretchComparison(const Load& load, const char* what, std::vector<Contradiction>& found)
-      : load_(load), what_(what), found_(found) {}
-
-  void at(const LoadInput& in, const LoadStretch& s, double next_break) {
-    const double angle = angle_of(load_, in), near = kAgree * std::max(1.0, std::abs(angle));
-    if (!(s.low <= angle + near && s.high >= angle - near))
-      return add("reaches from " + to_text(s.low) + " to " + to_text(s.high), in);
-    const double reach = std::max(1.0, std::abs(angle));
-    for (const double part : kParts) {
-      LoadInput other = in;
-      const Interval range{std::max(s.low, angle - reach), std::min(s.high, angle + reach)};
-      const double moved = inside(range, part) - angle;
-      other.nominal_angle += moved;
-      const double later = std::isfinite(next_break) ? part * (next_break - in.t) : part;
-      other.t += later;
-      compare(s, other, moved, later);
+/// The formula of a law's scale about an angle against the scale itself.
+void compare_scale(const ScalarForce& law, const AngleScaledForce& stated, double angle,
+                   std::vector<Contradiction>& found) {
+  for (const double direction : {1.0, -1.0}) {
+    const ScaleStretch s = stated.scale_stretch(angle, direction);
+    const auto add = [&](const std::string& text) {
+      found.push_back({"scale_stretch", text + " at an angle of " + to_text(angle) + " rad"});
+    };
+    const double near = kAgree * std::max(1.0, std::abs(angle));
+    if (!(s.low <= angle + near && s.high >= angle - near)) {
+      add("reaches from " + to_text(s.low) + " to " + to_text(s.high));
+      continue;
     }
-    compare(s, in, 0.0, 0.0);
-  }
-
- private:
-  void compare(const LoadStretch& s, const LoadInput& in, double moved, double later) {
-    const double expected = s.torque + s.time_slope * later + s.angle_slope * moved;
-    const double called = load_.evaluate(in).torque;
-    // Rounding of the angle and of the time comes in with the slopes.
-    const double size = std::abs(s.torque) + std::abs(expected) +
-                        std::abs(s.angle_slope) * std::max(1.0, std::abs(in.nominal_angle)) +
-                        std::abs(s.time_slope) * std::max(1.0, std::abs(in.t));
-    if (!agree(called, expected, size))
-      add("gives a torque of " + to_text(expected) + ", the call " + to_text(called), in);
-  }
-  void add(const std::string& text, const LoadInput& in) { found_.push_back({what_, text + where(in)}); }
-
-  const Load& load_;
-  const char* what_;
-  std::vector<Contradiction>& found_;
-};
-
-void compare_load(const Load& load, std::span<const LoadInput> at, std::vector<Contradiction>& found) {
-  const std::optional<LoadTable> table = load.table();
-  std::vector<double> breaks = load.breakpoints();
-  std::sort(breaks.begin(), breaks.end());
-  const bool stretches = load.stretch(0.0, 0.0, 1.0).has_value();
-  for (const LoadInput& in : at) {
-    const auto next = std::upper_bound(breaks.begin(), breaks.end(), in.t);
-    const double next_break = next == breaks.end() ? std::numeric_limits<double>::infinity() : *next;
-    for (const double direction : {1.0, -1.0}) {
-      const double angle = angle_of(load, in);
-      if (table) StretchComparison(load, "table", found).at(in, table->stretch(angle, direction), next_break);
-      const std::optional<LoadStretch> s = load.stretch(in.t, angle, direction);
-      if (s.has_value() != stretches)
-        found.push_back({"stretch", "is told at t = 0, angle = 0 or" + where(in) + ", but not at both"});
-      else if (s)
-        StretchComparison(load, "stretch", found).at(in, *s, next_break);
+    for (const double part : kPartsOfRange) {
+      const double at = inside(near_angle(s.low, s.high, angle), part), told = law.pieces_scale(at);
+      double scale = s.value + s.slope * (at - angle);
+      double size = std::abs(told) + std::abs(s.slope) * std::max(1.0, std::abs(at));
+      for (const ScaleOrder& o : s.orders) {
+        scale += o.cosine * std::cos(o.order * at) + o.sine * std::sin(o.order * at);
+        size += (std::abs(o.cosine) + std::abs(o.sine)) * (1.0 + 1e-6 * o.order * std::abs(at));
+      }
+      if (!agree(scale, told, size)) {
+        add("gives a scale of " + to_text(scale) + " at " + to_text(at) + " rad, pieces_scale() " +
+            to_text(told));
+        break;
+      }
     }
   }
+}
+
+/// Adds a matrix over some nodes to one over all of them.
+void add_part(const Eigen::MatrixXd& part, const std::vector<int>& nodes, Eigen::MatrixXd& sum) {
+  for (Eigen::Index i = 0; i < part.rows(); ++i)
+    for (Eigen::Index j = 0; j < part.cols(); ++j)
+      sum(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)]) += part(i, j);
 }
 
 }  // namespace
@@ -297,24 +257,17 @@ std::optional<Contradiction> first_contradiction(const ScalarForce& law) {
   return found;
 }
 
-std::optional<Contradiction> first_contradiction(const Load& load) {
-  if (!load.stretch(0.0, 0.0, 1.0)) return std::nullopt;
-  std::vector<Contradiction> found;
-  const LoadInput in[] = {{.t = 0.0, .nominal_angle = 1.0}};
-  compare_load(load, in, found);
-  if (found.empty()) return std::nullopt;
-  return found.front();
-}
-
 std::vector<Contradiction> contradictions(const ScalarForce& law, std::span<const ScalarInput> at) {
   std::vector<Contradiction> found;
   compare_gap(law, found);
+  if (const auto* stated = dynamic_cast<const AngleScaledForce*>(&law))
+    for (const ScalarInput& in : at) compare_scale(law, *stated, in.angle, found);
   const std::span<const LawPiece> pieces = law.pieces();
   if (pieces.empty()) return found;
   if (auto wrong = wrong_next(pieces)) return {*wrong};
   PieceComparison comparison(law, 0.0, found);
   for (const LawPiece& p : pieces_at(law, 0.0))
-    inside_piece(p, kParts, kParts, [&](const ScalarInput& in) { comparison.at(in); });
+    inside_piece(p, kPartsOfRange, kPartsOfRange, [&](const ScalarInput& in) { comparison.at(in); });
   for (const ScalarInput& in : at) PieceComparison(law, in.angle, found).at(in);
   comparison.kinks();
   comparison.gap();
@@ -322,11 +275,44 @@ std::vector<Contradiction> contradictions(const ScalarForce& law, std::span<cons
   return found;
 }
 
-std::vector<Contradiction> contradictions(const Load& load, std::span<const LoadInput> at) {
+std::vector<Contradiction> contradictions(const Element& element, int nodes, const Terms& whole) {
   std::vector<Contradiction> found;
-  if (const auto table = load.table())
-    if (const std::string fault = table->fault(); !fault.empty()) return {{"table", fault}};
-  compare_load(load, at, found);
+  if (element.part_count() == 0) return found;
+  Terms sum(nodes);
+  std::vector<int> all(idx(nodes));
+  std::iota(all.begin(), all.end(), 0);
+  std::array<std::size_t, 5> counts{};
+  const auto count = [](const Terms& t) {
+    return std::array{t.scalars.size(), t.loads.size(), t.generals.size(), t.frictions.size(),
+                      t.outputs.size()};
+  };
+  const bool in_place =
+      ElementParts().for_each(element, all, [&](const Terms& part, const std::vector<int>& of_part) {
+        add_part(part.mass, of_part, sum.mass);
+        add_part(part.damping, of_part, sum.damping);
+        add_part(part.stiffness, of_part, sum.stiffness);
+        const auto more = count(part);
+        for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += more[i];
+        if (part.rayleigh != whole.rayleigh)
+          found.push_back(
+              {"parts", "take part in Rayleigh damping where describe() does not, or do not where it does"});
+      });
+  if (!in_place) return {{"parts", "have nodes that are none of the element's"}};
+  constexpr const char* kNames[] = {"laws", "loads", "general forces", "frictions", "outputs"};
+  const auto told = count(whole);
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] != told[i])
+      found.push_back({"parts", "have " + std::to_string(counts[i]) + " " + kNames[i] +
+                                    " together, describe() has " + std::to_string(told[i])});
+  const auto compare = [&](const char* name, const Eigen::MatrixXd& parts, const Eigen::MatrixXd& one) {
+    const double off = nodes == 0 ? 0.0 : (parts - one).cwiseAbs().maxCoeff();
+    if (off > kAgree * one.cwiseAbs().maxCoeff())
+      found.push_back({"parts", std::string("sum to another ") + name + " matrix than describe()'s: off by " +
+                                    to_text(off)});
+  };
+  compare("mass", sum.mass, whole.mass);
+  compare("damping", sum.damping, whole.damping);
+  compare("stiffness", sum.stiffness, whole.stiffness);
   return found;
 }
 

@@ -13,9 +13,10 @@ namespace drev {
 class ElementParts {
  public:
   /// Calls visit(terms, nodes) for each part of an element, or once where it has none. `nodes` are all nodes
-  /// of the element; visit gets those of the part.
+  /// of the element; visit gets those of the part. False, and no more is visited: a part names a node that is none of
+  /// the element's.
   template <class Visit>
-  void for_each(const Element& element, const std::vector<int>& nodes, const Visit& visit) {
+  bool for_each(const Element& element, const std::vector<int>& nodes, const Visit& visit) {
     const int parts = element.part_count();
     if (parts == 0) {
       element.describe(static_cast<int>(nodes.size()), zeroed(nodes.size()));
@@ -23,10 +24,14 @@ class ElementParts {
     }
     for (int part = 0; part < parts; ++part) {
       std::vector<int> own = element.part_nodes(part);
-      for (int& node : own) node = nodes[idx(node)];
+      for (int& node : own) {
+        if (node < 0 || idx(node) >= nodes.size()) return false;
+        node = nodes[idx(node)];
+      }
       element.describe_part(part, zeroed(own.size()));
       visit(terms_, own);
     }
+    return true;
   }
 
  private:

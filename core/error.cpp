@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+template class std::vector<drev::Finding>;
+
 namespace drev {
 
 namespace {

@@ -18,6 +18,12 @@ struct Finding {
   std::string text() const;
 };
 
+}  // namespace drev
+
+extern template class std::vector<drev::Finding>;  // compiled once, in error.cpp
+
+namespace drev {
+
 /// Bad input: carries every finding. what() lists them, one a line.
 class ModelError : public std::runtime_error {
  public:

@@ -14,22 +14,22 @@ namespace {
 
 constexpr double kRatioTolerance = 1e-9;  // relative; teeth give exact ratios, radii 15 digits
 
-/// Closures between two nodes, by node.
+/// Rows between two nodes, by node.
 struct Edges {
-  std::vector<int> begin, closure;
+  std::vector<int> begin, row;
 };
 
-Edges edges_of(int nodes, const std::vector<Closure>& speed_ratio_constraints) {
+Edges edges_of(int nodes, const std::vector<RatioRow>& speed_ratio_constraints) {
   Edges e{std::vector<int>(idx(nodes + 1), 0), {}};
-  for (const Closure& c : speed_ratio_constraints)
+  for (const RatioRow& c : speed_ratio_constraints)
     if (c.second >= 0) ++e.begin[idx(c.first + 1)], ++e.begin[idx(c.second + 1)];
   std::partial_sum(e.begin.begin(), e.begin.end(), e.begin.begin());
-  e.closure.resize(idx(e.begin.back()));
+  e.row.resize(idx(e.begin.back()));
   std::vector<int> next(e.begin.begin(), e.begin.end() - 1);
   for (std::size_t c = 0; c < speed_ratio_constraints.size(); ++c) {
     if (speed_ratio_constraints[c].second < 0) continue;
-    e.closure[idx(next[idx(speed_ratio_constraints[c].first)]++)] = static_cast<int>(c);
-    e.closure[idx(next[idx(speed_ratio_constraints[c].second)]++)] = static_cast<int>(c);
+    e.row[idx(next[idx(speed_ratio_constraints[c].first)]++)] = static_cast<int>(c);
+    e.row[idx(next[idx(speed_ratio_constraints[c].second)]++)] = static_cast<int>(c);
   }
   return e;
 }
@@ -40,7 +40,7 @@ struct Walk {
 };
 
 std::string loop_text(const Walk& walk, const std::vector<ElementInstance>& element_instances,
-                      const std::vector<Closure>& speed_ratio_constraints, int a, int b, int closing) {
+                      const std::vector<RatioRow>& speed_ratio_constraints, int a, int b, int closing) {
   // Elements on the tree paths from a and b to their common ancestor, then the closing element.
   std::vector<int> up_a, up_b;
   for (int i = a; i >= 0; i = walk.parent[idx(i)]) up_a.push_back(i);
@@ -49,8 +49,8 @@ std::string loop_text(const Walk& walk, const std::vector<ElementInstance>& elem
     up_a.pop_back();
     up_b.pop_back();
   }
-  const auto name = [&](int closure) {
-    return element_instances[idx(speed_ratio_constraints[idx(closure)].element)].name;
+  const auto name = [&](int row) {
+    return element_instances[idx(speed_ratio_constraints[idx(row)].element)].name;
   };
   std::vector<std::string> names{name(closing)};
   const auto name_above = [&](int node) { return name(walk.parent_closure[idx(node)]); };
@@ -63,7 +63,7 @@ std::string loop_text(const Walk& walk, const std::vector<ElementInstance>& elem
 
 }  // namespace
 
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& speed_ratio_constraints,
+std::vector<int> connected_components(int nodes, const std::vector<RatioRow>& speed_ratio_constraints,
                                       bool with_contacts, bool with_ratios) {
   std::vector<int> root(idx(nodes));
   std::iota(root.begin(), root.end(), 0);
@@ -71,7 +71,7 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& spe
     while (root[idx(i)] != i) i = root[idx(i)] = root[idx(root[idx(i)])];
     return i;
   };
-  for (const Closure& c : speed_ratio_constraints)
+  for (const RatioRow& c : speed_ratio_constraints)
     if (c.second >= 0 && (with_contacts || !c.only_in_contact) && (with_ratios || !c.ratio_only)) {
       const int a = find(c.first), b = find(c.second);
       root[idx(std::max(a, b))] = std::min(a, b);
@@ -86,7 +86,7 @@ std::vector<int> connected_components(int nodes, const std::vector<Closure>& spe
   return component;
 }
 
-ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std::vector<int>& component,
+ComponentSpeeds solve_components(const std::vector<WideRatioRow>& wide, const std::vector<int>& component,
                                  const std::vector<double>& relative, const std::vector<bool>& known,
                                  std::vector<double> speed, bool open) {
   constexpr double kNone = 1e-10;  // relative, of what is left of a row
@@ -94,15 +94,15 @@ ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std
     std::map<int, double> a;  // over components that are not known
     double right = 0.0, size = 0.0;
     int pivot = -1;
-    const WideClosure* of = nullptr;
+    const WideRatioRow* of = nullptr;
   };
   ComponentSpeeds result;
   std::vector<Row> rows;
-  for (const WideClosure& closure : wide) {
-    if (open && closure.only_in_contact) continue;
+  for (const WideRatioRow& stated : wide) {
+    if (open && stated.only_in_contact) continue;
     Row row;
-    row.of = &closure;
-    for (const auto& [node, b] : closure.b) {
+    row.of = &stated;
+    for (const auto& [node, b] : stated.b) {
       const int c = component[idx(node)];
       const double term = b * relative[idx(node)];
       if (known[idx(c)])
@@ -124,7 +124,7 @@ ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std
     for (const auto& [c, a] : row.a)
       if (std::abs(a) > largest) largest = std::abs(a), row.pivot = c;
     if (row.pivot < 0) {
-      if (std::abs(row.right) > kNone * row.size) result.contradicting.push_back(&closure);
+      if (std::abs(row.right) > kNone * row.size) result.contradicting.push_back(&stated);
       continue;
     }
     const double scale = 1.0 / row.a[row.pivot];
@@ -157,8 +157,8 @@ ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std
 
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
                        const std::vector<ElementInstance>& element_instances,
-                       const std::vector<Closure>& speed_ratio_constraints,
-                       const std::vector<WideClosure>& wide, const std::vector<int>& prescribed,
+                       const std::vector<RatioRow>& speed_ratio_constraints,
+                       const std::vector<WideRatioRow>& wide, const std::vector<int>& prescribed,
                        int reference, std::vector<Finding>& findings) {
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
@@ -178,8 +178,8 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
       const int i = queue.front();
       queue.pop();
       for (int e = edges.begin[idx(i)]; e < edges.begin[idx(i + 1)]; ++e) {
-        const int c = edges.closure[idx(e)];
-        const Closure& row = speed_ratio_constraints[idx(c)];
+        const int c = edges.row[idx(e)];
+        const RatioRow& row = speed_ratio_constraints[idx(c)];
         const bool forward = row.first == i;
         const int to = forward ? row.second : row.first;
         const double factor = -row.b_first / row.b_second;
@@ -213,29 +213,29 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
   const auto components = idx(*std::max_element(k.component.begin(), k.component.end()) + 1);
   std::vector<double> speed(components, 0.0);
   std::vector<bool> known(components, false);
-  for (const Closure& row : speed_ratio_constraints)
+  for (const RatioRow& row : speed_ratio_constraints)
     if (row.second < 0 && !row.holds_deviation) known[idx(k.component[idx(row.first)])] = true;
   for (const int node : prescribed)
     if (node >= 0) known[idx(k.component[idx(node)])] = true;
   known[idx(moving)] = true;
   speed[idx(moving)] = 1.0;
   const ComponentSpeeds solved = solve_components(wide, k.component, k.relative, known, speed, false);
-  const auto say = [&](const WideClosure& row, const std::string& why) {
+  const auto say = [&](const WideRatioRow& row, const std::string& why) {
     std::string nodes;
     for (const auto& [node, b] : row.b) nodes += (nodes.empty() ? "" : ", ") + node_names[idx(node)];
     findings.push_back(
         {model + "/" + element_instances[idx(row.element)].name, "nominal speeds", nodes, "", why});
   };
-  for (const WideClosure* row : solved.contradicting)
+  for (const WideRatioRow* row : solved.contradicting)
     say(*row, "contradict each other: what else ties these nodes does not let the set turn");
-  for (const WideClosure* row : solved.undetermined)
+  for (const WideRatioRow* row : solved.undetermined)
     say(*row,
         "do not follow from the reference shaft: hold or ground one of them, or tie two (a planetary set "
         "free on "
         "all sides has two motions)");
   for (int i = 0; i < nodes; ++i)
     k.ratio[idx(i)] = solved.speed[idx(k.component[idx(i)])] * walk.relative[idx(i)];
-  for (const Closure& row : speed_ratio_constraints)
+  for (const RatioRow& row : speed_ratio_constraints)
     if (row.second < 0 && !row.holds_deviation && k.component[idx(row.first)] == moving)
       findings.push_back({model + "/" + element_instances[idx(row.element)].name, "node",
                           node_names[idx(row.first)], "",

@@ -12,9 +12,9 @@
 
 namespace drev {
 
-/// One closure over model nodes. second < 0: the node is tied to ground, n = 0, or with holds_deviation to its
+/// One speed ratio constraint over model nodes. second < 0: the node is tied to ground, n = 0, or with holds_deviation to its
 /// nominal motion.
-struct Closure {
+struct RatioRow {
   int first = 0, second = -1;
   double b_first = 1.0, b_second = 0.0;
   bool only_in_contact = false;
@@ -24,7 +24,7 @@ struct Closure {
 };
 
 /// A row over three nodes or more, sum b_i n_i = 0 (a planetary set).
-struct WideClosure {
+struct WideRatioRow {
   std::vector<std::pair<int, double>> b;  ///< node, coefficient
   bool only_in_contact = false;
   int element = -1;
@@ -44,25 +44,25 @@ struct Kinematics {
 /// model: its name; element_instances: for the names of the elements.
 Kinematics find_ratios(const std::string& model, const std::vector<std::string>& node_names,
                        const std::vector<ElementInstance>& element_instances,
-                       const std::vector<Closure>& speed_ratio_constraints,
-                       const std::vector<WideClosure>& wide, const std::vector<int>& prescribed,
+                       const std::vector<RatioRow>& speed_ratio_constraints,
+                       const std::vector<WideRatioRow>& wide, const std::vector<int>& prescribed,
                        int reference, std::vector<Finding>& findings);
 
-/// Gaussian elimination of the wide closures over components. component, relative: as above. known: components
+/// Gaussian elimination of the wide rows over components. component, relative: as above. known: components
 /// whose speed is known (0: unknown, 1: known), with the speed. open: without those only_in_contact.
 struct ComponentSpeeds {
-  std::vector<int> dependent;                     ///< components that a row determines
-  std::vector<double> speed;                      ///< of each component; 0 where nothing moves it
-  std::vector<const WideClosure*> contradicting;  ///< rows that no speed fulfils
-  std::vector<const WideClosure*> undetermined;   ///< rows that move components which nothing else determines
+  std::vector<int> dependent;                      ///< components that a row determines
+  std::vector<double> speed;                       ///< of each component; 0 where nothing moves it
+  std::vector<const WideRatioRow*> contradicting;  ///< rows that no speed fulfils
+  std::vector<const WideRatioRow*> undetermined;  ///< rows that move components which nothing else determines
 };
-ComponentSpeeds solve_components(const std::vector<WideClosure>& wide, const std::vector<int>& component,
+ComponentSpeeds solve_components(const std::vector<WideRatioRow>& wide, const std::vector<int>& component,
                                  const std::vector<double>& relative, const std::vector<bool>& known,
                                  std::vector<double> speed, bool open);
 
 /// Components of the graph of nodes under the speed_ratio_constraints; those only_in_contact are left out if
 /// with_contacts is false, those ratio_only if with_ratios is. Returns the component of each node, numbered from 0.
-std::vector<int> connected_components(int nodes, const std::vector<Closure>& speed_ratio_constraints,
+std::vector<int> connected_components(int nodes, const std::vector<RatioRow>& speed_ratio_constraints,
                                       bool with_contacts, bool with_ratios = false);
 
 }  // namespace drev

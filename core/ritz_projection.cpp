@@ -2,9 +2,10 @@
 #include <drev/core/load.hpp>
 #include <drev/core/ritz_projection.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -68,6 +69,9 @@ class RitzProjector {
                               " unknowns and no more columns"});
     else if (!basis_.allFinite())
       findings.push_back({full_.name(), "basis", "not finite", "", "must be finite"});
+    if (const auto why =
+            full_.why_not_varying_inertia("a train with a rigid planetary set, or a reduced one,"))
+      findings.push_back({full_.name(), "system", "", "", *why});
     if (full_.rows().rows() > 0)
       findings.push_back({full_.name(), "system", "", "", "is a projected one already"});
     if (!findings.empty()) throw ModelError(findings);
@@ -177,6 +181,7 @@ class RitzProjector {
     system_.zu_ = {couplings(full_.zu_.mass, basis_), couplings(full_.zu_.damping, basis_),
                    couplings(full_.zu_.stiffness, basis_)};
     system_.table_loads_ = {};
+    system_.knotted_loads_ = {};
     system_.moving_loads_.clear();
     system_.known_loads_.clear();
     for (int i = 0; i < static_cast<int>(system_.loads_.size()); ++i) system_.map_load(i);
@@ -184,13 +189,13 @@ class RitzProjector {
   }
 
   void set_vectors() {
-    const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
-    if (mass.info() != Eigen::Success)
+    const CholeskyFactor mass(mass_);
+    if (!mass.positive_definite())
       throw ModelError({{full_.name(), "basis", "dependent columns", "",
                          "must have linearly independent columns, each moving an inertia"}});
     const SparseMatrix full_mass = on_pattern(full_.pattern(), full_.mass_values());
     const auto nearest = [&](const Vector& z) -> Vector {
-      return mass.solve(basis_.transpose() * (full_mass * z));
+      return mass.solve(Vector(basis_.transpose() * (full_mass * z)));
     };
     system_.initial_z_ = nearest(full_.initial_z_);
     system_.initial_v_ = nearest(full_.initial_v_);

@@ -1,5 +1,6 @@
 #include <drev/core/error.hpp>
 #include <drev/core/general_force.hpp>
+#include <drev/core/law/varying_inertia.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/state.hpp>
@@ -9,6 +10,12 @@
 #include <cmath>
 
 namespace drev {
+
+System::System(const System& other) = default;
+System::System(System&& other) noexcept = default;
+System& System::operator=(const System& other) = default;
+System& System::operator=(System&& other) noexcept = default;
+System::~System() = default;
 
 int System::node(const std::string& name) const {
   const std::vector<std::string>& names = node_names();
@@ -49,7 +56,7 @@ void System::map_load(int number) {
   if (map.prescribed >= 0) return;
   if (const auto table = term.load->table(); table && table->evenly_spaced)
     table_loads_.add(*table, place(map), map.coeff, ratio(term.node), follows ? map.coeff : 0.0);
-  else
+  else if (!knotted_loads_.add(*term.load, place(map), map.coeff, ratio(term.node)))
     (follows ? moving_loads_ : known_loads_).push_back(number);
 }
 
@@ -91,6 +98,17 @@ std::vector<std::string> System::floating_parts(Contact contact) const {
   std::vector<std::string> names;
   for (const int node : floating(contact)) names.push_back(node_names()[idx(node)]);
   return names;
+}
+
+std::optional<std::string> System::why_not_varying_inertia(const std::string& method) const {
+  for (const LoadTerm& term : loads_) {
+    const auto* inertia = dynamic_cast<const VaryingInertia*>(term.load);
+    if (inertia != nullptr && inertia->inertia_varies())
+      return element_instances()[idx(index(term.element))].name +
+             " has an inertia that follows the angle (varying_inertia), which " + method +
+             " does not take; run it in steps, or with its mean inertia (varying_inertia = false)";
+  }
+  return std::nullopt;
 }
 
 State State::initial(const System& system, double t) {

@@ -24,6 +24,7 @@ class Friction;
 class GeneralForce;
 class Load;
 class ScalarForce;
+class VaryingInertia;
 
 static_assert(
     EIGEN_DEFAULT_ALIGN_BYTES == 64,
@@ -101,6 +102,18 @@ struct OutputTerm {
   bool deflection = false;
 };
 
+/// The unknown z[k] whose inertia follows the angles of nodes that move with it (VaryingInertia).
+struct VaryingInertiaRow {
+  struct Part {
+    const VaryingInertia* inertia;
+    int node;
+  };
+  int unknown = 0;
+  double constant = 0.0;         ///< its entry of the mass matrix, alone in its row
+  std::vector<Part> parts = {};  ///< of one load each
+  std::vector<Entry> laws = {};  ///< scalar terms with their coefficients of the unknown
+};
+
 /// b_first q_first + b_second q_second = 0, exactly.
 struct IdealRatio {
   ElementId element{};
@@ -121,6 +134,13 @@ enum class Contact {
 
 class System {
  public:
+  // Defined in system.cpp: each file that copies systems would compile these anew.
+  System(const System& other);
+  System(System&& other) noexcept;
+  System& operator=(const System& other);
+  System& operator=(System&& other) noexcept;
+  ~System();
+
   const std::string& name() const { return name_; }
   int size() const { return static_cast<int>(unknown_node_.size()); }  ///< number of unknowns
   int node_count() const { return static_cast<int>(node_names_->size()); }
@@ -180,9 +200,16 @@ class System {
   const std::vector<LoadTerm>& loads() const { return loads_; }
   /// Those of the loads on unknowns that are tables of even spacing.
   const TableLoads& table_loads() const { return table_loads_; }
-  /// Places in loads() of those on unknowns that are no such tables: which follow the motion, which do not.
+  /// Those that say their knots and curves (an engine's cylinders).
+  const KnottedLoads& knotted_loads() const { return knotted_loads_; }
+  /// Places in loads() of those on unknowns that are neither: which follow the motion, which do not.
   const std::vector<int>& moving_loads() const { return moving_loads_; }
   const std::vector<int>& known_loads() const { return known_loads_; }
+  /// Inertias that follow an angle.
+  const std::vector<VaryingInertiaRow>& varying_inertias() const { return varying_inertias_; }
+  /// Why `method`, of which that is said, does not take the system's varying inertia: names an element of it; none if
+  /// there is no such inertia.
+  std::optional<std::string> why_not_varying_inertia(const std::string& method) const;
   const std::vector<FrequencyTerm>& frequency_terms() const { return frequency_terms_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
   const std::vector<FrictionTerm>& frictions() const { return frictions_; }
@@ -240,7 +267,9 @@ class System {
   std::vector<ScalarTerm> scalars_;
   std::vector<LoadTerm> loads_;
   TableLoads table_loads_;
+  KnottedLoads knotted_loads_;
   std::vector<int> moving_loads_, known_loads_;
+  std::vector<VaryingInertiaRow> varying_inertias_;
   std::vector<FrequencyTerm> frequency_terms_;
   std::vector<GeneralTerm> generals_;
   std::vector<FrictionTerm> frictions_;

@@ -1,8 +1,11 @@
 #include "core/system_builder.hpp"
 
+#include <drev/core/general_force.hpp>
 #include <drev/core/law/friction.hpp>
+#include <drev/core/law/varying_inertia.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/ritz_projection.hpp>
+#include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +36,7 @@ System SystemBuilder::build() {
   map_terms();
   assemble_matrices();
   check_values();
+  find_varying_inertias();
   finish();
   throw_if_findings();
   return wide_constraints_.empty() ? std::move(system_) : constrained();
@@ -119,12 +123,12 @@ void SystemBuilder::resolve_motions() {
 
 void SystemBuilder::find_nominal_motion() {
   Kinematics kinematics =
-      find_ratios(model_.name(), model_.node_names(), model_.element_instances(), closures_, wide_closures_,
-                  resolved_prescriptions_, reference_node_, findings_);
+      find_ratios(model_.name(), model_.node_names(), model_.element_instances(), ratio_rows_,
+                  wide_ratio_rows_, resolved_prescriptions_, reference_node_, findings_);
   system_.ratio_ = std::move(kinematics.ratio);
   system_.floating_closed_ = floating_parts(kinematics.relative, Contact::closed);
   system_.floating_open_ = floating_parts(kinematics.relative, Contact::open);
-  std::vector<Closure>().swap(closures_);
+  std::vector<RatioRow>().swap(ratio_rows_);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
     const int node = resolved_prescriptions_[i];
@@ -146,14 +150,14 @@ void SystemBuilder::find_nominal_motion() {
 
 std::vector<int> SystemBuilder::floating_parts(const std::vector<double>& relative, Contact contact) const {
   const bool open = contact == Contact::open;
-  const std::vector<int> component = connected_components(system_.node_count(), closures_, !open);
+  const std::vector<int> component = connected_components(system_.node_count(), ratio_rows_, !open);
   std::vector<bool> counted(component.size(), false);  // as tied or floating, by component
-  for (const Closure& row : closures_)
+  for (const RatioRow& row : ratio_rows_)
     if (row.second < 0 && !(open && row.only_in_contact)) counted[idx(component[idx(row.first)])] = true;
   for (const int node : resolved_prescriptions_)
     if (node >= 0) counted[idx(component[idx(node)])] = true;
   // A row over several parts takes one rigid motion.
-  const ComponentSpeeds tied = solve_components(wide_closures_, component, relative, counted,
+  const ComponentSpeeds tied = solve_components(wide_ratio_rows_, component, relative, counted,
                                                 std::vector<double>(component.size(), 0.0), open);
   for (const int c : tied.dependent) counted[idx(c)] = true;
   std::vector<int> floating;
@@ -312,6 +316,51 @@ System SystemBuilder::constrained() {
   agree(system_.initial_v_, v, "initial rate");
   throw_if_findings();
   return ritz_projection(system_, free).with_initial(z, v);
+}
+
+void SystemBuilder::find_varying_inertias() {
+  constexpr int kAngles = 360;  // of a turn, at which the inertia must be positive
+  for (const LoadTerm& load : system_.loads_) {
+    const auto* inertia = dynamic_cast<const VaryingInertia*>(load.load);
+    if (inertia == nullptr || !inertia->inertia_varies()) continue;
+    const std::string where = place(model_.element_instances()[idx(index(load.element))].name);
+    const auto fail = [&](std::string range) {
+      findings_.push_back({where, "varying inertia", node_name(load.node), "", std::move(range)});
+    };
+    const NodeMap& map = system_.node_map(load.node);
+    if (map.unknown < 0) {
+      fail("needs a node that moves freely, but its motion is given");
+      continue;
+    }
+    const int k = map.unknown;
+    const SparseMatrix& pattern = system_.pattern();
+    for (int s = pattern.outerIndexPtr()[k]; s < pattern.outerIndexPtr()[k + 1]; ++s)
+      if (const int other = pattern.innerIndexPtr()[s]; other != k && system_.mass_[s] != 0.0)
+        fail("needs a lumped inertia, but the inertia is coupled to that of " + system_.unknown_name(other));
+    for (const GeneralTerm& general : system_.generals_)
+      for (const int node : general.nodes)
+        if (system_.node_map(node).unknown == k)
+          fail("does not stand beside a general element on its node; put a shaft between");
+    auto& rows = system_.varying_inertias_;
+    auto row = std::find_if(rows.begin(), rows.end(), [k](const auto& r) { return r.unknown == k; });
+    if (row == rows.end()) {
+      row = rows.insert(rows.end(), {.unknown = k, .constant = system_.mass_[system_.slot(k, k)]});
+      for (std::size_t j = 0; j < system_.scalars_.size(); ++j)
+        for (const Entry& e : system_.scalars_[j].z)
+          if (e.index == k) row->laws.push_back({static_cast<int>(j), e.coeff});
+    }
+    row->parts.push_back({inertia, load.node});
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kAngles; ++i) {
+      double sum = row->constant;
+      for (const VaryingInertiaRow::Part& part : row->parts)
+        sum += std::pow(system_.node_map(part.node).coeff, 2) *
+               part.inertia->inertia_beyond(kTwoPi * i / kAngles);
+      least = std::min(least, sum);
+    }
+    if (!(least > 0.0))
+      fail("needs another inertia on its node: at some angles there is " + to_text(least) + " kg m^2 in all");
+  }
 }
 
 void SystemBuilder::finish() {

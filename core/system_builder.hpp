@@ -39,6 +39,7 @@ class SystemBuilder {
   void map_terms();
   void assemble_matrices();
   void check_values();
+  void find_varying_inertias();
   void finish();
   /// Without the unknowns that wide constraints make dependent.
   System constrained();
@@ -61,8 +62,8 @@ class SystemBuilder {
   NameIndex node_by_name_{0, {}};
   NodeMatrix mass_[2], damping_, deviation_damping_,
       stiffness_[2];  // the second ones take part in C = a M + b K
-  std::vector<Closure> closures_;
-  std::vector<WideClosure> wide_closures_;
+  std::vector<RatioRow> ratio_rows_;
+  std::vector<WideRatioRow> wide_ratio_rows_;
   struct WideConstraint {
     ElementId element;
     std::vector<Entry> nodes;

@@ -76,14 +76,20 @@ void SystemBuilder::describe_elements() {
       continue;
     }
     bool right = true, ties = false, kinds_known = false;
-    parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
-      right = right && check_terms(terms, of_part, p);
-      ties = ties || !right || !terms.mass.isZero(0.0) || !terms.constraints.empty();
-      if (!right || !usable) return;
-      if (!kinds_known) usable = check_kinds(p, nodes);
-      kinds_known = true;
-      if (usable) keep(e, of_part, terms);
-    });
+    const bool inside =
+        parts.for_each(*p.element, nodes, [&](const Terms& terms, const std::vector<int>& of_part) {
+          right = right && check_terms(terms, of_part, p);
+          ties = ties || !right || !terms.mass.isZero(0.0) || !terms.constraints.empty();
+          if (!right || !usable) return;
+          if (!kinds_known) usable = check_kinds(p, nodes);
+          kinds_known = true;
+          if (usable) keep(e, of_part, terms);
+        });
+    if (!inside) {
+      findings_.push_back({place(p.name), "part_nodes()", "", "",
+                           "must name nodes of the element, 0 to " + std::to_string(nodes.size() - 1)});
+      right = false;
+    }
     if (!resolved) inertia_in_doubt_ |= ties;
     if (!right || !usable) faulty();
   }
@@ -116,21 +122,21 @@ void SystemBuilder::keep(int element, const std::vector<int>& nodes, const Terms
   const auto add_closure = [&](const std::vector<Entry>& b, const SpeedRatioConstraint& how) {
     if (b.empty()) return;
     if (b.size() > 2) {
-      WideClosure wide;
+      WideRatioRow wide;
       for (const Entry& e : b) wide.b.emplace_back(e.index, e.coeff);
       wide.only_in_contact = how.only_in_contact;
       wide.element = element;
-      wide_closures_.push_back(std::move(wide));
+      wide_ratio_rows_.push_back(std::move(wide));
       return;
     }
-    Closure row;
+    RatioRow row;
     row.element = element;
     row.only_in_contact = how.only_in_contact;
     row.holds_deviation = how.holds_deviation;
     row.ratio_only = how.ratio_only;
     row.first = b[0].index, row.b_first = b[0].coeff;
     if (b.size() > 1) row.second = b[1].index, row.b_second = b[1].coeff;
-    closures_.push_back(row);
+    ratio_rows_.push_back(row);
   };
   for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) add_closure(over_nodes(c.b, nodes), c);
   for (const LocalRow& row : terms.constraints) {
@@ -261,9 +267,18 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
     if (entries > 0 && s.along_line_of_action)
       for (Eigen::Index i = 0; i < n; ++i) {
         const int node = nodes[static_cast<std::size_t>(i)];
-        if (s.b[i] != 0.0 && node >= 0 && system_.node_kinds_[idx(node)] != NodeKind::rotational)
+        if (s.b[i] == 0.0 || node < 0) continue;
+        // Gears turn, and their centres, of which no nominal speed follows, move.
+        const auto& ties = terms.speed_ratio_constraints;
+        const bool gear =
+            !p.element->mixes_kinds() || std::any_of(ties.begin(), ties.end(), [i](const auto& tie) {
+              return !tie.ratio_only && tie.b.size() > i && tie.b[i] != 0.0;
+            });
+        const bool turns = system_.node_kinds_[idx(node)] == NodeKind::rotational;
+        if (gear != turns)
           findings_.push_back({place(p.name), "node " + std::to_string(i + 1), node_name(node), "",
-                               "is translational; a gear needs a rotational node"});
+                               gear ? "is translational; a gear needs a rotational node"
+                                    : "is rotational; a gear's centre moves on a translational node"});
       }
   }
   for (const FrequencySpec& f : terms.frequency_stiffnesses) {
@@ -297,7 +312,8 @@ bool SystemBuilder::check_terms(const Terms& terms, const std::vector<int>& node
         (&f == terms.frictions.data() || !(&f - 1)->friction || !(&f - 1)->friction->rigid()))
       fail("gear loss", "", "must be stated just behind the tie of its gear");
   }
-  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) row("closure", c.b, false);
+  for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
+    row("speed ratio constraint", c.b, false);
   for (const LocalRow& b : terms.constraints) {
     const int entries = row("constraint", b, false);
     if (entries == 0 || entries == 1)

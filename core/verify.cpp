@@ -1,7 +1,6 @@
 #include <drev/core/general_force.hpp>
 #include <drev/core/verify.hpp>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,7 +10,8 @@
 #include <random>
 
 #include "core/contradictions.hpp"
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -351,7 +351,7 @@ void check_matrix(const char* name, const Eigen::MatrixXd& m, double tolerance, 
               std::string(name) + ", least eigenvalue " + to_text(least));
 }
 
-/// Columns: nominal motions n with b^T n = 0 for every closure and constraint.
+/// Columns: nominal motions n with b^T n = 0 for every speed ratio constraint and constraint.
 Eigen::MatrixXd nominal_motions(const Terms& terms, int nodes) {
   const auto rows = terms.speed_ratio_constraints.size() + terms.constraints.size();
   if (rows == 0) return Eigen::MatrixXd::Identity(nodes, nodes);
@@ -361,9 +361,7 @@ Eigen::MatrixXd nominal_motions(const Terms& terms, int nodes) {
   for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints)
     all.row(r++) = c.b.normalized().transpose();
   for (const LocalRow& b : terms.constraints) all.row(r++) = b.normalized().transpose();
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(all);
-  if (lu.dimensionOfKernel() == 0) return Eigen::MatrixXd::Zero(nodes, 0);
-  return lu.kernel();
+  return null_space(all);
 }
 
 void check_closures(const Terms& terms, int nodes, double tolerance, Findings& out) {
@@ -403,9 +401,9 @@ bool check_description(const Terms& terms, int nodes, Findings& out) {
     require(l.load != nullptr && l.node >= 0 && l.node < nodes, "load", "has no law or no node");
   for (const GeneralForce* g : terms.generals) require(g != nullptr, "general force", "has no law");
   for (const SpeedRatioConstraint& c : terms.speed_ratio_constraints) {
-    require(c.b.size() == nodes, "closure row", expected);
+    require(c.b.size() == nodes, "speed ratio constraint", expected);
     const auto entries = (c.b.array() != 0.0).count();
-    require(entries == 1 || entries == 2, "closure row",
+    require(entries == 1 || entries == 2, "speed ratio constraint",
             "ties " + std::to_string(entries) + " nodes; it must tie one or two");
   }
   for (const LocalRow& b : terms.constraints) require(b.size() == nodes, "constraint row", expected);
@@ -438,6 +436,7 @@ CheckReport check_element(const Element& element, int nodes, const CheckOptions&
   Terms terms(n);
   element.describe(n, terms);
   if (!check_description(terms, n, out)) return report;
+  for (const Contradiction& c : contradictions(element, n, terms)) out.add(c.what, c.detail);
   check_matrix("mass", terms.mass, options.tolerance, out);
   check_matrix("damping", terms.damping, options.tolerance, out);
   check_matrix("stiffness", terms.stiffness, options.tolerance, out);

@@ -38,6 +38,9 @@
 ///
 /// Without backlash (0) both flanks touch: y = k x + c x_dot for every damping law, linear,
 /// bilateral, no gap and no clip.
+///
+/// With `stiffening` k p is k S(p) everywhere above, S a line of straight stretches: slope slopes[i] from
+/// penetrations[i] on. A mesh gets stiffer with its load, since contacts grow with it.
 #include <drev/core/error.hpp>
 #include <drev/core/law/piecewise_law.hpp>
 #include <drev/elements/curve.hpp>
@@ -51,6 +54,13 @@ namespace drev {
 
 enum class MeshDamping { proportional, limited, contact_only, always };
 
+/// Slopes of a flank's spring over its penetration, in parts of k; empty: 1 everywhere.
+struct Stiffening {
+  std::vector<double>
+      penetrations;            ///< m, ascending from 0; the second >= p_ref where damping rises up to that
+  std::vector<double> slopes;  ///< of the stretch from there on, > 0
+};
+
 class BacklashLaw {
  public:
   struct Params {
@@ -58,6 +68,7 @@ class BacklashLaw {
     double damping = 0.0;          ///< c [N s/m], >= 0
     MeshDamping damping_law = MeshDamping::proportional;
     double reference_penetration = kNotGiven;  ///< p_ref [m], > 0; NaN: b/20
+    Stiffening stiffening = {};
   };
   explicit BacklashLaw(const Params& params);
 
@@ -75,12 +86,22 @@ class BacklashLaw {
   void check(ParameterCheck& check) const;
 
  private:
+  /// A stretch of S: at + slope p from `from` on.
+  struct Stretch {
+    double from = 0.0, at = 0.0, slope = 1.0;
+  };
+  static std::vector<Stretch> stretches_of(const Stiffening& stiffening);
   std::vector<LawPiece> unit_pieces() const;
+  LawPiece spring(std::size_t stretch, int side, double factor, double c) const;
+  LawBound pulls(std::size_t stretch, int side, double c, double sign, int next) const;
+  void bound_stretch(LawPiece& piece, std::size_t stretch, int side, int below, int above) const;
+  std::vector<LawPiece> plain_damper() const;
   std::vector<LawPiece> switched_damper(bool limited) const;
   std::vector<LawPiece> rising_damper() const;
 
   Params params_;
   double half_gap_, p_ref_;
+  std::vector<Stretch> stretches_;
   PiecewiseLaw unit_;  // the one statement of the law: y = k Y(x, x_dot/k), Y at k = 1
 };
 

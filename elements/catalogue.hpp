@@ -3,6 +3,7 @@
 #include <drev/elements/applied_torque.hpp>
 #include <drev/elements/cam_torque.hpp>
 #include <drev/elements/couplings/absolute_damper.hpp>
+#include <drev/elements/couplings/dead_band_coupling.hpp>
 #include <drev/elements/couplings/elastic_coupling.hpp>
 #include <drev/elements/couplings/torsional_damper.hpp>
 #include <drev/elements/dashpot.hpp>
@@ -26,6 +27,7 @@
 #include <drev/elements/machines/speed_governor.hpp>
 #include <drev/elements/machines/torque_curve.hpp>
 #include <drev/elements/machines/torque_function.hpp>
+#include <drev/elements/modal_damping.hpp>
 #include <drev/elements/polyline_spring.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
 #include <drev/elements/segment_count.hpp>

@@ -25,7 +25,8 @@ GearMesh::GearMesh(Params params)
       law_({.normal_backlash = params_.normal_backlash,
             .damping = params_.damping,
             .damping_law = params_.damping_law,
-            .reference_penetration = params_.reference_penetration}),
+            .reference_penetration = params_.reference_penetration,
+            .stiffening = params_.stiffening}),
       radius_1_(radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
       radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
       teeth_per_radian_(params_.teeth_1 / kTwoPi) {

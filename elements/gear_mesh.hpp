@@ -21,6 +21,9 @@
 /// cos(alpha)/2; helical gears: transverse module and pressure angle). Both are accepted if they
 /// agree to 0.1 % (printed radii are rounded); the base radii given are then used.
 ///
+/// The stiffness follows the load where `stiffening` is given: k(s) S(p) in place of k(s) p (backlash_law.hpp); modes
+/// take k, the slope at the load where S has the slope 1.
+///
 /// The stiffness follows the mesh phase s = teeth_1 theta_1/(2 pi) + mesh_phase of gear 1's ACTUAL
 /// angle; the transmission error takes gear 1's nominal angle. The tangent leaves out the coupling
 /// through the phase (dy/dangle is given for those who want it).
@@ -54,6 +57,7 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
     double damping = 0.0;                 ///< c [N s/m], >= 0
     MeshDamping damping_law = MeshDamping::proportional;
     double reference_penetration = kNotGiven;  ///< p_ref [m], > 0; NaN: normal_backlash/40
+    Stiffening stiffening = {};                ///< with the load: k(s) times a slope of the penetration
     TransmissionError transmission_error = {};
     double mesh_phase = 0.0;  ///< offset of the mesh phase [mesh periods]
   };
@@ -93,6 +97,63 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
   double radius_1_, radius_2_, teeth_per_radian_;
   std::vector<LawPiece> pieces_;
   std::vector<ScaleOrder> orders_;  // of the stiffness over its mean, per revolution of gear 1
+};
+
+/// LateralGearMesh: two gears in mesh whose centres move along the line of action, on bearings that give: torsion and
+/// lateral motion together.
+///
+///   external pair   x = r_b1 theta_1 + y_1 + r_b2 theta_2 + y_2 - e
+///   internal pair   x = r_b1 theta_1 + y_1 - (r_b2 theta_2 + y_2) - e           gear 2 is the ring
+///   f = b F(x, x_dot)           F: the mesh's force [N], that of GearMesh with the same parameters
+///
+/// Nodes: gear 1, gear 2 (rotational), centre of gear 1, centre of gear 2 (translational). y_i: displacement of the centre of
+/// gear i along the line of action, positive in the direction in which r_bi theta_i moves its flank. The centre takes the
+/// whole force of the mesh; its mass is an Inertia, its bearing a GroundSpring on its node, a centre that does not move is
+/// held. Nominal speeds obey the ratio of the base radii, centres have none. Stiffness, backlash, damping law, transmission
+/// error and mesh phase are GearMesh's.
+///
+/// Limits: the direction of the line of action is fixed (a gear that carries several meshes has them on one line, or a centre
+/// node for each direction, tied by nothing); motion across it, tilting and gyroscopic torques are left out; the contact
+/// ratio does not follow the centre distance.
+/// Source: A. Kahraman, R. Singh, Non-linear dynamics of a geared rotor-bearing system with multiple clearances, J. Sound
+/// Vib. 144 (1991) 469 (gear pair with translation along the line of action).
+class LateralGearMesh final : public Element {
+ public:
+  using Params = GearMesh::Params;
+  explicit LateralGearMesh(Params params) : mesh_(std::move(params)) {}
+
+  const Params& params() const { return mesh_.params(); }
+  const GearMesh& mesh() const { return mesh_; }
+  std::string_view type() const override { return "lateral gear mesh"; }
+  int min_nodes() const override { return 4; }
+  bool mixes_kinds() const override { return true; }
+  void check(ParameterCheck& check) const override { mesh_.check(check); }
+  void describe(int nodes, Terms& terms) const override {
+    Terms pair(2);
+    mesh_.describe(2, pair);
+    for (ScalarSpec& scalar : pair.scalars) {
+      const LocalRow gears = scalar.b;
+      scalar.b = LocalRow::Zero(nodes);
+      scalar.b.head(2) = gears;
+      scalar.b[2] = 1.0;
+      scalar.b[3] = gears[1] < 0.0 ? -1.0 : 1.0;
+      terms.scalars.push_back(scalar);
+    }
+    for (SpeedRatioConstraint& tie : pair.speed_ratio_constraints) {
+      const LocalRow gears = tie.b;
+      tie.b = LocalRow::Zero(nodes);
+      tie.b.head(2) = gears;
+      terms.speed_ratio_constraints.push_back(tie);
+    }
+    for (const Eigen::Index centre : {2, 3}) {  // no nominal motion, and no stiffness by that
+      LocalRow alone = LocalRow::Zero(nodes);
+      alone[centre] = 1.0;
+      terms.speed_ratio_constraints.push_back({.b = alone, .ratio_only = true});
+    }
+  }
+
+ private:
+  GearMesh mesh_;
 };
 
 }  // namespace drev

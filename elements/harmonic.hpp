@@ -7,6 +7,7 @@
 /// (engine torque: half orders exist) or per mesh period (mesh: whole numbers). A negative
 /// amplitude is allowed.
 #include <drev/core/error.hpp>
+#include <drev/core/law/dual.hpp>
 #include <drev/elements/curve.hpp>
 
 #include <cmath>
@@ -29,6 +30,12 @@ inline CurvePoint sum_at(const std::vector<Harmonic>& harmonics, double angle) {
     sum.slope -= h.amplitude * h.order * std::sin(argument);
   }
   return sum;
+}
+
+/// The same over a dual number, with its slopes.
+inline Dual sum_at(const std::vector<Harmonic>& harmonics, const Dual& angle) {
+  const CurvePoint sum = sum_at(harmonics, angle.value);
+  return Dual::chain(angle, sum.value, sum.slope);
 }
 
 /// Orders > 0 (whole where asked), amplitudes and phases finite. `order` is what the caller calls an order.

@@ -1,8 +1,9 @@
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/models/gear_drive/build_gear_drive.hpp>
 #include <drev/models/model_case.hpp>
-#include <drev/models/two_inertia/build_two_inertia.hpp>
 #include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+
+#include "models/two_inertia/build_two_inertia.hpp"
 
 namespace drev {
 

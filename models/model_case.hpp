@@ -17,7 +17,7 @@ struct Strength;
 
 /// From when on figures are taken.
 struct Settle {
-  std::optional<double> time = {};  ///< s; none: found from the damped modes (solvers/modes/settling.hpp)
+  std::optional<double> time = {};  ///< s; none: found from the damped modes (solvers/modes/damped_modes.hpp)
 };
 
 struct ModelCase {

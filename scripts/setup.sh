@@ -2,7 +2,7 @@
 # Installs Debian packages only, asks for nothing, and does nothing where all of it is there.
 
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libarpack2-dev
-          libcli11-dev nlohmann-json3-dev libhdf5-dev libboost-random-dev libminizip-dev libexpat1-dev libtomlplusplus-dev
+          libcli11-dev nlohmann-json3-dev libhdf5-dev libboost-random-dev libminizip-dev libnlopt-dev libexpat1-dev libtomlplusplus-dev
           libjs-dygraphs
           catch2)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes a wheel of the Python package that holds the libraries it needs: build/wheel/drev-*-manylinux_*.whl. It is built on
 # this machine's C library and runs on machines with the same one or a newer one; the name says which (made on Debian
-# 12: manylinux_2_34). For older machines run this in one of PyPA's manylinux containers. Tools come from PyPI into
+# 12: manylinux_2_35). For older machines run this in one of PyPA's manylinux containers. Tools come from PyPI into
 # build/venv-wheel.
 #
 #   scripts/wheel.sh [python interpreter]     default: /usr/bin/python3, else python3

@@ -1,4 +1,4 @@
-#include <drev/solvers/at_speed.hpp>
+#include "solvers/at_speed.hpp"
 
 #include "core/system_builder.hpp"
 

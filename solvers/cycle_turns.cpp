@@ -26,15 +26,20 @@ const char* to_text(BranchChange change) {
 
 double cycle_turns(const System& system) {
   constexpr int kMostTurns = 20, kProbes = 4096, kLargestPrime = 499;
-  constexpr double kSame = 1e-8, kGolden = 0.6180339887498949, kFewestTurns = 1e-4;
+  constexpr double kSame = 1e-8, kGolden = 0.6180339887498949, kFewestTurns = 1e-4, kLongestTurns = 100.0;
   const double w = system.reference_speed() > 0.0 ? system.reference_speed() : 1.0;
   // All that acts, of the angle of the reference shaft, where nothing deviates.
   std::vector<std::function<double(double)>> acts;
+  std::vector<double> shafts{1.0};  // turns of the reference shaft in one of theirs
+  const auto add_shaft = [&shafts](double ratio) {
+    if (ratio != 0.0 && std::abs(ratio) != 1.0) shafts.push_back(1.0 / std::abs(ratio));
+  };
   for (const ScalarTerm& law : system.scalars()) {
     if (law.phase_node < 0) continue;
     const auto gap = law.force->gap();
     const double edge = gap ? gap->high : 0.0, x = edge > 0.0 ? 2.0 * edge : 1e-4;
     const double ratio = system.ratio(law.phase_node);
+    add_shaft(ratio);
     acts.emplace_back([&law, x, ratio, w](double phi) {
       return law.force
           ->evaluate({.x = x - law.force->offset(ratio * phi).e, .t = phi / w, .angle = ratio * phi})
@@ -43,6 +48,7 @@ double cycle_turns(const System& system) {
   }
   for (const LoadTerm& load : system.loads()) {
     const double ratio = system.ratio(load.node);
+    add_shaft(ratio);
     acts.emplace_back([&load, ratio, w](double phi) {
       return load.load
           ->evaluate(
@@ -72,9 +78,11 @@ double cycle_turns(const System& system) {
   const auto all = [&](double turns) {
     return std::all_of(acts.begin(), acts.end(), [&](const auto& f) { return repeats(f, turns); });
   };
+  // Whole turns of the reference shaft; then of each shaft on which something acts.
   double turns = 0.0;
-  for (int t = 1; t <= kMostTurns && turns == 0.0; ++t)
-    if (all(t)) turns = t;
+  for (const double of_shaft : shafts)
+    for (int t = 1; t <= kMostTurns && turns == 0.0; ++t)
+      if (t * of_shaft <= kLongestTurns && all(t * of_shaft)) turns = t * of_shaft;
   for (int p = 2; turns > 0.0 && p <= kLargestPrime; ++p)
     while (turns / p > kFewestTurns && all(turns / p)) turns /= p;
   return turns;

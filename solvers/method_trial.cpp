@@ -2,7 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/system.hpp>
-#include <drev/solvers/method_trial.hpp>
+#include <drev/solvers/method_choice.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>

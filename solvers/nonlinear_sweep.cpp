@@ -1,14 +1,15 @@
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/at_speed.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 
+#include "solvers/at_speed.hpp"
 #include "solvers/cycle_run.hpp"
 #include "solvers/periodic/branch_tracer.hpp"
 #include "solvers/periodic/motion_sections.hpp"
@@ -17,6 +18,8 @@ namespace drev {
 
 namespace {
 
+constexpr double kUnbounded =
+    30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kFewestHarmonics = 24;
 constexpr int kMostRows = 1100;       // of Newton's matrix: 0.3 s a step
 constexpr int kProbe = 192;           // harmonics of the linear motion that the first number is read from
@@ -60,7 +63,6 @@ class Sweeper {
   void collect(std::size_t number);
   SweptMotion motion_of(int cycles, const BranchPoint& point) const;
   SweptMotion asked_for(int cycles, const BranchPoint& point);
-  void put(const MotionSections::Figures& figures, SweptMotion& motion) const;
   const SweptMotion* nearest(double speed) const;
   bool stable_at(double speed) const;
   bool any_at(double speed) const;
@@ -203,21 +205,6 @@ bool Sweeper::start_at(double speed) {
   return true;
 }
 
-void Sweeper::put(const MotionSections::Figures& figures, SweptMotion& motion) const {
-  motion.maximum = figures.maximum;
-  motion.minimum = figures.minimum;
-  motion.mean = figures.mean;
-  motion.twist_mean = figures.twist_mean;
-  motion.twist_maximum = figures.twist_maximum;
-  motion.twist_minimum = figures.twist_minimum;
-  motion.heat = figures.heat;
-  motion.amplitude = figures.amplitude;
-  motion.left_over = figures.left_over;
-  motion.separates = figures.separates;
-  motion.z = figures.z;
-  motion.v = figures.v;
-}
-
 SweptMotion Sweeper::motion_of(int cycles, const BranchPoint& point) const {
   Family& of = families_.at(cycles);
   of.balance->set_harmonics(point.harmonics);
@@ -234,7 +221,8 @@ SweptMotion Sweeper::motion_of(int cycles, const BranchPoint& point) const {
                          &motion.twist_maximum, &motion.twist_minimum, &motion.heat})
     values->setConstant(count, std::nan(""));
   motion.amplitude.setConstant(static_cast<Eigen::Index>(of.lines.size()), count, std::nan(""));
-  if (sections_->find(*of.balance, point.x, point.speed, of.lines, figures)) put(figures, motion);
+  if (sections_->find(*of.balance, point.x, point.speed, of.lines, figures))
+    static_cast<MotionFigures&>(motion) = figures;
   of.balance->set_harmonics(of.harmonics);
   return motion;
 }
@@ -260,7 +248,7 @@ SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
     }
     if (!sections_->find(balance, wide, point.speed, of.lines, fine)) break;
     const BranchPoint judged = tracer.judged(point.speed, wide);
-    put(fine, motion);
+    static_cast<MotionFigures&>(motion) = fine;
     motion.error = largest_difference(coarse, fine);
     motion.harmonics = judged.harmonics;
     motion.multiplier = judged.multiplier;
@@ -409,6 +397,8 @@ bool Sweeper::run_at(double speed) {
     Eigen::MatrixXd batches = Eigen::MatrixXd::Zero(count, kBatches);
     const int all = result.cycles * kRunSamples, batch = std::max(1, all / kBatches);
     Vector squares = Vector::Zero(count), values(count);
+    std::array<Vector, 3> sizes;  // largest in the first batch, the one in the middle and the last
+    sizes.fill(Vector::Zero(count));
     Assembler assembler(system);
     run.sample(result.cycles, kRunSamples, [&](const State& at, int i) {
       assembler.set_time(at.t);
@@ -417,9 +407,17 @@ bool Sweeper::run_at(double speed) {
       result.mean += values / all;
       squares += values.cwiseAbs2() / all;
       batches.col(std::min(i / batch, kBatches - 1)) += values;
+      for (int part = 0; part < 3; ++part)
+        if (i / batch == part * (kBatches - 1) / 2)
+          sizes[idx(part)] = sizes[idx(part)].cwiseMax(values.cwiseAbs());
       result.lowest = result.lowest.cwiseMin(values);
       result.highest = result.highest.cwiseMax(values);
     });
+    for (Eigen::Index c = 0; c < count; ++c)
+      if (sizes[0][c] > 0.0 && sizes[1][c] > kUnbounded * sizes[0][c] &&
+          !(sizes[2][c] <= kUnbounded * sizes[1][c]))
+        result.reason = "the motion grows without bound, a thousandfold in less than " +
+                        std::to_string(result.cycles) + " cycles";
     result.deviation = (squares - result.mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
     for (int b = 0; b < kBatches; ++b) {
       const int size = b + 1 < kBatches ? batch : all - batch * (kBatches - 1);

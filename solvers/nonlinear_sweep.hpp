@@ -20,7 +20,7 @@
 ///
 /// Errors: of a motion, difference from that with half the harmonics, largest over the cycle and the sections,
 /// beside each section's largest value. Of the speed of a fold or a change of stability, the same difference.
-#include <drev/core/system.hpp>
+#include <drev/solvers/periodic/motion_figures.hpp>
 
 #include <complex>
 #include <functional>
@@ -43,21 +43,14 @@ struct NonlinearSweepOptions {
 };
 
 /// One periodic motion. Vectors over the sections.
-struct SweptMotion {
+struct SweptMotion : MotionFigures {
   double speed = 0.0;   ///< rad/s
   bool asked = false;   ///< at one of the speeds of the options; else a point of the curve between
   bool judged = false;  ///< multipliers were computed: models of up to 200 unknowns
   bool stable = false;
   double multiplier = 0.0;  ///< largest |Floquet multiplier| over the cycle
-  bool separates = false;   ///< a contact opens in the cycle
   int harmonics = 0;
-  double error = 0.0;                               ///< relative; NaN at points that were not asked for
-  Vector maximum, minimum, mean;                    ///< maximum and minimum with the mean
-  Vector twist_mean, twist_maximum, twist_minimum;  ///< a law's: of its deflection
-  Vector heat;                                      ///< W
-  Eigen::MatrixXcd amplitude;                       ///< orders x sections, of exp(i order phi)
-  Vector z, v;                                      ///< unknowns and rates where phi = 0, to start a run from
-  Vector left_over;  ///< mean torque, of each part that floats [N m at the reference shaft]
+  double error = 0.0;  ///< relative; NaN at points that were not asked for
   Vector half_range() const { return 0.5 * (maximum - minimum); }
 };
 
@@ -112,7 +105,8 @@ struct NonlinearSweep {
 /// Throws ModelError with everything wrong with options and model; SolverError where a static stiffness is singular.
 NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options);
 
-/// The fewest turns of the reference shaft, 20 or a part of them, in which all laws and loads repeat; 0: none.
+/// The fewest turns of the reference shaft in which all laws and loads repeat: up to 20 whole turns of it, or of a shaft
+/// on which something acts, or a part of them; at most 100. 0: none.
 double cycle_turns(const System& system);
 
 }  // namespace drev

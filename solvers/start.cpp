@@ -2,7 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/modes/settling.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/start.hpp>
 #include <drev/solvers/statics.hpp>

@@ -1,6 +1,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/statics.hpp>

@@ -165,6 +165,8 @@ void check(const ChartOptions& o, const std::vector<ChartSeries>& series) {
   ParameterCheck chart("chart", findings);
   chart.within("width", o.width, 200, 10000, "px");
   chart.within("height", o.height, 150, 10000, "px");
+  if (o.to_scale && (o.log_x || o.log_y))
+    chart.fail("to_scale", "true", "", "must not be there on a logarithmic axis");
   if (series.empty()) chart.fail("series", "0", "", "must be at least one");
   for (std::size_t i = 0; i < o.vertical_lines.size(); ++i) {
     const std::string item = "vertical_lines[" + std::to_string(i) + "].x";
@@ -380,22 +382,36 @@ std::string svg_chart(const ChartOptions& o, const std::vector<ChartSeries>& ser
                                   [](const ChartMarker& m) { return !m.label.empty(); });
   if (labels) top += 16.0;
 
-  y.begin = o.height - (o.x_label.empty() ? 28.0 : 46.0);
-  y.end = std::min(top + 6.0, y.begin - 40.0);
-  if (y.log)
-    add_log_ticks(y, (y.begin - y.end) / 22.0);
-  else
-    add_linear_ticks(y, (y.begin - y.end) / 36.0);
-  double widest = 0.0;
-  for (const Tick& t : y.ticks) widest = std::max(widest, text_width(t.label) + 0.8 * text_width(t.exponent));
-  x.begin = 14.0 + widest + (o.y_label.empty() ? 0.0 : 20.0);
-  x.end = o.width - 18.0;
+  const double below = o.x_label.empty() ? 28.0 : 46.0;
+  const auto lay_y = [&](int height) {
+    y.begin = height - below;
+    y.end = std::min(top + 6.0, y.begin - 40.0);
+    y.ticks.clear(), y.label = o.y_label;
+    if (y.log)
+      add_log_ticks(y, (y.begin - y.end) / 22.0);
+    else
+      add_linear_ticks(y, (y.begin - y.end) / 36.0);
+    double widest = 0.0;
+    for (const Tick& t : y.ticks)
+      widest = std::max(widest, text_width(t.label) + 0.8 * text_width(t.exponent));
+    x.begin = 14.0 + widest + (o.y_label.empty() ? 0.0 : 20.0);
+    x.end = o.width - 18.0;
+  };
+  int height = o.height;
+  lay_y(height);
+  if (o.to_scale) {
+    constexpr double kLeast = 40.0, kMost = 2000.0;  // px of the plot
+    height = static_cast<int>(
+        std::lround(top + 6.0 + below +
+                    std::clamp((y.high - y.low) / (x.high - x.low) * (x.end - x.begin), kLeast, kMost)));
+    lay_y(height);
+  }
   if (x.log)
     add_log_ticks(x, (x.end - x.begin) / 45.0);
   else
     add_linear_ticks(x, (x.end - x.begin) / 80.0);
 
-  const std::string w = std::to_string(o.width), h = std::to_string(o.height);
+  const std::string w = std::to_string(o.width), h = std::to_string(height);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + w + " " + h + "\" width=\"" +
                     w + "\" height=\"" + h + "\" role=\"img\">\n";
   if (!o.title.empty()) out += "<title>" + escaped(o.title) + "</title>\n";

@@ -42,6 +42,7 @@ struct ChartOptions {
   bool log_x = false, log_y = false;
   std::vector<ChartMarker> vertical_lines = {};
   int width = 800, height = 400;  ///< px, at least 200 x 150, at most 10000; the image scales
+  bool to_scale = false;          ///< a unit is as long along y as along x, the height follows; linear axes
 };
 
 /// The chart as one SVG document. Throws ModelError, with every finding, for no series, a series without

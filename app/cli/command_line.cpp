@@ -37,9 +37,10 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
       sub.add_option("MODEL", raw.models, meaning)->option_text("...");
     else
       sub.add_option("MODEL", raw.model, meaning)->option_text(" ");
+  }
+  if (command.takes_model || command.takes_sets)
     sub.add_option("--set", raw.sets, "Changes parameters; as often as needed")
         ->option_text("NAME=VALUE ...");
-  }
   sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
   sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
   for (const OptionEntry& option : command.options)

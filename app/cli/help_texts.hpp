@@ -13,6 +13,7 @@ inline constexpr const char* kMainExamples =
     "  drev chart camshaft                which method to use for it, measured\n"
     "  drev study                         the source's studies repeated, and what stands of them\n"
     "  drev advise camshaft               how little of it a figure needs, measured\n"
+    "  drev optimise camshaft ...         the parameters at which a figure is least\n"
     "  drev export camshaft --out my.toml the same as a file, to be changed\n"
     "  drev check my.toml                 what is wrong with it, if anything\n"
     "  drev run my.toml                   a file stands wherever a model does\n";
@@ -43,6 +44,7 @@ inline constexpr const char* kRunExamples =
     "--table keeps a row of figures of each variant, in DIR/variants.h5: constant steps of eight variants\n"
     "in lockstep, other methods one by one, over all processors or the ranks of MPI, with the same bytes.\n"
     "What is finished is on the disk; --resume goes on where a study ended, and refuses another one.\n"
+    "--report draws histograms, figures over parameters and Sobol indices.\n"
     "\n"
     "--accuracy runs the model at one tolerance or step, then at tighter ones, and takes the\n"
     "differences for the errors; where small differences grow too fast for that, figures are\n"
@@ -126,6 +128,16 @@ inline constexpr const char* kAdviseExamples =
     "CHANNEL; with 'steady' before it that of the last turns. Simpler models are tried, from the gear\n"
     "held to all of the model but one thing; each is measured against the full one, and the errors of\n"
     "both figures count against it. cost: processor time over that of the full model.\n";
+
+inline constexpr const char* kOptimiseExamples =
+    "Examples:\n"
+    "  drev optimise gear_drive --vary 'backlash_mm=uniform(0.05,0.3)' --minimise max_mesh_force_N\n"
+    "  drev optimise camshaft --set drive=held cylinders=6 --vary 'firing_order=orders(6)' \\\n"
+    "    --minimise deflection_deg --start periodic --duration 0.16\n"
+    "\n"
+    "Where the combinations of all values are no more than --variants, all are computed: the best is then\n"
+    "certain. Else a quarter of the variants is a Latin hypercube and the rest a search from its best by\n"
+    "NLopt (ESCH for values and orders, Subplex for uniform parameters). The same seed gives the same.\n";
 
 inline constexpr const char* kReportExamples =
     "Examples:\n"

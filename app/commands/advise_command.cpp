@@ -1,6 +1,6 @@
 #include <drev/advice/advise.hpp>
-#include <drev/advice/recipe.hpp>
 
+#include "advice/recipe.hpp"
 #include "app/base/interrupt.hpp"
 #include "app/base/json_values.hpp"
 #include "app/base/parameter_text.hpp"

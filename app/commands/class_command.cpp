@@ -1,6 +1,10 @@
 #include <drev/core/units.hpp>
+#include <drev/solvers/worst_motions.hpp>
+
+#include <algorithm>
 
 #include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
@@ -15,11 +19,59 @@ namespace drev::app {
 
 namespace {
 
-ClassCase judged_case(const std::string& name, SweepRequest request) {
-  ClassCase found{name, std::move(request), {}, {}};
-  found.sweep = sweep_linear(found.request.model.system, found.request.options);
-  found.judgement = judge_sweep(found.sweep, *found.request.model.model_case.strength);
-  return found;
+bool follows_contacts(const SweepRequest& request) {
+  return !request.options.close_contacts && !request.model.system.scalars().empty();
+}
+
+std::string speeds_text(const std::vector<double>& speeds) {
+  std::vector<std::string> list;
+  for (const double speed : speeds) list.push_back(short_digits(to_rpm(speed), 6));
+  return join(list) + " rpm";
+}
+
+/// Contacts as they are: at each speed the worst that the train may do, in all cases at the speeds that have an answer
+/// in each of them.
+void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
+  std::vector<NonlinearSweep> sweeps;
+  std::vector<double> missing;
+  for (const ClassCase& c : cases) {
+    std::vector<Finding> findings;
+    const NonlinearSweepOptions options = nonlinear_options(line, c.request, findings);
+    if (!findings.empty()) throw ModelError(std::move(findings));
+    sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
+    for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
+  }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  const auto has_answer = [&](double speed) {
+    return !std::binary_search(missing.begin(), missing.end(), speed);
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    ClassCase& c = cases[i];
+    std::vector<double> speeds, speeds_rpm;
+    for (std::size_t s = 0; s < c.request.speeds_rpm.size(); ++s) {
+      if (!has_answer(c.request.options.speeds[s])) continue;
+      speeds.push_back(c.request.options.speeds[s]);
+      speeds_rpm.push_back(c.request.speeds_rpm[s]);
+    }
+    if (speeds.empty())
+      throw ModelError({{c.request.model.entry->name + "/class", "speeds", "", "rpm",
+                         "have no periodic motion and no run that ended, at any of them; " +
+                             std::string("--contact closed judges as if contacts never opened")}});
+    sweeps[i].speeds = c.request.options.speeds = speeds;
+    c.request.speeds_rpm = speeds_rpm;
+    WorstMotions worst = worst_motions(sweeps[i]);
+    c.notes.emplace_back(
+        "Contacts as they are: at each speed, section by section, the stable motion with the largest half "
+        "range.");
+    if (!worst.by_runs.empty())
+      c.notes.push_back(
+          "No periodic motion that was found is stable at " + speeds_text(worst.by_runs) +
+          ": half ranges there are between the lowest and the highest value of a run in time; orders and "
+          "heat are not known.");
+    if (!missing.empty()) c.notes.push_back("No motion was found at " + speeds_text(missing) + ": left out.");
+    c.sweep = std::move(worst.sweep);
+  }
 }
 
 std::vector<std::string> names_of(const LinearSweep& sweep) {
@@ -37,6 +89,9 @@ Json report_data(const CommandLine& line, const std::vector<ClassCase>& cases, c
                                           names_of(cases.front().sweep), cases.front().sweep.speeds),
                                 beside);
   data["class"] = judged;
+  for (const ClassCase& c : cases)
+    for (const std::string& note : c.notes)
+      data["notes"].push_back(cases.size() > 1 ? c.name + ": " + note : note);
   return data;
 }
 
@@ -56,8 +111,15 @@ int class_command(const CommandLine& line) {
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const bool misfire = !strength->misfire.empty();
-  cases.push_back(judged_case("normal", std::move(request)));
-  if (misfire) cases.push_back(judged_case("misfire", request_sweep(with_misfire, {})));
+  cases.push_back({"normal", std::move(request), {}, {}});
+  if (misfire) cases.push_back({"misfire", request_sweep(with_misfire, {}), {}, {}});
+  if (follows_contacts(cases.front().request)) {
+    sweep_contacts(line, cases);
+  } else {
+    refuse_nonlinear_options(line);
+    for (ClassCase& c : cases) c.sweep = sweep_linear(c.request.model.system, c.request.options);
+  }
+  for (ClassCase& c : cases) c.judgement = judge_sweep(c.sweep, *strength);
   const ModelRequest& model = cases.front().request.model;
   const Json judged = class_object(cases, model_object(model.model_case.model, model.system));
   if (const auto out = line.option("--out")) {

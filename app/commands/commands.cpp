@@ -19,6 +19,11 @@ const std::vector<CommandEntry>& commands() {
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
   static const OptionEntry sections{"--record", "CHANNEL,...",
                                     "Sections; default: every torque and force of an element", commas};
+  static const OptionEntry cycle{"--cycle", "TURNS",
+                                 "Of a model with contacts: turns of the reference shaft that everything "
+                                 "repeats in; default: found"};
+  static const OptionEntry motion_tolerance{
+      "--tolerance", "T", "Of a model with contacts: relative error of a motion; default: 1e-5"};
   static const OptionEntry sweep_report{"--report", "FILE",
                                         "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, "
                                         "criticals, Campbell diagram; of contacts: "
@@ -45,7 +50,8 @@ const std::vector<CommandEntry>& commands() {
              "Fewer coordinates where that pays and adds at most ERROR to any channel: 1%, or off"},
             {"--out", "DIR", "Creates DIR with history.csv, summary.json and report.html"},
             {"--report", "FILE",
-             "Writes the report, a page for any browser, to FILE.html, or printed to FILE.pdf"},
+             "Writes the report, a page for any browser, to FILE.html, or printed to FILE.pdf; of a table: "
+             "statistics, histograms, scatter plots, Sobol indices"},
             {"--events", "FILE", "Writes each contact made or lost to FILE.csv: time, element, flank, rate"},
             {"--record", "CHANNEL,...", "Columns of history.csv, curves of the report; default: the model's",
              commas},
@@ -102,11 +108,8 @@ const std::vector<CommandEntry>& commands() {
                    {"--balance", "NODE",
                     "Where the mean torque that is left over is taken up; default: nowhere"},
                    {"--absolute-sum", "", "Sums of the orders' amplitudes without their phases, too", none},
-                   {"--cycle", "TURNS",
-                    "Of a model with contacts: turns of the reference shaft that everything "
-                    "repeats in; default: found"},
-                   {"--tolerance", "T",
-                    "Of a model with contacts: relative error of a motion; default: 1e-5"},
+                   cycle,
+                   motion_tolerance,
                    {"--out", "DIR",
                     "Creates DIR with sweep.csv (of contacts: branches.csv), orders.csv, criticals.csv "
                     "(changes.csv) and summary.json; or FILE.h5 with the same tables"},
@@ -135,6 +138,8 @@ const std::vector<CommandEntry>& commands() {
                    linear,
                    {"--balance", "NODE",
                     "Where the mean torque that is left over is taken up; default: nowhere"},
+                   cycle,
+                   motion_tolerance,
                    {"--out", "DIR", "Creates DIR with class.json"},
                    {"--report", "FILE", "Writes FILE.html, or FILE.pdf: the calculation as it is handed in"},
                    run,
@@ -160,6 +165,7 @@ const std::vector<CommandEntry>& commands() {
       {.name = "gear",
        .summary = "Gear pairs from their drawing: dimensions, backlash, mesh stiffness, transmission error",
        .takes_model = false,
+       .takes_sets = true,
        .options = {{"FILE", "FILE",
                     "A file with [geometry], or a model file with gear meshes that have one; docs/gears.md",
                     words},
@@ -199,6 +205,32 @@ const std::vector<CommandEntry>& commands() {
                    plugin},
        .footer = kAdviseExamples,
        .execute = advise_command},
+      {.name = "optimise",
+       .summary = "The parameters at which a figure is least or largest, firing orders among them",
+       .options =
+           {{"--vary", "NAME=VALUES",
+             "What may differ: uniform(LOW,HIGH), A,B,C, FIRST:STEP:LAST or orders(N)", again},
+            {"--minimise", "FIGURE",
+             "The figure, such as max_torque_Nm or CHANNEL.max; a wrong one lists them"},
+            {"--maximise", "FIGURE", "In place of --minimise"},
+            {"--variants", "N", "Computed at the most, default: 1000; so many combinations are all computed"},
+            {"--seed", "N", "Of the Latin hypercube and the search; default: 1"},
+            {"--method", "METHOD", "Time integration; default: what suits the model"},
+            {"--step", "SECONDS", "Time step; default: the model's"},
+            {"--tolerance", "T", "Relative: of exact, or of controlled steps"},
+            {"--start",
+             "STATE",
+             "rest: the model's initial conditions (default); static: equilibrium; periodic: steady state",
+             one,
+             {"rest", "static", "periodic"}},
+            {"--duration", "SECONDS", "Length of the runs; default: the model's"},
+            {"--record", "CHANNEL,...", "Channels whose largest and least values are figures, too", commas},
+            {"--jobs", "N", "Threads; default: one a processor"},
+            {"--out", "DIR", "Creates DIR with tried.csv, every variant computed, and optimum.json"},
+            run,
+            plugin},
+       .footer = kOptimiseExamples,
+       .execute = optimise_command},
       {.name = "check",
        .summary = "Reads a model file and lists everything wrong with it",
        .options = {run, plugin},

@@ -20,6 +20,7 @@ int list_command(const CommandLine& line);
 int chart_command(const CommandLine& line);
 int study_command(const CommandLine& line);
 int advise_command(const CommandLine& line);
+int optimise_command(const CommandLine& line);
 int check_command(const CommandLine& line);
 int export_command(const CommandLine& line);
 int report_command(const CommandLine& line);

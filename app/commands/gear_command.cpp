@@ -37,7 +37,8 @@ std::vector<GearCase> computed(const std::vector<NamedDrawing>& drawings) {
 
 int gear_command(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
-  const std::vector<std::string> files = line.list("FILE").value_or(std::vector<std::string>{});
+  std::vector<std::string> files = line.list("FILE").value_or(std::vector<std::string>{});
+  if (!line.model.empty()) files.push_back(line.model);  // --set a=1 FILE
   if (files.size() != 1)
     findings.push_back({kCommandLine, "FILE", files.empty() ? "" : files[1], "", "must be one file"});
   const std::optional<std::string> report = line.option("--report");
@@ -47,7 +48,7 @@ int gear_command(const CommandLine& line) {
     check_output("--report", *report, files, findings);
   }
   if (!findings.empty()) throw ModelError(std::move(findings));
-  const std::vector<GearCase> cases = computed(read_gear_drawings(files.front()));
+  const std::vector<GearCase> cases = computed(read_gear_drawings(files.front(), line.parameters));
   if (report) ReportFile(*report).commit(gear_page(files.front(), cases));
   print(line.json ? json_text(gear_object(files.front(), cases)) : gear_as_text(cases));
   return kSuccess;

@@ -1,6 +1,6 @@
 #pragma once
 /// What the command line asks of `drev modes`, checked, and the damped modes that it means.
-#include <drev/solvers/modes/mode_energy.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <optional>

@@ -3,7 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_trial.hpp>
+#include <drev/solvers/method_choice.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
@@ -196,7 +196,8 @@ void check_outputs(const CommandLine& line, const std::vector<std::string>& read
   if (line.option("--format") && line.option("--report") && !line.option("--out"))
     findings.push_back({kCommandLine, "--format", "", "", "needs --out DIR"});
   if (const auto out = line.option("--out"))
-    for (const char* name : {"/history.csv", "/history.h5", "/summary.json", "/report.html"})
+    for (const char* name :
+         {"/history.csv", "/history.h5", "/waterfall.csv", "/summary.json", "/report.html"})
       check_output("--out", *out + name, read, findings);
   if (const auto events = line.option("--events")) {
     check_output("--events", *events, read, findings);

@@ -10,11 +10,17 @@
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/model_list.hpp"
 #include "app/commands/run_request.hpp"
+#include "app/commands/sweep_request.hpp"
+#include "app/report/report_file.hpp"
+#include "app/report/report_page.hpp"
+#include "app/report/variants_report.hpp"
 #include "app/variants/ranks.hpp"
+#include "app/variants/variant_points.hpp"
 #include "app/variants/variant_table.hpp"
 #include "app/variants/variant_work.hpp"
 
@@ -31,37 +37,52 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
      "is for single runs: figures of a table are of the whole run; with --start static or periodic "
      "nothing has to settle"},
     {"--reduce", "is for single runs"},
-    {"--report", "is for one run"},
     {"--events", "is for one run"},
     {"--rainflow", "is for single runs"},
     {"--every", "is for single runs, which have a history"},
     {"--format", "is for single runs, which have a history"}};
 
-/// What of the folder keeps the study from being begun, or gone on with.
-void check_folder(const VariantStudy& study, const std::string& folder, bool resume) {
+}  // namespace
+
+void check_study_folder(const VariantStudy& study, const std::string& folder, bool resume) {
   const auto description = VariantStore::description_in(folder);
-  if (!description) return;
   std::vector<Finding> findings;
-  const std::string path = VariantStore::path_in(folder);
-  if (!resume) {
+  const auto refuse_others = [&](const std::string& path, const Json& then) {
+    for (const std::string& difference : differences(then, study.description()))
+      findings.push_back({path, "--resume", "", "", "cannot go on with another study: " + difference});
+  };
+  if (!description) {
+    if (const auto then = resume ? study_of_table(folder) : std::nullopt)
+      refuse_others(table_path(folder), *then);
+  } else if (resume) {
+    refuse_others(VariantStore::path_in(folder), Json::parse(*description, nullptr, false));
+  } else {
     const auto [done, all] = VariantStore::progress_in(folder);
     if (done == 0) return;
     const auto then = Json::parse(*description, nullptr, false);
     const std::uint64_t variants = then.is_object() ? then.value("variants", all) : all;
     const std::uint64_t finished =
         std::min(variants, done * (then.is_object() ? then.value("block", 1U) : 1U));
-    findings.push_back(
-        {path, "", "", "",
-         "holds " + std::to_string(finished) + " finished variants, of " + std::to_string(variants) +
-             ", of a study that did not come to its end: add --resume to go on with it, or remove "
-             "that file"});
-  } else {
-    for (const std::string& difference :
-         differences(Json::parse(*description, nullptr, false), study.description()))
-      findings.push_back({path, "--resume", "", "", "cannot go on with another study: " + difference});
+    findings.push_back({VariantStore::path_in(folder), "", "", "",
+                        "holds " + std::to_string(finished) + " finished variants, of " +
+                            std::to_string(variants) +
+                            ", of a study that did not come to its end: add --resume to go on with it, or "
+                            "remove that file"});
   }
   if (!findings.empty()) throw ModelError(std::move(findings));
 }
+
+VariantSummary finish_table(const VariantStudy& study, VariantStore& store, const std::string& folder) {
+  const VariantStatistics statistics = statistics_of(study, store);
+  VariantSummary summary = summary_of(study, statistics, store, folder);
+  write_variant_table(study, store, folder, json_text(summary.json));
+  write_file(folder, "variants", "json", json_text(summary.json));
+  sync_directory(folder);
+  store.remove();
+  return summary;
+}
+
+namespace {
 
 int thread_count_of(const CommandLine& line, const Ranks& ranks) {
   std::vector<Finding> findings;
@@ -72,17 +93,29 @@ int thread_count_of(const CommandLine& line, const Ranks& ranks) {
   return ranks.count() > 1 && !jobs ? 1 : threads;
 }
 
+/// The page of the table that is in the folder, where one is asked for.
+void write_page(std::optional<ReportFile>& report, const CommandLine& line, const VariantStudy& study,
+                const std::string& folder, const Json& summary) {
+  if (!report) return;
+  const Json data =
+      variants_report_data(study.request().model, summary, variant_points(study, folder), words_of(line));
+  report->commit(report_page({block_text(data)}, ReportPage::variants));
+}
+
 /// The work of the first rank, or of this process alone.
 int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks, bool& declined) {
   const std::string folder = *line.option("--out");
   const bool resume = line.list("--resume").has_value();
   const int threads = thread_count_of(line, ranks);
-  check_folder(study, folder, resume);
+  check_study_folder(study, folder, resume);
+  std::optional<ReportFile> report;
+  if (const auto file = line.option("--report")) report.emplace(*file);
   if (resume && !VariantStore::description_in(folder))
-    if (const auto then = study_of_table(folder); then && differences(*then, study.description()).empty()) {
+    if (study_of_table(folder)) {  // of this study
       const Json summary = summary_of_table(folder).value_or(Json::object());
-      print(line.json ? json_text(summary) : labelled("table", folder + "/variants.h5 is complete already"));
-      return summary.value("status", "") == "success" ? kSuccess : kNotTrusted;
+      write_page(report, line, study, folder, summary);
+      print(line.json ? json_text(summary) : labelled("table", table_path(folder) + " is complete already"));
+      return exit_code_of(summary);
     }
   watch_signals();
   VariantStore store(folder, study.description().dump(), study.store_shape(), resume);
@@ -103,16 +136,13 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
                  outcome.fault.empty() ? "interrupted" : ("ended: " + outcome.fault).c_str(), kept().c_str());
     return outcome.fault.empty() ? kInterrupted : kNotTrusted;
   }
-  const VariantStatistics statistics = statistics_of(study, store);
-  const VariantSummary summary = summary_of(study, statistics, store, folder);
+  VariantSummary summary;
   try {
-    write_variant_table(study, store, folder, json_text(summary.json));
-    write_file(folder, "variants", "json", json_text(summary.json));
-    sync_directory(folder);
+    summary = finish_table(study, store, folder);
   } catch (const OutputError& error) {
     throw OutputError(std::string(error.what()) + "; " + kept());
   }
-  store.remove();
+  write_page(report, line, study, folder, summary.json);
   std::string text = summary.text;
   if (outcome.computed > 0 && outcome.seconds > 0.0) {
     const int cores = threads * ranks.count();
@@ -153,13 +183,19 @@ VariantStudy study_of(const CommandLine& line) {
   if (!findings.empty()) throw ModelError(std::move(findings));
 
   CommandLine first = line;  // What is wrong with all variants is said once.
-  for (const char* option : {"--out", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
+  for (const char* option : {"--out", "--report", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
     first.options.erase(option);
   first.keeps_history = true;       // --record needs no file
   first.options["--table"] = {""};  // no method by trial, which may find another one another time
   const ParameterValues values = plan.parameters(0);
   first.parameters.insert(first.parameters.end(), values.begin(), values.end());
   RunRequest request = request_run(first);
+  if (const auto report = line.option("--report")) {
+    if (const auto why = why_no_report(*report))
+      findings.push_back({kCommandLine, "--report", *report, "", *why});
+    check_output("--report", *report, request.model.model_case.files, findings);
+    if (!findings.empty()) throw ModelError(std::move(findings));
+  }
   if (request.accuracy)
     throw ModelError(std::vector<Finding>{
         {kCommandLine, "--accuracy", "", "",

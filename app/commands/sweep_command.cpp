@@ -1,5 +1,7 @@
 #include <drev/core/units.hpp>
 
+#include <memory>
+
 #include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
 #include "app/base/progress.hpp"
@@ -47,6 +49,18 @@ std::vector<std::string> names_of(const Sections& sections) {
 
 }  // namespace
 
+namespace {
+
+/// In quotes where a shell would take it for something else.
+std::string in_shell(const std::string& value) {
+  const bool plain =
+      value.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.,:=/+-%@") ==
+      value.npos;
+  return plain ? value : "'" + join(split(value, '\''), "'\\''") + "'";
+}
+
+}  // namespace
+
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
@@ -78,20 +92,25 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
 
 std::string words_of(const CommandLine& line) {
   std::string words = std::string("drev ") + line.command->name + " " + line.model;
-  for (const auto& [option, values] : line.options) {
-    if (option == "--out" || option == "--report" || option == "--plugin") continue;
-    words += " " + option;
-    for (const OptionEntry& entry : line.command->options)
-      if (entry.name == option && entry.values != OptionEntry::Values::none) words += " " + join(values, ",");
+  for (const OptionEntry& entry : line.command->options) {
+    const std::string option = entry.name;
+    const auto values = line.options.find(option);
+    if (values == line.options.end() || option == "--out" || option == "--report" || option == "--plugin")
+      continue;
+    if (entry.values == OptionEntry::Values::again)
+      for (const std::string& value : values->second) words += " " + option + " " + in_shell(value);
+    else if (entry.values == OptionEntry::Values::none)
+      words += " " + option;
+    else
+      words += " " + option + " " + in_shell(join(values->second, ","));
   }
   return words;
 }
 
-namespace {
+namespace {}  // namespace
 
-/// A model with laws that are no straight lines, as it is.
-int sweep_branches(const CommandLine& line, const SweepRequest& request) {
-  std::vector<Finding> findings;
+NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequest& request,
+                                        std::vector<Finding>& findings) {
   NonlinearSweepOptions options;
   options.speeds = request.options.speeds;
   options.orders = request.options.orders;
@@ -101,6 +120,28 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
     options.turns = read_plain("--cycle", *turns, {1e-6, 1000.0}, findings);
   if (const auto tolerance = line.option("--tolerance"))
     options.tolerance = read_plain("--tolerance", *tolerance, {1e-12, 0.1}, findings);
+  const auto shown = std::make_shared<Progress>();
+  options.progress = [shown](double part) {
+    shown->update(part);
+    return !interrupted();
+  };
+  return options;
+}
+
+void refuse_nonlinear_options(const CommandLine& line) {
+  std::vector<Finding> findings;
+  for (const char* option : {"--cycle", "--tolerance"})
+    if (line.option(option))
+      findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
+  if (!findings.empty()) throw ModelError(std::move(findings));
+}
+
+namespace {
+
+/// A model with laws that are no straight lines, as it is.
+int sweep_branches(const CommandLine& line, const SweepRequest& request) {
+  std::vector<Finding> findings;
+  const NonlinearSweepOptions options = nonlinear_options(line, request, findings);
   if (request.absolute_sum)
     findings.push_back(
         {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
@@ -109,11 +150,6 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
     for (const char* name : {"/branches.csv", "/changes.csv"})
       check_output("--out", is_hdf5(*out) ? *out : *out + name, request.model.model_case.files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
-  Progress shown;
-  options.progress = [&](double part) {
-    shown.update(part);
-    return !interrupted();
-  };
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
@@ -141,11 +177,7 @@ int sweep_command(const CommandLine& line) {
       request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
   if (!request.options.close_contacts && !request.model.system.scalars().empty())
     return sweep_branches(line, request);
-  std::vector<Finding> findings;
-  for (const char* option : {"--cycle", "--tolerance"})
-    if (line.option(option))
-      findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
-  if (!findings.empty()) throw ModelError(std::move(findings));
+  refuse_nonlinear_options(line);
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);

@@ -4,6 +4,7 @@
 #include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
+#include <drev/models/modal_damping.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,26 +25,103 @@ constexpr std::size_t kMostParts = 300000;  // nodes and elements
 // Names are compared with so many at most: suggestions take time.
 constexpr std::size_t kMostCompared = 2000;
 
+void refuse_entry(ReadContext& context, const Position& at, const std::string& where,
+                  const std::string& sentence) {
+  context.findings.push_back(fault_at(at, where, sentence));
+}
+
+}  // namespace
+
+void BlockEntries::for_each(const Block& block, const Value& table, const Use& use) {
+  int first = 1, count = 1;
+  std::string counter = "i";
+  if (block.repeat != nullptr) {
+    // What is wrong with them is said once.
+    const std::size_t before = context_.findings.size();
+    const bool said = !seen_.insert(&block).second;
+    if (const Entry* e = block.repeat->find("counter")) {
+      if (e->value.is(Value::Kind::text) && !context_.scope.numbers.contains(e->value.text))
+        counter = e->value.text;
+      else
+        refuse_entry(context_, e->value.at, "repeat.counter",
+                     "must be a name that is no parameter, not " + kind_name(e->value));
+    }
+    if (const Entry* e = block.repeat->find("first"))
+      first = read_whole(e->value, -kMostRepeats, kMostRepeats, "repeat.first", context_).value_or(1);
+    if (const Entry* e = block.repeat->find("count"))
+      count = read_whole(e->value, 0, kMostRepeats, "repeat.count", context_).value_or(1);
+    if (said) context_.findings.resize(before);
+  }
+  for (int i = first; i < first + count; ++i) {
+    if (block.repeat != nullptr) context_.scope.numbers[counter] = i;
+    for (const Entry& entry : table.entries) {
+      if (too_many_faults()) break;
+      if (read_ >= kMostParts) {
+        if (!too_many_)
+          refuse_entry(context_, entry.at, entry.key,
+                       "a model file may have " + std::to_string(kMostParts) + " nodes and elements at most");
+        too_many_ = true;
+        break;
+      }
+      try {
+        const Entry* when = entry.value.is(Value::Kind::table) ? entry.value.find("when") : nullptr;
+        if (when == nullptr || is_wanted(*when, entry.key))
+          ++read_, use(entry, expand(entry.key, context_.scope));
+      } catch (const ExpressionError& error) {
+        refuse_entry(context_, entry.at, entry.key, error.sentence);
+      }
+    }
+  }
+  if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
+}
+
+/// Whether the condition of a node or element holds. One that is wrong is a finding, and holds.
+bool BlockEntries::is_wanted(const Entry& when, const std::string& name) {
+  const Value& value = when.value;
+  if (value.is(Value::Kind::boolean)) return value.flag;
+  if (!value.is(Value::Kind::text)) {
+    refuse_entry(context_, value.at, name + ".when",
+                 "must be a condition in quotes, true or false, not " + kind_name(value));
+    return true;
+  }
+  try {
+    return holds(value.text, context_.scope);
+  } catch (const ExpressionError& error) {
+    refuse_entry(context_, value.at, name + ".when", error.sentence);
+    return true;
+  }
+}
+
+/// Then the rest of the nodes and elements is not read.
+bool BlockEntries::too_many_faults() {
+  if (context_.findings.size() <= kMostFaults) return false;
+  remove_repeated(context_.findings);
+  return context_.findings.size() > kMostFaults;
+}
+
+namespace {
+
 class CaseReader {
  public:
   CaseReader(const Document& document, ReadContext& context)
-      : doc_(document), context_(context), model_(document.name) {}
+      : doc_(document), context_(context), entries_(context), model_(document.name) {}
 
   /// Nothing, and findings, if something is wrong.
   std::optional<ModelCase> read(const RunSection& run) {
     for (const Block& block : doc_.blocks)
       if (block.nodes != nullptr)
-        for_each(block, *block.nodes,
-                 [this](const Entry& entry, const std::string& name) { add_node(entry, name); });
+        entries_.for_each(block, *block.nodes,
+                          [this](const Entry& entry, const std::string& name) { add_node(entry, name); });
     for (const Block& block : doc_.blocks)
       if (block.elements != nullptr)
-        for_each(block, *block.elements,
-                 [this](const Entry& entry, const std::string& name) { add_element(entry, name); });
+        entries_.for_each(block, *block.elements,
+                          [this](const Entry& entry, const std::string& name) { add_element(entry, name); });
     if (!context_.findings.empty()) {
       for (const ElementInstance& placement : model_.element_instances()) check_alone(placement);
       return {};
     }
     try {
+      for (const auto& [name, params] : modal_damping_) add_modal_damping(model_, name, params);
       const System system = model_.build();
       check_controllers(system);
       ModelCase model_case{.model = std::move(model_), .note = doc_.note};
@@ -60,74 +138,6 @@ class CaseReader {
  private:
   void refuse(const Position& at, const std::string& where, const std::string& sentence) {
     context_.findings.push_back(fault_at(at, where, sentence));
-  }
-
-  /// Each entry of a block's table with its name, as often as the block is repeated.
-  template <class Use>
-  void for_each(const Block& block, const Value& table, const Use& use) {
-    int first = 1, count = 1;
-    std::string counter = "i";
-    if (block.repeat != nullptr) {
-      // What is wrong with them was said where the nodes were read.
-      const std::size_t before = context_.findings.size();
-      const bool said = block.nodes != nullptr && &table == block.elements;
-      if (const Entry* e = block.repeat->find("counter")) {
-        if (e->value.is(Value::Kind::text) && !context_.scope.numbers.contains(e->value.text))
-          counter = e->value.text;
-        else
-          refuse(e->value.at, "repeat.counter",
-                 "must be a name that is no parameter, not " + kind_name(e->value));
-      }
-      if (const Entry* e = block.repeat->find("first"))
-        first = read_whole(e->value, -kMostRepeats, kMostRepeats, "repeat.first", context_).value_or(1);
-      if (const Entry* e = block.repeat->find("count"))
-        count = read_whole(e->value, 0, kMostRepeats, "repeat.count", context_).value_or(1);
-      if (said) context_.findings.resize(before);
-    }
-    for (int i = first; i < first + count; ++i) {
-      if (block.repeat != nullptr) context_.scope.numbers[counter] = i;
-      for (const Entry& entry : table.entries) {
-        if (too_many_faults()) break;
-        if (nodes_.size() + elements_.size() >= kMostParts) {
-          if (!too_many_)
-            refuse(entry.at, entry.key,
-                   "a model file may have " + std::to_string(kMostParts) + " nodes and elements at most");
-          too_many_ = true;
-          break;
-        }
-        try {
-          const Entry* when = entry.value.is(Value::Kind::table) ? entry.value.find("when") : nullptr;
-          if (when == nullptr || is_wanted(*when, entry.key)) use(entry, expand(entry.key, context_.scope));
-        } catch (const ExpressionError& error) {
-          refuse(entry.at, entry.key, error.sentence);
-        }
-      }
-    }
-    if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
-  }
-
-  /// Whether the condition of a node or element holds. One that is wrong is a finding, and holds.
-  bool is_wanted(const Entry& when, const std::string& name) {
-    const Value& value = when.value;
-    if (value.is(Value::Kind::boolean)) return value.flag;
-    if (!value.is(Value::Kind::text)) {
-      refuse(value.at, name + ".when",
-             "must be a condition in quotes, true or false, not " + kind_name(value));
-      return true;
-    }
-    try {
-      return holds(value.text, context_.scope);
-    } catch (const ExpressionError& error) {
-      refuse(value.at, name + ".when", error.sentence);
-      return true;
-    }
-  }
-
-  /// Then the rest of the nodes and elements is not read.
-  bool too_many_faults() {
-    if (context_.findings.size() <= kMostFaults) return false;
-    remove_repeated(context_.findings);
-    return context_.findings.size() > kMostFaults;
   }
 
   bool is_new(const std::map<std::string, Part>& parts, const Entry& entry, const std::string& where,
@@ -210,7 +220,13 @@ class CaseReader {
       });
       for (const char* key : {"node", "nodes"})
         if (const Entry* e = table.find(key)) part.fields[key] = e->value.at;
-      if (right) model_.add(name, {nodes.begin(), nodes.end()}, element);
+      if (!right) return;
+      if (const auto* modal = dynamic_cast<const ModalDamping*>(element.get())) {
+        if (!nodes.empty()) return refuse(table.at, where, "takes no node: it damps the whole train");
+        modal_damping_.emplace_back(name, modal->params());  // once the train is whole
+      } else {
+        model_.add(name, {nodes.begin(), nodes.end()}, element);
+      }
     } catch (const ModelError& error) {
       for (const Finding& finding : error.findings())
         context_.findings.push_back(placed(finding, part, where));
@@ -265,10 +281,11 @@ class CaseReader {
 
   const Document& doc_;
   ReadContext& context_;
+  BlockEntries entries_;
   Model model_;
   std::map<std::string, Part> nodes_, elements_;
   std::vector<std::string> known_nodes_;
-  bool too_many_ = false;
+  std::vector<std::pair<std::string, ModalDamping::Params>> modal_damping_;
 };
 
 }  // namespace

@@ -2,6 +2,10 @@
 /// From the sections of a model file, with values for its parameters, to a model case.
 #include <drev/app/model_file/model_file.hpp>
 
+#include <functional>
+#include <set>
+#include <string>
+
 #include "app/model_file/document.hpp"
 #include "app/model_file/read_values.hpp"
 
@@ -11,6 +15,25 @@ struct FileCase {
   std::optional<ModelCase> model_case;  ///< none where something is wrong
   RunOptions options;
   std::vector<Finding> findings;
+};
+
+/// Goes through the nodes and elements of blocks as a model file means them: as often as the block is repeated, with the
+/// counter in the context's scope, and without those whose condition does not hold.
+class BlockEntries {
+ public:
+  using Use = std::function<void(const Entry& entry, const std::string& name)>;
+  explicit BlockEntries(ReadContext& context) : context_(context) {}
+  /// Faults go to the context's findings; where there are too many, or too many entries, the rest is left out.
+  void for_each(const Block& block, const Value& table, const Use& use);
+
+ private:
+  bool is_wanted(const Entry& when, const std::string& name);
+  bool too_many_faults();
+
+  ReadContext& context_;
+  std::set<const Block*> seen_;
+  std::size_t read_ = 0;
+  bool too_many_ = false;
 };
 
 /// What values of the file are read with.

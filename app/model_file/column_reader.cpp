@@ -9,7 +9,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kMostFaults = 20;  // of one array
+constexpr std::size_t kMostFaultsOfArray = 20;  // of one array
 
 class ColumnReader {
  public:
@@ -51,7 +51,7 @@ class ColumnReader {
       column.values->clear();
       const std::size_t before = context_.findings.size();
       for (const Value& item : array.items) {
-        if (context_.findings.size() - before >= kMostFaults) break;
+        if (context_.findings.size() - before >= kMostFaultsOfArray) break;
         if (const auto read = read_number(item, found->unit, where_ + "." + found->entry->key, context_))
           column.values->push_back(*read * found->factor);
       }

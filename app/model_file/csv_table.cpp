@@ -9,7 +9,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kMostFindings = 20;
+constexpr std::size_t kMostBadRows = 20;
 
 struct Cell {
   std::string text{};
@@ -107,7 +107,7 @@ CsvTable read_csv(const std::string& path, const Position& named_at) {
   std::vector<Cell> cells;
   std::string fault;
   std::size_t count = 0;
-  while (findings.size() < kMostFindings && fault.empty() && rows.next(cells, fault)) {
+  while (findings.size() < kMostBadRows && fault.empty() && rows.next(cells, fault)) {
     const bool header = table.names.empty();
     if (!fault.empty()) {
       refuse(cells.back(), header ? "header" : "row", fault);

@@ -69,6 +69,21 @@ void list(Fields& f, RayleighDamping::Params& p) {
     f.guarded([&] { p = RayleighDamping::stiffness_proportional(hz(f_1), xi_1); });
 }
 
+void list(Fields& f, DeadBandCoupling::Params& p) {
+  f.number({"stiffness", D::torsional_stiffness, D::stiffness}, p.stiffness, Need::required);
+  f.number({"gap", D::angle, D::length}, p.gap);
+  f.number({"damping", D::torsional_damping, D::damping}, p.damping);
+  int law = static_cast<int>(p.damping_law);
+  f.choice("damping_law", {"proportional", "limited", "contact_only", "always"}, law);
+  p.damping_law = static_cast<MeshDamping>(law);
+  f.number({"reference_penetration", D::angle, D::length}, p.reference_penetration);
+}
+
+void list(Fields& f, ModalDamping::Params& p) {
+  f.number({"ratio", D::none}, p.ratio);
+  if (f.reading() || !p.ratios.empty()) f.columns("by_mode", {{{"ratio", D::none}, &p.ratios}});
+}
+
 void list(Fields& f, PolylineSpring::Params& p) {
   int given = f.columns("points", {{kDeflection, &p.x}, {kTorque, &p.y}}) ? 1 : 0;
   f.number(kDamping, p.damping);
@@ -143,8 +158,11 @@ std::vector<ElementType>& table() {
                                         row<Dashpot>("dashpot"),
                                         row<GroundSpring>("ground_spring"),
                                         row<RayleighDamping>("rayleigh_damping"),
+                                        row<ModalDamping>("modal_damping"),
                                         row<PolylineSpring>("polyline_spring"),
+                                        row<DeadBandCoupling>("dead_band_coupling"),
                                         row<GearMesh>("gear_mesh"),
+                                        row<LateralGearMesh>("lateral_gear_mesh"),
                                         row<IdealGear>("ideal_gear"),
                                         row<AppliedTorque>("applied_torque"),
                                         row<CamTorque>("cam_torque"),

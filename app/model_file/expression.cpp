@@ -13,7 +13,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kDeepest = 50;
+constexpr int kDeepestNesting = 50;
 constexpr std::size_t kLongest = 1000;
 
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -130,7 +130,7 @@ class Parser {
   }
 
   Value sum() {
-    if (++depth_ > kDeepest) fail("is nested too deeply");
+    if (++depth_ > kDeepestNesting) fail("is nested too deeply");
     Value left = product();
     for (char op = next(); op == '+' || op == '-'; op = next()) {
       ++i_;
@@ -149,7 +149,7 @@ class Parser {
     return left;
   }
   Value sign() {
-    if (++depth_ > kDeepest) fail("is nested too deeply");
+    if (++depth_ > kDeepestNesting) fail("is nested too deeply");
     bool minus = false;
     for (char c = next(); c == '-' || c == '+'; c = next()) {
       if (c == '-') minus = !minus;
@@ -205,7 +205,7 @@ class Parser {
     return false;
   }
   bool comparison() {
-    if (++depth_ > kDeepest) fail("is nested too deeply");
+    if (++depth_ > kDeepestNesting) fail("is nested too deeply");
     bool result = false;
     const std::size_t begin = i_;
     if (take_word("not")) {

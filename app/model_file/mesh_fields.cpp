@@ -119,6 +119,7 @@ void list_gear(Fields& f, GearDrawing& drawing, std::size_t i) {
   f.number({"tip_chamfer", D::length}, g.tip_chamfer);
   f.number({"width", D::length}, g.width);
   f.number({"bore_diameter", D::length}, g.bore_diameter);
+  f.number({"outer_diameter", D::length}, g.outer_diameter);
   f.number({"rim_inner_diameter", D::length}, g.rim_inner_diameter);
   f.number({"hub_diameter", D::length}, g.hub_diameter);
   f.number({"web_thickness", D::length}, g.web_thickness);
@@ -159,6 +160,7 @@ void list(Fields& f, GearDrawing& drawing) {
   f.number({"housing_temperature_rise_K", D::none}, drawing.tolerances.housing_temperature_rise);
   f.number({"housing_expansion_per_K", D::none}, drawing.tolerances.housing_expansion);
   f.number({"backlash_percentile", D::none}, drawing.backlash_percentile);
+  f.columns("loads", {{{"load", D::stiffness}, &drawing.loads}});
   f.flag("tangent", drawing.tangent);
   f.flag("corner_contact", drawing.cycle.corner_contact);
   f.flag("windup", drawing.cycle.windup);
@@ -190,19 +192,29 @@ void list(Fields& f, GearMesh::Params& p) {
   f.choice("damping_law", laws, law);
   p.damping_law = static_cast<MeshDamping>(law);
   f.number({"reference_penetration", D::length}, p.reference_penetration);
+  f.columns("stiffening", {{{"penetration", D::length}, &p.stiffening.penetrations},
+                           {{"slope", D::none}, &p.stiffening.slopes}});
   list_error(f, p.transmission_error);
   f.number({"mesh_phase", D::mesh_periods}, p.mesh_phase);
   if (!drawn) return;
   if (!std::isnan(p.base_radius_1) || !std::isnan(p.base_radius_2) || !std::isnan(p.module) ||
-      !std::isnan(p.pressure_angle) || p.teeth_1 != 0 || p.teeth_2 != 0)
-    f.fault("has geometry beside base radii, module, teeth or pressure_angle; the geometry alone says them");
+      !std::isnan(p.pressure_angle) || p.teeth_1 != 0 || p.teeth_2 != 0 || p.internal)
+    f.fault(
+        "has geometry beside base radii, module, teeth, pressure_angle or internal; the geometry alone says "
+        "them");
   if (p.transmission_error.varies() && drawn->transmission_error.varies())
     f.fault("has a transmission error beside the tip relief of its geometry; give one of them");
   p.base_radius_1 = drawn->base_radius_1;
   p.base_radius_2 = drawn->base_radius_2;
   p.teeth_1 = drawn->teeth_1;
   p.teeth_2 = drawn->teeth_2;
+  p.internal = drawn->internal;
   p.stiffness = drawn->stiffness;
+  if (!drawn->stiffening.slopes.empty()) {
+    if (!p.stiffening.slopes.empty())
+      f.fault("has stiffening beside the loads of its geometry; give one of them");
+    p.stiffening = drawn->stiffening;
+  }
   if (drawn->transmission_error.varies()) p.transmission_error = drawn->transmission_error;
 }
 

@@ -111,14 +111,14 @@ class DepthScan {
   int line_ = 1;
 };
 
-constexpr std::size_t kMostFindings = 20;
+constexpr std::size_t kMostBadTexts = 20;
 
 /// Names are printed, on terminals too: what steers one is refused. A text may have line ends and tabs.
 void check_characters(const Value& value, const std::string& where, std::vector<Finding>& findings) {
   const auto check = [&](const Position& at, const std::string& text, bool lines) {
     for (std::size_t i = 0; i < text.size(); ++i) {
       if (control_bytes(text, i) == 0 || (lines && (text[i] == '\n' || text[i] == '\t'))) continue;
-      if (findings.size() < kMostFindings)
+      if (findings.size() < kMostBadTexts)
         findings.push_back(fault_at(at, where, "has a control character, which is not allowed: " + text));
       return;
     }

@@ -11,9 +11,11 @@ namespace {
 
 using D = Dimension;
 
-}  // namespace
-
-namespace {
+void list_gate(Fields& f, SpeedGate& gate) {
+  f.number({"from_speed", D::angular_speed, D::speed}, gate.from_speed);
+  f.number({"to_speed", D::angular_speed, D::speed}, gate.to_speed);
+  f.number({"speed_ramp", D::angular_speed, D::speed}, gate.speed_ramp);
+}
 
 /// The firing angles, or the order that they follow from.
 void list_firing(Fields& f, EngineCylinders::Params& p) {
@@ -54,6 +56,7 @@ void list_gas(Fields& f, GasPressure::Params& p) {
   if (f.reading() || !p.peak_speed.empty())
     f.columns("peak_pressure", {{speed, &p.peak_speed}, {pressure, &p.peak_pressure}});
   f.number({"reference_pressure", D::pressure}, p.reference_pressure);
+  list_gate(f, p.firing);
 }
 
 }  // namespace
@@ -65,6 +68,7 @@ void list(Fields& f, EngineCylinders::Params& p) {
   f.number({"oscillating_mass", D::mass}, p.oscillating_mass);
   f.number({"rotating_mass", D::mass}, p.rotating_mass);
   f.flag("mean_oscillating_inertia", p.mean_oscillating_inertia);
+  f.flag("varying_inertia", p.varying_inertia);
   f.whole("strokes", p.strokes);
   list_firing(f, p);
   list_gas(f, p.gas);
@@ -85,6 +89,16 @@ void list_viscoelastic(Fields& f, ViscoelasticStiffness::Params& p) {
     f.columns("by_frequency", {{{"frequency", D::frequency}, &p.frequencies},
                                {{"stiffness", D::torsional_stiffness}, &p.stiffnesses},
                                {{"loss_factor", D::none}, &p.loss_factors}});
+  const auto list_table = [&](const char* name, const Quantity& argument, ViscoelasticStiffness::Table& t) {
+    if (f.reading() || !t.at.empty())
+      f.columns(name, {{argument, &t.at},
+                       {{"stiffness", D::torsional_stiffness}, &t.stiffnesses},
+                       {{"loss_factor", D::none}, &t.loss_factors}});
+  };
+  list_table("by_mean_torque", {"mean_torque", D::torque}, p.by_mean_torque);
+  list_table("by_amplitude", {"amplitude", D::angle}, p.by_amplitude);
+  f.number({"at_mean_torque", D::torque}, p.at_mean_torque);
+  f.number({"at_amplitude", D::angle}, p.at_amplitude);
   f.number({"lowest_frequency", D::frequency}, p.lowest_frequency);
   f.number({"highest_frequency", D::frequency}, p.highest_frequency);
   f.whole("branches", p.branches);
@@ -134,6 +148,7 @@ void list(Fields& f, Propeller::Params& p) {
 void list(Fields& f, TorqueCurve::Params& p) {
   f.columns("curve", {{{"speed", D::angular_speed}, &p.speeds}, {{"torque", D::torque}, &p.torques}});
   f.number({"scale", D::none}, p.scale);
+  list_gate(f, p.gate);
 }
 
 void list(Fields& f, TorqueFunction::Params& p) {
@@ -147,9 +162,7 @@ void list(Fields& f, TorqueFunction::Params& p) {
   const std::vector<FormulaVariable> of_moving{
       {"position_m", 0, 1.0}, {"speed_m_per_s", 1, 1.0}, {"time_s", 2, 1.0}};
   f.formula("expression", turns ? of_turning : of_moving, turns ? "Nm" : "N", p.formula);
-  f.number({"from_speed", D::angular_speed, D::speed}, p.from_speed);
-  f.number({"to_speed", D::angular_speed, D::speed}, p.to_speed);
-  f.number({"speed_ramp", D::angular_speed, D::speed}, p.speed_ramp);
+  list_gate(f, p.gate);
 }
 
 void list(Fields& f, Generator::Params& p) {
@@ -268,6 +281,17 @@ void list(Fields& f, DryFriction::Params& p) {
   if ((read || p.engagement) &&
       f.columns("engagement", {{{"time", D::time}, &times}, {{"part", D::none}, &values}}))
     p.engagement = TimeTable(times, values);
+  if (!read && !p.engagement_formula) return;
+  TimeCurve::Params curve = p.engagement_formula ? p.engagement_formula->params() : TimeCurve::Params{};
+  if (f.group("engagement_formula", [&](Fields& g) {
+        g.formula("expression", {{"time_s", 0, 1.0}}, "", curve.formula);
+        g.number({"from", D::time}, curve.from, Need::required);
+        g.number({"to", D::time}, curve.to, Need::required);
+        if (read || !curve.breakpoints.empty())
+          g.columns("breakpoints", {{{"time", D::time}, &curve.breakpoints}});
+        g.number({"accuracy", D::none}, curve.accuracy);
+      }))
+    p.engagement_formula = TimeCurve(std::move(curve));
 }
 
 void list(Fields& /*f*/, Freewheel::Params& /*p*/) {}

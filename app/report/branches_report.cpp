@@ -33,16 +33,8 @@ Json limits_array(const NonlinearSweep& sweep, const std::vector<DrawnLimit>& li
 Json branches_report_data(const ModelRequest& model, const NonlinearSweepOptions& options,
                           const NonlinearSweep& sweep, const std::string& words,
                           const std::vector<DrawnLimit>& limits) {
-  Json data;
-  data["kind"] = "sweep";
-  add_origin(data);
-  data["command"] = words + model_options(model.parameters);
-  data["title"] = "periodic motions over speed";
-  data["about"] = model.entry->summary.empty() ? model.model_case.note : model.entry->summary;
-  data["model_name"] = model.entry->name;
+  Json data = page_data("sweep", "periodic motions over speed", model, words);
   data["notes"] = branches_notes(options, sweep);
-  data["inputs"] = inputs_array(model.parameters);
-  data["model"] = model_object(model.model_case.model, model.system);
   data["shaft"] = reference_name(model.model_case.model);
   data["limits"] = limits_array(sweep, limits);
   data["result"] = branches_object(model, options, sweep);

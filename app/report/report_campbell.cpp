@@ -47,13 +47,16 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
 
   Json list = Json::array();
   for (const double order : shown) list.push_back({{"order", order}, {"of", "loads"}});
-  for (const ElementInstance& placement : system.element_instances())
-    if (const auto* mesh = dynamic_cast<const GearMesh*>(placement.element.get());
-        mesh != nullptr && mesh->params().teeth_1 > 0) {
+  for (const ElementInstance& placement : system.element_instances()) {
+    const auto* mesh = dynamic_cast<const GearMesh*>(placement.element.get());
+    if (const auto* lateral = dynamic_cast<const LateralGearMesh*>(placement.element.get()))
+      mesh = &lateral->mesh();
+    if (mesh != nullptr && mesh->params().teeth_1 > 0) {
       const int gear = system.node_of(placement.nodes.front());
       list.push_back(
           {{"order", mesh->params().teeth_1 * std::abs(system.ratio(gear))}, {"of", placement.name}});
     }
+  }
   if (all.size() > kCrossings) all.resize(kCrossings);
   Json crossings = Json::array();
   for (const Crossing& c : all)

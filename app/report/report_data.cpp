@@ -77,6 +77,32 @@ Json history_object(const ReportHistory& history) {
   return object;
 }
 
+/// Line by line, each over all windows.
+Json waterfall_object(const OrderTracks& tracks) {
+  if (tracks.time.size() < 2) return nullptr;
+  Json channels = Json::array(), speeds = Json::array();
+  for (const double speed : tracks.speed) speeds.push_back(to_rpm(speed));
+  for (std::size_t c = 0; c < tracks.channels.size(); ++c) {
+    std::vector<float> values;
+    for (const std::vector<double>& line : tracks.amplitude[c])
+      for (const double value : line) values.push_back(static_cast<float>(value));
+    channels.push_back(
+        {{"name", tracks.channels[c]}, {"unit", tracks.units[c]}, {"amplitude", base64(values)}});
+  }
+  return {{"orders", tracks.orders}, {"speed_rpm", std::move(speeds)}, {"channels", std::move(channels)}};
+}
+
+/// The nominal speed over the time, for histories over the speed.
+Json speeds_object(const System& system, double end) {
+  constexpr int kPoints = 512;
+  Json times = Json::array(), speeds = Json::array();
+  for (int i = 0; i <= kPoints; ++i) {
+    times.push_back(end * i / kPoints);
+    speeds.push_back(to_rpm(std::abs(system.reference()->at(end * i / kPoints).rate)));
+  }
+  return {{"time_s", std::move(times)}, {"speed_rpm", std::move(speeds)}};
+}
+
 }  // namespace
 
 double report_interval(const RunRequest& request, const Method& method) {
@@ -111,6 +137,8 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   }
   highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
   data["history"] = history_object(history);
+  data["waterfall"] = result.run_up ? waterfall_object(result.run_up->waterfall) : Json();
+  data["speeds"] = result.run_up ? speeds_object(m.system, result.summary.t_end) : Json();
   // A run-up has its orders over the speed instead (result.run_up).
   data["spectra"] = result.run_up
                         ? Json()

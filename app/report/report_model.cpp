@@ -5,10 +5,10 @@
 #include <drev/core/law/friction.hpp>
 #include <drev/core/scalar_force.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense/factorization.hpp"
 #include "core/element_parts.hpp"
 
 namespace drev::app {
@@ -78,7 +78,7 @@ class Drawing {
     const Eigen::MatrixXd within = terms.stiffness(inner, inner);
     const Eigen::VectorXd across = terms.stiffness(inner, ends)(Eigen::all, 1);
     Json& found = joint("shaft", ends);
-    found["stiffness"] = terms.stiffness(ends[1], ends[1]) - across.dot(within.ldlt().solve(across));
+    found["stiffness"] = terms.stiffness(ends[1], ends[1]) - across.dot(ldlt_solve(within, across));
     if (const double c = -terms.damping(ends[0], ends[1]); c != 0.0) found["damping"] = c;
     return true;
   }

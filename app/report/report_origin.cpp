@@ -6,6 +6,8 @@
 #include <chrono>
 #include <ctime>
 
+#include "app/report/report_model.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -47,6 +49,20 @@ std::string model_options(const Parameters& parameters) {
       text += " --set " + parameters.known()[i].name + "=" + parameters.values()[i];
   for (const std::string& plugin : loaded_plugins()) text += " --plugin " + plugin;
   return text;
+}
+
+Json page_data(const std::string& kind, const std::string& title, const ModelRequest& model,
+               const std::string& words) {
+  Json data;
+  data["kind"] = kind;
+  add_origin(data);
+  data["command"] = words + model_options(model.parameters);
+  data["title"] = title;
+  data["about"] = model.entry->summary.empty() ? model.model_case.note : model.entry->summary;
+  data["model_name"] = model.entry->name;
+  data["inputs"] = inputs_array(model.parameters);
+  data["model"] = model_object(model.model_case.model, model.system);
+  return data;
 }
 
 }  // namespace drev::app

@@ -1,6 +1,7 @@
 #pragma once
 /// What the data blocks of all reports say of where they come from.
 #include "app/base/json_values.hpp"
+#include "app/run/model_request.hpp"
 
 namespace drev::app {
 
@@ -12,5 +13,10 @@ Json inputs_array(const Parameters& parameters);
 
 /// " --set NAME=VALUE" of each parameter that is not at its default, and " --plugin FILE" of each loaded.
 std::string model_options(const Parameters& parameters);
+
+/// What the pages of sweeps and studies begin with: origin, command (words and the model's options), title, and the
+/// model with its inputs.
+Json page_data(const std::string& kind, const std::string& title, const ModelRequest& model,
+               const std::string& words);
 
 }  // namespace drev::app

@@ -11,7 +11,7 @@ namespace drev::data {
 extern const std::string_view report_html, report_css, dygraph_css, dygraph_js, report_js_data,
     report_js_format, report_js_page, report_js_train, report_js_charts, report_js_save, report_js_bars,
     report_js_tables, report_js_modes, report_js_time, report_js_spectra, report_js_main, report_js_sweep,
-    report_js_sweep_main, report_js_class, report_js_shaft, report_js_branches;
+    report_js_sweep_main, report_js_class, report_js_shaft, report_js_branches, report_js_variants;
 }  // namespace drev::data
 
 namespace drev::app {
@@ -54,6 +54,15 @@ PageParts parts_of(ReportPage kind) {
          {"inputs", "Inputs"}},
         {data::report_js_format, data::report_js_page, data::report_js_train, data::report_js_save,
          data::report_js_charts, data::report_js_bars, data::report_js_sweep, data::report_js_sweep_main}};
+  if (kind == ReportPage::variants)
+    return {{{"figures", "Results"},
+             {"histograms", "Distributions"},
+             {"sensitivity", "Sobol indices"},
+             {"scatter", "Figures over parameters"},
+             {"model", "Model"},
+             {"inputs", "Inputs"}},
+            {data::report_js_format, data::report_js_page, data::report_js_train, data::report_js_save,
+             data::report_js_charts, data::report_js_variants}};
   if (kind == ReportPage::branches)
     return {{{"figures", "Results"},
              {"model", "Model"},

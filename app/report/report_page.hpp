@@ -1,6 +1,6 @@
 #pragma once
-/// report.html: one self-contained page, without network, made of the data blocks of one run or of two, or of one
-/// sweep, the page's text, style and program (app/report/page/) and the chart library (dygraphs).
+/// report.html: one self-contained page, without network, made of the data blocks of one run or of two, of one
+/// sweep or of one study of variants, the page's text, style and program (app/report/page/) and the chart library (dygraphs).
 #include <string>
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace drev::app {
 
-enum class ReportPage { run, sweep, branches, judged, shaft };
+enum class ReportPage { run, sweep, branches, judged, shaft, variants };
 
 /// blocks: the text of one or two data blocks of runs (report_data.hpp), or of one sweep (sweep_report.hpp).
 std::string report_page(const std::vector<std::string>& blocks, ReportPage kind = ReportPage::run);

@@ -1,10 +1,12 @@
 #include "app/report/run_files.hpp"
 
 #include <drev/core/channel.hpp>
+#include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "app/base/output_file.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/report/report_data.hpp"
 #include "app/report/report_page.hpp"
@@ -25,6 +27,21 @@ std::vector<std::string> report_channels(const RunRequest& request) {
     if (meshes++ < kMeshes && std::find(names.begin(), names.end(), channel.name()) == names.end())
       names.push_back(channel.name());
   return names;
+}
+
+/// A row a window and order.
+std::string waterfall_as_csv(const OrderTracks& tracks) {
+  std::string text = "time_s,speed_rpm,order";
+  for (const std::string& channel : tracks.channels) text += "," + channel;
+  text += "\n";
+  for (std::size_t w = 0; w < tracks.time.size(); ++w)
+    for (std::size_t k = 0; k < tracks.orders.size(); ++k) {
+      text +=
+          to_text(tracks.time[w]) + "," + to_text(to_rpm(tracks.speed[w])) + "," + to_text(tracks.orders[k]);
+      for (const auto& channel : tracks.amplitude) text += "," + to_text(channel[k][w]);
+      text += "\n";
+    }
+  return text;
 }
 
 }  // namespace
@@ -110,6 +127,8 @@ void RunFiles::write_summary(const RunResult& result, bool commit) {
   summary_->replace(summary);
   if (!commit) return;
   summary_->commit();
+  if (result.run_up)
+    write_file(*request_.out, "waterfall", "csv", waterfall_as_csv(result.run_up->waterfall));
   if (!request_.hdf5) return note_old_hdf5();
   std::vector<HistoryColumn> columns;
   for (const Channel& channel : find_channels(request_.model.system, request_.record, OverRun::taken))

@@ -114,17 +114,9 @@ Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, co
                        const std::string& words, const std::vector<DrawnLimit>& limits,
                        const std::vector<SweepBeside>& beside) {
   const ModelRequest& m = request.model;
-  Json data;
-  data["kind"] = "sweep";
-  add_origin(data);
-  data["command"] = words + model_options(m.parameters);
-  data["title"] = title;
-  data["about"] = m.entry->summary.empty() ? m.model_case.note : m.entry->summary;
-  data["model_name"] = m.entry->name;
+  Json data = page_data("sweep", title, m, words);
   data["contact"] = request.options.close_contacts ? Json("closed") : Json();
   data["notes"] = sweep_notes(request, sweep);
-  data["inputs"] = inputs_array(m.parameters);
-  data["model"] = model_object(m.model_case.model, m.system);
   data["shaft"] = reference_name(m.model_case.model);
   data["criticals_note"] = text_or_null(sweep.modes_note);
   data["campbell"] = sweep.modes.lambda.size() > 0 ? campbell_object(request, sweep) : Json();

@@ -24,15 +24,36 @@ std::string state_of(const SweptMotion& motion) {
   return !motion.judged ? "" : motion.stable ? "stable" : "unstable";
 }
 
+/// Where stability changes between two motions of a branch that follow each other: the located change next to the
+/// stable one; without one, the stable motion.
+double edge_of_stability(const NonlinearSweep& sweep, int branch, double stable, double unstable) {
+  double edge = stable, nearest = std::abs(unstable - stable);
+  for (const SweptChange& change : sweep.changes) {
+    if (change.branch != branch || change.kind == BranchChange::contact) continue;
+    const double distance = std::abs(change.speed - stable);
+    if ((change.speed - stable) * (change.speed - unstable) > 0.0 || distance > nearest) continue;
+    edge = change.speed, nearest = distance;
+  }
+  return edge;
+}
+
 /// "810 to 1150 rpm" of the stable stretches of a branch, in the order of its arc.
-std::string stable_text(const SweptBranch& branch) {
+std::string stable_text(const NonlinearSweep& sweep, std::size_t number) {
+  const SweptBranch& branch = sweep.branches[number];
+  const auto speed = [&](std::size_t motion) { return branch.motions[motion].speed; };
+  const auto b = static_cast<int>(number);
   std::vector<std::string> stretches;
   for (std::size_t i = 0; i < branch.motions.size();) {
     std::size_t end = i;
     while (end < branch.motions.size() && branch.motions[end].stable) ++end;
-    if (end > i)
-      stretches.push_back(short_digits(to_rpm(branch.motions[i].speed), kCurveDigits) + " to " +
-                          short_digits(to_rpm(branch.motions[end - 1].speed), kCurveDigits));
+    if (end > i) {
+      const double first = i > 0 ? edge_of_stability(sweep, b, speed(i), speed(i - 1)) : speed(i);
+      const double last = end < branch.motions.size()
+                              ? edge_of_stability(sweep, b, speed(end - 1), speed(end))
+                              : speed(end - 1);
+      stretches.push_back(short_digits(to_rpm(first), kCurveDigits) + " to " +
+                          short_digits(to_rpm(last), kCurveDigits));
+    }
     i = std::max(end, i + 1);
   }
   if (!branch.motions.empty() && !branch.motions.front().judged) return "not judged";
@@ -42,8 +63,8 @@ std::string stable_text(const SweptBranch& branch) {
 std::string branches_table(const NonlinearSweep& sweep) {
   std::vector<std::vector<std::string>> rows{{"curve", "turns a cycle", "stable [rpm], along it"}};
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
-    rows.push_back({std::to_string(b + 1), short_digits(sweep.branches[b].turns, kFigureDigits),
-                    stable_text(sweep.branches[b])});
+    rows.push_back(
+        {std::to_string(b + 1), short_digits(sweep.branches[b].turns, kFigureDigits), stable_text(sweep, b)});
   return columns_text(rows);
 }
 
@@ -95,7 +116,7 @@ std::string runs_table(const NonlinearSweep& sweep) {
       {"run at [rpm]", "cycles", "section", "mean", "+-", "deviation", "lowest", "highest"}};
   for (const SweptRun& run : sweep.runs) {
     if (!run.reason.empty()) {
-      text += wrap("No run at " + rpm_text(run.speed) + " rpm: " + run.reason + ".", 0);
+      text += wrap("No statistics at " + rpm_text(run.speed) + " rpm: " + run.reason + ".", 0);
       continue;
     }
     for (std::size_t c = 0; c < sweep.sections.size(); ++c) {

@@ -97,7 +97,13 @@ Json case_object(const ClassCase& c) {
           {"sections", std::move(sections)},
           {"chatter", std::move(chatter)},
           {"accepted", c.judgement.accepted()},
-          {"not_judged", c.judgement.not_judged}};
+          {"not_judged", c.judgement.not_judged},
+          {"notes", c.notes}};
+}
+
+/// Contacts are taken as closed, or there are none.
+bool linear_contacts(const SweepRequest& request) {
+  return request.options.close_contacts || request.model.system.scalars().empty();
 }
 
 std::string case_text(const ClassCase& c) {
@@ -137,11 +143,14 @@ std::string case_text(const ClassCase& c) {
         wrap(c.sweep.sections[static_cast<std::size_t>(range.section)].name +
                  ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
                  ", up to " + digits(range.range.worst, 3) + " times at " +
-                 digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer; " +
-                 "'drev run --start periodic' follows the teeth",
+                 digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer" +
+                 (c.request.options.close_contacts
+                      ? "; without '--contact closed' the teeth are followed"
+                      : "; they separate at " + std::to_string(range.separated) + " of the speeds in it"),
              2);
   std::string text = columns_text(rows);
   if (!ranges.empty()) text += "\n" + ranges;
+  for (const std::string& note : c.notes) text += "\n" + wrap(note, 0);
   if (!c.judgement.not_judged.empty())
     text += "\n" + wrap("Without a limit, not judged: " + join(c.judgement.not_judged) + ".", 0);
   return text;
@@ -176,7 +185,7 @@ std::vector<std::string> class_rules(const Strength& strength) {
   return rules;
 }
 
-std::vector<std::string> class_limits() {
+std::vector<std::string> class_limits(bool closed) {
   return {
       "Tensile strengths are taken as given: which may enter by shaft and material (M68.3) is not judged.",
       "IACS UR M68 is not for crankshafts (UR M53), gearing shafts, shafts of generators, motors and "
@@ -185,8 +194,10 @@ std::vector<std::string> class_limits() {
       "given.",
       "Not judged: minimum diameters (M68.4), crankshaft fatigue (M53), bending and axial vibration, shock, "
       "slots and keyways beyond C_K, how fast a barred range is passed.",
-      "Chatter is vibratory over mean force of a contact taken as closed; how far teeth separate is "
-      "not in it."};
+      closed ? "Chatter is vibratory over mean force of a contact taken as closed; how far teeth separate is "
+               "not in it."
+             : "Barred ranges by rule about criticals are not given where contacts open: no order meets a "
+               "natural frequency there."};
 }
 
 std::string class_as_text(const std::vector<ClassCase>& cases) {
@@ -206,7 +217,7 @@ std::string class_as_text(const std::vector<ClassCase>& cases) {
   text += "\n";
   for (const std::string& rule : class_rules(*request.model.model_case.strength))
     text += wrap("- " + rule, 2);
-  for (const std::string& limit : class_limits()) text += wrap("- " + limit, 2);
+  for (const std::string& limit : class_limits(linear_contacts(request))) text += wrap("- " + limit, 2);
   if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
   return text;
 }
@@ -222,7 +233,7 @@ Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic)
   object["cases"] = Json::array();
   for (const ClassCase& c : cases) object["cases"].push_back(case_object(c));
   object["rules"] = class_rules(strength);
-  object["not_covered"] = class_limits();
+  object["not_covered"] = class_limits(linear_contacts(request));
   Json nodes = Json::array(), joints = Json::array();
   for (const Json& node : mass_elastic.at("nodes"))
     nodes.push_back(

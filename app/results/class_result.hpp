@@ -15,6 +15,7 @@ struct ClassCase {
   SweepRequest request;
   LinearSweep sweep;
   ClassJudgement judgement;
+  std::vector<std::string> notes = {};  ///< how motions with contacts that open stand in the sweep
 };
 
 std::string class_as_text(const std::vector<ClassCase>& cases);
@@ -22,6 +23,7 @@ std::string class_as_text(const std::vector<ClassCase>& cases);
 Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic);
 /// The rules that were used, and what is not judged.
 std::vector<std::string> class_rules(const Strength& strength);
-std::vector<std::string> class_limits();
+/// closed: contacts are taken as closed.
+std::vector<std::string> class_limits(bool closed);
 
 }  // namespace drev::app

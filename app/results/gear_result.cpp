@@ -1,14 +1,16 @@
 #include "app/results/gear_result.hpp"
 
+#include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/gears/analytic_stiffness.hpp>
-#include <drev/models/gears/meshed_teeth.hpp>
 
 #include <cmath>
+#include <optional>
 
 #include "app/base/text_layout.hpp"
 #include "app/base/text_plot.hpp"
 #include "app/results/run_json.hpp"
+#include "models/gears/analytic_stiffness.hpp"
+#include "models/gears/meshed_teeth.hpp"
 
 namespace drev::app {
 
@@ -31,7 +33,7 @@ std::string with_error(double value, double error, double scale, const std::stri
 }
 
 struct Beside {
-  double energy, weber;
+  double energy, yang_sun, weber;
   IsoStiffness iso;
 };
 
@@ -39,8 +41,32 @@ Beside beside(const GearCase& c) {
   const double t = c.data.pair.pitch_point(), w = c.data.cycle.options().load;
   const double at = std::min(std::max(t, c.data.pair.start_of_contact()), c.data.pair.end_of_contact());
   return {analytic_pair_stiffness(c.data.pair, AnalyticMethod::potential_energy, at, w),
+          analytic_pair_stiffness(c.data.pair, AnalyticMethod::potential_energy_yang_sun, at, w),
           analytic_pair_stiffness(c.data.pair, AnalyticMethod::weber_banaschek, at, w),
           iso_mesh_stiffness(c.data.pair, w)};
+}
+
+std::string per_width(double k) { return digits(k / kPerWidth, 4) + " N/(mm um)"; }
+
+/// What potential energy gives, up to the next method.
+std::string beside_energy(const GearPair& pair, const Beside& other) {
+  if (pair.geometry().internal) return "";  // Sainsot's body is a disc
+  const std::string method = " by potential energy with Sainsot's body";
+  if (!is_known(other.energy)) return "outside its range" + method + ", ";
+  return per_width(other.energy) + method + " (" + per_width(other.yang_sun) +
+         " with Yang and Sun's contact), ";
+}
+
+/// Without loads the element has the stiffness of the mean load: how far its forces are off between half and twice of it.
+/// None where loads are given, or the teeth do not carry so much.
+std::optional<LoadLawError> mean_load_error(const GearCase& c) {
+  if (c.data.load_law || c.drawing.tangent) return std::nullopt;
+  const double w = c.data.cycle.options().load;
+  try {
+    return gear_load_law(c.data.cycle, {0.5 * w, w, 2.0 * w}).constant;
+  } catch (const ModelError&) {
+    return std::nullopt;
+  }
 }
 
 double unloaded_range(const MeshCycle& cycle) {
@@ -81,9 +107,26 @@ Json gear_data(const GearCase& c, int gear) {
           {"tip_diameter_m", number(g.tip_diameter)},
           {"form_diameter_m", number(2.0 * t.flank(t.form_length()).radius)},
           {"bore_diameter_m", number(g.bore_diameter)},
+          {"outer_diameter_m", number(g.outer_diameter)},
           {"width_m", number(g.width)},
           {"inertia_kg_m2", number(c.data.pair.inertia(gear))},
           {"outline", outline(meshed_teeth(c.data.pair, gear, kDrawnTeeth))}};
+}
+
+Json law_error(const LoadLawError& e) { return {{"rms", number(e.rms)}, {"most", number(e.most)}}; }
+
+/// Null where the stiffness is that of the mean load alone.
+Json load_law_data(const GearCase& c) {
+  if (!c.data.load_law) return nullptr;
+  const GearLoadLaw& law = *c.data.load_law;
+  const auto list = [](const std::vector<double>& values) {
+    Json all = Json::array();
+    for (const double value : values) all.push_back(number(value));
+    return all;
+  };
+  return {{"loads_N_per_m", list(law.loads)}, {"penetrations_m", list(law.penetrations)},
+          {"slopes", list(law.slopes)},       {"stiffness_N_per_m2", list(law.stiffness)},
+          {"error", law_error(law.error)},    {"error_of_constant", law_error(law.constant)}};
 }
 
 Json pair_data(const GearCase& c) {
@@ -91,6 +134,7 @@ Json pair_data(const GearCase& c) {
   const MeshCycle& cycle = c.data.cycle;
   const MeshFigures &f = cycle.figures(), &e = cycle.errors();
   const Beside other = beside(c);
+  const std::optional<LoadLawError> mean_load = mean_load_error(c);
   Json harmonics = Json::array();
   for (const Harmonic& h : cycle.harmonics(kHarmonics))
     harmonics.push_back({{"order", number(h.order)},
@@ -125,8 +169,11 @@ Json pair_data(const GearCase& c) {
           {"loaded_error_mean_m", estimated(f.error_mean, e.error_mean)},
           {"loaded_error_range_m", estimated(f.error_peak_to_peak, e.error_peak_to_peak)},
           {"loaded_contact_ratio", number(f.loaded_contact_ratio)},
+          {"load_law", load_law_data(c)},
+          {"mean_load_error", mean_load ? law_error(*mean_load) : Json(nullptr)},
           {"beside",
            {{"potential_energy_N_per_m2", number(other.energy)},
+            {"yang_sun_N_per_m2", number(other.yang_sun)},
             {"weber_banaschek_N_per_m2", number(other.weber)},
             {"iso_single_N_per_m2", number(other.iso.single)},
             {"iso_mesh_N_per_m2", number(other.iso.mesh)},
@@ -158,7 +205,7 @@ std::vector<std::vector<std::string>> gear_dimensions(const GearCase& c) {
   row("root diameter", [&](int i) { return in_mm(2.0 * p.contour(i).root_radius()); });
   row("form diameter",
       [&](int i) { return in_mm(2.0 * p.contour(i).flank(p.contour(i).form_length()).radius); });
-  row("bore, where it is held", [&](int i) { return in_mm(p.gear(i).bore_diameter); });
+  row("held at the diameter", [&](int i) { return in_mm(2.0 * p.held_radius(i)); });
   row("moment of inertia", [&](int i) { return short_digits(p.inertia(i), 5) + " kg m^2"; });
   return rows;
 }
@@ -170,7 +217,6 @@ std::vector<GearRow> gear_rows(const GearCase& c) {
   const Backlash& b = c.data.backlash;
   const Beside other = beside(c);
   const std::string unit = "N/(mm um)";
-  const auto per_width = [&](double k) { return digits(k / kPerWidth, 4) + " " + unit; };
   std::vector<GearRow> rows{
       {"Centre distance",
        in_mm(p.centre_distance(), 9) + "; " + in_mm(p.zero_backlash_distance(), 9) + " without backlash"},
@@ -186,7 +232,7 @@ std::vector<GearRow> gear_rows(const GearCase& c) {
                    " N m on gear 1"},
       {"One pair, pitch point", with_error(f.single_pair, e.single_pair, kPerWidth, unit)},
       {"Mesh stiffness, mean", with_error(f.mean, e.mean, kPerWidth, unit) + "; " +
-                                   digits(f.mean * p.face_width(), 4) + " N/m over the width of " +
+                                   short_digits(f.mean * p.face_width(), 4) + " N/m over the width of " +
                                    in_mm(p.face_width())},
       {"  lowest, highest", with_error(f.lowest, e.lowest, kPerWidth, unit) + ", " +
                                 with_error(f.highest, e.highest, kPerWidth, unit)},
@@ -195,13 +241,24 @@ std::vector<GearRow> gear_rows(const GearCase& c) {
                                  " on the mean, " +
                                  with_error(f.error_peak_to_peak, e.error_peak_to_peak, 1e-6, "um") +
                                  " peak to peak; unloaded " + in_um(unloaded_range(cycle)) + " peak to peak"},
-      {"Beside: one pair",
-       (is_known(other.energy) ? per_width(other.energy) : std::string("outside its range")) +
-           " by potential energy with Sainsot's body, " + per_width(other.weber) +
-           " by Weber and Banaschek, " + per_width(other.iso.single) + " by ISO 6336-1"},
+      {"Beside: one pair", beside_energy(p, other) + per_width(other.weber) + " by Weber and Banaschek, " +
+                               per_width(other.iso.single) + " by ISO 6336-1"},
       {"Beside: mean",
        per_width(other.iso.mesh) + " by ISO 6336-1" +
            (other.iso.outside.empty() ? "" : ", outside its validity: " + other.iso.outside)}};
+  const auto off = [](const LoadLawError& e) {
+    return digits(100.0 * e.rms, 2) + " % (rms), " + digits(100.0 * e.most, 2) + " % at most";
+  };
+  if (const auto error = mean_load_error(c))
+    rows.push_back({"Stiffness of this load", "between half and twice of it the element's force is off by " +
+                                                  off(*error) + "; loads make it follow"});
+  if (c.data.load_law) {
+    const GearLoadLaw& law = *c.data.load_law;
+    rows.push_back({"Stiffness with the load",
+                    short_digits(1e-3 * law.loads.front(), 5) + " to " +
+                        short_digits(1e-3 * law.loads.back(), 5) + " N/mm: the element's force is off by " +
+                        off(law.error) + "; with the stiffness of the mean load by " + off(law.constant)});
+  }
   return rows;
 }
 
@@ -210,7 +267,9 @@ std::vector<std::string> gear_conventions(const GearCase& c) {
   return {
       "Stiffness along the transverse line of action per width, secant at the load stated; it follows the "
       "load.",
-      std::string("Bodies in plane strain, held at their bores") +
+      std::string("Bodies in plane strain, held at ") +
+          (c.data.pair.geometry().internal ? "the bore of gear 1 and the outside of the ring"
+                                           : "their bores") +
           (o.windup ? ": the windup of the discs is part of the mesh."
                     : ", the windup of the discs taken out."),
       "Pairs share the load through the compliance of both bodies; contact by Hertz's line contact; no "

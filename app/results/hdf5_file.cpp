@@ -48,6 +48,13 @@ Hdf5Handle type_of(const Hdf5File::Column& column) {
   return type;
 }
 
+Hdf5Handle opened_to_read(const std::string& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, 0, 1);
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose};
+}
+
 }  // namespace
 
 struct Hdf5File::Opened {
@@ -154,10 +161,7 @@ void Hdf5File::check(bool good) const {
 std::optional<std::string> hdf5_text(const std::string& path, const std::string& name) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return {};
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, 0, 1);
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  const Hdf5Handle file = opened_to_read(path);
   if (file < 0 || H5Aexists(file, name.c_str()) <= 0) return {};
   const Hdf5Handle attribute(H5Aopen(file, name.c_str(), H5P_DEFAULT), H5Aclose),
       type = text_type(H5T_VARIABLE);
@@ -166,6 +170,23 @@ std::optional<std::string> hdf5_text(const std::string& path, const std::string&
   std::string text = characters;
   H5free_memory(characters);
   return text;
+}
+
+std::vector<double> hdf5_numbers(const std::string& path, const std::string& column,
+                                 const std::vector<std::uint64_t>& rows) {
+  std::vector<double> values(rows.size());
+  if (rows.empty()) return values;
+  const Hdf5Handle file = opened_to_read(path);
+  const Hdf5Handle set(file < 0 ? -1 : H5Dopen2(file, column.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle from(set < 0 ? -1 : H5Dget_space(set), H5Sclose);
+  const hsize_t count = rows.size();
+  const Hdf5Handle to(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const std::vector<hsize_t> places(rows.begin(), rows.end());
+  const bool all = from >= 0 && H5Sget_simple_extent_npoints(from) == static_cast<hssize_t>(rows.size());
+  if (from < 0 || (!all && H5Sselect_elements(from, H5S_SELECT_SET, places.size(), places.data()) < 0) ||
+      H5Dread(set, H5T_NATIVE_DOUBLE, to, from, H5P_DEFAULT, values.data()) < 0)
+    throw OutputError("cannot read " + column + " of " + path);
+  return values;
 }
 
 }  // namespace drev::app

@@ -48,4 +48,8 @@ class Hdf5File {
 /// A text attribute of an HDF5 file; nullopt: there is no such file, or attribute.
 std::optional<std::string> hdf5_text(const std::string& path, const std::string& name);
 
+/// Rows of a column of numbers, or of the numbers of one with meanings; `rows` rising. Throws OutputError where they cannot be read.
+std::vector<double> hdf5_numbers(const std::string& path, const std::string& column,
+                                 const std::vector<std::uint64_t>& rows);
+
 }  // namespace drev::app

@@ -24,7 +24,7 @@ std::string value_text(const Largest& l) {
          unit;
 }
 
-std::string rpm_text(double rad_per_s) { return digits(to_rpm(rad_per_s), 5) + " rpm"; }
+std::string speed_text(double rad_per_s) { return digits(to_rpm(rad_per_s), 5) + " rpm"; }
 
 /// The element, and between which nodes it is.
 std::string place_text(const Model& model, const Largest& l) {
@@ -94,15 +94,15 @@ std::string span_row(const RunResult& r) {
 /// Criticals passed, and where orders are largest.
 std::string run_up_rows(const SpeedsPassed& up) {
   constexpr std::size_t kCriticalsShown = 5;
-  std::string text = rpm_text(up.range.first) + " to " + rpm_text(up.range.last);
+  std::string text = speed_text(up.range.first) + " to " + speed_text(up.range.last);
   if (up.range.slowest < std::min(up.range.first, up.range.last) ||
       up.range.fastest > std::max(up.range.first, up.range.last))
-    text += ", between " + rpm_text(up.range.slowest) + " and " + rpm_text(up.range.fastest);
+    text += ", between " + speed_text(up.range.slowest) + " and " + speed_text(up.range.fastest);
   text = labelled("Run-up", text);
   std::vector<std::string> criticals;
   for (const Crossing& c : up.criticals)
     if (criticals.size() < kCriticalsShown)
-      criticals.push_back(rpm_text(c.speed) + " (order " + short_digits(c.order, 4) + ", " +
+      criticals.push_back(speed_text(c.speed) + " (order " + short_digits(c.order, 4) + ", " +
                           digits(up.frequency_Hz[static_cast<std::size_t>(c.mode)], 4) + " Hz)");
   text += labelled("Criticals passed", (criticals.empty() ? "none" : join(criticals)) +
                                            "; the most excited first, contacts closed");
@@ -115,8 +115,8 @@ std::string run_up_rows(const SpeedsPassed& up) {
         if (amplitude[k][w] > largest) largest = amplitude[k][w], order = k, window = w;
     if (largest > 0.0)
       text += "  " + wrap(up.orders.channels[c] + ": order " + short_digits(up.orders.orders[order], 4) +
-                              " largest at " + rpm_text(up.orders.speed[window]) + ", " + digits(largest, 4) +
-                              " " + up.orders.units[c],
+                              " largest at " + speed_text(up.orders.speed[window]) + ", " +
+                              digits(largest, 4) + " " + up.orders.units[c],
                           4);
   }
   return text;
@@ -310,8 +310,8 @@ std::string warning_of(const RunResult& r) {
 std::vector<std::string> notes_of(const RunResult& r) {
   std::vector<std::string> notes;
   if (const PartSpeed* part = r.off_speed())
-    notes.push_back("the model turns at " + rpm_text(part->actual) + " on the mean, not at the nominal " +
-                    rpm_text(part->nominal) + " (" + digits(100.0 * part->deviation(), 3) +
+    notes.push_back("the model turns at " + speed_text(part->actual) + " on the mean, not at the nominal " +
+                    speed_text(part->nominal) + " (" + digits(100.0 * part->deviation(), 3) +
                     " %): only a balance of torques holds the speed of the part with " + part->node +
                     "; orders are per turn at the actual speed");
   return notes;

@@ -135,7 +135,7 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
   for (const SweepSection& section : sweep.sections) {
     Eigen::Index count = 0;
     for (Eigen::Index i = 0; i < section.mean.size(); ++i) count += section.separates(i) ? 1 : 0;
-    if (count > 0)
+    if (count > 0 && request.options.close_contacts)
       notes.push_back(section.name + ": changes its sign at " + std::to_string(count) + " of " +
                       std::to_string(section.mean.size()) +
                       " speeds: the teeth separate there, and what is said of these speeds does not hold; "

@@ -1,6 +1,6 @@
 #include "app/run/figure_span.hpp"
 
-#include <drev/solvers/modes/settling.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include "app/base/text_layout.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <drev/core/units.hpp>
 #include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
-#include <drev/solvers/modes/settling.hpp>
-#include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/after_time.hpp>
 #include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peaks.hpp>
@@ -329,8 +329,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   std::optional<RunUpWatch> run_up;
   if (speed_range(full, duration).changes()) {
     run_up.emplace(full, result.modes ? &*result.modes : nullptr, system, duration, tracked_channels(request),
-                   plan.method.tolerance > 0.0);
-    observers.insert(observers.begin(), run_up->observer());
+                   plan.method.tolerance > 0.0, request.out || request.report || request.keeps_history);
+    for (Observer* observer : run_up->observers()) observers.insert(observers.begin(), observer);
   }
   observers.insert(observers.begin(), &figures);
   if (request.accuracy && !find_accuracy(request, full, plan.start ? plan.start->error : 0.0, result))

@@ -1,6 +1,8 @@
 // Tables 3.1 to 3.3, 4.1 and 4.2: data, and what follows from them.
 #include <drev/core/units.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
+#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/models/gears/gear_drawing.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include "app/study/study_runs.hpp"
 #include "models/camshaft/camshaft_data.hpp"
 #include "models/camshaft/published.hpp"
+#include "models/gears/analytic_stiffness.hpp"
 
 namespace drev::app {
 
@@ -74,6 +77,27 @@ void gears(StudyTable& table) {
   }
 }
 
+/// ISO's and drev's value of a row of Table 4.2: one pair at the pitch point, or two in the middle of their zone.
+std::string by_geometry(int mesh, bool both) {
+  const auto value = [&](double bore) {
+    GearDrawing drawing = gear_drive_drawing(mesh, bore);
+    drawing.cycle.points = 100;
+    drawing.cycle.corner_contact = false;
+    const GearMeshData data = gear_mesh_data(drawing);
+    const auto middle = static_cast<std::size_t>(50.0 * (data.pair.contact_ratio() - 1.0));
+    return (both ? data.cycle.points()[middle].secant : data.cycle.figures().single_pair) *
+           data.pair.face_width();
+  };
+  const GearPair pair(gear_drive_drawing(mesh).geometry);
+  const IsoStiffness iso = iso_mesh_stiffness(pair, gear_drive_drawing(mesh).cycle.load);
+  const std::string beams =
+      both ? "" : "; cantilever beams " + short_digits(published::kCantilever[mesh == 1 ? 0 : 1], 3);
+  return beams + "; drev " + short_digits(value(0.15), 3) + " to " + short_digits(value(0.3), 3) +
+         " at bores of 0.15 to 0.3 of the root circle, ISO 6336-1 " +
+         short_digits((both ? iso.mesh : iso.single) * pair.face_width(), 3) +
+         (iso.outside.empty() ? "" : " (outside its validity)");
+}
+
 void mesh_stiffness(StudyTable& table) {
   for (const auto& mesh : published::kMeshStiffness) {
     const double base_radius =
@@ -83,7 +107,8 @@ void mesh_stiffness(StudyTable& table) {
     const double error = k * (0.05 / mesh.moment + 5e-10 / mesh.deflection);
     table.rows.push_back({"Table 4.2", mesh.name, "N/m", printed(mesh.stiffness), "-",
                           Estimate{k, error, Estimate::Kind::bound},
-                          "printed " + percent(mesh.stiffness, k) + ": force at the pitch radius"});
+                          "printed " + percent(mesh.stiffness, k) + ": force at the pitch radius" +
+                              by_geometry(mesh.pinion == 0 ? 1 : 2, table.rows.size() % 2 == 1)});
   }
 }
 

@@ -16,8 +16,9 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kRuns = 4;    // of each case that rattles
-constexpr int kPieces = 8;  // of a period of mesh 2: both meshes jump at eighths of it
+constexpr int kRuns = 4;          // of each case that rattles
+constexpr int kFinePieces = 400;  // of the same, for stiffness that follows a curve
+constexpr int kPieces = 8;        // of a period of mesh 2: both meshes jump at eighths of it
 
 ParameterValues gears(const char* damping, double backlash_mm, const char* stiffness = "mean",
                       int cylinders = 9) {
@@ -27,9 +28,10 @@ ParameterValues gears(const char* damping, double backlash_mm, const char* stiff
           {"mesh_stiffness", stiffness}};
 }
 
-/// Free motion's growth with gaps closed and stepped stiffness [1/s].
-double growth_at(double engine_rpm, const char* damping, int pieces = kPieces) {
-  ParameterValues parameters = gears(damping, 0.0, "step");
+/// Free motion's growth with gaps closed and varying stiffness [1/s].
+double growth_at(double engine_rpm, const char* damping, int pieces = kPieces,
+                 const char* stiffness = "step") {
+  ParameterValues parameters = gears(damping, 0.0, stiffness);
   parameters.insert(parameters.end(), {{"loads", "source"}, {"engine_rpm", short_digits(engine_rpm, 8)}});
   const double period = 60.0 / engine_rpm * 68.0 / 59.0 / 34.0;  // of mesh 2, two of mesh 1
   return largest_floquet_exponent(build_case("camshaft", parameters).model.build(), period, pieces);
@@ -73,9 +75,13 @@ void add_contacts(StudyTable& table, const published::GearDrive& p, const std::s
 }
 
 GearStudy run_gear_study() {
-  std::vector<ParameterValues> rattling{gears("undamped", 0.15), gears("case_2", 0.15),
-                                        gears("case_3_corrected", 0.15), gears("case_1", 0.15, "step"),
-                                        gears("case_1", 0.15, "mean", 8)};
+  std::vector<ParameterValues> rattling{gears("undamped", 0.15),
+                                        gears("case_2", 0.15),
+                                        gears("case_3_corrected", 0.15),
+                                        gears("case_1", 0.15, "step"),
+                                        gears("case_1", 0.15, "mean", 8),
+                                        gears("case_1", 0.15, "drawing"),
+                                        gears("case_1", 0.15, "drawing_mean")};
   for (const auto& p : published::kBacklash) rattling.push_back(gears("case_1", p.gap));
   const std::vector<CamshaftCase> rattle = run_cases(rattling, kRuns);
   const auto held = [](const char* damping, int cylinders) {
@@ -83,26 +89,33 @@ GearStudy run_gear_study() {
   };
   const std::vector<CamshaftCase> smooth =
       run_cases({held("case_1", 9), held("undamped", 9), gears("case_1", 0.0), gears("undamped", 0.0),
-                 held("case_1", 8)},
+                 held("case_1", 8), gears("case_1", 0.0, "drawing"), gears("case_1", 0.0, "drawing_mean")},
                 2);
   ParameterValues varying = gears("case_1", 0.0, "step");
   varying.push_back({"loads", "source"});
   const System eight = build_case("camshaft", gears("case_1", 0.15, "mean", 8)).model.build();
-  return {.held = smooth[0],
-          .held_undamped = smooth[1],
-          .tight = smooth[2],
-          .tight_undamped = smooth[3],
-          .held_8 = smooth[4],
-          .undamped = rattle[0],
-          .case_2 = rattle[1],
-          .corrected = rattle[2],
-          .varying = rattle[3],
-          .eight = rattle[4],
-          .gaps = {rattle.begin() + 5, rattle.end()},
-          .varying_at_step = run_camshaft(varying, source_method()),
-          .growth = from_two(growth_at(published::kEngineRpm, "case_1"),
-                             growth_at(published::kEngineRpm, "case_1", 2 * kPieces), 1e-9),
-          .first_8 = solve_modes(eight, {.count = 1}).frequency_Hz[0]};
+  return {
+      .held = smooth[0],
+      .held_undamped = smooth[1],
+      .tight = smooth[2],
+      .tight_undamped = smooth[3],
+      .held_8 = smooth[4],
+      .undamped = rattle[0],
+      .case_2 = rattle[1],
+      .corrected = rattle[2],
+      .varying = rattle[3],
+      .eight = rattle[4],
+      .drawn = smooth[5],
+      .drawn_mean = smooth[6],
+      .drawn_gap = rattle[5],
+      .drawn_mean_gap = rattle[6],
+      .gaps = {rattle.begin() + 7, rattle.end()},
+      .varying_at_step = run_camshaft(varying, source_method()),
+      .growth = from_two(growth_at(published::kEngineRpm, "case_1"),
+                         growth_at(published::kEngineRpm, "case_1", 2 * kPieces), 1e-9),
+      .drawn_growth = from_two(growth_at(published::kEngineRpm, "case_1", kFinePieces, "drawing"),
+                               growth_at(published::kEngineRpm, "case_1", 2 * kFinePieces, "drawing"), 1e-9),
+      .first_8 = solve_modes(eight, {.count = 1}).frequency_Hz[0]};
 }
 
 }  // namespace
@@ -208,6 +221,16 @@ StudyGroup study_gear_drive() {
                             "5000 steps"});
   add_rows(stiffness, "-", "0.15 mm, constant", s.gap(), "-", "-");
   add_rows(stiffness, "-", "0.15 mm, varying", s.varying, "-", "-");
+  stiffness.rows.push_back({"-", "no backlash, from geometry, deflection", "deg", "-", "-",
+                            s.drawn.deflection(),
+                            "its mean as a constant: " + with_error(s.drawn_mean.deflection(), "deg")});
+  const auto settled_torque = [](const CamshaftCase& c) {
+    return with_error(c.estimate(&CamshaftFigures::settled_torque), "N m");
+  };
+  stiffness.rows.push_back(
+      {"-", "0.15 mm, from geometry, deflection", "deg", "-", "-", s.drawn_gap.deflection(),
+       settled(s.drawn_gap) + ", torque " + settled_torque(s.drawn_gap) +
+           "; its mean: " + settled(s.drawn_mean_gap) + ", torque " + settled_torque(s.drawn_mean_gap)});
   group.tables = {std::move(drive), std::move(backlash), std::move(stiffness)};
 
   group.verdicts = gear_verdicts(s);

@@ -9,9 +9,12 @@ struct GearStudy {
   CamshaftCase held, held_undamped, tight, tight_undamped, held_8;
   /// With 0.15 mm: damping cases; case 1 with mesh stiffness that steps, and with 8 cylinders.
   CamshaftCase undamped, case_2, corrected, varying, eight;
+  /// Mesh stiffness from the gears' geometry and its mean as a constant, case 1: without backlash, with 0.15 mm.
+  CamshaftCase drawn, drawn_mean, drawn_gap, drawn_mean_gap;
   std::vector<CamshaftCase> gaps;   ///< case 1, each of published::kBacklash
   CamshaftFigures varying_at_step;  ///< no backlash, case 1, stepped stiffness, at the source's step
   Estimate growth;                  ///< of free motion in that case [1/s]
+  Estimate drawn_growth;            ///< the same with the stiffness from geometry
   double first_8 = 0.0;             ///< Hz, first mode of 8 cylinders with the drive
   const CamshaftCase& gap() const { return gaps[1]; }  ///< 0.15 mm, case 1
 };

@@ -1,6 +1,5 @@
 #include "app/variants/variant_plan.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "app/base/text_layout.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/variants/quasi_random.hpp"
+#include "core/dense/factorization.hpp"
 
 namespace drev::app {
 
@@ -133,12 +133,12 @@ void VariantPlan::read_correlations(std::vector<Finding>& findings) {
   if (sampling_->kind == Kind::saltelli)
     findings.push_back({kCommandLine, "--correlate", "", "",
                         "cannot be with --sample saltelli: Sobol indices are of independent parameters"});
-  const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
-  if (llt.info() != Eigen::Success)
+  const CholeskyFactor cholesky(matrix);
+  if (!cholesky.positive_definite())
     findings.push_back({kCommandLine, "--correlate", "", "",
                         "are correlations that cannot be together: their matrix is not positive definite"});
   else
-    factor_ = llt.matrixL();
+    factor_ = cholesky.lower();
 }
 
 double VariantPlan::coordinate(std::uint64_t i, std::size_t dimension) const {

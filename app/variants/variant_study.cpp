@@ -1,5 +1,6 @@
 #include "app/variants/variant_study.hpp"
 
+#include <drev/app/model_file/load_plugin.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
 #include <drev/core/units.hpp>
@@ -179,6 +180,7 @@ void VariantStudy::describe() {
   const ModelRequest& model = request_.model;
   Json files = Json::array();
   for (const std::string& file : model.model_case.files) files.push_back(file_object(file, content_of(file)));
+  for (const std::string& plugin : loaded_plugins()) files.push_back(file_object(plugin, content_of(plugin)));
   Json varied = Json::array();
   for (const Varied& v : plan_.varied()) varied.push_back(v.name + "=" + v.text);
   Json correlations = Json::array();
@@ -206,11 +208,11 @@ void VariantStudy::describe() {
   for (const Varied& v : plan_.varied()) description_["parameters"].erase(v.name);
 }
 
-VariantStudy::Built VariantStudy::build(std::uint64_t variant) const {
+VariantStudy::Built VariantStudy::build(const ParameterValues& values) const {
   Built built;
   try {
     Parameters parameters = request_.model.parameters;
-    for (const auto& [name, value] : plan_.parameters(variant)) parameters.set(name, value);
+    for (const auto& [name, value] : values) parameters.set(name, value);
     parameters.check();
     const ModelCase model_case = request_.model.entry->build(parameters);
     System system = model_case.model.build();
@@ -324,7 +326,7 @@ void VariantStudy::run_together(std::vector<Built>& built, std::uint64_t block, 
       return;
     }
     for (const std::size_t i : places) {
-      built[i] = build(first_of(block) + i);  // its System has been taken
+      built[i] = build(plan_.parameters(first_of(block) + i));  // its System has been taken
       run_together(built, block, i, 1, go_on, rows);
     }
   }
@@ -342,11 +344,28 @@ std::optional<BlockRows> VariantStudy::run(std::uint64_t block, const std::funct
   rows.numbers.assign(block_size_ * row_size(), kNone);
   for (std::size_t i = 0; i < count; ++i) {
     if (!ask()) return {};
-    built.push_back(build(first_of(block) + i));
+    built.push_back(build(plan_.parameters(first_of(block) + i)));
   }
   for (std::size_t i = 0; i < count; ++i)
     if (!built[i].system) enter(built[i], {}, i, rows);
   run_together(built, block, 0, count, ask, rows);
+  if (stopped) return {};
+  return rows;
+}
+
+std::optional<BlockRows> VariantStudy::run_one(const ParameterValues& values,
+                                               const std::function<bool()>& go_on) const {
+  bool stopped = false;
+  const std::function<bool()> ask = [&] {
+    stopped = stopped || !go_on();
+    return !stopped;
+  };
+  BlockRows rows;
+  rows.numbers.assign(row_size(), kNone);
+  std::vector<Built> built;
+  built.push_back(build(values));
+  if (!built[0].system) enter(built[0], {}, 0, rows);
+  run_together(built, 0, 0, 1, ask, rows);
   if (stopped) return {};
   return rows;
 }
@@ -372,7 +391,7 @@ std::vector<std::string> differences(const Json& then, const Json& now) {
         const Json a = i < before.size() ? before[i] : Json(), b = i < value.size() ? value[i] : Json();
         if (a == b) continue;
         if (at(a, "file") != at(b, "file")) {
-          say("a file of the model", at(a, "file"), at(b, "file"));
+          say("a file of the study", at(a, "file"), at(b, "file"));
           continue;
         }
         std::string text = at(b, "file").get<std::string>() + " has changed (checksum " +

@@ -68,13 +68,15 @@ class VariantStudy {
 
   /// The rows of a block; nothing where go_on said false. Called by several threads at once.
   std::optional<BlockRows> run(std::uint64_t block, const std::function<bool()>& go_on) const;
+  /// The row of a variant that the plan need not hold.
+  std::optional<BlockRows> run_one(const ParameterValues& values, const std::function<bool()>& go_on) const;
 
  private:
   struct Built;
   struct Watched;
   void find_figures();
   void describe();
-  Built build(std::uint64_t variant) const;
+  Built build(const ParameterValues& values) const;
   void run_together(std::vector<Built>& built, std::uint64_t block, std::size_t first, std::size_t count,
                     const std::function<bool()>& go_on, BlockRows& rows) const;
   void enter(const Built& built, const VariantResult& result, std::size_t place, BlockRows& rows) const;

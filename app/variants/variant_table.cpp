@@ -17,9 +17,10 @@ namespace {
 constexpr std::uint64_t kRowsAtOnce = 65536;  // that are in memory at once
 constexpr std::size_t kFailuresTold = 20;     // failures, of all
 
+}  // namespace
+
 std::string table_path(const std::string& folder) { return folder + "/variants.h5"; }
 
-/// Whether a column of texts is needed, and how long they are; 0: numbers.
 std::size_t text_size(const Varied& varied) {
   if (varied.kind == Varied::Kind::orders) return order_text(0, varied.items).size();
   std::size_t size = 0;
@@ -37,6 +38,8 @@ std::string unit_of(const VariantStudy& study, const std::string& name) {
     if (p.name == name) return p.unit;
   return {};
 }
+
+namespace {
 
 Json varied_object(const VariantStudy& study, std::uint64_t variant) {
   Json object = Json::object();
@@ -156,8 +159,6 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
                           const VariantStore& store, const std::string& folder) {
   const std::uint64_t count = study.plan().count(), good = statistics.count(VariantStatus::success);
   VariantSummary summary;
-  const bool bad_input = count - good == statistics.count(VariantStatus::bad_input);
-  summary.exit_code = good == count ? kSuccess : bad_input ? kBadInput : kNotTrusted;
   Json& json = summary.json;
   json = {{"$schema", "urn:drev:variants:1"}, {"kind", "variants"}, {"drev", DREV_VERSION}};
   json["status"] = good == count ? "success" : "failed";
@@ -173,6 +174,7 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
     if (statistics.count(status) > 0)
       counts.push_back(std::to_string(statistics.count(status)) + " " + status_text(status));
   }
+  summary.exit_code = exit_code_of(json);
   json["figures"] = Json::array();
   for (const FigureStatistics& s : statistics.figures()) json["figures"].push_back(figure_object(study, s));
   json["failures"] = Json::array();
@@ -273,6 +275,17 @@ std::optional<Json> summary_of_table(const std::string& folder) {
   if (!text) return {};
   Json json = Json::parse(*text, nullptr, false);
   return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+}
+
+int exit_code_of(const Json& summary) {
+  std::uint64_t failed = 0;
+  const std::string success = status_text(VariantStatus::success),
+                    bad_input = status_text(VariantStatus::bad_input);
+  const Json statuses = summary.value("statuses", Json::object());
+  for (const auto& [status, count] : statuses.items())
+    if (status != success) failed += count.get<std::uint64_t>();
+  if (failed == 0) return summary.value("status", "") == success ? kSuccess : kNotTrusted;
+  return statuses.value(bad_input, std::uint64_t{0}) == failed ? kBadInput : kNotTrusted;
 }
 
 }  // namespace drev::app

@@ -20,6 +20,12 @@ struct VariantSummary {
 VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& statistics,
                           const VariantStore& store, const std::string& folder);
 
+std::string table_path(const std::string& folder);
+/// How long the texts of a parameter's column are; 0: it holds numbers.
+std::size_t text_size(const Varied& varied);
+/// Of a parameter of the model.
+std::string unit_of(const VariantStudy& study, const std::string& name);
+
 /// Both passes over the store's rows.
 VariantStatistics statistics_of(const VariantStudy& study, const VariantStore& store);
 
@@ -29,5 +35,8 @@ void write_variant_table(const VariantStudy& study, const VariantStore& store, c
 /// The attributes `study` and `summary` of the table in the folder; nullopt: there is none.
 std::optional<Json> study_of_table(const std::string& folder);
 std::optional<Json> summary_of_table(const std::string& folder);
+/// What a process returns whose study has this summary: 0 if all variants succeeded, 2 where those that failed have
+/// parameters that cannot be, else 1.
+int exit_code_of(const Json& summary);
 
 }  // namespace drev::app

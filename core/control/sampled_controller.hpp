@@ -11,6 +11,7 @@
 ///
 /// One run at a time: what the controller holds belongs to the run that opened it. Methods that know no run (modes,
 /// sweeps, periodic and static solutions) refuse a system that has one.
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/element.hpp>
 #include <drev/core/load.hpp>
 
@@ -22,8 +23,6 @@
 #include <vector>
 
 namespace drev {
-
-class System;
 
 /// Between communication points.
 enum class Hold { zero_order, first_order };
@@ -80,20 +79,5 @@ class SampledController : public Element {
   std::vector<std::unique_ptr<Held>> held_;
   mutable std::atomic<bool> taken_ = false;
 };
-
-/// The sampled controllers of a system, with the names of their elements.
-struct PlacedController {
-  std::string name;
-  const SampledController* controller = nullptr;
-};
-std::vector<PlacedController> sampled_controllers(const System& system);
-
-/// Throws ModelError for a controller whose inputs are no signals of the system.
-void check_controllers(const System& system);
-
-/// Throws SolverError where the system has a sampled controller: `what` (a method or computation) does not take it.
-void refuse_controllers(const System& system, const std::string& what);
-/// The sentence that it says, without full stop; nullopt: there is none.
-std::optional<std::string> why_not_controllers(const System& system, const std::string& what);
 
 }  // namespace drev

@@ -131,7 +131,7 @@ double ElementEnergy::power(const Assembler& assembler, const State& state) cons
   }
   for (const int l : loads_) {
     const LoadTerm& term = system.loads()[idx(l)];
-    sum += assembler.load(term, state.z, state.v).torque * actual_rate(term.node, assembler, state);
+    sum += assembler.load_torque(term, state) * actual_rate(term.node, assembler, state);
   }
   return sum;
 }

@@ -1,16 +1,34 @@
 #pragma once
 /// FrequencyStiffness: a complex stiffness that depends on the frequency, for methods in the frequency domain
 /// (drev sweep). A torque T exp(i omega t) on a deflection X exp(i omega t): T = k*(omega) X, Re k* >= 0 and
-/// Im k* >= 0 for omega > 0 of the whole element. Methods in time do not see it.
+/// Im k* >= 0 for omega > 0 of the whole element. It may follow what the element carries, by equivalent linearisation:
+/// the mean torque and the effective amplitude sqrt(sum |X_h|^2) over all orders h. Methods in time do not see it.
 #include <complex>
+#include <optional>
 
 namespace drev {
+
+/// What an element carries at a speed.
+struct CarriedLoad {
+  double mean_torque = 0.0;  ///< N m, its size counts
+  double amplitude = 0.0;    ///< sqrt(sum |X_h|^2) of the deflection over the orders [rad], >= 0
+};
 
 class FrequencyStiffness {
  public:
   virtual ~FrequencyStiffness() = default;
-  /// k* less what the element's own matrices give at the circular frequency omega > 0 [rad/s]; N m/rad.
-  virtual std::complex<double> beyond_matrices(double omega) const = 0;
+  /// k* under that load less what the element's own matrices give at the circular frequency omega > 0 [rad/s]; N m/rad.
+  virtual std::complex<double> beyond_matrices(double omega, const CarriedLoad& load) const = 0;
+  /// k* less what they give while the element's internal nodes do not move: the frequency domain then needs no such
+  /// nodes. nullopt: not known, or there are none.
+  virtual std::optional<std::complex<double>> beyond_held(double /*omega*/,
+                                                          const CarriedLoad& /*load*/) const {
+    return std::nullopt;
+  }
+  virtual bool follows_mean_torque() const { return false; }
+  virtual bool follows_amplitude() const { return false; }
+  /// Of its own matrices: mean torque over mean deflection [N m/rad]. Asked where it follows the mean torque.
+  virtual double static_stiffness() const { return 0.0; }
 };
 
 }  // namespace drev

@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/core/system.hpp>

@@ -11,8 +11,8 @@
 /// the break-away ratio.
 ///
 /// Source: F. Pfeiffer, Ch. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley, 1996, chapter 5.
-#include <drev/core/element.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,9 +39,9 @@ struct GearLoss {
 
 class Friction {
  public:
-  /// The engagement and its slope [1/s]; linear between the breakpoints.
+  /// The engagement as a cubic of the time: sum terms[k] (s - t)^k [1/s^k] for s from t to the next breakpoint.
   struct Engagement {
-    double value = 1.0, slope = 0.0;
+    std::array<double, 4> terms{1.0, 0.0, 0.0, 0.0};
   };
   virtual ~Friction() = default;
   /// |slip speed| [rad/s or m/s], ascending from 0, and the sliding torque there [N m or N], >= 0: linear between

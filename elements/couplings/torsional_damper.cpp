@@ -35,7 +35,7 @@ TorsionalDamper::TorsionalDamper(Params params) : params_(std::move(params)) {
   }
   if (sprung()) {
     spring_ = ViscoelasticStiffness(spring);
-    stiffness_ = spring.frequencies.empty() ? spring.stiffness : spring_.at(1.0).real();
+    stiffness_ = spring_.at(1.0).real();
   }
   damping_ = p.film                        ? p.film->damping()
              : std::isnan(p.damping_ratio) ? p.damping

@@ -67,7 +67,8 @@ class TorsionalDamper final : public Element {
  private:
   bool sprung() const {
     return !std::isnan(params_.natural_frequency) || !std::isnan(params_.spring.stiffness) ||
-           !params_.spring.frequencies.empty();
+           !params_.spring.frequencies.empty() || !params_.spring.by_mean_torque.at.empty() ||
+           !params_.spring.by_amplitude.at.empty();
   }
   Params params_;
   double stiffness_ = 0.0, damping_ = 0.0;

@@ -47,8 +47,12 @@ ViscoelasticStiffness::ViscoelasticStiffness(Params params) : params_(std::move(
 }
 
 bool ViscoelasticStiffness::loses() const {
-  return params_.loss_factor > 0.0 || params_.frequencies.size() > 1 ||
-         (!params_.loss_factors.empty() && params_.loss_factors.front() > 0.0);
+  const auto any = [](const std::vector<double>& etas) {
+    return std::any_of(etas.begin(), etas.end(), [](double eta) { return eta > 0.0; });
+  };
+  const Params& p = params_;
+  return p.loss_factor > 0.0 || p.frequencies.size() > 1 || any(p.loss_factors) ||
+         any(p.by_mean_torque.loss_factors) || any(p.by_amplitude.loss_factors);
 }
 
 bool ViscoelasticStiffness::usable() const {
@@ -58,11 +62,26 @@ bool ViscoelasticStiffness::usable() const {
   return findings.empty();
 }
 
-std::complex<double> ViscoelasticStiffness::at(double omega) const {
+std::complex<double> ViscoelasticStiffness::at(double omega, const CarriedLoad& load) const {
   const Params& p = params_;
-  if (p.frequencies.empty()) return {p.stiffness, p.stiffness * p.loss_factor};
-  const double f = omega / kTwoPi, k = table_value(p.frequencies, p.stiffnesses, f);
-  return {k, k * table_value(p.frequencies, p.loss_factors, f)};
+  double k = p.stiffness, eta = p.loss_factor;
+  bool given = !std::isnan(k);
+  const auto take = [&](const std::vector<double>& x, const std::vector<double>& stiffnesses,
+                        const std::vector<double>& etas, double here) {
+    if (x.empty()) return;
+    const double k_here = table_value(x, stiffnesses, here), eta_here = table_value(x, etas, here);
+    k = given ? k * k_here / stiffnesses.front() : k_here;
+    // Without loss at its first point a table has none to scale.
+    eta = !given ? eta_here : etas.front() > 0.0 ? eta * eta_here / etas.front() : eta;
+    given = true;
+  };
+  take(p.frequencies, p.stiffnesses, p.loss_factors, omega / kTwoPi);
+  const auto take_table = [&](const Table& t, double here) {
+    take(t.at, t.stiffnesses, t.loss_factors, here);
+  };
+  take_table(p.by_mean_torque, std::abs(load.mean_torque));
+  take_table(p.by_amplitude, load.amplitude);
+  return {k, k * eta};
 }
 
 namespace {
@@ -83,7 +102,7 @@ std::complex<double> ViscoelasticStiffness::chain(double omega) const {
 void ViscoelasticStiffness::fit() {
   const Params& p = params_;
   if (!loses()) {
-    static_stiffness_ = at(1.0).real();
+    static_stiffness_ = held_stiffness_ = at(1.0).real();
     return;
   }
   const double low = kTwoPi * p.lowest_frequency, high = kTwoPi * p.highest_frequency;
@@ -117,6 +136,8 @@ void ViscoelasticStiffness::fit() {
   for (std::size_t j = 0; j < unit.size(); ++j)
     if (found[j + 1] > 1e-9 * found[0])
       branches_.push_back({found[j + 1], found[j + 1] * unit[j].damping, found[j + 1] * unit[j].inertia});
+  held_stiffness_ = static_stiffness_;
+  for (const Branch& b : branches_) held_stiffness_ += b.stiffness;
   each_frequency([&](double omega) {
     fit_error_ = std::max(fit_error_, std::abs(chain(omega) - at(omega)) / std::abs(at(omega)));
   });
@@ -124,21 +145,37 @@ void ViscoelasticStiffness::fit() {
 
 void ViscoelasticStiffness::check(ParameterCheck& check) const {
   const Params& p = params_;
-  const std::size_t before = p.frequencies.size();
-  if (before == 0) {
-    check.positive("stiffness", p.stiffness, "N m/rad");
-    check.within("loss_factor", p.loss_factor, 0.0, 2.0, "");
-  } else {
-    if (p.stiffnesses.size() != before || p.loss_factors.size() != before)
-      check.fail("table", std::to_string(before) + " frequencies", "",
-                 "must have as many stiffnesses and loss factors as frequencies");
-    check.increasing("table.frequency", p.frequencies, "Hz");
-    for (const double k : p.stiffnesses) check.positive("table.stiffness", k, "N m/rad");
-    for (const double eta : p.loss_factors) check.within("table.loss_factor", eta, 0.0, 2.0, "");
-    if (!std::isnan(p.stiffness) || p.loss_factor != 0.0)
-      check.fail("stiffness", to_text(p.stiffness), "N m/rad",
-                 "must not be there beside a table over the frequency");
-  }
+  const auto check_table = [&](const std::string& name, const std::vector<double>& at, const char* unit,
+                               const std::vector<double>& stiffnesses, const std::vector<double>& etas) {
+    if (at.empty() && stiffnesses.empty() && etas.empty()) return;
+    if (at.empty() || stiffnesses.size() != at.size() || etas.size() != at.size())
+      check.fail(name, std::to_string(at.size()) + " points", "",
+                 "must have as many stiffnesses and loss factors as points, at least 1");
+    check.increasing(name, at, unit);
+    if (!at.empty()) check.non_negative(name, at.front(), unit);
+    for (const double k : stiffnesses) check.positive(name + ".stiffness", k, "N m/rad");
+    for (const double eta : etas) check.within(name + ".loss_factor", eta, 0.0, 2.0, "");
+  };
+  check_table("by_frequency", p.frequencies, "Hz", p.stiffnesses, p.loss_factors);
+  bool given = !p.frequencies.empty() || !std::isnan(p.stiffness);
+  const auto check_load = [&](const char* name, const Table& t, const char* unit) {
+    check_table(name, t.at, unit, t.stiffnesses, t.loss_factors);
+    const bool lossy =
+        std::any_of(t.loss_factors.begin(), t.loss_factors.end(), [](double x) { return x > 0.0; });
+    if (given && lossy && !(t.loss_factors.front() > 0.0))
+      check.fail(std::string(name) + ".loss_factor", "0", "",
+                 "must be > 0 at the first point of a table that scales others");
+    given = given || !t.at.empty();
+  };
+  check_load("by_mean_torque", p.by_mean_torque, "N m");
+  check_load("by_amplitude", p.by_amplitude, "rad");
+  check.non_negative("at_mean_torque", p.at_mean_torque, "N m");
+  check.non_negative("at_amplitude", p.at_amplitude, "rad");
+  if (!given || !std::isnan(p.stiffness)) check.positive("stiffness", p.stiffness, "N m/rad");
+  check.within("loss_factor", p.loss_factor, 0.0, 2.0, "");
+  if (!p.frequencies.empty() && (!std::isnan(p.stiffness) || p.loss_factor != 0.0))
+    check.fail("stiffness", to_text(p.stiffness), "N m/rad",
+               "must not be there beside a table over the frequency");
   if (p.branches < 0 || p.branches > kMostBranches)
     check.fail("branches", std::to_string(p.branches), "", "must be 1 to 12, or 0 for two a decade");
   check.positive("permitted_error", p.permitted_error, "");
@@ -170,7 +207,8 @@ void ViscoelasticStiffness::describe(const LocalRow& b, int first, double dampin
     terms.speed_ratio_constraints.push_back({.b = alone});
     torque += branches_[j].stiffness * row;
   }
-  if (loses()) terms.frequency_stiffnesses.push_back({b, this});
+  if (loses() || follows_mean_torque() || follows_amplitude())
+    terms.frequency_stiffnesses.push_back({b, this});
   terms.outputs.push_back({.suffix = "", .stiffness = torque, .damping = damping * b, .deflection = b});
 }
 

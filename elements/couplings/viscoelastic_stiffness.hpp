@@ -3,8 +3,15 @@
 ///
 ///   k*(f) = k(f) (1 + i eta(f))        torque amplitude = k* times twist amplitude, heat = w/2 Im(k*) |twist|^2
 ///
-/// k, eta constant, or tables over the frequency (linear between their points, constant outside). Relative damping
-/// psi (loss a cycle over elastic energy) = 2 pi eta. In the frequency domain (drev sweep) k* holds exactly at every
+/// k, eta constant, or tables over the frequency, the mean torque |T_m| and the amplitude A of the twist, as data sheets
+/// print them (linear between their points, constant outside). The first that is given, in that order, gives the values;
+/// a further table scales them by its own values over those at its first point:
+///
+///   k = k_f(f) k_m(|T_m|)/k_m,1 k_A(A)/k_A,1,        eta alike
+///
+/// A = sqrt(sum |X_h|^2) over the orders h (for one order its amplitude): an equivalent linearisation, solved for at each
+/// speed of a sweep; T_m is the mean torque at that speed. In time and for damped modes both stand at `at_mean_torque`
+/// and `at_amplitude`. Relative damping psi (loss a cycle over elastic energy) = 2 pi eta. In the frequency domain (drev sweep) k* holds exactly at every
 /// order. In time, and for damped modes, a chain of Maxwell branches stands for it,
 ///
 ///   G(s) = k_0 + sum_j k_j (c_j s + m_j s^2)/(k_j + c_j s + m_j s^2),     c_j = tau_j k_j,  m_j = c_j/(8 w_high)
@@ -31,12 +38,20 @@ namespace drev {
 
 class ViscoelasticStiffness final : public FrequencyStiffness {
  public:
+  /// k [N m/rad], > 0, and eta [-], 0 to 2, at ascending values of something; empty: none.
+  struct Table {
+    std::vector<double> at = {}, stiffnesses = {}, loss_factors = {};
+  };
   struct Params {
     double stiffness = kNotGiven;           ///< k [N m/rad], > 0; or the tables below
     double loss_factor = 0.0;               ///< eta [-], 0 to 2
     std::vector<double> frequencies = {};   ///< of the tables, ascending [Hz]
     std::vector<double> stiffnesses = {};   ///< k at these [N m/rad], > 0
     std::vector<double> loss_factors = {};  ///< eta at these [-], 0 to 2
+    Table by_mean_torque = {};              ///< over |T_m| [N m], >= 0
+    Table by_amplitude = {};                ///< over A [rad], >= 0
+    double at_mean_torque = 0.0;            ///< |T_m| in time [N m], >= 0
+    double at_amplitude = 0.0;              ///< A in time [rad], >= 0
     double lowest_frequency = kNotGiven;    ///< of the fit [Hz], > 0; needed where anything is lost
     double highest_frequency = kNotGiven;   ///< of the fit [Hz], > lowest_frequency
     int branches = 0;                       ///< of the chain, at most 12; 0: two a decade and one
@@ -50,13 +65,24 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
   explicit ViscoelasticStiffness(Params params);
 
   const Params& params() const { return params_; }
-  std::complex<double> at(double omega) const;     ///< k* [N m/rad]; omega > 0 [rad/s]
+  std::complex<double> at(double omega, const CarriedLoad& load) const;  ///< k* [N m/rad]; omega > 0 [rad/s]
+  /// The same under the load that is taken in time.
+  std::complex<double> at(double omega) const {
+    return at(omega, {params_.at_mean_torque, params_.at_amplitude});
+  }
   std::complex<double> chain(double omega) const;  ///< G(i omega)
-  std::complex<double> beyond_matrices(double omega) const override { return at(omega) - chain(omega); }
-  double static_stiffness() const { return static_stiffness_; }  ///< k_0 [N m/rad]
+  std::complex<double> beyond_matrices(double omega, const CarriedLoad& load) const override {
+    return at(omega, load) - chain(omega);
+  }
+  std::optional<std::complex<double>> beyond_held(double omega, const CarriedLoad& load) const override {
+    return at(omega, load) - held_stiffness_;
+  }
+  bool follows_mean_torque() const override { return !params_.by_mean_torque.at.empty(); }
+  bool follows_amplitude() const override { return !params_.by_amplitude.at.empty(); }
+  double static_stiffness() const override { return static_stiffness_; }  ///< k_0 [N m/rad]
   const std::vector<Branch>& branches() const { return branches_; }
   double fit_error() const { return fit_error_; }
-  bool loses() const;  ///< whether any loss factor is > 0 or the stiffness follows the frequency
+  bool loses() const;  ///< whether a loss factor is > 0 or the stiffness follows the frequency
   void check(ParameterCheck& check) const;
   /// Adds the chain along b, whose branches' points are the local nodes from `first` on, and what the frequency domain
   /// adds. damping: viscous, beside it [N m s/rad].
@@ -68,6 +94,7 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
 
   Params params_;
   double static_stiffness_ = 0.0, fit_error_ = 0.0;
+  double held_stiffness_ = 0.0;  // k_0 + sum k_j
   std::vector<Branch> branches_;
 };
 

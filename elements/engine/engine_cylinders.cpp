@@ -17,6 +17,7 @@ EngineCylinders::EngineCylinders(Params params)
     : params_(std::move(params)),
       crank_{0.5 * params_.stroke, params_.rod},
       area_(0.25 * kPi * params_.bore * params_.bore),
+      mean_inertia_(params_.oscillating_mass * crank_.mean_square()),
       gas_(params_.gas, cycle(params_.strokes)) {
   for (std::size_t k = 0; k < params_.firing_angles.size(); ++k)
     cylinders_.emplace_back(*this, static_cast<int>(k));
@@ -63,7 +64,12 @@ void EngineCylinders::check(ParameterCheck& check) const {
   check.all_finite("firing_angles", p.firing_angles, "rad");
   if (p.firing_angles.empty()) check.fail("firing_angles", "none", "rad", "each cylinder needs one");
   if (!gas_.empty() || !p.gas.pressure.empty()) gas_.check(check);
+  if (gas_.empty() && p.gas.firing.gated())
+    check.fail("speed_ramp", to_text(p.gas.firing.speed_ramp), "rad/s",
+               "needs curves of pressure: harmonics do not tell the compression");
   check_harmonics(check, "tangential_pressure", p.tangential_pressure, "Pa", false);
+  if (p.varying_inertia && !p.twist_feedback)
+    check.fail("varying_inertia", "true", "", "needs twist_feedback: it follows the actual angle");
   const bool tangential = !p.tangential_pressure.empty() || p.mean_tangential_pressure != 0.0;
   if (tangential && !gas_.empty())
     check.fail("tangential_pressure", "given", "", "must not be there beside pressure; give one of them");
@@ -78,7 +84,7 @@ void EngineCylinders::check(ParameterCheck& check) const {
 
 void EngineCylinders::describe(int nodes, Terms& terms) const {
   double inertia = params_.rotating_mass * crank_.radius * crank_.radius;
-  if (params_.mean_oscillating_inertia) inertia += params_.oscillating_mass * crank_.mean_square();
+  if (params_.mean_oscillating_inertia || params_.varying_inertia) inertia += mean_inertia_;
   const int count = std::min(nodes, static_cast<int>(cylinders_.size()));
   for (int k = 0; k < nodes; ++k) terms.mass(k, k) = inertia;
   for (int k = 0; k < count; ++k)
@@ -88,31 +94,39 @@ void EngineCylinders::describe(int nodes, Terms& terms) const {
 
 LoadResponse EngineCylinders::Cylinder::evaluate(const LoadInput& in) const {
   const Params& p = engine_.params_;
-  const bool follows = p.twist_feedback;
-  const double speed = follows ? in.speed : in.nominal_speed;
-  const double angle =
-      in.nominal_angle + (follows ? in.deviation : 0.0) - p.firing_angles[static_cast<std::size_t>(number_)];
-  const CrankSlider::Derivatives x = engine_.crank_.at(angle);
-  const double m = p.oscillating_mass, w_2 = speed * speed;
-  LoadResponse r{.torque = -m * x.second * x.first * w_2,
-                 .dtorque_dangle = -m * w_2 * (x.second * x.second + x.first * x.third),
-                 .dtorque_dspeed = -2.0 * m * x.second * x.first * speed};
-  if (!engine_.gas_.empty()) {
-    const bool nominal = in.nominal_speed != 0.0 || !follows;
-    const GasPressure::Point gas =
-        engine_.gas_.at(angle, nominal ? in.nominal_speed : speed, p.misfiring_cylinder == number_ + 1);
-    const double over = gas.pressure - p.crankcase_pressure;
-    r.torque -= over * engine_.area_ * x.first;
-    r.dtorque_dangle -= engine_.area_ * (gas.angle_slope * x.first + over * x.second);
-    if (!nominal) r.dtorque_dspeed -= gas.speed_slope * engine_.area_ * x.first;
-  } else if (!p.tangential_pressure.empty() || p.mean_tangential_pressure != 0.0) {
-    const CurvePoint t = sum_at(p.tangential_pressure, angle);
-    const double arm = engine_.area_ * engine_.crank_.radius;
-    r.torque += arm * (p.mean_tangential_pressure + t.value);
-    r.dtorque_dangle += arm * t.slope;
+  if (!p.twist_feedback) {
+    const double angle = in.nominal_angle - p.firing_angles[static_cast<std::size_t>(number_)];
+    return {.torque = torque(Dual(angle), Dual(in.nominal_speed), in.nominal_speed).value};
   }
-  if (!follows) r.dtorque_dangle = r.dtorque_dspeed = 0.0;
-  return r;
+  return response_of(in, [&](const Dual& angle, const Dual& speed) {
+    const Dual of_gas = in.nominal_speed != 0.0 ? Dual(in.nominal_speed) : speed;
+    return torque(angle - p.firing_angles[static_cast<std::size_t>(number_)], speed, of_gas);
+  });
+}
+
+Dual EngineCylinders::Cylinder::torque(const Dual& angle, const Dual& speed, const Dual& speed_of_gas) const {
+  const Params& p = engine_.params_;
+  const CrankSlider::Derivatives d = engine_.crank_.at(angle.value);
+  const Dual first = Dual::chain(angle, d.first, d.second), second = Dual::chain(angle, d.second, d.third);
+  const Dual inertia = inertia_by_speed_squared(first, second) * (speed * speed);
+  if (engine_.gas_.empty()) return inertia + tangential(angle);
+  const GasPressure::Point gas =
+      engine_.gas_.at(angle.value, speed_of_gas.value, p.misfiring_cylinder == number_ + 1);
+  const Dual pressure = gas.pressure + (angle - angle.value) * gas.angle_slope +
+                        (speed_of_gas - speed_of_gas.value) * gas.speed_slope;
+  return inertia + (pressure - p.crankcase_pressure) * by_pressure(first);
+}
+
+Dual EngineCylinders::Cylinder::inertia_by_speed_squared(const Dual& first, const Dual& second) const {
+  return -engine_.params_.oscillating_mass * second * first;
+}
+
+Dual EngineCylinders::Cylinder::by_pressure(const Dual& first) const { return -engine_.area_ * first; }
+
+Dual EngineCylinders::Cylinder::tangential(const Dual& angle) const {
+  const Params& p = engine_.params_;
+  return engine_.area_ * engine_.crank_.radius *
+         (p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle));
 }
 
 std::vector<double> EngineCylinders::Cylinder::speed_factors(double speed) const {
@@ -127,12 +141,18 @@ double EngineCylinders::Cylinder::curve(int k, double angle) const {
   const Params& p = engine_.params_;
   angle -= p.firing_angles[static_cast<std::size_t>(number_)];
   const CrankSlider::Derivatives x = engine_.crank_.at(angle);
-  if (k == 0) return -p.oscillating_mass * x.second * x.first;
+  if (k == 0) return inertia_by_speed_squared(x.first, x.second).value;
   if (k > 1)
-    return -engine_.gas_.curve(k - 2, angle, p.misfiring_cylinder == number_ + 1) * engine_.area_ * x.first;
-  if (!engine_.gas_.empty()) return p.crankcase_pressure * engine_.area_ * x.first;
-  return engine_.area_ * engine_.crank_.radius *
-         (p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle).value);
+    return engine_.gas_.curve(k - 2, angle, p.misfiring_cylinder == number_ + 1) * by_pressure(x.first).value;
+  if (!engine_.gas_.empty()) return -p.crankcase_pressure * by_pressure(x.first).value;
+  return tangential(angle).value;
+}
+
+SpeedScaledLoad::Family EngineCylinders::Cylinder::family() const {
+  const Params& p = engine_.params_;
+  const double start = p.firing_angles[static_cast<std::size_t>(number_)];
+  if (p.misfiring_cylinder == number_ + 1) return {this, start};
+  return {&engine_, start};
 }
 
 CubicPiece EngineCylinders::Cylinder::piece(double angle, double direction, double nominal_speed) const {
@@ -151,10 +171,8 @@ KnottedLoad::Curves EngineCylinders::Cylinder::curves(double angle) const {
   const Params& p = engine_.params_;
   angle -= p.firing_angles[static_cast<std::size_t>(number_)];
   const CrankSlider::Derivatives x = engine_.crank_.at(angle);
-  const double tangential = p.mean_tangential_pressure + sum_at(p.tangential_pressure, angle).value;
-  return {
-      engine_.gas_.empty() ? engine_.area_ * engine_.crank_.radius * tangential : -engine_.area_ * x.first,
-      -p.oscillating_mass * x.second * x.first};
+  return {(engine_.gas_.empty() ? tangential(angle) : by_pressure(x.first)).value,
+          inertia_by_speed_squared(x.first, x.second).value};
 }
 
 int EngineCylinders::Cylinder::turns() const {
@@ -164,6 +182,12 @@ int EngineCylinders::Cylinder::turns() const {
                     [&](const Harmonic& h) { return h.order * turns == std::floor(h.order * turns); }))
       return turns;
   return 0;
+}
+
+double EngineCylinders::Cylinder::inertia_beyond(double angle) const {
+  const Params& p = engine_.params_;
+  const double first = engine_.crank_.at(angle - p.firing_angles[static_cast<std::size_t>(number_)]).first;
+  return p.oscillating_mass * first * first - engine_.mean_inertia_;
 }
 
 double EngineCylinders::torque(int k, double angle, double speed) const {

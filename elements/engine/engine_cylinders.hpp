@@ -15,18 +15,26 @@
 /// or none (a motored engine without compression).
 ///
 /// Inertia: m_rot r^2 (crank pin's share of the rod and what else turns at the crank radius) is added to the node,
-/// and with mean_oscillating_inertia also the mean of m_osc x'^2. LIMIT: the inertia that varies with the angle acts
-/// by its term -m_osc x' x'' w^2 (at constant speed all there is); its term in the acceleration is left out, as
-/// usual in orders.
+/// and with mean_oscillating_inertia also the mean of m_osc x'^2. The inertia that varies with the angle acts by its term
+/// -m_osc x' x'' w^2, at constant speed all there is, and as usual in orders no more. With varying_inertia its term in the
+/// acceleration acts too,
 ///
+///   J(theta) theta_k'' + 1/2 J'(theta) w^2 = other torques,   J = J_node + m_rot r^2 + m_osc x'^2
+///
+/// without an approximation, in steps of any method, constant or controlled (core/law/varying_inertia.hpp); tau_k, as
+/// reported, is then -(p - p_c) A x' - (m_osc x'^2 - mean) theta_k'' - m_osc x' x'' w^2. Modes and statics know the mean.
+/// LIMIT: exact propagation, lockstep, projections and methods in the frequency domain refuse it by name.
+///
+/// Firing may be gated by speed (gas.firing): outside the gate all cylinders compress and expand without injection.
 /// Misfire of one cylinder: no injection, compression stays (its pressure is symmetric about the firing dead
 /// centre). Mean gas torque of a cylinder = pmi V_h/(4 pi), four strokes.
 /// Source: E. J. Nestorides, A Handbook on Torsional Vibration, Cambridge, 1958, chapter 4; IACS UR M53 (half range
 /// by synthesis, misfire).
 #include <drev/core/element.hpp>
 #include <drev/core/law/knotted_load.hpp>
+#include <drev/core/law/load_element.hpp>
 #include <drev/core/law/speed_scaled_load.hpp>
-#include <drev/core/load.hpp>
+#include <drev/core/law/varying_inertia.hpp>
 #include <drev/elements/engine/crank_slider.hpp>
 #include <drev/elements/engine/gas_pressure.hpp>
 #include <drev/elements/harmonic.hpp>
@@ -46,6 +54,7 @@ class EngineCylinders final : public Element {
     double oscillating_mass = 0.0;          ///< m_osc of a cylinder [kg], >= 0
     double rotating_mass = 0.0;             ///< m_rot at the crank radius [kg], >= 0
     bool mean_oscillating_inertia = false;  ///< add the mean of m_osc x'^2 to the nodes
+    bool varying_inertia = false;           ///< add m_osc x'^2 at the actual angle; needs twist_feedback
     int strokes = 4;                        ///< of a cycle: 2 or 4
     /// Crank angle at the firing top dead centre of each cylinder [rad], one a node; even_firing() finds them.
     std::vector<double> firing_angles = {};
@@ -76,7 +85,7 @@ class EngineCylinders final : public Element {
   double mean_torque(int k, double speed) const;
 
  private:
-  class Cylinder final : public Load, public SpeedScaledLoad, public KnottedLoad {
+  class Cylinder final : public Load, public SpeedScaledLoad, public KnottedLoad, public VaryingInertia {
    public:
     Cylinder(const EngineCylinders& engine, int number) : engine_(engine), number_(number) {}
     LoadResponse evaluate(const LoadInput& in) const override;
@@ -84,20 +93,30 @@ class EngineCylinders final : public Element {
     /// w^2 of the mass torque, 1 of what the speed does not move, then those of the gas pressure's curves.
     std::vector<double> speed_factors(double speed) const override;
     double curve(int k, double angle) const override;
+    Family family() const override;
     /// P: p - p_c (1 where there are no curves of pressure); S: -A x', or of the tangential pressure; G: -m_osc x' x''.
     CubicPiece piece(double angle, double direction, double nominal_speed) const override;
     bool piece_follows_speed() const override { return engine_.gas_.follows_speed(); }
     Curves curves(double angle) const override;
     int turns() const override;
+    bool inertia_varies() const override { return engine_.params_.varying_inertia; }
+    double inertia_beyond(double angle) const override;
 
    private:
+    /// The formula: over dual numbers with its slopes. angle: of the crank [rad], from its own top dead centre.
+    Dual torque(const Dual& angle, const Dual& speed, const Dual& speed_of_gas) const;
+    /// Its parts; first and second: derivatives of the piston's way by the crank angle [m].
+    Dual inertia_by_speed_squared(const Dual& first, const Dual& second) const;  ///< N m s^2/rad^2
+    Dual by_pressure(const Dual& first) const;                                   ///< N m/Pa
+    Dual tangential(const Dual& angle) const;                                    ///< N m
+
     const EngineCylinders& engine_;
     int number_;
   };
 
   Params params_;
   CrankSlider crank_;
-  double area_ = 0.0;
+  double area_ = 0.0, mean_inertia_ = 0.0;  // of the oscillating mass [kg m^2]
   GasPressure gas_;
   std::vector<Cylinder> cylinders_;
 };

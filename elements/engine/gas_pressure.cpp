@@ -63,6 +63,16 @@ GasPressure::Scale GasPressure::peak_scale(double size) const {
 }
 
 GasPressure::Point GasPressure::at(double angle, double speed, bool misfires) const {
+  if (misfires || !params_.firing.gated()) return ungated(angle, speed, misfires);
+  const CurvePoint part = params_.firing.at(std::abs(speed));
+  const Point fired = ungated(angle, speed, false), compressed = ungated(angle, speed, true);
+  const auto mixed = [&](double a, double b) { return b + part.value * (a - b); };
+  return {mixed(fired.pressure, compressed.pressure), mixed(fired.angle_slope, compressed.angle_slope),
+          mixed(fired.speed_slope, compressed.speed_slope) +
+              (speed < 0.0 ? -part.slope : part.slope) * (fired.pressure - compressed.pressure)};
+}
+
+GasPressure::Point GasPressure::ungated(double angle, double speed, bool misfires) const {
   const double side = mirrored(angle, misfires), direction = speed < 0.0 ? -1.0 : 1.0, size = std::abs(speed);
   const bool by_speed = !params_.speed.empty();
   const CurveFamily::Point c = curves_.at(angle + params_.firing_tdc, by_speed ? size : params_.at_load);
@@ -72,7 +82,18 @@ GasPressure::Point GasPressure::at(double angle, double speed, bool misfires) co
 }
 
 std::vector<double> GasPressure::factors(double speed) const {
-  const double size = std::abs(speed);
+  std::vector<double> parts = ungated_factors(std::abs(speed));
+  if (!params_.firing.gated()) return parts;
+  const std::size_t curves = parts.size();
+  const double fires = firing_part(std::abs(speed));
+  for (std::size_t k = 0; k < curves; ++k) {
+    parts.push_back((1.0 - fires) * parts[k]);
+    parts[k] *= fires;
+  }
+  return parts;
+}
+
+std::vector<double> GasPressure::ungated_factors(double size) const {
   const std::vector<double>& at = curves_.parameters();
   std::vector<double> parts(curves_.curves().size(), 0.0);
   const double parameter = params_.speed.empty() ? params_.at_load : size;
@@ -90,11 +111,28 @@ std::vector<double> GasPressure::factors(double speed) const {
 }
 
 double GasPressure::curve(int k, double angle, bool misfires) const {
-  mirrored(angle, misfires);
-  return curves_.curves()[static_cast<std::size_t>(k)].at(angle + params_.firing_tdc).value;
+  const auto curves = static_cast<int>(curves_.curves().size());
+  mirrored(angle, misfires || k >= curves);
+  return curves_.curves()[static_cast<std::size_t>(k % curves)].at(angle + params_.firing_tdc).value;
 }
 
 CubicPiece GasPressure::piece(double angle, double direction, double speed, bool misfires) const {
+  std::vector<double> parts = ungated_factors(std::abs(speed));
+  const double fires = misfires ? 0.0 : firing_part(std::abs(speed));
+  if (fires == 0.0 || fires == 1.0) return ungated_piece(angle, direction, parts, fires == 0.0);
+  std::vector<double> rest = parts;
+  for (double& part : parts) part *= fires;
+  for (double& part : rest) part *= 1.0 - fires;
+  CubicPiece sum = ungated_piece(angle, direction, parts, false);
+  const CubicPiece compressed = ungated_piece(angle, direction, rest, true);
+  sum.low = std::max(sum.low, compressed.low);
+  sum.high = std::min(sum.high, compressed.high);
+  for (std::size_t j = 0; j < sum.terms.size(); ++j) sum.terms[j] += compressed.terms[j];
+  return sum;
+}
+
+CubicPiece GasPressure::ungated_piece(double angle, double direction, const std::vector<double>& parts,
+                                      bool misfires) const {
   constexpr double kOnKnot = 1e-13;  // of the angle, at least of 1 rad
   const bool up = direction > 0.0;
   double side = 1.0, at = angle;
@@ -110,7 +148,6 @@ CubicPiece GasPressure::piece(double angle, double direction, double speed, bool
     sum.high = angle + ((backwards ? half : period_) - behind);
     if (backwards) side = -1.0, at = -behind;
   }
-  const std::vector<double> parts = factors(speed);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (parts[k] == 0.0) continue;
     const double entered = at + params_.firing_tdc;
@@ -139,6 +176,7 @@ void GasPressure::check(ParameterCheck& check) const {
   check.finite("firing_tdc", p.firing_tdc, "rad");
   check.finite("load", p.at_load, "");
   check.non_negative("reference_pressure", p.reference_pressure, "Pa");
+  p.firing.check(check);
   if (sizes_fit_ && !curves_.curves().empty()) {
     check.increasing(p.speed.empty() ? "pressure.load" : "pressure.speed", curves_.parameters(), "");
     for (const PeriodicCurve& curve : curves_.curves()) curve.check(check, "pressure", "rad", "Pa");

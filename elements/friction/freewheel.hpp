@@ -11,6 +11,7 @@
 /// Only exact propagation takes it; modes see it overrunning.
 /// Source: Modelica Standard Library, Rotational.Components.OneWayClutch; F. Pfeiffer, Ch. Glocker, Multibody Dynamics
 /// with Unilateral Contacts, Wiley, 1996.
+#include <drev/core/element.hpp>
 #include <drev/core/law/friction.hpp>
 
 #include <vector>

@@ -11,7 +11,7 @@
 /// Source: quadratic law (propeller at constant advance ratio); S. Archer, Torsional vibration damping coefficients for
 /// marine propellers, Engineering 1955 (by its title).
 #include <drev/core/element.hpp>
-#include <drev/core/load.hpp>
+#include <drev/core/law/load_element.hpp>
 #include <drev/elements/harmonic.hpp>
 #include <drev/elements/not_given.hpp>
 
@@ -43,12 +43,12 @@ class Propeller final : public Element, public Load {
 
   LoadResponse evaluate(const LoadInput& in) const override {
     const Params& p = params_;
-    const double factor = p.rated_torque / (p.rated_speed * p.rated_speed), w = in.speed;
-    const CurvePoint h = sum_at(p.harmonics, in.nominal_angle + (p.twist_feedback ? in.deviation : 0.0));
+    const double factor = p.rated_torque / (p.rated_speed * p.rated_speed);
     const double extra = (p.damping_factor - 2.0) * factor * std::abs(in.nominal_speed);
-    return {.torque = -factor * w * std::abs(w) * (1.0 + h.value) - extra * (w - in.nominal_speed),
-            .dtorque_dangle = p.twist_feedback ? -factor * w * std::abs(w) * h.slope : 0.0,
-            .dtorque_dspeed = -2.0 * factor * std::abs(w) * (1.0 + h.value) - extra};
+    return response_of(in, [&](const Dual& angle, const Dual& w) {
+      const Dual harmonics = sum_at(p.harmonics, p.twist_feedback ? angle : Dual(in.nominal_angle));
+      return -factor * w * abs(w) * (1.0 + harmonics) - extra * (w - in.nominal_speed);
+    });
   }
 
  private:

@@ -1,12 +1,14 @@
 #pragma once
 /// TorqueCurve: a torque over the speed of a node, linear between points: a motor, a brake, a pump.
 ///
-///   tau = scale table(w)       on the RIGHT side: positive drives the node in the positive sense
+///   tau = g(w) scale table(w)       on the RIGHT side: positive drives the node in the positive sense
 ///
-/// w: actual speed of the node, with its sign; constant before the first and behind the last point. About the nominal
+/// w: actual speed of the node, with its sign; constant before the first and behind the last point. g: the gate by
+/// speed (curve.hpp), 1 where none is given: a starter that lets go, a brake that holds up to a speed. About the nominal
 /// speed it damps with -dtau/dw (a falling motor curve damps, a rising one drives vibration).
 #include <drev/core/element.hpp>
 #include <drev/core/load.hpp>
+#include <drev/elements/curve.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -19,6 +21,7 @@ class TorqueCurve final : public Element, public Load {
     std::vector<double> speeds = {};   ///< ascending [rad/s], at least 2
     std::vector<double> torques = {};  ///< at these [N m]
     double scale = 1.0;                ///< factor of the torques [-], finite
+    SpeedGate gate = {};               ///< over the actual speed w
   };
   explicit TorqueCurve(Params params) : params_(std::move(params)) {}
 
@@ -35,19 +38,26 @@ class TorqueCurve final : public Element, public Load {
     check.increasing("curve.speed", p.speeds, "rad/s");
     check.all_finite("curve.torque", p.torques, "N m");
     check.finite("scale", p.scale, "");
+    p.gate.check(check);
   }
   void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
 
   LoadResponse evaluate(const LoadInput& in) const override {
-    const std::vector<double>&w = params_.speeds, &tau = params_.torques;
-    if (in.speed < w.front()) return {.torque = params_.scale * tau.front()};
-    if (in.speed >= w.back()) return {.torque = params_.scale * tau.back()};
-    const auto i = static_cast<std::size_t>(std::upper_bound(w.begin(), w.end(), in.speed) - w.begin());
-    const double slope = params_.scale * (tau[i] - tau[i - 1]) / (w[i] - w[i - 1]);
-    return {.torque = params_.scale * tau[i - 1] + slope * (in.speed - w[i - 1]), .dtorque_dspeed = slope};
+    const CurvePoint gate = params_.gate.at(in.speed), tau = ungated(in.speed);
+    return {.torque = gate.value * tau.value,
+            .dtorque_dspeed = gate.value * tau.slope + gate.slope * tau.value};
   }
 
  private:
+  CurvePoint ungated(double speed) const {
+    const std::vector<double>&w = params_.speeds, &tau = params_.torques;
+    if (speed < w.front()) return {params_.scale * tau.front(), 0.0};
+    if (speed >= w.back()) return {params_.scale * tau.back(), 0.0};
+    const auto i = static_cast<std::size_t>(std::upper_bound(w.begin(), w.end(), speed) - w.begin());
+    const double slope = params_.scale * (tau[i] - tau[i - 1]) / (w[i] - w[i - 1]);
+    return {params_.scale * tau[i - 1] + slope * (speed - w[i - 1]), slope};
+  }
+
   Params params_;
 };
 

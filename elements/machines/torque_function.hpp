@@ -8,17 +8,13 @@
 /// need, come by forward differentiation; a model file's `expression` is compiled to the same. It must be pure. Where it
 /// kinks or jumps over the time, breakpoints say so; kinks over angle and speed (abs, min, max) cost steps.
 ///
-/// Gate by speed: g = 0 below from_speed and above to_speed, 1 between, and straight over `speed_ramp` inside each end,
-/// so that the torque is continuous:
-///   g = clamp((w - from_speed)/speed_ramp, 0, 1) clamp((to_speed - w)/speed_ramp, 0, 1)
+/// g: the gate by speed (curve.hpp), 1 where none is given.
 #include <drev/core/element.hpp>
-#include <drev/core/law/dual.hpp>
-#include <drev/core/load.hpp>
+#include <drev/core/law/load_element.hpp>
+#include <drev/elements/curve.hpp>
 #include <drev/elements/formula.hpp>
-#include <drev/elements/not_given.hpp>
 
 #include <array>
-#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -37,9 +33,7 @@ class TorqueFunction final : public Element, public Load {
     /// Instead of the function, of the variables angle [rad], speed [rad/s] and time [s], by these numbers.
     std::optional<Formula> formula = {};
     std::vector<double> breakpoints = {};  ///< times at which f jumps or kinks [s]
-    double from_speed = kNotGiven;         ///< rad/s; not given: no lower end
-    double to_speed = kNotGiven;           ///< rad/s, > from_speed; not given: no upper end
-    double speed_ramp = kNotGiven;         ///< rad/s, > 0; needed with either of them
+    SpeedGate gate = {};                   ///< over the actual speed w
   };
   explicit TorqueFunction(Params params) : params_(std::move(params)) {}
 
@@ -52,41 +46,22 @@ class TorqueFunction final : public Element, public Load {
       check.fail("torque", p.torque ? "both" : "nothing", "",
                  "exactly one of torque and formula must be given");
     check.all_finite("breakpoints", p.breakpoints, "s");
-    const bool from = !std::isnan(p.from_speed), to = !std::isnan(p.to_speed);
-    if (from) check.finite("from_speed", p.from_speed, "rad/s");
-    if (to) check.finite("to_speed", p.to_speed, "rad/s");
-    if (from || to) check.positive("speed_ramp", p.speed_ramp, "rad/s");
-    if (!from && !to && !std::isnan(p.speed_ramp))
-      check.fail("speed_ramp", to_text(p.speed_ramp), "rad/s", "needs from_speed or to_speed");
-    if (from && to && !(p.to_speed - p.from_speed >= 2.0 * p.speed_ramp))
-      check.fail(
-          "to_speed", to_text(p.to_speed), "rad/s",
-          "must be above from_speed, " + to_text(p.from_speed) + " rad/s, by two speed_ramps at least");
+    p.gate.check(check);
   }
   void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
 
   LoadResponse evaluate(const LoadInput& in) const override {
-    const Dual angle(in.nominal_angle + in.deviation, 1.0, 0.0), speed(in.speed, 0.0, 1.0);
-    const Dual f = params_.formula ? params_.formula->at(std::array{angle, speed, Dual(in.t)})
-                                   : params_.torque({angle, speed, in.t});
-    const Dual tau = gated() ? gate(speed) * f : f;
-    return {.torque = tau.value, .dtorque_dangle = tau.by_x, .dtorque_dspeed = tau.by_x_dot};
+    return response_of(in, [&](const Dual& angle, const Dual& speed) {
+      const Dual f = params_.formula ? params_.formula->at(std::array{angle, speed, Dual(in.t)})
+                                     : params_.torque({angle, speed, in.t});
+      if (!params_.gate.gated()) return f;
+      const CurvePoint gate = params_.gate.at(speed.value);
+      return Dual(gate.value, 0.0, gate.slope) * f;
+    });
   }
   std::vector<double> breakpoints() const override { return params_.breakpoints; }
 
  private:
-  bool gated() const { return !std::isnan(params_.speed_ramp); }
-  Dual gate(const Dual& speed) const {
-    const auto ramp = [&](const Dual& inside) {
-      return inside.value <= 0.0                  ? Dual(0.0)
-             : inside.value >= params_.speed_ramp ? Dual(1.0)
-                                                  : inside / params_.speed_ramp;
-    };
-    Dual g = 1.0;
-    if (!std::isnan(params_.from_speed)) g *= ramp(speed - params_.from_speed);
-    if (!std::isnan(params_.to_speed)) g *= ramp(params_.to_speed - speed);
-    return g;
-  }
   Params params_;
 };
 

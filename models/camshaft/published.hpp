@@ -48,6 +48,9 @@ inline constexpr std::array<Gear, 4> kGears{{{"crankshaft", 8, 59, 443.535},
                                              {"camshaft", 9, 59, 498.977}}};
 inline constexpr double kPressureAngleDeg = 20;
 
+/// One pair of mesh 1 and 2 by cantilever beams, equation 4.14 with the source's dimensions [N/m].
+inline constexpr std::array<double, 2> kCantilever{3.72e8, 1.48e9};
+
 /// Table 4.2: moment [N m] on the pinion, tooth deflection [m], stiffness [N/m].
 struct MeshStiffness {
   const char* name;

@@ -1,14 +1,16 @@
-// An element of one's own in a few lines: a coupling whose stiffness grows with its twist.
-// Shows: a law in one formula, LawElement, check_element. The text is docs/adding_an_element.md.
+// Elements of one's own in a few lines: a coupling whose stiffness grows with its twist, and a fan.
+// Shows: a law and a torque in one formula each, LawElement, LoadElement, check_element. The text is docs/adding_an_element.md.
 // Run:   build/release/bin/example_custom_element
 // Read first: two_inertia.
 #include <drev/core/channel.hpp>
+#include <drev/core/law/load_element.hpp>
 #include <drev/core/law_element.hpp>
 #include <drev/core/verify.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <cmath>
 #include <cstdio>
 
 // [law]
@@ -30,6 +32,21 @@ struct CubicLaw {
 using CubicCoupling = drev::LawElement<CubicLaw>;
 // [law]
 
+// [torque]
+/// tau = -c w |w| [N m], w = speed of the node.
+struct FanTorque {
+  double c;  ///< N m s^2/rad^2, > 0
+
+  template <class T>
+  T torque(double /*t*/, const T& /*angle*/, const T& speed) const {
+    using std::abs;
+    return -c * speed * abs(speed);
+  }
+  void check(drev::ParameterCheck& check) const { check.positive("c", c, "N m s^2/rad^2"); }
+};
+using Fan = drev::LoadElement<FanTorque>;
+// [torque]
+
 int main() {
   using namespace drev;
   // [check]
@@ -37,6 +54,7 @@ int main() {
   for (const std::string& failure : report.failures) std::printf("%s\n", failure.c_str());
   if (!report.ok()) return 1;
   // [check]
+  if (!check_element(Fan({.c = 0.05}), 1).ok()) return 1;
 
   // [use]
   Model m("engine and pump");

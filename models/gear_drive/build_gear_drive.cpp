@@ -1,9 +1,15 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/models/gears/gear_drawing.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "models/gears/gear_element.hpp"
 
 namespace drev {
 
@@ -21,7 +27,30 @@ constexpr double kSingle1 = 6.582e8, kDouble1 = 1.1021e9, kSingle2 = 7.698e8, kD
 constexpr double kContactRatio = 1.5, kSecondMeshPhase = 0.125;
 constexpr int kMeshHarmonics = 10;
 
-MeshStiffness stiffness(double single, double both, double factor, MeshVariation variation) {
+struct DriveMesh {
+  double module, shift, tips, distance, width, load;
+  int teeth_1, teeth_2;
+};
+constexpr DriveMesh kMesh1{kModule1, -0.626, -0.27, mm(497), mm(88), 44.5e3, kCrankTeeth, kBigIdlerTeeth};
+constexpr DriveMesh kMesh2{kModule2, -0.082, 0.0, mm(417), mm(130), 30.8e3, kSmallIdlerTeeth, kCamshaftTeeth};
+
+/// k of mesh 1 or 2 by its drawing; computed once.
+const MeshStiffness& drawn_stiffness(int mesh) {
+  static const MeshStiffness first = gear_mesh_params(gear_drive_drawing(1)).stiffness;
+  static const MeshStiffness second = gear_mesh_params(gear_drive_drawing(2)).stiffness;
+  return mesh == 1 ? first : second;
+}
+
+MeshStiffness times(const MeshStiffness& stiffness, double factor) {
+  const auto& table = std::get<PeriodicTable>(stiffness.law());
+  std::vector<double> values = table.values();
+  for (double& k : values) k *= factor;
+  return MeshStiffness::table(table.arguments(), std::move(values));
+}
+
+MeshStiffness stiffness(int mesh, double single, double both, double factor, MeshVariation variation) {
+  if (variation == MeshVariation::drawing) return times(drawn_stiffness(mesh), factor);
+  if (variation == MeshVariation::drawing_mean) return factor * drawn_stiffness(mesh).mean();
   single *= factor, both *= factor;
   if (variation == MeshVariation::step) return MeshStiffness::step(single, both, kContactRatio);
   if (variation == MeshVariation::fourier)
@@ -30,6 +59,26 @@ MeshStiffness stiffness(double single, double both, double factor, MeshVariation
 }
 
 }  // namespace
+
+GearDrawing gear_drive_drawing(int mesh, double bore) {
+  constexpr double kDedendum = 1.25;
+  const DriveMesh& m = mesh == 1 ? kMesh1 : kMesh2;
+  GearDrawing drawing;
+  drawing.geometry.module = m.module;
+  drawing.geometry.centre_distance = m.distance;
+  drawing.cycle.load = m.load;
+  GearData* gears[] = {&drawing.geometry.gear_1, &drawing.geometry.gear_2};
+  for (const int i : {0, 1}) {
+    GearData& g = *gears[i];
+    g.teeth = i == 0 ? m.teeth_1 : m.teeth_2;
+    g.profile_shift = m.shift;
+    g.tip_alteration = m.tips;
+    g.width = m.width;
+    g.bore_diameter = bore * m.module * (g.teeth + 2.0 * m.shift - 2.0 * kDedendum);
+    drawing.tolerances.thickness[static_cast<std::size_t>(i)].upper_allowance = -mm(0.09);  // or it jams
+  }
+  return drawing;
+}
 
 void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveParams& p) {
   m.add_node("crank_gear");
@@ -41,7 +90,7 @@ void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveP
                    .teeth_1 = kCrankTeeth,
                    .teeth_2 = kBigIdlerTeeth,
                    .pressure_angle = kPressureAngle,
-                   .stiffness = stiffness(kSingle1, kDouble1, p.stiffness_factor, p.variation),
+                   .stiffness = stiffness(1, kSingle1, kDouble1, p.stiffness_factor, p.variation),
                    .normal_backlash = p.normal_backlash,
                    .damping = p.mesh_damping});
   m.add<GearMesh>("mesh_2", {"idler", camshaft_gear},
@@ -49,7 +98,7 @@ void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveP
                    .teeth_1 = kSmallIdlerTeeth,
                    .teeth_2 = kCamshaftTeeth,
                    .pressure_angle = kPressureAngle,
-                   .stiffness = stiffness(kSingle2, kDouble2, p.stiffness_factor, p.variation),
+                   .stiffness = stiffness(2, kSingle2, kDouble2, p.stiffness_factor, p.variation),
                    .normal_backlash = p.normal_backlash,
                    .damping = p.mesh_damping,
                    .mesh_phase = kSecondMeshPhase});
@@ -71,8 +120,9 @@ std::vector<Parameter> gear_drive_settings() {
            "",
            0,
            0,
-           {"mean", "step", "fourier"},
-           "constant mean, square wave of contact ratio 1.5, or its Fourier series"},
+           {"mean", "step", "fourier", "drawing", "drawing_mean"},
+           "constant mean, square wave of contact ratio 1.5, its Fourier series, curve from the gears' "
+           "geometry, its mean"},
           {"mesh_stiffness_factor",
            Kind::number,
            "1",
@@ -94,9 +144,11 @@ std::vector<Parameter> gear_drive_settings() {
 GearDriveParams gear_drive_params(const Parameters& s) {
   const std::string& variation = s.text("mesh_stiffness");
   return {.normal_backlash = mm(s.number("backlash_mm")),
-          .variation = variation == "step"      ? MeshVariation::step
-                       : variation == "fourier" ? MeshVariation::fourier
-                                                : MeshVariation::mean,
+          .variation = variation == "step"           ? MeshVariation::step
+                       : variation == "fourier"      ? MeshVariation::fourier
+                       : variation == "drawing"      ? MeshVariation::drawing
+                       : variation == "drawing_mean" ? MeshVariation::drawing_mean
+                                                     : MeshVariation::mean,
           .stiffness_factor = s.number("mesh_stiffness_factor"),
           .mesh_damping = s.number("mesh_damping_Ns_per_m")};
 }

@@ -11,8 +11,11 @@
 
 namespace drev {
 
-/// Variation of the mesh stiffness.
-enum class MeshVariation { mean, step, fourier };
+struct GearDrawing;
+
+/// Variation of the mesh stiffness; drawing: the curve that follows from the gears' geometry (add_gear_drive), drawing_mean:
+/// its mean over the mesh period.
+enum class MeshVariation { mean, step, fourier, drawing, drawing_mean };
 
 struct GearDriveParams {
   double normal_backlash = 0.15e-3;  ///< m, total, in each mesh
@@ -20,6 +23,11 @@ struct GearDriveParams {
   double stiffness_factor = 1.0;  ///< stiffness of both meshes over the source's
   double mesh_damping = 0.0;      ///< N s/m, in each mesh
 };
+
+/// Drawing of mesh 1 or 2, bores as a part of the root circles. Modules, teeth, shifts and centre distances of the source (497 and
+/// 417 mm), tips that clear the fillets, mean forces of 44.5 and 30.8 N/mm over widths of 88 and 130 mm; tips and bores are
+/// assumed, as in models/camshaft_gears. The stiffness of the drive follows from it where that is asked for.
+GearDrawing gear_drive_drawing(int mesh, double bore = 0.3);
 
 /// Adds crank_gear, idler, mesh_1 and mesh_2 to a model that has the node `camshaft_gear`, whose inertia
 /// is the caller's. Nothing is prescribed.

@@ -1,6 +1,7 @@
+#include "models/gears/analytic_stiffness.hpp"
+
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/gears/analytic_stiffness.hpp>
 
 #include <cmath>
 #include <vector>
@@ -22,16 +23,18 @@ struct Beam {
 
 Beam beam_of(const ToothContour& c, double t) {
   const auto contact = c.flank(t);
+  const double side = c.side();  // a ring's tooth stands on its root circle and points inwards
   Beam beam{};
-  beam.angle = std::atan2(t, c.base_radius()) - contact.angle;
+  beam.angle = std::atan2(t, c.base_radius()) - side * contact.angle;
   beam.root_angle = c.root_angle();
-  const double arm = contact.y() - contact.x() * std::tan(beam.angle);
-  beam.arm = arm - c.root_radius();
+  const double arm = side * contact.y() - contact.x() * std::tan(beam.angle);
+  beam.arm = arm - side * c.root_radius();
   beam.depth = contact.x() / std::cos(beam.angle);
   beam.root_width = 2.0 * c.root_radius() * beam.root_angle;
   ToothContour::Place last{c.root_radius(), beam.root_angle};
   const auto go = [&](const ToothContour::Place& next) {
-    const double dy = next.y() - last.y(), width = next.x() + last.x(), y = 0.5 * (next.y() + last.y());
+    const double dy = side * (next.y() - last.y()), width = next.x() + last.x(),
+                 y = 0.5 * side * (next.y() + last.y());
     beam.bending += (arm - y) * (arm - y) / (width * width * width) * dy;
     beam.section += dy / width;
     last = next;
@@ -75,32 +78,34 @@ double weber_compliance(const Beam& b, const GearMaterial& m) {
 double analytic_pair_stiffness(const GearPair& pair, AnalyticMethod method, double t, double load) {
   std::vector<Finding> findings;
   ParameterCheck check("analytic stiffness", findings);
-  if (pair.geometry().internal) check.fail("internal", "true", "", "the methods are those of external gears");
   check.positive("load", load, "N/m");
   check.within("t", t, std::max(0.0, pair.contour(0).form_length()),
                pair.contour(0).tip_length() * (1.0 + 1e-12), "m");
-  if (method == AnalyticMethod::potential_energy)
+  const bool linear = method == AnalyticMethod::potential_energy_yang_sun,
+             by_energy = linear || method == AnalyticMethod::potential_energy;
+  if (by_energy && !pair.geometry().internal)
     for (int i = 0; i < 2; ++i)
       check.positive("gear_" + std::to_string(i + 1) + ".bore_diameter", pair.gear(i).bore_diameter, "m");
   if (!findings.empty()) throw ModelError(std::move(findings));
+  if (by_energy && pair.geometry().internal) return kNotGiven;  // Sainsot's body is a disc
   const double t_2 = pair.second_length(t);
   double shape = 0.0, compliance = 0.0;
   for (int i = 0; i < 2; ++i) {
     const GearMaterial& m = pair.gear(i).material;
     shape += (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
   }
-  const double half_width = std::sqrt(4.0 * load * t * t_2 / (t + t_2) / kPi * shape);
+  const double half_width = std::sqrt(4.0 * load * t * t_2 / pair.tangent_length() / kPi * shape);
   for (int i = 0; i < 2; ++i) {
     const GearMaterial& m = pair.gear(i).material;
     const double nu = m.poisson_ratio;
     const Beam beam = beam_of(pair.contour(i), i == 0 ? t : t_2);
-    compliance += method == AnalyticMethod::weber_banaschek
-                      ? weber_compliance(beam, m)
-                      : energy_compliance(beam, m) +
+    compliance += by_energy
+                      ? energy_compliance(beam, m) +
                             sainsot_compliance(
-                                beam, m, 2.0 * pair.contour(i).root_radius() / pair.gear(i).bore_diameter);
-    compliance += (1.0 - nu * nu) / (kPi * m.youngs_modulus) *
-                  (2.0 * std::log(2.0 * beam.depth / half_width) - nu / (1.0 - nu));
+                                beam, m, 2.0 * pair.contour(i).root_radius() / pair.gear(i).bore_diameter)
+                      : weber_compliance(beam, m);
+    const double contact = linear ? 2.0 : 2.0 * std::log(2.0 * beam.depth / half_width) - nu / (1.0 - nu);
+    compliance += (1.0 - nu * nu) / (kPi * m.youngs_modulus) * contact;
   }
   return 1.0 / compliance;
 }
@@ -123,21 +128,24 @@ IsoStiffness iso_mesh_stiffness(const IsoStiffnessInput& in) {
   if (x1 + x2 < -0.5 || x1 + x2 > 2.0)
     c.outside += std::string(c.outside.empty() ? "" : "; ") + "x_1 + x_2 = " + to_text(x1 + x2) +
                  " is not within -0.5 and 2";
+  if (std::isinf(z2))
+    c.outside += std::string(c.outside.empty() ? "" : "; ") + "of a ring an approximation, z_n2 infinite";
   return c;
 }
 
 IsoStiffness iso_mesh_stiffness(const GearPair& pair, double load) {
   const GearGeometry& g = pair.geometry();
   const double scale = std::pow(std::cos(pair.base_helix_angle()), 2) * std::cos(g.helix_angle);
-  return iso_mesh_stiffness(IsoStiffnessInput{.virtual_teeth_1 = g.gear_1.teeth / scale,
-                                              .virtual_teeth_2 = g.gear_2.teeth / scale,
-                                              .profile_shift_1 = g.gear_1.profile_shift,
-                                              .profile_shift_2 = g.gear_2.profile_shift,
-                                              .dedendum = g.rack.dedendum,
-                                              .pressure_angle = g.pressure_angle,
-                                              .helix_angle = g.helix_angle,
-                                              .contact_ratio = pair.contact_ratio(),
-                                              .load = load});
+  return iso_mesh_stiffness(
+      IsoStiffnessInput{.virtual_teeth_1 = g.gear_1.teeth / scale,
+                        .virtual_teeth_2 = g.internal ? INFINITY : g.gear_2.teeth / scale,
+                        .profile_shift_1 = g.gear_1.profile_shift,
+                        .profile_shift_2 = g.gear_2.profile_shift,
+                        .dedendum = g.rack.dedendum,
+                        .pressure_angle = g.pressure_angle,
+                        .helix_angle = g.helix_angle,
+                        .contact_ratio = pair.contact_ratio(),
+                        .load = load});
 }
 
 }  // namespace drev

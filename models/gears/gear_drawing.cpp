@@ -23,6 +23,8 @@ MeshCycleOptions under_load(const GearDrawing& drawing, const GearPair& pair, co
     options.load = drawing.torque_1 / (pair.contour(0).base_radius() * pair.face_width());
   }
   check.within("backlash_percentile", drawing.backlash_percentile, 0.0, 1.0, "");
+  if (drawing.tangent && !drawing.loads.empty())
+    check.fail("tangent", "true", "", "must not be there beside loads, whose law has its slope at each load");
   if (!findings.empty()) throw ModelError(std::move(findings));
   return options;
 }
@@ -78,7 +80,10 @@ GearMeshData gear_mesh_data(const GearDrawing& drawing, const std::string& place
   const GearPair pair(drawing.geometry, place);
   const MeshCycleOptions options = under_load(drawing, pair, place);
   Backlash backlash(pair, drawing.tolerances);
-  return {pair, MeshCycle(pair, options), backlash};
+  MeshCycle cycle(pair, options);
+  std::optional<GearLoadLaw> law;
+  if (!drawing.loads.empty()) law = gear_load_law(cycle, drawing.loads);
+  return {pair, std::move(cycle), backlash, std::move(law)};
 }
 
 GearMesh::Params gear_mesh_params(const GearDrawing& drawing, GearMesh::Params rest) {
@@ -94,6 +99,7 @@ GearMesh::Params gear_mesh_params(const GearDrawing& drawing, const GearMeshData
   rest.base_radius_2 = data.pair.contour(1).base_radius();
   rest.teeth_1 = data.pair.gear(0).teeth;
   rest.teeth_2 = data.pair.gear(1).teeth;
+  rest.internal = data.pair.geometry().internal;
   double MeshPoint::*const value = drawing.tangent ? &MeshPoint::tangent : &MeshPoint::secant;
   Curve stiffness, error;
   bool uneven = false;
@@ -104,6 +110,11 @@ GearMesh::Params gear_mesh_params(const GearDrawing& drawing, const GearMeshData
     uneven = uneven || p.unloaded_error != 0.0;
   }
   error.phases = stiffness.phases;
+  if (data.load_law) {
+    for (std::size_t i = 0; i < data.load_law->phases.size(); ++i)
+      stiffness.values[i] = data.load_law->stiffness[i] * data.pair.face_width();
+    rest.stiffening = {data.load_law->penetrations, data.load_law->slopes};
+  }
   stiffness = thinned(stiffness);
   rest.stiffness = MeshStiffness::table(std::move(stiffness.phases), std::move(stiffness.values));
   if (uneven) {

@@ -19,8 +19,22 @@ bool is_given(double value) { return !std::isnan(value); }
 double tangent_of(double radius, double base) { return std::sqrt((radius - base) * (radius + base)); }
 std::string name_of(const char* key, int gear) { return "gear_" + std::to_string(gear + 1) + "." + key; }
 
-void check_body(ParameterCheck& check, const GearData& g, int gear) {
+void check_body(ParameterCheck& check, const GearData& g, int gear, bool ring) {
   const auto name = [gear](const char* key) { return name_of(key, gear); };
+  const auto not_here = [&](const char* key, double value, const char* why) {
+    if (is_given(value)) check.fail(name(key), to_text(value), "m", why);
+  };
+  if (ring) {
+    constexpr const char* kHeldOutside = "must not be there: a ring is held at its outer_diameter";
+    not_here("bore_diameter", g.bore_diameter, kHeldOutside);
+    not_here("rim_inner_diameter", g.rim_inner_diameter, kHeldOutside);
+    not_here("hub_diameter", g.hub_diameter, kHeldOutside);
+    not_here("web_thickness", g.web_thickness, kHeldOutside);
+    if (is_given(g.outer_diameter)) check.positive(name("outer_diameter"), g.outer_diameter, "m");
+  } else {
+    not_here("outer_diameter", g.outer_diameter,
+             "must not be there: it is that of a ring (internal, gear_2)");
+  }
   if (g.teeth < kFewestTeeth || g.teeth > kMostTeeth)
     check.fail(name("teeth"), std::to_string(g.teeth), "",
                "must be from " + std::to_string(kFewestTeeth) + " to " + std::to_string(kMostTeeth));
@@ -34,7 +48,7 @@ void check_body(ParameterCheck& check, const GearData& g, int gear) {
   check.within(name("poisson_ratio"), g.material.poisson_ratio, 0.0, 0.49, "");
   check.positive(name("density"), g.material.density, "kg/m^3");
   const int web = is_given(g.rim_inner_diameter) + is_given(g.hub_diameter) + is_given(g.web_thickness);
-  if (web == 0) return;
+  if (web == 0 || ring) return;
   if (web < 3) {
     check.fail(name("web_thickness"), to_text(g.web_thickness), "m",
                "must be given together with rim_inner_diameter and hub_diameter");
@@ -58,7 +72,8 @@ ToothContour::Data contour_data(const GearGeometry& p, const GearData& g) {
           .profile_shift = g.profile_shift,
           .rack = p.rack,
           .tip_radius = 0.5 * g.tip_diameter,
-          .chamfer = g.tip_chamfer};
+          .chamfer = g.tip_chamfer,
+          .ring = p.internal && &g == &p.gear_2};
 }
 
 }  // namespace
@@ -103,7 +118,7 @@ GearPair::GearPair(GearGeometry geometry, const std::string& place)
   overlap_ = is_given(width_) ? width_ * std::tan(base_helix_) / base_pitch_ : 0.0;
   const auto thickness = [&](const GearData& g, double rw, double side) {  // on the working pitch circle
     return 2.0 * rw *
-           ((0.5 * kPi + 2.0 * g.profile_shift * side * std::tan(geometry_.pressure_angle)) / g.teeth +
+           ((0.5 * kPi + 2.0 * g.profile_shift * std::tan(geometry_.pressure_angle)) / g.teeth +
             side * (involute(transverse_angle()) - involute(operating_angle_)));
   };
   const double rw_1 = rb_1 / std::cos(operating_angle_), rw_2 = rb_2 / std::cos(operating_angle_);
@@ -122,8 +137,8 @@ void GearPair::check_numbers(ParameterCheck& check) const {
   check.within("rack.dedendum", p.rack.dedendum, 0.1, 3.0, "modules");
   check.within("rack.root_radius", p.rack.root_radius, 0.0, 1.0, "modules");
   if (is_given(p.centre_distance)) check.positive("centre_distance", p.centre_distance, "m");
-  check_body(check, p.gear_1, 0);
-  check_body(check, p.gear_2, 1);
+  check_body(check, p.gear_1, 0, false);
+  check_body(check, p.gear_2, 1, p.internal);
   if (p.internal && p.gear_2.teeth <= p.gear_1.teeth)
     check.fail("gear_2.teeth", std::to_string(p.gear_2.teeth), "", "of a ring must exceed those of gear 1");
   if (is_given(p.centre_distance) && is_given(p.gear_1.profile_shift) && p.internal &&
@@ -174,62 +189,15 @@ void GearPair::find_shifts(ParameterCheck& check) {
 void GearPair::check_teeth(ParameterCheck& check) const {
   const GearGeometry& p = geometry_;
   const double m = p.module;
-  for (int i = 0; i < (p.internal ? 1 : 2); ++i) {
-    const ToothContour& c = contour(i);
-    const GearData& g = gear(i);
-    if (c.rack_tip_land() < 0.0)
-      check.fail("rack.root_radius", to_text(p.rack.root_radius), "modules",
-                 "does not fit into the rack's tip");
-    if (!(c.usable_tip_radius() > std::max(c.base_radius(), c.root_radius()))) {
-      check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
-                 "less the chamfer must exceed the base circle, " + to_text(2.0 * c.base_radius()) +
-                     ", and the root circle, " + to_text(2.0 * c.root_radius()));
-      continue;
-    }
-    if (c.form_length() < 0.0)
-      check.fail(name_of("profile_shift", i), to_text(g.profile_shift), "modules",
-                 "leaves the tooth undercut; it must be at least " +
-                     to_text(g.profile_shift - c.form_length() * std::sin(c.transverse_angle()) / m));
-    if (!(c.tip_half_angle() > 0.0))
-      check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
-                 "leaves the tooth pointed below its tip");
-    if (c.tip_length() <= c.form_length())
-      check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
-                 "leaves no involute above the fillet");
-    if (is_given(g.bore_diameter) && !(0.5 * g.bore_diameter < c.root_radius()))
-      check.fail(name_of("bore_diameter", i), to_text(g.bore_diameter), "m",
-                 "must be less than the root circle, " + to_text(2.0 * c.root_radius()));
-    if (is_given(g.rim_inner_diameter) && !(0.5 * g.rim_inner_diameter < c.root_radius()))
-      check.fail(name_of("rim_inner_diameter", i), to_text(g.rim_inner_diameter), "m",
-                 "must be less than the root circle, " + to_text(2.0 * c.root_radius()));
-  }
-  if (p.internal && !(contour_2_.usable_tip_radius() > contour_2_.base_radius()))
-    check.fail("gear_2.tip_diameter", to_text(p.gear_2.tip_diameter), "m",
-               "of a ring must exceed its base circle, " + to_text(2.0 * contour_2_.base_radius()));
+  for (int i = 0; i < 2; ++i) check_tooth(check, i);
   if (!(play_ >= -kMostJam * m))
     check.fail("centre_distance", to_text(p.centre_distance), "m",
                "jams the teeth by " + to_text(-play_) + " m on the pitch circle; without backlash it is " +
                    to_text(zero_backlash_distance_));
-  if (!p.internal) {
-    for (int i = 0; i < 2; ++i) {
-      const ToothContour& own = contour(i);
-      const ToothContour& other = contour(1 - i);
-      if (own.data().tip_radius + other.root_radius() > p.centre_distance)
-        check.fail(name_of("tip_diameter", i), to_text(gear(i).tip_diameter), "m",
-                   "runs into the root of the other gear; at most " +
-                       to_text(2.0 * (p.centre_distance - other.root_radius())));
-      else if (tangent_ - own.tip_length() < other.form_length() - kOverrun * m)
-        check.fail(name_of("tip_diameter", i), to_text(gear(i).tip_diameter), "m",
-                   "runs into the fillet of the other gear: contact ratio by formula " +
-                       to_text(contact_ratio()) + ", the flanks allow " + to_text(flank_contact_ratio()) +
-                       "; less twice the chamfer at most " +
-                       to_text(2.0 * std::hypot(own.base_radius(), tangent_ - other.form_length())));
-    }
-  } else if (start_ < contour_1_.form_length() - kOverrun * m) {
-    check.fail("gear_2.tip_diameter", to_text(p.gear_2.tip_diameter), "m",
-               "runs into the fillet of gear 1; at least " +
-                   to_text(2.0 * std::hypot(contour_2_.base_radius(), tangent_ + contour_1_.form_length())));
-  }
+  if (p.internal)
+    check_ring(check);
+  else
+    check_tips(check);
   if (!(contact_ratio() >= 1.0))
     check.fail("contact_ratio", to_text(contact_ratio()), "",
                "must be at least 1: the tips do not reach far enough");
@@ -237,8 +205,104 @@ void GearPair::check_teeth(ParameterCheck& check) const {
     check.fail("contact_ratio", to_text(contact_ratio()), "", "must be at most " + to_text(kMostRatio));
 }
 
+/// One gear's tooth by itself.
+void GearPair::check_tooth(ParameterCheck& check, int i) const {
+  const ToothContour& c = contour(i);
+  const GearData& g = gear(i);
+  const bool ring = is_ring(i);
+  if (!(c.rack_tip_land() >= 0.0))
+    check.fail("rack.root_radius", to_text(geometry_.rack.root_radius), "modules",
+               ring ? "does not fit into the ring's root" : "does not fit into the rack's tip");
+  if (ring && !(c.usable_tip_radius() > c.base_radius() && c.usable_tip_radius() < c.root_radius())) {
+    check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
+               "of a ring with its chamfer must exceed its base circle, " + to_text(2.0 * c.base_radius()) +
+                   ", and be less than its root circle, " + to_text(2.0 * c.root_radius()));
+    return;
+  }
+  if (!ring && !(c.usable_tip_radius() > std::max(c.base_radius(), c.root_radius()))) {
+    check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
+               "less the chamfer must exceed the base circle, " + to_text(2.0 * c.base_radius()) +
+                   ", and the root circle, " + to_text(2.0 * c.root_radius()));
+    return;
+  }
+  if (c.form_length() < 0.0)
+    check.fail(
+        name_of("profile_shift", i), to_text(g.profile_shift), "modules",
+        "leaves the tooth undercut; it must be at least " +
+            to_text(g.profile_shift - c.form_length() * std::sin(c.transverse_angle()) / geometry_.module));
+  if (!(c.tip_half_angle() > 0.0))
+    check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
+               "leaves the tooth pointed below its tip");
+  if (!(c.side() * (c.tip_length() - c.form_length()) > 0.0))
+    check.fail(name_of("tip_diameter", i), to_text(g.tip_diameter), "m",
+               "leaves no involute above the fillet");
+  const auto inside = [&](const char* key, double value) {
+    if (is_given(value) && !(0.5 * value < c.root_radius()))
+      check.fail(name_of(key, i), to_text(value), "m",
+                 "must be less than the root circle, " + to_text(2.0 * c.root_radius()));
+  };
+  inside("bore_diameter", g.bore_diameter);
+  inside("rim_inner_diameter", g.rim_inner_diameter);
+  if (is_given(g.outer_diameter) && !(0.5 * g.outer_diameter > c.root_radius()))
+    check.fail(name_of("outer_diameter", i), to_text(g.outer_diameter), "m",
+               "must exceed the root circle, " + to_text(2.0 * c.root_radius()));
+}
+
+/// Tips of external gears against the other's root and fillet.
+void GearPair::check_tips(ParameterCheck& check) const {
+  for (int i = 0; i < 2; ++i) {
+    const ToothContour& own = contour(i);
+    const ToothContour& other = contour(1 - i);
+    if (own.data().tip_radius + other.root_radius() > centre_distance())
+      check.fail(name_of("tip_diameter", i), to_text(gear(i).tip_diameter), "m",
+                 "runs into the root of the other gear; at most " +
+                     to_text(2.0 * (centre_distance() - other.root_radius())));
+    else if (tangent_ - own.tip_length() < other.form_length() - kOverrun * geometry_.module)
+      check.fail(name_of("tip_diameter", i), to_text(gear(i).tip_diameter), "m",
+                 "runs into the fillet of the other gear: contact ratio by formula " +
+                     to_text(contact_ratio()) + ", the flanks allow " + to_text(flank_contact_ratio()) +
+                     "; less twice the chamfer at most " +
+                     to_text(2.0 * std::hypot(own.base_radius(), tangent_ - other.form_length())));
+  }
+}
+
+/// Tips of a ring and of its pinion against the other's root and fillet, and against each other outside the path.
+void GearPair::check_ring(ParameterCheck& check) const {
+  const GearGeometry& p = geometry_;
+  const double a = p.centre_distance, overrun = kOverrun * p.module;
+  const double tip_1 = contour_1_.data().tip_radius, tip_2 = contour_2_.data().tip_radius;
+  const auto fail = [&](int i, const std::string& why) {
+    check.fail(name_of("tip_diameter", i), to_text(gear(i).tip_diameter), "m", why);
+  };
+  if (a + tip_1 > contour_2_.root_radius())
+    fail(0, "runs into the root of the ring; at most " + to_text(2.0 * (contour_2_.root_radius() - a)));
+  else if (tangent_ + end_ > contour_2_.form_length() + overrun)
+    fail(0, "runs into the fillet of the ring; less twice the chamfer at most " +
+                to_text(2.0 * std::hypot(contour_1_.base_radius(), contour_2_.form_length() - tangent_)));
+  if (tip_2 - a < contour_1_.root_radius())
+    fail(1, "runs into the root of gear 1; at least " + to_text(2.0 * (a + contour_1_.root_radius())));
+  else if (start_ < contour_1_.form_length() - overrun)
+    fail(1, "runs into the fillet of gear 1; at least " +
+                to_text(2.0 * std::hypot(contour_2_.base_radius(), tangent_ + contour_1_.form_length())));
+  const double cosine = (tip_2 * tip_2 - tip_1 * tip_1 - a * a) / (2.0 * a * tip_1);
+  if (!(std::abs(cosine) < 1.0)) return;  // the tip circles do not cross
+  const auto inv_at = [](const ToothContour& c) {
+    return involute(std::atan(c.tip_length() / c.base_radius()));
+  };
+  const double inv_w = involute(operating_angle_),
+               ratio = contour_1_.base_radius() / contour_2_.base_radius();
+  const double room = ratio * (std::acos(cosine) + inv_at(contour_1_) - inv_w) + inv_w - inv_at(contour_2_) -
+                      std::acos((tip_2 * tip_2 - tip_1 * tip_1 + a * a) / (2.0 * a * tip_2));
+  if (room < 0.0)
+    fail(1,
+         "lets the tips of ring and pinion run into each other by " + to_text(-room * tip_2) +
+             " m outside the path of contact: more teeth of the ring, a larger tip of the ring or a shorter "
+             "one of gear 1 make room");
+}
+
 double GearPair::flank_contact_ratio() const {
-  return (tangent_ - contour_2_.form_length() - contour_1_.form_length()) / base_pitch_;
+  const double sign = geometry_.internal ? -1.0 : 1.0;
+  return (sign * (tangent_ - contour_2_.form_length()) - contour_1_.form_length()) / base_pitch_;
 }
 
 double GearPair::normal_backlash() const { return play_ * std::cos(operating_angle_); }
@@ -248,12 +312,11 @@ double GearPair::inertia(int gear_number) const {
   std::vector<Finding> findings;
   ParameterCheck check("gear pair", findings);
   check.positive(name_of("width", gear_number), g.width, "m");
-  if (geometry_.internal && gear_number == 1)
-    check.fail("gear_2.width", to_text(g.width), "m",
-               "the inertia of a ring needs its outside, which is not entered");
+  if (is_ring(gear_number)) check.positive("gear_2.outer_diameter", g.outer_diameter, "m");
   if (!findings.empty()) throw ModelError(std::move(findings));
   const auto disc = [](double diameter) { return kPi / 32.0 * std::pow(diameter, 4); };
   const double outline = contour(gear_number).polar_moment();
+  if (is_ring(gear_number)) return g.material.density * g.width * (disc(g.outer_diameter) - outline);
   const double bore = is_given(g.bore_diameter) ? disc(g.bore_diameter) : 0.0;
   double full = outline - bore, web = 0.0;
   if (is_given(g.web_thickness)) {

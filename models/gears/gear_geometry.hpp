@@ -11,8 +11,13 @@
 /// as gear 2: z_2 enters as -z_2 (ISO 21771), shifts with ISO's signs, T + t_1 = t_2, t_A = sqrt(r_a2^2 - r_b2^2) - T.
 ///
 /// Refused, each by the dimension that is wrong: undercut (t_F < 0), pointed teeth, tips that run into fillets
-/// (t_A < t_F1, T - t_E < t_F2) or roots, contact ratios below 1, a centre distance that jams the teeth.
-/// Source: ISO 21771:2007.
+/// (t_A < t_F1, T - t_E < t_F2; ring: T + t_E > t_F2) or roots, contact ratios below 1, a centre distance that jams the
+/// teeth, tips of a ring and its pinion that meet outside the path of contact:
+///
+///   (z_1/z_2) (xi_1 + inv(alpha_a1) - inv(alpha_w)) + inv(alpha_w) - inv(alpha_a2) >= xi_2
+///   cos(xi_1) = (r_a2^2 - r_a1^2 - a^2)/(2 a r_a1),   cos(xi_2) = (r_a2^2 - r_a1^2 + a^2)/(2 a r_a2)
+///
+/// Source: ISO 21771:2007; Litvin & Fuentes, Gear Geometry and Applied Theory, 2nd ed. 2004, chapter 11 (tips).
 #include <drev/elements/not_given.hpp>
 #include <drev/models/gears/tooth_contour.hpp>
 
@@ -37,6 +42,7 @@ struct GearData {
   double tip_chamfer = 0.0;               ///< radial height of a chamfer of 45 degrees, m, >= 0
   double width = kNotGiven;               ///< b, m, > 0
   double bore_diameter = kNotGiven;       ///< where the body is held, m; 0: solid (inertia alone)
+  double outer_diameter = kNotGiven;      ///< of a ring: its outside, where it is held, m
   double rim_inner_diameter = kNotGiven;  ///< web from here, m
   double hub_diameter = kNotGiven;        ///< to here, m
   double web_thickness = kNotGiven;       ///< m, > 0, <= width
@@ -76,11 +82,16 @@ class GearPair {
   double face_width() const { return width_; }  ///< common width b, m
   /// Length of the second gear's tangent at the contact t of the first, m.
   double second_length(double t) const { return geometry_.internal ? tangent_ + t : tangent_ - t; }
-  /// Contact ratio that the involute flanks allow, whatever the tips: (T - t_F2 - t_F1)/p_b; external pairs.
+  /// Contact ratio that the involute flanks allow, whatever the tips: (T - t_F2 - t_F1)/p_b; ring (t_F2 - T - t_F1)/p_b.
   double flank_contact_ratio() const;
   /// Play on the working pitch circle, transverse, that the centre distance and the shifts leave, m.
   double circumferential_backlash() const { return play_; }
   double normal_backlash() const;  ///< the same along the transverse line of action, m
+  bool is_ring(int gear) const { return geometry_.internal && gear == 1; }
+  /// Radius where a gear's body is held: bore, of a ring its outside; m.
+  double held_radius(int gear_number) const {
+    return 0.5 * (is_ring(gear_number) ? gear(gear_number).outer_diameter : gear(gear_number).bore_diameter);
+  }
   /// Moment of inertia of a gear with its teeth, rim, web, hub and bore, kg m^2.
   double inertia(int gear) const;
 
@@ -88,6 +99,9 @@ class GearPair {
   void check_numbers(class ParameterCheck& check) const;
   void find_shifts(class ParameterCheck& check);
   void check_teeth(class ParameterCheck& check) const;
+  void check_tooth(class ParameterCheck& check, int gear) const;
+  void check_tips(class ParameterCheck& check) const;
+  void check_ring(class ParameterCheck& check) const;
 
   GearGeometry geometry_;
   ToothContour contour_1_, contour_2_;

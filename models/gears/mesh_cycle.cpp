@@ -1,13 +1,14 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/models/gears/mesh_cycle.hpp>
-#include <drev/models/gears/tooth_compliance.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
+
+#include "models/gears/tooth_compliance.hpp"
 
 namespace drev {
 namespace {
@@ -76,11 +77,14 @@ class Mesh {
   Slice slice(double phase) const;  // phase in mesh periods from the first one's begin
   SliceForces forces(const Slice& slice, double delta) const;
   MeshPoint point(double phase) const;
+  double force(double phase, double approach) const;
   double single_pair(double t) const;
   int unknowns() const { return gears_[0].unknowns(); }
   double overlap() const { return overlap_; }
 
  private:
+  /// The slices of a phase, and delta_0.
+  std::vector<Slice> slices(double phase, double& unloaded) const;
   double corner_gap(int tip_gear, double beyond, double& flank_length) const;
   double linear_part(double t_1, double t_2) const;
   double relief(double t_1, double t_2) const;
@@ -116,12 +120,13 @@ Mesh::Mesh(const GearPair& pair, const MeshCycleOptions& options, int level)
   constant_ -= hertz_ * std::log(shape);
   low_ = {pair.start_of_contact(), pair.second_length(pair.end_of_contact())};
   high_ = {pair.end_of_contact(), pair.second_length(pair.start_of_contact())};
+  if (low_[1] > high_[1]) std::swap(low_[1], high_[1]);  // of a ring
   overlap_ = std::isnan(options.overlap_ratio) ? pair.overlap_ratio() : options.overlap_ratio;
 }
 
 double Mesh::linear_part(double t_1, double t_2) const {
   return gears_[0].own(t_1) / modulus_[0] - windup_[0] + gears_[1].own(t_2) / modulus_[1] - windup_[1] +
-         constant_ - hertz_ * std::log(t_1 * t_2 / (t_1 + t_2));
+         constant_ - hertz_ * std::log(t_1 * t_2 / pair_.tangent_length());
 }
 
 double Mesh::relief(double t_1, double t_2) const {
@@ -129,26 +134,31 @@ double Mesh::relief(double t_1, double t_2) const {
     return r.depth > 0.0 ? r.depth * std::clamp(1.0 - from_tip / r.length, 0.0, 1.0) : 0.0;
   };
   return of(options_.tip_relief[0], pair_.contour(0).tip_length() - t_1) +
-         of(options_.tip_relief[1], pair_.contour(1).tip_length() - t_2);
+         of(options_.tip_relief[1], std::abs(pair_.contour(1).tip_length() - t_2));
 }
 
 /// Distance along the line of action of the tip's corner of `tip_gear` from the flank of the other gear, `beyond` (m of
-/// the line of action) outside the path of contact, and where on that flank it would touch. The corner stands at the angle
-/// b about its own axis from the line of centres, at R and v about the other; the flank's place of radius R stands at
-/// alpha_w - atan(t/r_b) + (t - tau)/r_b, tau its contact on the line of action.
+/// the line of action) outside the path of contact, and where on that flank it would touch. All angles from the line of
+/// centres, positive towards where the corner is: the corner stands at b about its own axis, at (x, y) about the other; the
+/// flank's place of radius R stands at alpha_w - atan(t/r_b) + (t - tau)/r_b, tau its contact on the line of action (beyond
+/// the end of the path a ring's flank lies on the other side of the line of centres than its tangent point).
 double Mesh::corner_gap(int tip_gear, double beyond, double& flank_length) const {
   const ToothContour &tip = pair_.contour(tip_gear), &flank = pair_.contour(1 - tip_gear);
   const double a = pair_.centre_distance(), radius = tip.usable_tip_radius(), base = flank.base_radius();
-  const double t_end = pair_.tangent_length() - tip.tip_length();  // on the flank where the path ends
-  const double square = base * base + t_end * t_end;
-  const double b =
-      std::acos((radius * radius + a * a - square) / (2.0 * a * radius)) + beyond / tip.base_radius();
-  const double x = a - radius * std::cos(b), y = radius * std::sin(b);
-  const double t_square = x * x + y * y - base * base;
+  const bool on_ring = pair_.geometry().internal && tip_gear == 0, of_ring = pair_.is_ring(tip_gear);
+  const double tangent = pair_.tangent_length(), length = tip.tip_length();
+  const double t_end = on_ring ? tangent + length : of_ring ? length - tangent : tangent - length;
+  const double tau = on_ring ? t_end + beyond : t_end - beyond;
+  const double at_end = std::atan2(length, tip.base_radius()) - pair_.operating_angle();
+  const double b = (of_ring ? -at_end : at_end) + beyond / tip.base_radius();
+  const double x = on_ring   ? a + radius * std::cos(b)
+                   : of_ring ? radius * std::cos(b) - a
+                             : a - radius * std::cos(b);
+  const double y = radius * std::sin(b), t_square = x * x + y * y - base * base;
   flank_length = std::sqrt(std::max(t_square, 0.0));
-  const double place =
-      pair_.operating_angle() - std::atan(flank_length / base) + (flank_length - t_end + beyond) / base;
-  return t_square > 0.0 ? base * (place - std::atan2(y, x)) : std::numeric_limits<double>::infinity();
+  const double place = pair_.operating_angle() - std::atan2(flank_length, base) + (flank_length - tau) / base;
+  const double gap = base * ((on_ring ? -place : place) - std::atan2(y, x));
+  return t_square > 0.0 ? gap : std::numeric_limits<double>::infinity();
 }
 
 Slice Mesh::slice(double phase) const {
@@ -182,8 +192,10 @@ Slice Mesh::slice(double phase) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(s.count); ++i)
     for (std::size_t j = i + 1; j < static_cast<std::size_t>(s.count); ++j) {
       const int d = static_cast<int>(j - i);
+      const double second =
+          t_2[i] > t_2[j] ? gears_[1].coupling(d, t_2[i], t_2[j]) : gears_[1].coupling(d, t_2[j], t_2[i]);
       s.coupling[i][j] = s.coupling[j][i] = gears_[0].coupling(d, t_1[j], t_1[i]) / modulus_[0] - windup_[0] +
-                                            gears_[1].coupling(d, t_2[i], t_2[j]) / modulus_[1] - windup_[1];
+                                            second / modulus_[1] - windup_[1];
     }
   return s;
 }
@@ -252,16 +264,30 @@ SliceForces Mesh::forces(const Slice& s, double delta) const {
   return f;
 }
 
-MeshPoint Mesh::point(double phase) const {
-  const int slices =
-      overlap_ > 0.0 ? std::max(8, static_cast<int>(std::ceil(kSlicesPerPitch * overlap_))) : 1;
+std::vector<Slice> Mesh::slices(double phase, double& unloaded) const {
+  const int count = overlap_ > 0.0 ? std::max(8, static_cast<int>(std::ceil(kSlicesPerPitch * overlap_))) : 1;
   std::vector<Slice> all;
-  double unloaded = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < slices; ++i) {
-    all.push_back(slice(phase + overlap_ * (i + 0.5) / slices - (slices > 1 ? 0.0 : 0.5 * overlap_)));
+  unloaded = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < count; ++i) {
+    all.push_back(slice(phase + overlap_ * (i + 0.5) / count - (count > 1 ? 0.0 : 0.5 * overlap_)));
     for (int k = 0; k < all.back().count; ++k)
       unloaded = std::min(unloaded, all.back().gap[static_cast<std::size_t>(k)]);
   }
+  return all;
+}
+
+double Mesh::force(double phase, double approach) const {
+  if (!(approach > 0.0)) return 0.0;
+  double unloaded = 0.0, total = 0.0;
+  const std::vector<Slice> all = slices(phase, unloaded);
+  for (const Slice& slice : all) total += forces(slice, unloaded + approach).total;
+  return total / static_cast<double>(all.size());
+}
+
+MeshPoint Mesh::point(double phase) const {
+  double unloaded = 0.0;
+  const std::vector<Slice> all = this->slices(phase, unloaded);
+  const auto slices = static_cast<int>(all.size());
   const double w = options_.load;
   // The forces grow with delta: Newton's method within a bracket.
   double low = unloaded, high = std::numeric_limits<double>::infinity();
@@ -341,7 +367,7 @@ void check_load(const GearPair& pair, double load) {
     shape += 4.0 / kPi * (1.0 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
   }
   const double t = pair.pitch_point(), t_2 = pair.second_length(t), m = pair.geometry().module;
-  const double most = std::pow(kWidest * m, 2) / (shape * t * t_2 / (t + t_2));
+  const double most = std::pow(kWidest * m, 2) / (shape * t * t_2 / pair.tangent_length());
   if (load > most)
     throw ModelError({{"mesh cycle", "load", to_text(load), "N/m",
                        "must be at most " + to_text(most) +
@@ -369,6 +395,7 @@ MeshCycle::MeshCycle(const GearPair& pair, const MeshCycleOptions& options) : op
   for (std::size_t i = 0; i < points_.size(); i += static_cast<std::size_t>(stride))
     same.push_back(points_[i]);
   single_ = [fine, shared, kept](double t) { return fine->single_pair(t); };
+  force_ = [fine, shared, kept](double phase, double approach) { return fine->force(phase, approach); };
   const double pitch_point = std::clamp(pair.pitch_point(), pair.start_of_contact(), pair.end_of_contact());
   figures_ = figures_of(points_, single_(pitch_point));
   const MeshFigures finer = figures_of(same, figures_.single_pair);
@@ -404,9 +431,9 @@ std::vector<Harmonic> MeshCycle::harmonics(int count, double MeshPoint::*value) 
 
 double MeshCycle::windup(const GearPair& pair, int gear) {
   const ToothContour& c = pair.contour(gear);
-  const double bore = 0.5 * pair.gear(gear).bore_diameter, nu = pair.gear(gear).material.poisson_ratio;
+  const double held = pair.held_radius(gear), nu = pair.gear(gear).material.poisson_ratio;
   return c.base_radius() * c.base_radius() * (1.0 + nu) / kTwoPi *
-         (1.0 / (bore * bore) - 1.0 / (c.root_radius() * c.root_radius()));
+         std::abs(1.0 / (held * held) - 1.0 / (c.root_radius() * c.root_radius()));
 }
 
 }  // namespace drev

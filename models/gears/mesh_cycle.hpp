@@ -3,13 +3,15 @@
 ///
 ///   F_i c_i(F_i) + sum_j C_ij F_j + e_i = delta  where F_i > 0,   e_i + sum_j C_ij F_j >= delta where F_i = 0
 ///   c_i(F) = sum over both gears of [g(t_i) + (1 - nu^2)/pi (2 ln(2 m_n/a) - nu/(1 - nu))]/E
-///   a^2 = 4 F rho/pi [(1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2],   rho = t_1 t_2/(t_1 + t_2),   sum_i F_i = w
+///   a^2 = 4 F rho/pi [(1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2],   rho = t_1 t_2/T,   sum_i F_i = w
 ///
 /// F_i: force of pair i per width along the transverse line of action; delta: approach of the rigid bores along it (the
 /// loaded transmission error); C_ij: coupling of the pairs through both bodies (tooth_compliance.hpp); e_i: what pair i is
 /// short of material (tip relief, pitch deviations; outside the path of contact the distance of the tip's corner from the
 /// other flank, exactly). Stiffness per width: secant w/(delta - delta_0), delta_0 = min e_i the unloaded error; tangent
 /// dw/ddelta. Phase 0: a pair enters at the point A, t_A = T - sqrt(r_a2^2 - r_b2^2); 1: the next one.
+///
+/// 1/rho = 1/t_1 + 1/t_2, with a ring 1/t_1 - 1/t_2; T is the tangents' sum or difference. A ring is held at its outside.
 ///
 /// Helical gears: slices that do not hold each other, each at its own phase, all at one delta.
 /// Limits: no friction; aligned axes; slices of a helical tooth uncoupled; contact beyond the ends of the path takes the
@@ -79,6 +81,9 @@ class MeshCycle {
   /// N/m per m), phase rad; up to (points - 1)/2 orders.
   std::vector<Harmonic> harmonics(int count, double MeshPoint::*value = &MeshPoint::secant) const;
   int unknowns() const { return unknowns_; }  ///< of one tooth's sector of gear 1, finer mesh
+  /// Force along the line of action per width [N/m] at a phase, where the gears have come nearer by `approach` [m]
+  /// than where they begin to touch; 0 where it is <= 0. What w and delta - delta_0 are, for any load.
+  double force(double phase, double approach) const { return force_(phase, approach); }
   /// One pair alone at t of gear 1 under w, secant, N/m per m of width.
   double single_pair(double t) const { return single_(t); }
 
@@ -90,6 +95,7 @@ class MeshCycle {
   std::vector<MeshPoint> points_;
   MeshFigures figures_, errors_;
   std::function<double(double)> single_;
+  std::function<double(double, double)> force_;
   int unknowns_ = 0;
 };
 

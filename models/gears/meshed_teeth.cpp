@@ -1,5 +1,6 @@
+#include "models/gears/meshed_teeth.hpp"
+
 #include <drev/core/units.hpp>
-#include <drev/models/gears/meshed_teeth.hpp>
 
 #include <cmath>
 
@@ -9,14 +10,15 @@ Outline meshed_teeth(const GearPair& pair, int gear, int teeth) {
   constexpr int kPoints = 12;
   const ToothContour& c = pair.contour(gear);
   const double t = gear == 0 ? pair.pitch_point() : pair.second_length(pair.pitch_point());
-  // The right flank at t is turned to the line of centres; teeth follow clockwise.
-  const double first = c.flank(t).angle, pitch = kTwoPi / pair.gear(gear).teeth;
+  // The right flank at t (of a ring the left one) is turned to the line of centres; teeth follow clockwise.
+  const bool ring = pair.is_ring(gear);
+  const double first = (ring ? -1.0 : 1.0) * c.flank(t).angle, pitch = kTwoPi / pair.gear(gear).teeth;
   const Outline right = c.points(kPoints);
   Outline line;
   const auto add = [&](double x, double y, double turned) {  // turned against the clock
     const double s = std::sin(turned), k = std::cos(turned), px = x * k - y * s, py = x * s + y * k;
-    if (gear == 0)
-      line.push_back({px, py});
+    if (gear == 0 || ring)
+      line.push_back({px, ring ? py - pair.centre_distance() : py});
     else
       line.push_back({-px, pair.centre_distance() - py});
   };

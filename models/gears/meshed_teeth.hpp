@@ -1,6 +1,6 @@
 #pragma once
-/// The teeth of an external pair in mesh, to draw: gear 1's centre at the origin, gear 2's at (0, a), contact at the pitch
-/// point (0, r_w1).
+/// The teeth of a pair in mesh, to draw: gear 1's centre at the origin, gear 2's at (0, a), a ring's at (0, -a), contact at
+/// the pitch point (0, r_w1).
 #include <drev/models/gears/gear_geometry.hpp>
 
 #include <array>

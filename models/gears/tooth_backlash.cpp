@@ -2,6 +2,7 @@
 #include <drev/models/gears/tooth_backlash.hpp>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace drev {
@@ -29,8 +30,9 @@ Backlash::Backlash(const GearPair& pair, const BacklashTolerances& tolerances) {
   const double cosine = std::cos(pair.operating_angle()),
                thinning = cosine / std::cos(pair.geometry().helix_angle);
   const double opening = 2.0 * std::sin(pair.operating_angle());
+  const double apart = pair.geometry().internal ? -1.0 : 1.0;  // a ring's teeth close as the axes part
   double widening =
-      pair.centre_distance() * tolerances.housing_expansion * tolerances.housing_temperature_rise;
+      apart * pair.centre_distance() * tolerances.housing_expansion * tolerances.housing_temperature_rise;
   for (std::size_t i = 0; i < 2; ++i) {
     const double working_radius = pair.contour(static_cast<int>(i)).base_radius() / cosine;
     const double side = pair.geometry().internal && i == 1 ? -1.0 : 1.0;
@@ -40,14 +42,13 @@ Backlash::Backlash(const GearPair& pair, const BacklashTolerances& tolerances) {
   }
   widths_[2] = 2.0 * tolerances.centre_distance * opening;
   lowest_ += pair.normal_backlash() + opening * widening - 0.5 * widths_[2];
+  if (std::abs(lowest_) < 1e-12 * pair.centre_distance()) lowest_ = 0.0;  // rounding
   highest_ = lowest_ + widths_[0] + widths_[1] + widths_[2];
-  const double rounding = 1e-12 * pair.centre_distance();
-  if (lowest_ < 0.0 && lowest_ > -rounding) lowest_ = 0.0;
   if (lowest_ < 0.0)
-    check.fail(
-        "normal_backlash", to_text(lowest_), "m",
-        "is the least of what the tolerances allow: the teeth jam; thinner teeth (gear_1.upper_allowance, "
-        "gear_2.upper_allowance) or a larger centre distance make room");
+    check.fail("normal_backlash", to_text(lowest_), "m",
+               std::string("is the least of what the tolerances allow: the teeth jam; thinner teeth "
+                           "(gear_1.upper_allowance, gear_2.upper_allowance) or a ") +
+                   (pair.geometry().internal ? "smaller" : "larger") + " centre distance make room");
   stop();
 }
 

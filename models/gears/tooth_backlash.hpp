@@ -3,6 +3,7 @@
 ///
 ///   j_t = play + sum over both gears (-A_s)/cos(beta) + 2 tan(alpha_wt) (da + th),   A_sne - T_sn <= A_s <= A_sne
 ///   th  = a alpha_h dT_h - r_w1 alpha_1 dT_1 - r_w2 alpha_2 dT_2,   -A_a <= da <= A_a,     j_bn = j_t cos(alpha_wt)
+///   ring: th = -a alpha_h dT_h - r_w1 alpha_1 dT_1 + r_w2 alpha_2 dT_2
 ///
 /// play: what centre distance and shifts leave without tolerances (GearPair). A_s: deviation of the normal tooth thickness
 /// from its value without backlash, negative where the tooth is thinner. Widening by temperature: to first order.

@@ -1,11 +1,12 @@
+#include "models/gears/tooth_compliance.hpp"
+
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/gears/tooth_compliance.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense/factorization.hpp"
 #include "models/gears/tooth_sector.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
 
@@ -24,8 +25,8 @@ struct Chain {
 
 /// first, then second further on.
 Chain joined(const Chain& first, const Chain& second) {
-  const Eigen::LLT<Matrix> middle(first.ll + second.rr);
-  const Matrix to_right = middle.solve(first.rl.transpose()), to_left = middle.solve(second.rl);
+  const CholeskyFactor middle(first.ll + second.rr);
+  const Matrix to_right = middle.solve(Matrix(first.rl.transpose())), to_left = middle.solve(second.rl);
   return {first.rr - first.rl * to_right, -first.rl * to_left, second.ll - second.rl.transpose() * to_left};
 }
 
@@ -80,11 +81,12 @@ Sector::Sector(const GearPair& pair, int gear, int level)
     stiffness_ = plane_stiffness(sector_.mesh, sector_.material);
   } catch (const SolverError& error) {
     throw ModelError(
-        {{"gear_" + std::to_string(gear + 1), "bore_diameter", to_text(pair.gear(gear).bore_diameter), "m",
+        {{"gear_" + std::to_string(gear + 1), pair.is_ring(gear) ? "outer_diameter" : "bore_diameter",
+          to_text(2.0 * pair.held_radius(gear)), "m",
           std::string("leaves a body that cannot be meshed with this tooth: ") + error.what()}});
   }
   place_of_.assign(at(static_cast<int>(stiffness_.rows())), 0);
-  const double half = kPi / pair.gear(gear).teeth;
+  const double half = kPi / pair.gear(gear).teeth, up = pair.contour(gear).side();
   for (const std::vector<int>* nodes : {&sector_.right, &sector_.left, &sector_.bore})
     for (const int node : *nodes)
       for (const int d : {0, 1})
@@ -92,8 +94,8 @@ Sector::Sector(const GearPair& pair, int gear, int level)
   for (const double side : {1.0, -1.0})
     for (const int node : side > 0.0 ? sector_.right : sector_.left) {
       border_nodes_.insert(border_nodes_.end(), {node, node});
-      axes_.push_back({side * std::sin(half), std::cos(half)});
-      axes_.push_back({-std::cos(half), side * std::sin(half)});
+      axes_.push_back({side * std::sin(half), up * std::cos(half)});
+      axes_.push_back({-up * std::cos(half), side * std::sin(half)});
     }
   for (std::size_t i = 0; i < place_of_.size(); ++i)
     if (place_of_[i] >= 0)
@@ -200,8 +202,11 @@ void Sector::add_traction(const ToothSector::Edge& edge, const FlamantField& fie
 }
 
 Sector::Response Sector::load(double t) {
-  const auto above = std::upper_bound(sector_.flank_lengths.begin() + 1, sector_.flank_lengths.end() - 1, t);
-  const auto which = static_cast<std::size_t>(above - sector_.flank_lengths.begin()) - 1;
+  const std::vector<double>& ends = sector_.flank_lengths;
+  const bool rises = ends.back() > ends.front();
+  const auto above = std::upper_bound(ends.begin() + 1, ends.end() - 1, t,
+                                      [rises](double a, double b) { return rises ? a < b : a > b; });
+  const auto which = static_cast<std::size_t>(above - ends.begin()) - 1;
   const ToothSector::Edge& edge = sector_.flank[which];
   // Where on the edge the radius is that of t: base radius from the edge's first node.
   const PlanePoint& first = sector_.mesh.nodes[at(edge[0])];
@@ -255,18 +260,18 @@ Matrix ring_compliance(const Chain& one, int teeth, int neighbours) {
   ring.block(0, 0, n, n) += rest.ll;
   Matrix unit = Matrix::Zero(ring.rows(), 2 * n);
   unit.topLeftCorner(2 * n, 2 * n).setIdentity();
-  return Eigen::LLT<Matrix>(ring).solve(unit);
+  return CholeskyFactor(ring).solve(unit);
 }
 
 void check_body(const GearPair& pair, int gear) {
   const GearData& g = pair.gear(gear);
   std::vector<Finding> findings;
   ParameterCheck check("gear_" + std::to_string(gear + 1), findings);
-  if (pair.geometry().internal)
-    check.fail("internal", "true", "", "has geometry and contact ratios; its mesh stiffness is not computed");
-  else if (!(g.bore_diameter > 0.0))
-    check.fail("bore_diameter", to_text(g.bore_diameter), "m",
-               "must be given and > 0: where the body is held decides its stiffness");
+  const char* held = "must be given and > 0: where the body is held decides its stiffness";
+  if (pair.is_ring(gear) && !(g.outer_diameter > 0.0))
+    check.fail("outer_diameter", to_text(g.outer_diameter), "m", held);
+  if (!pair.is_ring(gear) && !(g.bore_diameter > 0.0))
+    check.fail("bore_diameter", to_text(g.bore_diameter), "m", held);
   if (!findings.empty()) throw ModelError(std::move(findings));
 }
 
@@ -291,12 +296,13 @@ ToothCompliance::ToothCompliance(const GearPair& pair, int gear, double low, dou
     held.push_back(response.own);
   }
   const Matrix moved = ring * border;
+  const bool reversed = pair.is_ring(gear);  // the next sector's t is larger: load and response change places
   for (int i = 0; i < kPlaces; ++i) {
     own_.push_back(held[static_cast<std::size_t>(i)] + border.col(i).dot(moved.col(i).head(2 * n)));
     for (int d = 1; d <= neighbours_; ++d)
       for (int j = 0; j < kPlaces; ++j)
         coupling_[static_cast<std::size_t>(d - 1)].push_back(
-            border.col(j).dot(moved.col(i).segment(d * n, 2 * n)));
+            border.col(reversed ? i : j).dot(moved.col(reversed ? j : i).segment(d * n, 2 * n)));
   }
 }
 

@@ -11,6 +11,8 @@
 /// One tooth's sector is meshed and factored once; the ring of z sectors is joined through their borders by condensation
 /// (doubling), and the compliance by forces at any place is interpolated between Chebyshev places.
 ///
+/// A ring is held at its outside. Its teeth follow in the other sense: t falls towards the other border.
+///
 /// Limits: rigid shaft in the bore, no friction; the half-plane of the contact is cut off within about 0.1 m_n of the tip
 /// (3 % there). Figures of two levels give the error (mesh_cycle.hpp): halving the cells divides it by four to ten, since
 /// what a curved flank leaves under the force behaves as r^2 ln(r).
@@ -27,7 +29,7 @@ class ToothCompliance {
  public:
   static constexpr int kNeighbours = 3;  ///< most teeth further on that are coupled
   /// For contacts with low <= t <= high [m]; level >= 1: of the mesh. Throws ModelError where the gear's drawing lacks
-  /// what is needed (bore_diameter) or leaves no room for a mesh.
+  /// what is needed (bore_diameter, of a ring outer_diameter) or leaves no room for a mesh.
   ToothCompliance(const GearPair& pair, int gear, double low, double high, int level = kLevel);
 
   double own(double t) const;  ///< g, without unit; t in m

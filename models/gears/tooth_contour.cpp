@@ -7,12 +7,12 @@ namespace drev {
 
 double involute(double angle) { return std::tan(angle) - angle; }
 
-ToothContour::ToothContour(const Data& data) : data_(data) {
+ToothContour::ToothContour(const Data& data) : data_(data), side_(data.ring ? -1.0 : 1.0) {
   const double m = data.module, x = data.profile_shift, z = data.teeth;
   transverse_angle_ = std::atan(std::tan(data.pressure_angle) / std::cos(data.helix_angle));
   pitch_radius_ = 0.5 * m * z / std::cos(data.helix_angle);
   base_radius_ = pitch_radius_ * std::cos(transverse_angle_);
-  root_radius_ = pitch_radius_ + (x - data.rack.dedendum) * m;
+  root_radius_ = pitch_radius_ + side_ * (x - data.rack.dedendum) * m;
   rho_ = data.rack.root_radius * m;
   corner_depth_ = (data.rack.dedendum - data.rack.root_radius) * m;
   corner_xi_ =
@@ -23,11 +23,19 @@ ToothContour::ToothContour(const Data& data) : data_(data) {
                      m / std::sin(transverse_angle_);
   const double tip = usable_tip_radius();
   tip_length_ = std::sqrt((tip - base_radius_) * (tip + base_radius_));
-  psi_ = (0.5 * kPi + 2.0 * x * std::tan(data.pressure_angle)) / z + involute(transverse_angle_);
+  psi_ = (0.5 * kPi + 2.0 * x * std::tan(data.pressure_angle)) / z + side_ * involute(transverse_angle_);
+  if (!data.ring) return;
+  arc_radius_ = root_radius_ - rho_;
+  const double parallel = std::sqrt((arc_radius_ - base_radius_) * (arc_radius_ + base_radius_));
+  form_length_ = rho_ + parallel;
+  const double tangent_point = psi_ + form_length_ / base_radius_;
+  arc_angle_ = tangent_point - std::atan2(parallel, base_radius_);
+  arc_from_ = tangent_point - kQuarterTurn;
+  rack_land_ = (kPi / z - arc_angle_) * root_radius_;
 }
 
 double ToothContour::half_angle(double radius) const {
-  return psi_ - involute(std::acos(std::fmin(1.0, base_radius_ / radius)));
+  return psi_ - side_ * involute(std::acos(std::fmin(1.0, base_radius_ / radius)));
 }
 
 double ToothContour::tip_half_angle() const {
@@ -38,10 +46,20 @@ double ToothContour::Place::x() const { return radius * std::sin(angle); }
 double ToothContour::Place::y() const { return radius * std::cos(angle); }
 
 ToothContour::Place ToothContour::flank(double t) const {
-  return {std::hypot(base_radius_, t), psi_ - (t / base_radius_ - std::atan(t / base_radius_))};
+  return {std::hypot(base_radius_, t), psi_ - side_ * (t / base_radius_ - std::atan(t / base_radius_))};
 }
 
 ToothContour::Corner ToothContour::corner(double u) const {
+  if (data_.ring) {
+    const double turn = (arc_angle_ - arc_from_) / (kQuarterTurn - data_.pressure_angle);
+    const double direction = arc_from_ + turn * (u - data_.pressure_angle);
+    Corner p{};
+    p.x = arc_radius_ * std::sin(arc_angle_) + rho_ * std::sin(direction);
+    p.y = arc_radius_ * std::cos(arc_angle_) + rho_ * std::cos(direction);
+    p.dx = rho_ * turn * std::cos(direction);
+    p.dy = -rho_ * turn * std::sin(direction);
+    return p;
+  }
   const double stretch = std::cos(data_.helix_angle), c = std::cos(u), s = std::sin(u);
   const double xi = (corner_xi_ - rho_ * c) / stretch;
   const double eta = data_.profile_shift * data_.module - corner_depth_ - rho_ * s;
@@ -68,7 +86,8 @@ double ToothContour::polar_moment() const {
   };
   const double tip = data_.tip_radius, tip_angle = tip_half_angle();
   double half = 0.25 * std::pow(tip, 4) * tip_angle;
-  half += 0.25 * (power(tip_length_, base_radius_) - power(form_length_, base_radius_)) / base_radius_;
+  half +=
+      0.25 * side_ * (power(tip_length_, base_radius_) - power(form_length_, base_radius_)) / base_radius_;
   if (data_.chamfer > 0.0) {  // a straight line: R^2 is quadratic along it
     const Place from{tip, tip_angle}, to = flank(tip_length_);
     const double cross = from.x() * to.y() - to.x() * from.y();

@@ -11,9 +11,9 @@ namespace drev {
 namespace {
 
 /// A curve by its arc length, tabulated: place(0) to place(1) with nodes at equal lengths.
-class Curve {
+class ContourCurve {
  public:
-  explicit Curve(std::function<PlanePoint(double)> place) : place_(std::move(place)) {
+  explicit ContourCurve(std::function<PlanePoint(double)> place) : place_(std::move(place)) {
     lengths_.push_back(0.0);
     PlanePoint last = place_(0.0);
     for (int i = 1; i <= kSteps; ++i) {
@@ -39,7 +39,7 @@ class Curve {
 };
 
 /// Nodes of `elements` quadratic elements on a curve; the first is left out where the line goes on.
-void lay(std::vector<PlanePoint>& line, const Curve& curve, int elements) {
+void lay(std::vector<PlanePoint>& line, const ContourCurve& curve, int elements) {
   for (int i = line.empty() ? 0 : 1; i <= 2 * elements; ++i) line.push_back(curve.at(0.5 * i / elements));
 }
 
@@ -86,14 +86,14 @@ std::vector<double> even(int elements) {
   return list;
 }
 
-/// Radii of the rim's nodes from the bore up to `top`, rows growing inwards; the web begins and ends between rows.
+/// Heights of the rim's nodes from the bore up to `top`, rows growing downwards; the web begins and ends between rows.
 void lay_rim(HalfSector& half, const GearData& g, double module, double bore, double top, int level,
-             std::vector<double>& radii) {
+             std::vector<double>& heights) {
   constexpr double kFirst = 0.7, kGrowth = 1.7;
   std::vector<double> ends{bore, top};
   const bool web = !std::isnan(g.web_thickness);
   if (web) ends = {bore, 0.5 * g.hub_diameter / module, 0.5 * g.rim_inner_diameter / module, top};
-  radii = {bore};
+  heights = {bore};
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     const double depth = ends[k + 1] - ends[k], from = kFirst + (kGrowth - 1.0) * (top - ends[k + 1]);
     const int rows =
@@ -101,7 +101,7 @@ void lay_rim(HalfSector& half, const GearData& g, double module, double bore, do
                                 std::ceil(std::log1p(depth * (kGrowth - 1.0) / from) / std::log(kGrowth))));
     const double ratio = std::log1p(depth * (kGrowth - 1.0) / from);
     for (int i = 2 * rows - 1; i >= 0; --i)
-      radii.push_back(ends[k + 1] - depth * std::expm1(ratio * 0.5 * i / rows) / std::expm1(ratio));
+      heights.push_back(ends[k + 1] - depth * std::expm1(ratio * 0.5 * i / rows) / std::expm1(ratio));
     const bool thin = web && k == 1;
     half.rim_material.insert(half.rim_material.end(), static_cast<std::size_t>(rows),
                              {.poisson_ratio = g.material.poisson_ratio,
@@ -114,28 +114,37 @@ HalfSector half_sector(const GearPair& pair, int gear, int level) {
   const ToothContour& c = pair.contour(gear);
   const GearData& g = pair.gear(gear);
   const double m = c.data().module, to = ToothContour::kQuarterTurn, half_pitch = kPi / c.data().teeth;
-  const auto scaled = [m](const ToothContour::Place& p) { return PlanePoint{p.x() / m, p.y() / m}; };
+  // Heights on the tooth's centre line: radii, of a ring less than 0.
+  const double side = c.side();
+  const auto scaled = [m, side](const ToothContour::Place& p) {
+    return PlanePoint{p.x() / m, side * p.y() / m};
+  };
+  const auto turned = [](double height, double angle) {
+    return PlanePoint{std::abs(height) * std::sin(angle), height * std::cos(angle)};
+  };
   const std::string name = "gear_" + std::to_string(gear + 1);
   const double corner = c.data().pressure_angle + 0.4 * (to - c.data().pressure_angle);
   const PlanePoint b = scaled(c.fillet(corner));
   const bool web = !std::isnan(g.web_thickness);
-  const double bore = 0.5 * g.bore_diameter / m, floor = web ? 0.5 * g.rim_inner_diameter / m : bore;
+  const double bore = side * pair.held_radius(gear) / m, floor = web ? 0.5 * g.rim_inner_diameter / m : bore;
   const double centre = std::max(b[1] - b[0], floor + 0.35 * (b[1] - floor));
-  if (b[1] - centre < 0.3 * b[0])
-    throw ModelError(
-        {{name, web ? "rim_inner_diameter" : "bore_diameter",
-          to_text(web ? g.rim_inner_diameter : g.bore_diameter), "m",
-          "leaves too thin a rim for the tooth; at most " + to_text(2.0 * m * (b[1] - 0.3 * b[0] / 0.65))}});
+  if (b[1] - centre < 0.3 * b[0]) {
+    const char* key = pair.is_ring(gear) ? "outer_diameter" : web ? "rim_inner_diameter" : "bore_diameter";
+    throw ModelError({{name, key, to_text(2.0 * m * std::abs(floor)), "m",
+                       std::string("leaves too thin a rim for the tooth; at ") +
+                           (pair.is_ring(gear) ? "least " : "most ") +
+                           to_text(2.0 * m * std::abs(b[1] - 0.3 * b[0] / 0.65))}});
+  }
   const int depth = 2 * level;
   HalfSector half;
   // The contour from B up to the tip, and down to the middle of the space.
   half.fillet_rows = level;
   half.flank_rows = 3 * level;
   const auto fillet = [&](double from, double until) {
-    return Curve([&, from, until](double s) { return scaled(c.fillet(from + s * (until - from))); });
+    return ContourCurve([&, from, until](double s) { return scaled(c.fillet(from + s * (until - from))); });
   };
   const double low = c.form_length(), high = c.tip_length();
-  const Curve flank([&](double s) { return scaled(c.flank(low + s * (high - low))); });
+  const ContourCurve flank([&](double s) { return scaled(c.flank(low + s * (high - low))); });
   lay(half.tooth.right, fillet(corner, c.data().pressure_angle), half.fillet_rows);
   lay(half.tooth.right, flank, half.flank_rows);
   for (int i = 0; i <= half.flank_rows; ++i)
@@ -145,15 +154,15 @@ HalfSector half_sector(const GearPair& pair, int gear, int level) {
   int rows = half.fillet_rows + half.flank_rows;
   if (c.data().chamfer > 0.0) {
     const PlanePoint from = half.tooth.right.back(), until = scaled({tip, tip_angle});
-    lay(half.tooth.right, Curve([&](double s) { return between(from, until, s); }), level);
+    lay(half.tooth.right, ContourCurve([&](double s) { return between(from, until, s); }), level);
     rows += level;
   }
-  const Curve lower = fillet(corner, to);
+  const ContourCurve lower = fillet(corner, to);
   const double root_from = c.root_angle(), root_length = (half_pitch - root_from) * c.root_radius() / m;
   const int columns = 3 * level;
   const int on_root = std::clamp(
       static_cast<int>(std::lround(columns * root_length / (root_length + lower.length()))), 0, columns - 1);
-  const Curve root([&](double s) {
+  const ContourCurve root([&](double s) {
     return scaled({c.root_radius(), root_from + s * (half_pitch - root_from)});
   });
   if (on_root > 0) {
@@ -161,7 +170,7 @@ HalfSector half_sector(const GearPair& pair, int gear, int level) {
     lay(half.foot.top, root, on_root);
   } else {
     const double split = lower.length() / (lower.length() + std::max(root_length, 0.0));
-    lay(half.foot.top, Curve([&](double s) {
+    lay(half.foot.top, ContourCurve([&](double s) {
           return s < split ? lower.at(s / split) : root.at(split < 1.0 ? (s - split) / (1.0 - split) : 1.0);
         }),
         columns);
@@ -169,30 +178,28 @@ HalfSector half_sector(const GearPair& pair, int gear, int level) {
   // Lines inside.
   half.tooth.up = parts(half.tooth.right);
   half.tooth.across = half.foot.up = even(depth);
-  const PlanePoint d{0.0, centre}, crown{0.0, tip / m};
+  const PlanePoint d{0.0, centre}, crown{0.0, side * tip / m};
   for (const double s : half.tooth.across) {
     half.tooth.bottom.push_back(between(d, b, s));
     half.tooth.top.push_back(scaled({tip, s * tip_angle}));
-    half.foot.right.push_back(
-        between({centre * std::sin(half_pitch), centre * std::cos(half_pitch)}, half.foot.top.back(), s));
+    half.foot.right.push_back(between(turned(centre, half_pitch), half.foot.top.back(), s));
   }
   half.foot.left = half.tooth.bottom;
   for (const double s : half.tooth.up) half.tooth.left.push_back(between(d, crown, s));
   half.foot.across = half.rim.across = parts(half.foot.top);
-  std::vector<double> radii;
-  lay_rim(half, g, m, bore, centre, level, radii);
-  const auto ring = [&](double radius) {
+  std::vector<double> heights;
+  lay_rim(half, g, m, bore, centre, level, heights);
+  const auto circle = [&](double height) {
     std::vector<PlanePoint> line;
-    for (const double s : half.foot.across)
-      line.push_back({radius * std::sin(s * half_pitch), radius * std::cos(s * half_pitch)});
+    for (const double s : half.foot.across) line.push_back(turned(height, s * half_pitch));
     return line;
   };
-  half.foot.bottom = half.rim.top = ring(centre);
-  half.rim.bottom = ring(bore);
-  for (const double r : radii) {
-    half.rim.up.push_back((r - bore) / (centre - bore));
-    half.rim.left.push_back({0.0, r});
-    half.rim.right.push_back({r * std::sin(half_pitch), r * std::cos(half_pitch)});
+  half.foot.bottom = half.rim.top = circle(centre);
+  half.rim.bottom = circle(bore);
+  for (const double h : heights) {
+    half.rim.up.push_back((h - bore) / (centre - bore));
+    half.rim.left.push_back({0.0, h});
+    half.rim.right.push_back(turned(h, half_pitch));
   }
   return half;
 }
@@ -212,14 +219,15 @@ Block add(QuadraticMesh& mesh, const Sides& sides, bool mirrored) {
   const bool polar =
       sides.left.front()[0] == 0.0 && sides.left.back()[0] == 0.0 && sides.bottom.front()[0] == 0.0 &&
       std::abs(sides.bottom.back()[0] * sides.top.back()[1] - sides.bottom.back()[1] * sides.top.back()[0]) <
-          1e-9 * sides.top.back()[1];
+          1e-9 * std::abs(sides.top.back()[1]);
   auto nodes = add_block(mesh, static_cast<int>(columns), static_cast<int>(rows), [&](double s, double t) {
     const auto i =
         static_cast<std::size_t>(std::lround(2.0 * static_cast<double>(columns) * (mirrored ? 1.0 - s : s)));
     const auto j = static_cast<std::size_t>(std::lround(2.0 * static_cast<double>(rows) * t));
     PlanePoint p;
     if (polar) {  // rings, so that the mesh is the body's own
-      const double radius = sides.left[j][1], scale = radius / std::hypot(sides.top[i][0], sides.top[i][1]);
+      const double radius = std::abs(sides.left[j][1]),
+                   scale = radius / std::hypot(sides.top[i][0], sides.top[i][1]);
       p = {sides.top[i][0] * scale, sides.top[i][1] * scale};
     } else {
       p = sides.at(i, j);

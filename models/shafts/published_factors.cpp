@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/shafts/argument_check.hpp"
+
 namespace drev {
 namespace {
 
@@ -29,72 +31,57 @@ constexpr FitRow kShallowGroove[4] = {
 constexpr FitRow kDeepGroove[4] = {
     {1.651, 0.614, 0.040}, {-4.794, -0.314, -0.217}, {8.457, -0.962, 0.389}, {-4.314, 0.662, -0.212}};
 
-void throw_findings(const std::vector<Finding>& findings) {
-  if (!findings.empty()) throw ModelError(findings);
-}
-
 }  // namespace
 
 double shoulder_factor(double large_diameter, double small_diameter, double fillet_radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("shoulder_factor", findings);
-  check.positive("small_diameter", small_diameter, "m");
-  check.positive("fillet_radius", fillet_radius, "m");
+  ArgumentCheck check("shoulder_factor");
+  check.lengths({{"small_diameter", small_diameter}, {"fillet_radius", fillet_radius}});
   check.finite("large_diameter", large_diameter, "m");
-  throw_findings(findings);
+  check.refuse();
   const double h = 0.5 * (large_diameter - small_diameter);
   check.within("(large_diameter - small_diameter)/(2 fillet_radius)", h / fillet_radius, 0.25, 4.0, "");
-  throw_findings(findings);
+  check.refuse();
   return fitted(kShoulder, h / fillet_radius, 2.0 * h / large_diameter);
 }
 
 double groove_factor(double diameter, double depth, double radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("groove_factor", findings);
-  check.positive("diameter", diameter, "m");
-  check.positive("depth", depth, "m");
-  check.positive("radius", radius, "m");
-  throw_findings(findings);
+  ArgumentCheck check("groove_factor");
+  check.lengths({{"diameter", diameter}, {"depth", depth}, {"radius", radius}});
+  check.refuse();
   check.within("depth/radius", depth / radius, 0.25, 50.0, "");
   if (!(2.0 * depth < diameter))
     check.fail("depth", to_text(depth), "m",
                "must be less than half of the diameter, " + to_text(0.5 * diameter));
-  throw_findings(findings);
+  check.refuse();
   const double q = depth / radius;
   return fitted(q <= 2.0 ? kShallowGroove : kDeepGroove, q, 2.0 * depth / diameter);
 }
 
 double neuber_groove_factor(double net_diameter, double radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("neuber_groove_factor", findings);
-  check.positive("net_diameter", net_diameter, "m");
-  check.positive("radius", radius, "m");
-  throw_findings(findings);
+  ArgumentCheck check("neuber_groove_factor");
+  check.lengths({{"net_diameter", net_diameter}, {"radius", radius}});
+  check.refuse();
   const double a = std::sqrt(1.0 + net_diameter / (2.0 * radius));
   return 3.0 * (1.0 + a) * (1.0 + a) / (4.0 * (1.0 + 2.0 * a));
 }
 
 double cone_flexibility(double small_diameter, double large_diameter, double length) {
-  std::vector<Finding> findings;
-  ParameterCheck check("cone_flexibility", findings);
-  check.positive("small_diameter", small_diameter, "m");
-  check.positive("large_diameter", large_diameter, "m");
-  check.positive("length", length, "m");
-  throw_findings(findings);
+  ArgumentCheck check("cone_flexibility");
+  check.lengths({{"small_diameter", small_diameter}, {"large_diameter", large_diameter}, {"length", length}});
+  check.refuse();
   // (1/d^3 - 1/D^3)/(D - d) = (D^2 + D d + d^2)/(d D)^3, which holds at D = d too.
   const double d = small_diameter, D = large_diameter;
   return 32.0 * length / (3.0 * std::numbers::pi) * (D * D + D * d + d * d) / std::pow(d * D, 3);
 }
 
 double exact_cone_flexibility(double half_angle, double inner_sphere, double outer_sphere) {
-  std::vector<Finding> findings;
-  ParameterCheck check("exact_cone_flexibility", findings);
+  ArgumentCheck check("exact_cone_flexibility");
   check.within("half_angle", half_angle, 1e-3, 0.499 * std::numbers::pi, "rad");
-  check.positive("inner_sphere", inner_sphere, "m");
+  check.lengths({{"inner_sphere", inner_sphere}});
   if (!(outer_sphere > inner_sphere))
     check.fail("outer_sphere", to_text(outer_sphere), "m",
                "must exceed inner_sphere, " + to_text(inner_sphere));
-  throw_findings(findings);
+  check.refuse();
   const double c = std::cos(half_angle), f = 2.0 / 3.0 - c + c * c * c / 3.0;
   return (std::pow(inner_sphere, -3.0) - std::pow(outer_sphere, -3.0)) / (6.0 * std::numbers::pi * f);
 }

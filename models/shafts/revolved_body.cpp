@@ -170,8 +170,19 @@ RevolvedContour revolved_contour(const std::vector<RevolvedStation>& stations, d
 }
 
 RevolvedMesher::RevolvedMesher(const std::vector<RevolvedStation>& stations,
-                               const std::vector<double>& planes, double lean)
+                               const std::vector<double>& planes, double lean, bool bent)
     : contour_(revolved_contour(stations, lean)) {
+  double z = 0.0;
+  for (std::size_t k = 0; bent && k <= stations.size(); ++k) {
+    // Between what the stations on both sides leave.
+    const RevolvedStation &left = stations[k == 0 ? 0 : k - 1],
+                          &right = stations[std::min(k, stations.size() - 1)];
+    const double outer = k == 0                 ? right.left
+                         : k == stations.size() ? left.right
+                                                : std::min(left.right, right.left);
+    middle_.push_back({z, 0.5 * (outer + std::max(left.bore, right.bore))});
+    if (k < stations.size()) z += right.length;
+  }
   corners(stations);
   divide(stations, planes);
 }
@@ -272,6 +283,19 @@ PlanePoint RevolvedMesher::foot(double mark) const {
   return edge->at(std::clamp((mark - edge->mark_from) / (edge->mark_to - edge->mark_from), 0.0, 1.0));
 }
 
+PlanePoint RevolvedMesher::bend(double mark) const {
+  auto next = middle_.begin() + 1;
+  while (next + 1 != middle_.end() && mark > (*next)[0]) ++next;
+  const PlanePoint &a = *(next - 1), &b = *next;
+  return {mark, a[1] + (b[1] - a[1]) * (mark - a[0]) / (b[0] - a[0])};
+}
+
+/// Of the first mesh, from the surface to the bore.
+int RevolvedMesher::rows() const {
+  constexpr int kBelow = 6;
+  return static_cast<int>(layers_.size() - 1) + (middle_.empty() ? 0 : kBelow);
+}
+
 /// l over the length of the column at a place of a cell.
 double RevolvedMesher::share(const Cell& cell, double t, double length) const {
   const double along = contour_.surface[cell.edge].length;
@@ -281,16 +305,16 @@ double RevolvedMesher::share(const Cell& cell, double t, double length) const {
 }
 
 double RevolvedMesher::nodes(int halvings) const {
-  return 4.0 * double(cells_.size()) * double(layers_.size() - 1) * std::pow(4.0, halvings);
+  return 4.0 * double(cells_.size()) * rows() * std::pow(4.0, halvings);
 }
 
 RevolvedMesh RevolvedMesher::mesh(int halvings) const {
   const int finer = 1 << halvings;
   RevolvedMesh made;
   made.columns = static_cast<int>(cells_.size()) * finer;
-  made.rows = static_cast<int>(layers_.size() - 1) * finer;
+  made.rows = rows() * finer;
   struct Ray {
-    PlanePoint p, f;
+    PlanePoint p, f, end;  // f: its foot, or its bend; end: on the bore
     double share;
   };
   std::vector<Ray> rays;
@@ -299,14 +323,16 @@ RevolvedMesh RevolvedMesher::mesh(int halvings) const {
     const Cell& cell = cells_[k];
     const ContourEdge& edge = contour_.surface[cell.edge];
     const double part = 0.5 * j / finer - double(k), t = cell.from + part * (cell.to - cell.from);
-    const PlanePoint p = edge.at(t), f = foot(edge.mark_from + t * (edge.mark_to - edge.mark_from));
-    rays.push_back({p, f, share(cell, t, std::hypot(f[0] - p[0], f[1] - p[1]))});
+    const double mark = edge.mark_from + t * (edge.mark_to - edge.mark_from);
+    const PlanePoint p = edge.at(t), end = foot(mark), f = middle_.empty() ? end : bend(mark);
+    rays.push_back({p, f, end, share(cell, t, std::hypot(f[0] - p[0], f[1] - p[1]))});
     if (j % 2 == 0 && j < 2 * made.columns)
       made.station.push_back(edge.face ? -1 : edge.station), made.span.push_back(cell.span);
   }
   add_block(made.mesh, made.rows, made.columns, [&](double s, double t) {
     const Ray& ray = rays[static_cast<std::size_t>(std::lround(2.0 * made.columns * t))];
-    const double at = s * double(layers_.size() - 1);
+    const double at = s * rows(), above = double(layers_.size() - 1);
+    if (at > above * (1.0 + 1e-12)) return towards(ray.f, ray.end, (at - above) / (rows() - above));
     const auto k = static_cast<std::size_t>(std::min(at * (1.0 + 1e-12), double(layers_.size() - 2)));
     const double in = layers_[k] + (layers_[k + 1] - layers_[k]) * (at - double(k));
     return towards(ray.p, ray.f, 2.0 * in * (1.0 - in) * ray.share + in * in);

@@ -8,6 +8,9 @@
 /// and no two cross. Cells get thicker with the distance from the surface, from rounds and from corners:
 ///
 ///   x(s) = p + (2 s (1 - s) l/|f - p| + s^2) (f - p)      p on the surface, f on the bore, l about a round's radius
+///
+/// Where a bore begins at the plane of a step of the surface, no straight columns fit. Bent ones do: straight from the
+/// surface to a line r_m(z) inside the material, at z = the mark, and from there to the bore. Bores with steps get them.
 #include <functional>
 #include <vector>
 
@@ -51,9 +54,9 @@ struct RevolvedMesh {
 };
 class RevolvedMesher {
  public:
-  /// planes: ascending z between the ends at which columns are to end.
+  /// planes: ascending z between the ends at which columns are to end. bent: columns go by way of a line in the material.
   RevolvedMesher(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes,
-                 double lean = 1.0);
+                 double lean = 1.0, bool bent = false);
   /// halvings: every cell of the first mesh is cut into 2^halvings by 2^halvings.
   RevolvedMesh mesh(int halvings) const;
   /// Nodes of it.
@@ -68,6 +71,8 @@ class RevolvedMesher {
   void corners(const std::vector<RevolvedStation>& stations);
   void divide(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes);
   PlanePoint foot(double mark) const;
+  PlanePoint bend(double mark) const;
+  int rows() const;
   double share(const Cell& cell, double t, double length) const;
 
   RevolvedContour contour_;
@@ -76,6 +81,7 @@ class RevolvedMesher {
   std::vector<double> corner_size_, corner_reach_;  // sizes of cells there, lengths l there
   std::vector<Cell> cells_;
   std::vector<double> layers_;
+  std::vector<PlanePoint> middle_;  // r_m(z) by its knots; empty: columns are straight
 };
 
 }  // namespace drev

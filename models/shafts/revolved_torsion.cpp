@@ -126,15 +126,19 @@ RevolvedTorsion refine(const std::vector<RevolvedStation>& stations, const std::
 
 RevolvedTorsion solve_revolved(const std::vector<RevolvedStation>& stations,
                                const std::vector<double>& planes, const RevolvedOptions& options) {
-  // Columns that lean less are worse cells at faces, but fit where steps of surface and bore are close.
+  // Columns that lean less are worse cells at faces, but fit where steps are close to each other; bent ones are better
+  // and more often possible where the bore has steps.
   constexpr double kLeast = 0.05;
-  for (double lean = 1.0;; lean *= 0.4) {
-    try {
-      return refine(stations, planes, options, RevolvedMesher(stations, planes, lean));
-    } catch (const SolverError&) {
-      if (lean < kLeast) throw;
+  const bool stepped = std::any_of(stations.begin(), stations.end(),
+                                   [&](const RevolvedStation& s) { return s.bore != stations.front().bore; });
+  for (double lean = 1.0;; lean *= 0.4)
+    for (const bool bent : {stepped, !stepped}) {
+      try {
+        return refine(stations, planes, options, RevolvedMesher(stations, planes, lean, bent));
+      } catch (const SolverError&) {
+        if (bent != stepped && lean < kLeast) throw;
+      }
     }
-  }
 }
 
 }  // namespace drev

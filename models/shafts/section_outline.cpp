@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/shafts/argument_check.hpp"
+
 namespace drev {
 namespace {
 
@@ -37,18 +39,12 @@ OutlineEdge turned(const OutlineEdge& edge) {
   return other;
 }
 
-void refuse(const std::vector<Finding>& findings) {
-  if (!findings.empty()) throw ModelError(findings);
-}
-
 }  // namespace
 
 SectionOutline ellipse_outline(double a, double b) {
-  std::vector<Finding> findings;
-  ParameterCheck check("ellipse", findings);
-  check.positive("a", a, "m");
-  check.positive("b", b, "m");
-  refuse(findings);
+  ArgumentCheck check("ellipse");
+  check.lengths({{"a", a}, {"b", b}});
+  check.refuse();
   OutlineEdge edge{.at = [a, b](double t) {
     return PlanePoint{a * std::cos(2.0 * kHalfTurn * t), b * std::sin(2.0 * kHalfTurn * t)};
   }};
@@ -57,8 +53,7 @@ SectionOutline ellipse_outline(double a, double b) {
 }
 
 SectionOutline polygon_outline(const std::vector<PlanePoint>& corners) {
-  std::vector<Finding> findings;
-  ParameterCheck check("polygon", findings);
+  ArgumentCheck check("polygon");
   const std::size_t n = corners.size();
   SectionOutline outline{.name = "polygon"};
   for (std::size_t k = 0; k < n; ++k) {
@@ -71,16 +66,14 @@ SectionOutline polygon_outline(const std::vector<PlanePoint>& corners) {
     outline.edges.push_back(line(a, b));
   }
   if (n < 3) check.fail("corners", std::to_string(n), "", "must be at least 3");
-  refuse(findings);
+  check.refuse();
   return outline;
 }
 
 SectionOutline rectangle_outline(double a, double b) {
-  std::vector<Finding> findings;
-  ParameterCheck check("rectangle", findings);
-  check.positive("a", a, "m");
-  check.positive("b", b, "m");
-  refuse(findings);
+  ArgumentCheck check("rectangle");
+  check.lengths({{"a", a}, {"b", b}});
+  check.refuse();
   SectionOutline outline =
       polygon_outline({{-0.5 * a, -0.5 * b}, {0.5 * a, -0.5 * b}, {0.5 * a, 0.5 * b}, {-0.5 * a, 0.5 * b}});
   outline.name = "rectangle";
@@ -88,15 +81,13 @@ SectionOutline rectangle_outline(double a, double b) {
 }
 
 SectionOutline ring_outline(double radius, double hole_radius, double offset) {
-  std::vector<Finding> findings;
-  ParameterCheck check("ring", findings);
-  check.positive("radius", radius, "m");
-  check.positive("hole_radius", hole_radius, "m");
+  ArgumentCheck check("ring");
+  check.lengths({{"radius", radius}, {"hole_radius", hole_radius}});
   check.finite("offset", offset, "m");
-  if (findings.empty() && !(hole_radius + std::abs(offset) < 0.999 * radius))
+  if (check.sound() && !(hole_radius + std::abs(offset) < 0.999 * radius))
     check.fail("hole_radius + offset", to_text(hole_radius + std::abs(offset)), "m",
                "must be less than 0.999 radius, " + to_text(0.999 * radius));
-  refuse(findings);
+  check.refuse();
   return {.name = "ring",
           .edges = {arc({0.0, 0.0}, radius, 0.0, 2.0 * kHalfTurn, 64)},
           .size = radius,
@@ -105,14 +96,12 @@ SectionOutline ring_outline(double radius, double hole_radius, double offset) {
 }
 
 SectionOutline grooved_outline(double radius, double groove_radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("grooved circle", findings);
-  check.positive("radius", radius, "m");
-  check.positive("groove_radius", groove_radius, "m");
-  if (findings.empty() && !(groove_radius < 0.8 * radius))
+  ArgumentCheck check("grooved circle");
+  check.lengths({{"radius", radius}, {"groove_radius", groove_radius}});
+  if (check.sound() && !(groove_radius < 0.8 * radius))
     check.fail("groove_radius", to_text(groove_radius), "m",
                "must be less than 0.8 radius, " + to_text(0.8 * radius));
-  refuse(findings);
+  check.refuse();
   // The groove's centre is (0, radius): both circles meet at an angle of 2 asin(b/2a) from there about the axis.
   const double from_top = 2.0 * std::asin(0.5 * groove_radius / radius);
   const double end = 0.5 * kHalfTurn - from_top;  // of the circle, about the axis
@@ -127,11 +116,8 @@ SectionOutline grooved_outline(double radius, double groove_radius) {
 }
 
 SectionOutline keyway_outline(double diameter, double width, double depth, double corner_radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("keyway", findings);
-  check.positive("diameter", diameter, "m");
-  check.positive("width", width, "m");
-  check.positive("depth", depth, "m");
+  ArgumentCheck check("keyway");
+  check.lengths({{"diameter", diameter}, {"width", width}, {"depth", depth}});
   check.finite("corner_radius", corner_radius, "m");
   if (!(corner_radius > 0.0))
     check.fail("corner_radius", to_text(corner_radius), "m",
@@ -141,7 +127,7 @@ SectionOutline keyway_outline(double diameter, double width, double depth, doubl
     check.fail("width", to_text(width), "m", "must be less than 0.8 diameter, " + to_text(0.8 * diameter));
   if (diameter > 0.0 && depth >= 0.45 * diameter)
     check.fail("depth", to_text(depth), "m", "must be less than 0.45 diameter, " + to_text(0.45 * diameter));
-  refuse(findings);
+  check.refuse();
   const double crown = std::sqrt(radius * radius - half * half);
   if (!(corner_radius <= half))
     check.fail("corner_radius", to_text(corner_radius), "m",
@@ -153,7 +139,7 @@ SectionOutline keyway_outline(double diameter, double width, double depth, doubl
   if (corner_radius < 1e-3 * radius)
     check.fail("corner_radius", to_text(corner_radius), "m",
                "must be at least 0.0005 diameter, " + to_text(5e-4 * diameter));
-  refuse(findings);
+  check.refuse();
   SectionOutline outline{.name = "keyway", .copies = 2, .size = radius};
   outline.edges = {
       arc({0.0, 0.0}, radius, -0.5 * kHalfTurn, std::atan2(crown, half)),
@@ -167,26 +153,24 @@ SectionOutline keyway_outline(double diameter, double width, double depth, doubl
 
 SectionOutline spline_outline(int teeth, double minor_diameter, double major_diameter, double tooth_width,
                               double root_radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("spline", findings);
+  ArgumentCheck check("spline");
   if (teeth < 4 || teeth > 200) check.fail("teeth", std::to_string(teeth), "", "must be between 4 and 200");
-  check.positive("minor_diameter", minor_diameter, "m");
-  check.positive("major_diameter", major_diameter, "m");
-  check.positive("tooth_width", tooth_width, "m");
+  check.lengths(
+      {{"minor_diameter", minor_diameter}, {"major_diameter", major_diameter}, {"tooth_width", tooth_width}});
   if (!(root_radius > 0.0))
     check.fail("root_radius", to_text(root_radius), "m",
                "must be > 0: the stress in a sharp inner corner has no limit");
   if (!(major_diameter > minor_diameter))
     check.fail("major_diameter", to_text(major_diameter), "m",
                "must exceed minor_diameter, " + to_text(minor_diameter));
-  refuse(findings);
+  check.refuse();
   const double root = 0.5 * minor_diameter, tip = 0.5 * major_diameter, half = 0.5 * tooth_width;
   const double pitch = kHalfTurn / teeth;  // half of the angle of a tooth and its space
   // The round touches the side x = half and the root circle from outside: centre at x = half + r, |c| = root + r.
   const double cx = half + root_radius, reach = root + root_radius;
   if (!(half < tip))
     check.fail("tooth_width", to_text(tooth_width), "m", "must be less than the major diameter");
-  refuse(findings);
+  check.refuse();
   const double cy = std::sqrt(std::max(reach * reach - cx * cx, 0.0)), centre = std::atan2(cx, cy);  // from y
   if (!(cx < reach) || !(centre < pitch))
     check.fail("root_radius", to_text(root_radius), "m",
@@ -199,7 +183,7 @@ SectionOutline spline_outline(int teeth, double minor_diameter, double major_dia
   if (root_radius < 1e-3 * root)
     check.fail("root_radius", to_text(root_radius), "m",
                "must be at least 0.0005 minor diameter, " + to_text(1e-3 * root));
-  refuse(findings);
+  check.refuse();
   const double quarter = 0.5 * kHalfTurn;
   // Right half of a tooth about the y axis, from its space to its top.
   std::vector<OutlineEdge> edges = {
@@ -214,12 +198,11 @@ SectionOutline spline_outline(int teeth, double minor_diameter, double major_dia
 }
 
 SectionOutline cam_outline(double base_radius, const PeriodicCurve& lift, double bore_radius) {
-  std::vector<Finding> findings;
-  ParameterCheck check("cam", findings);
-  check.positive("base_radius", base_radius, "m");
+  ArgumentCheck check("cam");
+  check.lengths({{"base_radius", base_radius}});
   check.non_negative("bore_radius", bore_radius, "m");
   lift.check(check, "lift", "rad", "m");
-  refuse(findings);
+  check.refuse();
   const double turn = 2.0 * kHalfTurn;
   if (std::abs(lift.points().period() - turn) > 1e-9)
     check.fail("lift", to_text(lift.points().period()), "rad", "must have a period of one turn");
@@ -228,13 +211,13 @@ SectionOutline cam_outline(double base_radius, const PeriodicCurve& lift, double
     const double height = lift.at(turn * i / 720).value;
     least = std::min(least, height), most = std::max(most, height);
   }
-  if (findings.empty() && !(least > -0.5 * base_radius && most < 3.0 * base_radius))
+  if (check.sound() && !(least > -0.5 * base_radius && most < 3.0 * base_radius))
     check.fail("lift", to_text(least) + " to " + to_text(most), "m",
                "must stay between -0.5 and 3 times base_radius, " + to_text(base_radius));
-  if (findings.empty() && !(bore_radius < 0.98 * (base_radius + least)))
+  if (check.sound() && !(bore_radius < 0.98 * (base_radius + least)))
     check.fail("bore_radius", to_text(bore_radius), "m",
                "must be less than 0.98 of the profile's smallest radius, " + to_text(base_radius + least));
-  refuse(findings);
+  check.refuse();
   SectionOutline outline{
       .name = "cam", .size = base_radius + std::max(most, 0.0), .hole_radius = bore_radius};
   constexpr int kSectors = 96;

@@ -111,7 +111,7 @@ PlanePoint best_pole(const SectionOutline& outline, const OutlineCells& cells) {
 
 struct Solved {
   double constant = 0.0, peak = 0.0, area = 0.0, polar = 0.0;
-  PlanePoint peak_at{};
+  PlanePoint peak_at{}, centroid{};
   int unknowns = 0;
 };
 
@@ -221,6 +221,7 @@ Solved SectionFan::solve(int halvings) const {
       found.area += outline_.copies * point.weight;
       found.polar += outline_.copies * point.weight *
                      (point.position[0] * point.position[0] + point.position[1] * point.position[1]);
+      for (const std::size_t d : {0U, 1U}) found.centroid[d] += point.weight * point.position[d];
     }
     const bool rim_cell = cell % columns == columns - 1, hole_cell = hollow() && cell % columns == 0;
     const auto k = static_cast<std::size_t>(cell / columns / finer);
@@ -256,6 +257,8 @@ SectionTorsion solve_section(const SectionOutline& outline, double accuracy) {
     found.peak_at = fine.peak_at;
     found.area = fine.area;
     found.polar = fine.polar;
+    const bool whole = outline.copies == 1;
+    found.centroid = {whole ? fine.centroid[0] / fine.area : NAN, whole ? fine.centroid[1] / fine.area : NAN};
     found.unknowns = fine.unknowns;
     const bool good = found.constant.error <= accuracy * found.constant.value &&
                       found.peak_stress.error <= 10.0 * accuracy * found.peak_stress.value;

@@ -20,7 +20,8 @@ struct SectionTorsion {
   double area = 0.0;     ///< A [m^2]
   double polar =
       0.0;  ///< int x^2 + y^2 dA about the axis [m^4]: rho times it is inertia over length. It is not J
-  int unknowns = 0;  ///< of the finest mesh
+  PlanePoint centroid{};  ///< from the axis [m]; NaN of an outline that symmetry repeats
+  int unknowns = 0;       ///< of the finest mesh
   /// Torque over largest stress [m^3].
   double modulus() const { return constant.value / peak_stress.value; }
 };

@@ -1,6 +1,7 @@
+#include "models/two_inertia/build_two_inertia.hpp"
+
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/two_inertia/build_two_inertia.hpp>
 
 #include <algorithm>
 #include <cmath>

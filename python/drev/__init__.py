@@ -16,7 +16,7 @@ from ._modes import DampedModes, Modes
 from ._run import Figure, Run
 from ._study import Study
 from ._system import System
-from ._tables import Advice, Branch, Campbell, Chart, Judgement, Result, Section, Sweep
+from ._tables import Advice, Branch, Campbell, Chart, Judgement, Optimum, Result, Section, Sweep
 from ._variants import Variant, Variants
 
 __all__ = [name for name in dir() if not name.startswith("_")] + ["__version__"]

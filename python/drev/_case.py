@@ -10,7 +10,7 @@ from . import _commands, _drev, _errors, _progress, _study
 from ._modes import DampedModes, Modes
 from ._run import Run
 from ._system import System
-from ._tables import Advice, Campbell, Chart, Judgement, Result, Sweep
+from ._tables import Advice, Campbell, Chart, Judgement, Optimum, Result, Sweep
 from ._variants import Variants
 
 _last_interrupted = None
@@ -45,10 +45,10 @@ class ModelCase:
         """What must live as long as a result of this model."""
         return None
 
-    def _request(self, command, keywords, function=None, progress=None, stop=None, name=None):
+    def _request(self, command, keywords, function=None, progress=None, stop=None, name=None, words=None):
         keywords = dict(keywords)
         more = keywords.pop("parameters", None) or {}
-        options = _commands.options(command, keywords, function or command)
+        options = {**_commands.options(command, keywords, function or command), **(words or {})}
         if self._run is not None:
             options.setdefault("--run", [self._run])
         parameters = [(k, _parameter_text(v)) for k, v in {**self._parameters, **more}.items()]
@@ -71,12 +71,12 @@ class ModelCase:
             ]
             raise _errors.ModelError(findings) from None
 
-    def _execute(self, command, keywords, function=None, as_json=True):
+    def _execute(self, command, keywords, function=None, as_json=True, words=None):
         keywords = dict(keywords)
         bar = _progress.told(keywords.pop("progress", None))
         try:
             with self._findings():
-                code, text = _drev.execute(self._request(command, keywords, function, bar), as_json)
+                code, text = _drev.execute(self._request(command, keywords, function, bar, words=words), as_json)
         finally:
             _progress.close(bar)
         return json.loads(text) if as_json else text
@@ -224,15 +224,37 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
         """
         return Variants._compute(self, values, jobs, progress, options)
 
-    def study(self, values, *, sample=None, correlate=None, client=None, jobs=None, progress=None, **options):
+    def study(
+        self, values, *, sample=None, correlate=None, client=None, jobs=None, progress=None, out=None, resume=False, **options
+    ):
         """A row of figures of each of many variants, in lockstep where steps are constant: drev.Study (docs/reliability.md).
 
         values: {name: values}, values a sequence, or a text: "1:0.5:3", "orders(9)", with a sample "uniform(1,2)",
         "normal(1,0.1)". sample: "lhs:1000", "sobol:1000", ...; correlate: {(name, name): correlation}. client: a
         dask.distributed.Client, or an executor of concurrent.futures, whose workers have drev; default: `jobs` threads.
-        Other arguments: those of run(), such as step_s and duration_s.
+        out: a folder, in which each block of variants is on the disk before it counts, and in the end the table
+        variants.h5 and variants.json, as `drev run --table` leaves them; resume: goes on with the study in it, which
+        must be this one, or begins it. Other arguments: those of run(), such as step_s and duration_s.
         """
-        return _study.compute(self, values, sample, correlate, client, jobs, progress, options)
+        return _study.compute(self, values, sample, correlate, client, jobs, progress, out, resume, options)
+
+    @_commands.documented(
+        "optimise",
+        """The parameters at which a figure is least, or largest: drev.Optimum (docs/parameter_study.md).
+
+`values`: {name: values}, values a sequence or a text: "uniform(1,2)", "1:0.5:3", "orders(9)". `minimise` or `maximise`
+must be given: a figure, such as "max_torque_Nm".""",
+        ("jobs", "so many threads; default: one a processor"),
+        _PROGRESS,
+    )
+    def optimise(self, values, *, jobs=None, **options):
+        words = {"--vary": [f"{name}={_study._distribution(given)}" for name, given in values.items()]}
+        if jobs is not None:
+            words["--jobs"] = [str(jobs)]
+        found = Optimum(self, "optimise", options, self._execute("optimise", options, words=words))
+        if found.data["status"] == "failed":
+            raise _errors.SolverError(f"{self.name}: no variant has a {found.data['figure']}", found)
+        return found
 
     def _study_request(self, keywords, words):
         """What the study is asked for, and its picklable part."""

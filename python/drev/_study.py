@@ -11,6 +11,7 @@ from . import _drev, _errors, _progress
 from ._variants import _word
 
 _TASK_SECONDS = 0.5  # that a task should take
+_SYNC_SECONDS = 0.5  # at most between a row that is there and a row that a power cut would leave
 _known = threading.local()  # the study that a worker's thread had last
 
 
@@ -24,12 +25,12 @@ def _request_of(spec):
 
 
 def _rows(spec, first, count, stop=None):
-    """Rows of blocks [first, first + count) as numbers, and the seconds that they took. Called by workers."""
+    """Rows of blocks [first, first + count) as numbers, what failed, and the seconds that they took. Called by workers."""
     began = time.perf_counter()
     if getattr(_known, "spec", None) != spec:
         _known.study, _known.spec = _drev.Study(_request_of(spec)), spec
-    numbers = np.array(_known.study.rows(first, count, stop or _drev.Stop()).numbers)
-    return first, numbers, time.perf_counter() - began
+    rows = _known.study.rows(first, count, stop or _drev.Stop())
+    return first, np.array(rows.numbers), list(rows.reasons), time.perf_counter() - began
 
 
 class Study:
@@ -70,7 +71,9 @@ class Study:
         return f"<drev.Study of {self.description['model']}: {good} of {len(self)} succeeded>"
 
 
-def compute(case, values, sample, correlate, client, jobs, progress, options):
+def compute(case, values, sample, correlate, client, jobs, progress, out, resume, options):
+    if resume and out is None:
+        raise TypeError("resume needs out, the folder of the study to go on with")
     words = {"--vary": [f"{name}={_distribution(given)}" for name, given in values.items()], "--table": [""]}
     if sample:
         words["--sample"] = [sample]
@@ -79,6 +82,9 @@ def compute(case, values, sample, correlate, client, jobs, progress, options):
     request, spec = case._study_request(options, words)
     with case._findings():
         source = _drev.Study(request)
+        store = None if out is None else _drev.StudyStore(source, os.fspath(out), bool(resume))
+    if store and store.complete:
+        return Study(source, np.array(store.rows()))
     stop = _drev.Stop()
     if client is None:
         jobs = jobs or os.cpu_count() or 1
@@ -91,33 +97,52 @@ def compute(case, values, sample, correlate, client, jobs, progress, options):
         jobs = jobs or (len(client.nthreads()) if hasattr(client, "nthreads") else os.cpu_count() or 1)
         submit = lambda first, count: pool.submit(_rows, spec, first, count)
     bar = _progress.told(progress)
-    began = time.monotonic()
-    parts, waiting, next_block, each, done = {}, set(), 0, 1, 0
+    began = synced = time.monotonic()
+    missing = store.missing() if store else [(0, source.blocks)]
+    left = sum(count for _, count in missing)
+    parts, waiting, each, done, all_blocks = {}, set(), 1, 0, left
     try:
-        while next_block < source.blocks or waiting:
-            while next_block < source.blocks and len(waiting) < 2 * jobs:
-                count = max(1, min(each, (source.blocks - next_block) // (2 * jobs)))
-                waiting.add(submit(next_block, count))
-                next_block += count
+        while left or waiting:
+            while left and len(waiting) < 2 * jobs:
+                first, count = missing[0]
+                size = min(count, max(1, min(each, left // (2 * jobs))))
+                waiting.add(submit(first, size))
+                missing[0] = first + size, count - size
+                if size == count:
+                    del missing[0]
+                left -= size
             ended, waiting = wait(waiting, timeout=0.2, return_when=FIRST_COMPLETED)
             for future in ended:
-                first, numbers, seconds = future.result()
-                parts[first] = numbers
-                done += len(numbers)
-                blocks = len(numbers) / (1 + len(source.figures)) / source.block_size
-                each = int(min(4096, max(1, _TASK_SECONDS * blocks / max(seconds, 1e-6))))
+                first, numbers, reasons, seconds = future.result()
+                if store:
+                    store.put(first, numbers, reasons)
+                else:
+                    parts[first] = numbers
+                done += len(reasons)
+                each = int(min(4096, max(1, _TASK_SECONDS * len(reasons) / max(seconds, 1e-6))))
+            if store and time.monotonic() - synced > _SYNC_SECONDS:
+                store.sync()
+                synced = time.monotonic()
             if bar and done:
-                part = done / (source.count * (1 + len(source.figures)))
+                part = done / all_blocks
                 bar(part, (time.monotonic() - began) * (1 - part) / part)
     except BaseException as error:
         stop.set()
         for future in waiting:
             future.cancel()
+        if store:
+            store.sync()
         if isinstance(error, KeyboardInterrupt):
-            raise _errors.Interrupted(f"{case.name}: interrupted", None) from None
+            kept = f"; what is done is kept in {store.path}, resume=True goes on" if store else ""
+            raise _errors.Interrupted(f"{case.name}: interrupted{kept}", None) from None
         raise
     finally:
         if client is None:
             pool.shutdown(wait=True)
         _progress.close(bar)
-    return Study(source, np.concatenate([parts[first] for first in sorted(parts)]))
+    if not store:
+        return Study(source, np.concatenate([parts[first] for first in sorted(parts)]))
+    store.sync()
+    rows = np.array(store.rows())
+    store.finish()
+    return Study(source, rows)

@@ -197,6 +197,38 @@ class Advice(Result):
         return self.sentence
 
 
+class Optimum(Result):
+    """The parameters at which a figure is least or largest."""
+
+    _report_keyword = False
+
+    @property
+    def value(self):
+        """Of the figure at its best."""
+        return self.data["best"][0]["value"]
+
+    @property
+    def parameters(self):
+        """Those that differ, at the best: name -> value."""
+        return self.data["best"][0]["varied"]
+
+    @property
+    def certain(self):
+        """Whether every combination was computed; a search proves nothing."""
+        return self.data["all_combinations"]
+
+    @property
+    def text(self):
+        where = ", ".join(f"{name} {value}" for name, value in self.parameters.items())
+        return f"{self.data['goal']} {self.data['figure']}: {self.value:.8g} {self.data['unit']} at {where}"
+
+    def to_pandas(self):
+        """The best variants, a row each."""
+        import pandas
+
+        return pandas.DataFrame([{**best["varied"], self.data["figure"]: best["value"]} for best in self.data["best"]])
+
+
 class Chart(Result):
     """Error of the methods against processor time and work."""
 

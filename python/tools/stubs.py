@@ -39,7 +39,8 @@ def docstring(doc, indent):
 
 
 RESULTS = {"run": "Run", "modes": "Modes", "damped_modes": "DampedModes", "sweep": "Sweep", "campbell": "Campbell",
-           "judge": "Judgement", "advise": "Advice", "chart": "Chart", "vary": "Variants", "build": "System",
+           "judge": "Judgement", "advise": "Advice", "chart": "Chart", "study": "Study",
+           "optimise": "Optimum", "vary": "Variants", "build": "System",
            "load": "ModelCase", "import_model": "Model", "accuracy": "dict[str, Figure]", "to_pandas": "Any",
            "to_toml": "str", "set": "ModelCase", "models": "dict[str, str]", "check": "dict[str, Any]",
            "force": "np.ndarray", "acceleration": "np.ndarray"}

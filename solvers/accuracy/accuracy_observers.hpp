@@ -22,6 +22,10 @@ class PeakWatch final : public Observer {
   explicit PeakWatch(std::vector<Channel> channels) : peaks_(std::move(channels)) {}
   void look_through(StepMotion& motion) override { peaks_.look_through(motion); }
   bool watches_loads() const override { return peaks_.watches_loads(); }
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override {
+    return peaks_.looks_inside(from, to, beyond_cubic);
+  }
   void start(const Assembler& assembler, const EvaluatedState& point) override {
     peaks_.start(assembler, point);
   }

@@ -1,6 +1,6 @@
 #include "solvers/batch/lockstep.hpp"
 
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 
 #include <algorithm>
@@ -33,6 +33,7 @@ std::optional<std::string> why_not_lockstep(const System& system, const Transien
   if (o.locate_contacts.value_or(false)) return "located contact changes differ between variants";
   if (!system.frictions().empty()) return "the model has dry friction";
   if (!system.generals().empty()) return "the model has general elements";
+  if (!system.varying_inertias().empty()) return "the model has an inertia that follows the angle";
   if (const auto why = why_not_controllers(system, "lockstep")) return why;
   if (system.rows().rows() > 0) return "the model is a projected one";
   if (static_cast<int>(system.scalars().size()) > o.newton.max_dense_contacts)

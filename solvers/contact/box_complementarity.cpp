@@ -2,9 +2,10 @@
 
 #include <drev/core/error.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -67,7 +68,7 @@ class BoundedLeastSquares {
       Eigen::VectorXd rest = p_.r(of);
       for (Eigen::Index i = 0; i < n_; ++i)
         if (!is_free(i)) rest -= p_.w(of, i) * result_.lambda[i];
-      const Eigen::VectorXd target = w.ldlt().solve(rest);
+      const Eigen::VectorXd target = ldlt_solve(w, rest);
       double part = 1.0;
       Eigen::Index first = -1;
       for (std::size_t k = 0; k < of.size(); ++k) {

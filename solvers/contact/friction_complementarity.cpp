@@ -2,9 +2,9 @@
 
 #include <drev/core/error.hpp>
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/contact/linear_complementarity.hpp"
 
 namespace drev {
@@ -44,7 +44,7 @@ class FrictionProblem {
     Eigen::MatrixXd f_z = Eigen::MatrixXd::Zero(nf, nz);
     if (nf > 0) {
       const Eigen::MatrixXd rows = w_(free_, Eigen::all);
-      const Eigen::PartialPivLU<Eigen::MatrixXd> lu(rows * f_part);
+      const LuFactor lu(rows * f_part);
       const Eigen::VectorXd right = r_(free_) - rows * constant;
       const Eigen::MatrixXd right_z = rows * z_part;
       f_0 = lu.solve(right);

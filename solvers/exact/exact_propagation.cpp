@@ -1,3 +1,4 @@
+#include <drev/core/error.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/observer.hpp>
 
@@ -24,10 +25,9 @@ constexpr int kMaxCuts = 20;
 constexpr double kShortest = 1e-6;    // of the largest step
 constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the step
-constexpr double kRetreat = 1.0 / 16.0;                     // of the step where the series overflowed
-constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;  // of the time; of the run's times
-constexpr double kEnergyTolerance = 1e-6;
-constexpr double kNoProgress = 1e-12;  // relative to the largest step
+constexpr double kRetreat = 1.0 / 16.0;                         // of the step where the series overflowed
+constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;      // of the time; of the run's times
+constexpr double kEnergyTolerance = 1e-6, kNoProgress = 1e-12;  // the latter relative to the largest step
 
 class ExactRun final : public StepMotion {
  public:
@@ -70,6 +70,8 @@ class ExactRun final : public StepMotion {
     energy_ = &energy;
     forces_ = std::any_of(observers_.begin(), observers_.end(),
                           [](const Observer* o) { return o->needs_acceleration(); });
+    watches_loads_ = std::any_of(observers_.begin(), observers_.end(),
+                                 [](const Observer* o) { return o->watches_loads(); });
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
     check_start(summary_, system_, now_.state);
@@ -79,7 +81,9 @@ class ExactRun final : public StepMotion {
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
     const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
-    if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, energy_tolerance());
+    double allowed = options_.energy_tolerance;
+    if (!(allowed > 0.0)) allowed = std::max(kEnergyTolerance, 2.0 * options_.tolerance);
+    if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed);
     return summary_;
   }
 
@@ -97,11 +101,6 @@ class ExactRun final : public StepMotion {
   std::optional<int> side(int law) const override { return laws_.side(law); }
 
  private:
-  double energy_tolerance() const {
-    if (options_.energy_tolerance > 0.0) return options_.energy_tolerance;
-    return std::max(kEnergyTolerance, 2.0 * options_.tolerance);
-  }
-
   bool running() const { return summary_.status == RunStatus::success; }
 
   /// A breakpoint, the end, or a knot of a law's offset; there the step's end is evaluated ahead of the knot
@@ -161,11 +160,10 @@ class ExactRun final : public StepMotion {
     const bool reaches = s == 1.0 && got == remaining;
     const double t_new = reaches ? stop.t : std::min(from.t + s * got, stop.t);
 
-    const EvaluatedState& before = watch(t_new, end);
     State& to = next_.state;
     to.t = t_new;
     to.history = from.history;
-    series_.evaluate(s, to.z, to.v);
+    expansion_.evaluate(s, to.z, to.v);
     if (!friction_.empty()) friction_.write(s, from.history, to.history);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
@@ -174,10 +172,10 @@ class ExactRun final : public StepMotion {
       evaluate(assembler_, next_, evaluated_at);
     else
       evaluate_energies(next_, evaluated_at);
-    const LawWork smooth = expansion_.work(s, next_);
-    if (!energy_->step(
-            next_, known_.work(series_, s, to.z) + laws_.input(s) + smooth.input + friction_.input(s),
-            series_.dissipated(s) + laws_.dissipated(s) + smooth.dissipated + friction_.dissipated(s))) {
+    const LawWork work = expansion_.work(laws_, s, next_);
+    const EvaluatedState& before = watch(t_new, end);
+    if (&before != &now_) assembler_.set_time(evaluated_at);
+    if (!energy_->step(next_, work.input, work.dissipated)) {
       evaluate(assembler_, next_, evaluated_at);
       return end_not_finite(summary_, assembler_, now_, next_);
     }
@@ -190,7 +188,8 @@ class ExactRun final : public StepMotion {
     beside_knot_ = beside_knot(end, t_new);
     if (end.change) pass(*end.change, t_new);
     if (!ahead_of_break) {
-      known_.advance(t_new, to.z, to.v, s == 1.0);
+      expansion_.return_to(s, look_.state);
+      known_.advance(t_new, to.z, to.v, s == 1.0 || expansion_.sweeps());
       if (end.at_knot) {
         known_.pass_knot();
         count_change(known_.knot_element(), t_new);
@@ -228,6 +227,7 @@ class ExactRun final : public StepMotion {
     double h = std::min(remaining, growing_step_);
     if (h < remaining) h = remaining / std::ceil(remaining / h);
     End cut;
+    expansion_.allow_sweeps(true);
     for (int cuts = 0;; ++cuts) {
       h = expand(h);
       if (!running()) return {};
@@ -236,6 +236,12 @@ class ExactRun final : public StepMotion {
         changed_ = change;
         pass(*change, now_.state.t);
         cut = {};
+        continue;
+      }
+      if (expansion_.sweeps()) {
+        if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state))
+          return {.s = found->s, .change = found->change};
+        expansion_.allow_sweeps(false);
         continue;
       }
       if (!friction_.empty()) {
@@ -277,24 +283,29 @@ class ExactRun final : public StepMotion {
     return end.at_law_knot ? std::max(expansion_.knot_clearance(), kTimeRounding * std::abs(t)) : 0.0;
   }
 
-  /// Shows the observers points inside a step to t_new: where they asked for one, beside a contact change or a
-  /// law's knot at either end, so that each side of it is seen, and close enough for a cubic between them to be off by at
-  /// most 2e-5 of what moves with the fastest mode. Returns the last one.
+  /// Shows the observers points inside a step to t_new: where they asked for one, and, if any looks inside, beside a
+  /// contact change or a law's knot at either end, so that each side of it is seen, and close enough for a cubic between
+  /// them to be off by at most 2e-5 of what moves with the fastest mode. Returns the last one.
   const EvaluatedState& watch(double t_new, const End& end) {
     const EvaluatedState* last = &now_;
     const double t_0 = now_.state.t, length = t_new - t_0;
     if (observers_.empty() || !(length > 0.0)) return *last;
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
+    step_ = {t_0, length, end.s};
+    bool inside = false;
+    const double* beyond_cubic = expansion_.beyond_cubic(end.s);
+    for (Observer* o : observers_) inside |= o->looks_inside(now_, next_, beyond_cubic);
     // What projection holds swings faster.
-    const double parts =
-        std::max(std::ceil(fastest_ * length / kWatchedAngle), known_.projected() ? kProjectionDegree : 0.0);
+    const double parts = inside ? std::max(std::ceil(fastest_ * length / kWatchedAngle),
+                                           known_.projected() ? kProjectionDegree : 0.0)
+                                : 1.0;
     const auto clear = [&](const std::optional<LawSeries::Change>& change, double s, double t,
                            double otherwise) {
+      if (!inside) return t_0;
       return change ? t_0 + length * laws_.clear_of_change(*change, s) / end.s : t + otherwise;
     };
     const double behind = clear(changed_, 0.0, t_0, beside_knot_);
     const double ahead = clear(end.change, end.s, t_new, -beside_knot(end, t_new));
-    step_ = {t_0, length, end.s};
     find_kinks();
     auto kink = kinks_.begin();
     for (double i = 1.0;;) {
@@ -333,31 +344,28 @@ class ExactRun final : public StepMotion {
   /// Times at which loads' kinks are passed in the step, where an observer watches loads.
   void find_kinks() {
     kinks_.clear();
-    if (std::none_of(observers_.begin(), observers_.end(),
-                     [](const Observer* o) { return o->watches_loads(); }))
-      return;
-    known_.append_knots(step_.s, kinks_);
+    if (watches_loads_) known_.append_knots(step_.s, kinks_);
     for (double& kink : kinks_) kink = step_.t_0 + step_.length * (kink / step_.s);
     std::sort(kinks_.begin(), kinks_.end());
   }
 
   /// The motion at t on the step's series.
-  void move_along(double t, EvaluatedState& point) const {
+  void move_along(double t, EvaluatedState& point, bool exactly = false) {
     point.state.t = t;
     point.state.history = now_.state.history;
     const double s = step_.s * ((t - step_.t_0) / step_.length);
-    series_.evaluate(s, point.state.z, point.state.v);
+    expansion_.evaluate(s, point.state.z, point.state.v, exactly);
     if (!friction_.empty()) friction_.write(s, now_.state.history, point.state.history);
   }
 
   /// The same as exact as the step's end: where kinks are projected, at the end of a series of its own.
   void move_inside(double t, EvaluatedState& point) {
-    move_along(t, point);
+    move_along(t, point, true);
     const double s = step_.s * ((t - step_.t_0) / step_.length);
-    if (!known_.kinked() || !(s > kAtStart && s < 1.0)) return;
+    if (expansion_.sweeps() || !known_.kinked() || !(s > kAtStart && s < 1.0)) return;
     if (!part_) part_.emplace(system_);
     if (!part_->expand_part(expansion_, now_, laws_, s, limits(series_.step()))) return;
-    part_->series.evaluate(1.0, point.state.z, point.state.v);
+    part_->evaluate(1.0, point.state.z, point.state.v);
     if (!friction_.empty()) part_->friction.write(1.0, now_.state.history, point.state.history);
   }
 
@@ -462,8 +470,9 @@ class ExactRun final : public StepMotion {
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
   int changes_here_ = 0, change_limit_ = 0;
-  bool forces_ = false;  // some observer wants accelerations and forces
-  bool whole_ = true;    // now_ has them
+  bool watches_loads_ = false;  // some observer does
+  bool forces_ = false;         // some observer wants accelerations and forces
+  bool whole_ = true;           // now_ has them
 };
 
 }  // namespace

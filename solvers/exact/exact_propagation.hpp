@@ -6,9 +6,10 @@
 /// the degree at which it is exact to the tolerance (taylor_series.hpp). Contact changes are roots of
 /// polynomials, isolated with a certificate (roots.hpp): none is missed, and the step ends there.
 /// Step and degree follow from the series' own decay; there is no step to choose. Mesh stiffness by phase without
-/// jumps and damping that grows with penetration are products of series (expanded_laws.hpp). Knots of cam tables that an angle passes within a
-/// step, torques that are functions, engine orders, and laws of one's own that are smooth between their kinks enter by their
-/// projection on polynomials along the path (legendre_projection.hpp).
+/// jumps and damping that grows with penetration are products of series (expanded_laws.hpp). Where tables are all that
+/// bends inside a step, the knots that angles pass act on its end by one backward sweep (kink_response.hpp). Beside
+/// torques that are functions, engine orders, and laws of one's own that are smooth between their kinks, all enter by
+/// their projection on polynomials along the path (legendre_projection.hpp).
 ///
 /// What it needs: motions that are piecewise quadratic, no general elements. why_not_exact() says what of
 /// a model is not so. A law's jump or kink that it tells of neither by pieces(), kinks() nor next_knot()

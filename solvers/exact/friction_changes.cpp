@@ -55,7 +55,8 @@ void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
     double power = 1.0;
     for (std::size_t d = 0; d < terms; ++d, power *= r) {
       if (d + 1 < terms) c.torque[d] *= power;
-      if (d < 2) c.capacity[d] *= power, c.known[d] *= power;
+      if (d < c.capacity.size()) c.capacity[d] *= power;
+      if (d < 2) c.known[d] *= power;
       double sum = 0.0, size = 0.0;
       for (const Entry& e : c.z) {
         const double part = e.coeff * series.coefficient(static_cast<int>(d) + 1, e.index);
@@ -95,11 +96,11 @@ void FrictionSeries::find_bounds(std::size_t i) {
     for (const What what : {What::bound_high, What::bound_low}) {
       const double side = what == What::bound_high ? 1.0 : -1.0, limit = side > 0.0 ? most.high : -most.low;
       if (!std::isfinite(limit)) continue;
-      std::vector<double> g(std::max<std::size_t>(2, c.torque.size()), 0.0);
+      std::vector<double> g(std::max(c.capacity.size(), c.torque.size()), 0.0);
       for (std::size_t d = 0; d < c.torque.size(); ++d) g[d] = -side * c.torque[d];
       std::vector<double> size(g.size());
       for (std::size_t d = 0; d < g.size(); ++d) size[d] = std::abs(g[d]);
-      for (std::size_t d = 0; d < 2; ++d) {
+      for (std::size_t d = 0; d < c.capacity.size(); ++d) {
         g[d] += limit * c.capacity[d];
         size[d] += std::abs(limit * c.capacity[d]);
       }
@@ -311,7 +312,7 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     torque[k] = level < c.torque.size() ? c.torque[level] : 0.0;
     problem.r[k] = static_cast<double>(order + 1) / h_ * c.slip[level + 1];
     const Limits most = limits(of[static_cast<std::size_t>(k)], false);
-    const double g = level < 2 ? c.capacity[level] : 0.0;
+    const double g = level < c.capacity.size() ? c.capacity[level] : 0.0;
     const int near = sides[static_cast<std::size_t>(k)];
     if (near & 1) problem.high[k] = g == 0.0 ? 0.0 : g * most.high;
     if (near & 2) problem.low[k] = g == 0.0 ? 0.0 : g * most.low;

@@ -1,9 +1,10 @@
 // The third part of FrictionSeries: gears with losses.
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/exact/friction_series.hpp"
 #include "solvers/run/run_verdict.hpp"
@@ -41,7 +42,7 @@ void FrictionSeries::find_gears() {
       double left = w_(row, row);
       if (!before.empty()) {
         const Vector column = w_(before, row);
-        left -= column.dot(Eigen::MatrixXd(w_(before, before)).ldlt().solve(column));
+        left -= column.dot(ldlt_solve(w_(before, before), column));
       }
       if (!(left > kClosesLoop * w_(row, row)))
         throw SolverError(
@@ -136,8 +137,17 @@ GearLossRow FrictionSeries::gear_derivative(std::size_t i, const Change& change,
     (sign > 0 ? row.high : row.low).push_back(found);
   };
   if (c.stuck) {
+    // A bound is as far off as the farther of its two lines: without bearing torques a line of the one may meet the
+    // torque together with a line of the other, which is far.
+    const auto far = [&](What what) {
+      return std::any_of(c.bounds.begin(), c.bounds.end(), [&](const Bound& b) {
+        const auto end = b.g.begin() + order;
+        const auto first = std::find_if(b.g.begin(), end, [](double x) { return x != 0.0; });
+        return b.what == what && first != end && *first > 0.0;
+      });
+    };
     for (const Bound& b : c.bounds)
-      if (zero_before(b, order)) {
+      if (zero_before(b, order) && !far(b.what)) {
         const int sign = b.what == What::bound_high ? 1 : -1;
         add(b.line, sign, -b.g[level]);
       }
@@ -209,7 +219,7 @@ void FrictionSeries::factor_series() {
         w(r, j) = contacts_[idx(loss)].unit_tie * w(r, j) + contacts_[idx(loss)].unit_loss * w_(row, loss);
     }
   }
-  series_inverse_ = w.partialPivLu().inverse();
+  series_inverse_ = lu_solve(w, Eigen::MatrixXd(Eigen::MatrixXd::Identity(w.rows(), w.cols())));
 }
 
 /// How far the loss torque is beyond a line against the direction `sign`:

@@ -1,10 +1,12 @@
 #include "solvers/exact/friction_series.hpp"
 
-#include <Eigen/Cholesky>
+#include <drev/core/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/run/run_verdict.hpp"
 
@@ -168,7 +170,8 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     Contact& c = contacts_[i];
     const auto row = static_cast<Eigen::Index>(i);
     const Friction::Engagement g = law(i).engagement(assembler.time());
-    c.capacity = {g.value, g.slope};
+    c.capacity = g.terms;
+    c.capacity[0] = std::max(0.0, c.capacity[0]);  // a formula's cubic may be below zero by its accuracy
     acceleration[row] = -value_of(c.gain, others.data()) + c.nominal * assembler.nominal().acceleration;
     for (const Entry& e : c.u) acceleration[row] += e.coeff * assembler.prescribed(e.index).acceleration;
     c.speed_rounding = patience_ * kSumRounding * size_of(c.gain, sizes.data());
@@ -180,7 +183,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const double slip = slip_of(c, assembler, point.state.v);
     double size = size_of(c.z, point.state.v.data()) + std::abs(c.nominal * assembler.nominal().rate);
     for (const Entry& e : c.u) size += std::abs(e.coeff * assembler.prescribed(e.index).rate);
-    c.open = g.value == 0.0 && g.slope == 0.0 && !law(i).one_way();
+    c.open = c.capacity == std::array<double, 4>{} && !law(i).one_way();
     c.stuck = c.tied = false;
     if (c.open) continue;
     const bool locks = law(i).one_way() && slip < 0.0 && slip >= -kLocked * size;
@@ -316,15 +319,21 @@ void FrictionSeries::factor_stuck() {
   if (stuck_.empty()) return;
   const std::vector<Eigen::Index> s(stuck_.begin(), stuck_.end());
   const Eigen::MatrixXd w = w_(s, s);
-  stuck_inverse_ = w.ldlt().solve(Eigen::MatrixXd::Identity(w.rows(), w.cols()));
+  stuck_inverse_ = ldlt_solve(w, Eigen::MatrixXd(Eigen::MatrixXd::Identity(w.rows(), w.cols())));
 }
 
 void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, double t, double h) {
   h_ = h;
+  known_degree_ = 0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
     const Friction::Engagement g = law(i).engagement(t);
-    c.capacity = {g.value, g.slope * h};
+    double power = 1.0, largest = 0.0;  // of g over the step, at most
+    for (std::size_t d = 0; d < g.terms.size(); ++d, power *= h) {
+      c.capacity[d] = d == 0 ? std::max(0.0, g.terms[d]) : g.terms[d] * power;
+      largest += std::abs(c.capacity[d]);
+      if (d > 1 && c.capacity[d] != 0.0) known_degree_ = std::max(known_degree_, static_cast<int>(d));
+    }
     c.known = {c.nominal * known.nominal()[1] / h, 2.0 * c.nominal * known.nominal()[2] / h};
     for (const Entry& e : c.u)
       for (std::size_t k = 0; k < 2; ++k)
@@ -339,7 +348,7 @@ void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, doubl
     }
     const double slope = sliding_line(law(i), c.segment).slope;
     if (slope != 0.0)
-      series.widen_damping(std::abs(slope) * std::max(g.value, g.value + g.slope * h) *
+      series.widen_damping(std::abs(slope) * largest *
                            w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
   }
 }
@@ -355,7 +364,7 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
     if (d >= c.slip.size()) c.slip.resize(d + 1);
     c.torque[d] = 0.0;
     if (c.open || c.stuck || c.tie >= 0) continue;
-    const double g = d < 2 ? c.capacity[d] : 0.0;
+    const double g = d < c.capacity.size() ? c.capacity[d] : 0.0;
     if (c.tied) {
       c.torque[d] = g * c.bound;
     } else {
@@ -363,8 +372,8 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
       c.torque[d] = c.sign * line.at_zero * g;
       if (line.slope != 0.0) {
         c.slip[d] = (k - 1) / h_ * value_of(c.z, series.coefficients(k - 1)) + (d < 2 ? c.known[d] : 0.0);
-        c.torque[d] +=
-            line.slope * (c.capacity[0] * c.slip[d] + (d > 0 ? c.capacity[1] * c.slip[d - 1] : 0.0));
+        for (std::size_t j = 0; j <= std::min(d, c.capacity.size() - 1); ++j)
+          c.torque[d] += line.slope * c.capacity[j] * c.slip[d - j];
       }
     }
     if (c.torque[d] != 0.0) apply(c, c.torque[d]);

@@ -68,6 +68,7 @@ class FrictionSeries final : public TermForces {
 
   /// What is known over a step of h seconds from t on.
   void add_to(TaylorSeries& series, const LoadSeries& known, double t, double h);
+  int known_degree() const override { return known_degree_; }
   /// Adds the contacts' part to term k of the series, factor = h^2/(k (k - 1)).
   void add(const TaylorSeries& series, int k, double factor, double* term) override;
   /// After the series was expanded from a state: slip speeds, and bounds. What the series' forces differ from those
@@ -129,7 +130,8 @@ class FrictionSeries final : public TermForces {
     double speed_rounding = 0.0, torque_rounding = 0.0;
     double acceleration_slack = 0.0;  // of the step's first slip acceleration
     // Along the step.
-    std::array<double, 2> capacity{}, known{};  // g(s), known part of w
+    std::array<double, 4> capacity{};  // g(s)
+    std::array<double, 2> known{};     // part of w
     std::vector<double> torque, slip, slip_size;
     std::vector<Bound> bounds;
     // Of gears: a tie knows its loss, a loss its tie.
@@ -193,6 +195,7 @@ class FrictionSeries final : public TermForces {
   Eigen::MatrixXd w_, stuck_inverse_, series_inverse_;  // the last: with the gears' directions
   std::vector<std::size_t> stuck_;
   double h_ = 1.0;
+  int known_degree_ = 0;  // of the engagements over the step
   bool gears_ = false, any_on_line_ = false, located_ = false;
   double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to

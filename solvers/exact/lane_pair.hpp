@@ -54,18 +54,52 @@ struct LanePair {
   most.low = most.low < x.low ? x.low : most.low;
   most.high = most.high < x.high ? x.high : most.high;
 }
+/// to = x with its halves, quarters or neighbours exchanged: lane l of x in lane l ^ distance.
+[[gnu::always_inline]] inline void exchange(const Lanes& x, int distance, Lanes& to) {
+  to = distance == 4   ? __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3)
+       : distance == 2 ? __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5)
+                       : __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
+}
+[[gnu::always_inline]] inline void exchange(const LanePair& x, int distance, LanePair& to) {
+  const LanePair from = x;
+  to.low = distance == 4   ? from.high
+           : distance == 2 ? __builtin_shufflevector(from.low, from.low, 2, 3, 0, 1)
+                           : __builtin_shufflevector(from.low, from.low, 1, 0, 3, 2);
+  to.high = distance == 4   ? from.low
+            : distance == 2 ? __builtin_shufflevector(from.high, from.high, 2, 3, 0, 1)
+                            : __builtin_shufflevector(from.high, from.high, 1, 0, 3, 2);
+}
 /// The sum of all lanes, and their largest.
 template <class L>
 [[gnu::always_inline]] inline double sum_of(const L& x) {
-  double sum = 0.0;
-  for (int l = 0; l < kLanes; ++l) sum += x[l];
-  return sum;
+  L sum = x, other;
+  exchange(sum, 4, other), sum += other;
+  exchange(sum, 2, other), sum += other;
+  exchange(sum, 1, other), sum += other;
+  return sum[0];
 }
 template <class L>
 [[gnu::always_inline]] inline double largest_of(const L& x) {
-  double most = x[0];
-  for (int l = 1; l < kLanes; ++l) most = most < x[l] ? x[l] : most;
-  return most;
+  L most = x, other;
+  exchange(most, 4, other), raise(most, other);
+  exchange(most, 2, other), raise(most, other);
+  exchange(most, 1, other), raise(most, other);
+  return most[0];
+}
+/// to = x moved up by a lane, behind the last lane of `before`; or down by a lane, ahead of the first one of `behind`.
+[[gnu::always_inline]] inline void move_up(const Lanes& before, const Lanes& x, Lanes& to) {
+  to = __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);
+}
+[[gnu::always_inline]] inline void move_down(const Lanes& x, const Lanes& behind, Lanes& to) {
+  to = __builtin_shufflevector(x, behind, 1, 2, 3, 4, 5, 6, 7, 8);
+}
+[[gnu::always_inline]] inline void move_up(const LanePair& before, const LanePair& x, LanePair& to) {
+  to.low = __builtin_shufflevector(before.high, x.low, 3, 4, 5, 6);
+  to.high = __builtin_shufflevector(x.low, x.high, 3, 4, 5, 6);
+}
+[[gnu::always_inline]] inline void move_down(const LanePair& x, const LanePair& behind, LanePair& to) {
+  to.low = __builtin_shufflevector(x.low, x.high, 1, 2, 3, 4);
+  to.high = __builtin_shufflevector(x.high, behind.low, 1, 2, 3, 4);
 }
 
 /// Kernel::run<L>(arguments...) with the type of lanes L that suits the best level of this machine. run is a

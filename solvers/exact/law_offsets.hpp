@@ -18,6 +18,12 @@ class LawOffsets {
   double expand(const TaylorSeries& series, double t, double h);
   /// Series of the law's known offset, - e(s); empty where it has none. law: of System::scalars().
   const std::vector<double>& offset(int law) const { return offsets_[idx(law)]; }
+  /// No law has one in this step.
+  bool none() const {
+    for (const std::size_t j : phased_)
+      if (!offsets_[j].empty()) return false;
+    return true;
+  }
   /// The first time in (t, end) at which the offset of a law has a knot: a step must end there.
   std::optional<double> next_break(double t, double end) const;
 

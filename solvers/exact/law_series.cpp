@@ -18,7 +18,9 @@ constexpr double kZero = 1e-13;
 constexpr double kFloor = 4e-15;
 constexpr double kClear = 1e-14;     // of the terms that a deflection is summed from
 constexpr double kMostClear = 1e-3;  // of the step
-constexpr double kParallel = 1e-9;   // bounds that are one line but for rounding
+// A crossing that a motion beside the series moves by no more of the step, with slopes that differ by no more, is one.
+constexpr double kNearCrossing = 0.05, kAlike = 3.0;
+constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
 double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {
@@ -218,6 +220,52 @@ std::optional<LawSeries::Change> LawSeries::first_change(double end) {
   return first;
 }
 
+LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, double push) {
+  if (push == 0.0) return {first_change(1.0)};
+  // Where each bound would be crossed at the earliest.
+  Beside found;
+  double earliest = 1.0, second = 2.0;
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    double mobility = 0.0;
+    for (const Entry& e : system_.scalars()[j].z)
+      mobility += std::abs(e.coeff) * std::sqrt(series.mobility(e.index));
+    for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i) {
+      const LawBound& b = current(j).bounds[i];
+      lower_ = laws_[j].bounds[i];
+      if (lower_.size() < 4) lower_.resize(4, 0.0);
+      lower_[2] -= 0.5 * push * mobility * std::abs(b.b_v) / h_;
+      lower_[3] -= push * mobility * std::abs(b.b_x) / 6.0;
+      const auto s = first_crossing(lower_, 1.0);
+      if (!s) continue;
+      if (!found.change || *s < earliest) {
+        if (found.change) second = earliest;
+        earliest = *s;
+        found.change = Change{*s, static_cast<int>(j), static_cast<int>(i)};
+      } else {
+        second = std::min(second, *s);
+      }
+    }
+  }
+  if (!found.change) return found;
+  const std::vector<double>& g = laws_[idx(found.change->law)].bounds[idx(found.change->bound)];
+  const auto s = first_crossing(g, 1.0);
+  found.unsure = !s || *s >= second || *s - earliest > kNearCrossing;
+  if (found.unsure) return found;
+  const double before = polynomial_slope(g, earliest), at = polynomial_slope(g, *s);
+  found.unsure = !(before < 0.0 && at < 0.0 && before > kAlike * at && at > kAlike * before);
+  found.change->s = *s;
+  return found;
+}
+
+double LawSeries::later(const Change& change, const double* y, const double* rate) const {
+  const LawBound& b = current(idx(change.law)).bounds[idx(change.bound)];
+  const std::vector<double>& g = laws_[idx(change.law)].bounds[idx(change.bound)];
+  double beside = polynomial_value(g, change.s);
+  for (const Entry& e : system_.scalars()[idx(change.law)].z)
+    beside += e.coeff * (b.b_x * y[e.index] + b.b_v / h_ * rate[e.index]);
+  return -beside / polynomial_slope(g, change.s);
+}
+
 double LawSeries::clear_of_change(const Change& change, double s) const {
   const Law& law = laws_[idx(change.law)];
   const double rate = std::abs(polynomial_slope(law.x, s));
@@ -243,6 +291,15 @@ void LawSeries::pass(const Change& change) {
 
 void LawSeries::forget_roots() {
   for (Law& law : laws_) law.root = -1;
+}
+
+bool LawSeries::lossless() const {
+  for (std::size_t j = 0; j < laws_.size(); ++j) {
+    const LawPiece& p = current(j);
+    if (p.k != p.elastic_k || p.y_0 != p.elastic_0) return false;
+    if (!system_.scalars()[j].u.empty() && system_.any_prescribed_moves()) return false;
+  }
+  return true;
 }
 
 double LawSeries::dissipated(double s) const {

@@ -47,8 +47,19 @@ class LawSeries {
               const ScaleSeries& scale_of);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
+  /// No piece that holds loses energy but by its damping, nor does a known motion act on it.
+  bool lossless() const;
   /// The first change in (0, end].
   std::optional<Change> first_change(double end);
+  /// The first change where kinks add to the series a motion of |y| <= push s^3/(6 sqrt(m)), |y'| <= push s^2/(2 sqrt(m)):
+  /// near which it is. unsure: whether there is one, or which comes first, depends on them.
+  struct Beside {
+    std::optional<Change> change = {};
+    bool unsure = false;
+  };
+  Beside first_change_beside(const TaylorSeries& series, double push);
+  /// By how much of the step a change is later where these motions y and rates y' (by s) add to the series at its s.
+  double later(const Change& change, const double* y, const double* rate) const;
   /// The s nearest to a change, behind it at the start (s = 0) or ahead of it at s > 0, at which the law's
   /// deflection is clear of the bound by more than rounding.
   double clear_of_change(const Change& change, double s) const;
@@ -85,7 +96,7 @@ class LawSeries {
 
   const System& system_;
   std::vector<Law> laws_;
-  std::vector<double> sizes_;
+  std::vector<double> sizes_, lower_;
   double h_ = 0.0;
 };
 

@@ -11,13 +11,28 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <vector>
 
 namespace drev {
 
 inline constexpr int kProjectionDegree = 8;
 inline constexpr int kProjectionTerms = kProjectionDegree + 1;
+
+template <int kTerms>
+using PowersOf = std::array<std::array<double, kTerms>, kTerms>;
+/// L_j = sum_k t[j][k] s^k, t[j][k] = (-1)^(j+k) binomial(j, k) binomial(j+k, k).
+template <int kTerms>
+PowersOf<kTerms> legendre_powers() {
+  PowersOf<kTerms> t{};
+  for (int j = 0; j < kTerms; ++j) {
+    double value = j % 2 ? -1.0 : 1.0;
+    for (int k = 0; k <= j; ++k) {
+      t[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] = value;
+      value *= -static_cast<double>((j - k) * (j + k + 1)) / ((k + 1.0) * (k + 1.0));
+    }
+  }
+  return t;
+}
 
 /// Gauss-Legendre nodes and weights on [0, 1], with L_j at the nodes.
 struct GaussRule {
@@ -26,6 +41,8 @@ struct GaussRule {
   std::array<std::array<double, kNodes>, kProjectionTerms> legendre;
 };
 const GaussRule& gauss_rule();
+/// Nodes and weights of Gauss's rule of n nodes on [0, 1].
+void find_gauss_rule(int n, double* s, double* weight);
 
 /// The polynomial of degree kNodes - 1 through values at the nodes of the Gauss rule, by powers of s.
 struct NodePolynomial {
@@ -64,6 +81,8 @@ class LegendreProjection {
   }
   double& coefficient(int j, int row) { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
   double coefficient(int j, int row) const { return a_[static_cast<std::size_t>(j * stride_ + row)]; }
+  /// out: of each row, the sum of |differences| of the coefficients.
+  void difference(const LegendreProjection& other, double* out) const;
   /// Adds the coefficients of forces that are known at the nodes of Gauss's rule.
   void add_nodes(const NodeForces& forces);
   /// out_k += coefficients of s^k for k < kept, out_k = them above, k = 0 ... kProjectionDegree; column k at
@@ -74,30 +93,6 @@ class LegendreProjection {
   std::size_t size() const { return static_cast<std::size_t>(stride_); }
   int stride_;
   std::vector<double> a_;
-};
-
-/// Kinks of forces that are linear in an angle theta(s) between knots: past the knot, jump (theta - knot) is
-/// added. Many knots at once, in lanes.
-class KinkMoments {
- public:
-  void clear() { count_ = 0; }
-  int count() const { return count_; }
-  /// theta: its coefficients, as many for each kink, at most kMostTerms; it passes `knot` once in [0, 1], and
-  /// monotonously, and stands at `end` there.
-  void add(int row, double knot, double jump, double end, std::span<const double> theta);
-  /// Adds the moments of all kinks.
-  void add_to(LegendreProjection& projection);
-  /// After add_to(): the s at which theta passes the knot of kink i.
-  double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
-
- private:
-  static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
-  int count_ = 0;
-  std::size_t terms_ = 0;
-  std::vector<int> row_;
-  std::vector<double> knot_, jump_, end_, place_;
-  std::vector<double> theta_;  // by group of lanes, degree, lane
-  std::vector<double> moments_;
 };
 
 }  // namespace drev

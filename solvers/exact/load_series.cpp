@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kOnKnot = 1e-13;        // relative to the angle, at least to 1 rad
 constexpr double kTermRounding = 1e-13;  // of the largest term of an angle's series
-constexpr double kMonotone = 0.25;       // of the first rate, what the others may be
 // What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
 // What the step's end is off by, of the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
@@ -23,10 +22,6 @@ constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between
 constexpr double kKinkRest = 1e-5;
 // Of the largest force so far: rounding of the projection's coefficients.
 constexpr double kForceRounding = 4e-15;
-// Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
-constexpr double kKinkInside = 1e-4;
-// A kink that leaves more of the motion than this inside the step ends it.
-constexpr double kMostInside = 1e-6;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -46,6 +41,7 @@ LoadSeries::LoadSeries(const System& system)
       of_loads_(stride_),
       of_kinks_(stride_),
       largest_force_(idx(stride_)),
+      changes_(idx(stride_)),
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
@@ -164,79 +160,6 @@ double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k)
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-/// theta_ = the terms of the load's angle.
-void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series) {
-  theta_.assign(idx(std::max(series.degree(), 2) + 1), 0.0);
-  if (l.feedback)
-    for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = l.coeff * series.coefficient(k, l.row);
-  for (std::size_t k = 1; k < 3; ++k) theta_[k] += l.ratio * phi_[k];
-  theta_[0] = l.angle;
-}
-
-double LoadSeries::find_kinks(const TaylorSeries& series) {
-  of_kinks_.clear();
-  if (loads_.empty()) return 0.0;
-  kinks_.clear();
-  double contraction = 0.0;
-  ranges_.resize(idx(3 * stride_));
-  double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
-  series_ranges(stride_, series.degree(), series.coefficients(0), turns, sizes, bends);
-  for (Linear& l : loads_) {
-    l.watched = false;
-    l.contraction = 0.0;
-    l.ahead = l.stretch;
-    l.ahead_angle_0 = l.angle_0;
-    const auto row = idx(l.row);
-    const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
-    const double first = angle_term(l, series, 1);
-    // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
-    const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
-    if (l.angle + reach < l.stretch.high && l.angle - reach > l.stretch.low) continue;
-    if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
-      l.watched = true;
-      continue;
-    }
-    const bool rises = first > 0.0;
-    const double end = l.angle + l.ratio * (phi_[1] + phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
-    double jumps = 0.0;
-    bool have_theta = false;
-    for (;;) {
-      const double bound = rises ? l.ahead.high : l.ahead.low;
-      if (rises ? end <= bound : end >= bound) break;
-      const LoadStretch next = l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
-      const bool moves = rises ? next.high > bound : next.low < bound;
-      if (!moves || next.time_slope != l.ahead.time_slope) {
-        l.watched = true;
-        break;
-      }
-      if (!have_theta) {
-        expand_angle(l, series);
-        have_theta = true;
-      }
-      const double jump = next.angle_slope - l.ahead.angle_slope;
-      if (kKinkInside * std::abs(l.coeff * jump * first) * relative_move(series, l.row) > kMostInside) {
-        l.watched = true;
-        break;
-      }
-      kinks_.add(l.row, bound, l.coeff * jump, end, theta_);
-      jumps += std::abs(jump);
-      l.ahead = next;
-      l.ahead_angle_0 = bound;
-    }
-    if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
-    contraction = std::max(contraction, l.contraction);
-  }
-  kinks_.add_to(of_kinks_);
-  return contraction;
-}
-
-double LoadSeries::relative_move(const TaylorSeries& series, int row) const {
-  const double move = series.reach(row) * h_;
-  const auto kind = idx(row < series.size() ? series.kind(row) : 0);
-  const double scale = std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
-  return move / scale;
-}
-
 /// Of the largest force on the row so far, what a held contact's torque is off by. Coefficients of smooth forces fall
 /// from degree to degree at an even rate: the next one tells, where the tail would ask for far shorter steps.
 double LoadSeries::held_rest(const LegendreProjection& forces, int row) const {
@@ -263,6 +186,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     std::swap(last_, projection_);
   }
   projection_.clear();
+  for (std::size_t kind = 0; kind < per_reach_.size(); ++kind)
+    per_reach_[kind] = h_ / std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
   Pass pass;
   pass.contraction = find_kinks(series);
   pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
@@ -300,7 +225,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   if (kinked()) {
     // A kink is projected along a path that lacks the rest itself.
     for (const Linear& l : loads_)
-      pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
+      if (l.contraction > 0.0)
+        pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
     smooth_.for_kinked([&](int row, double contraction, double strongest, bool must) {
       const double rest = rest_of(of_kinks_, row, kTail);
       pass.residual = std::max(pass.residual, kKinkRest * contraction * rest);
@@ -309,10 +235,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     });
     projection_ += of_kinks_;
   }
+  projection_.difference(last_, changes_.data());
   const auto note_change = [&](int row) {
-    double size = 0.0;
-    for (int j = 0; j < kProjectionTerms; ++j)
-      size += std::abs(projection_.coefficient(j, row) - last_.coefficient(j, row));
+    const double size = changes_[idx(row)];
     if (!(size > 0.0)) return;
     const double moves = size * relative_move(series, row), force = largest_force_[idx(row)];
     pass.change = std::max(pass.change, held && force > 0.0 ? std::min(moves, size / force) : moves);
@@ -368,32 +293,6 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
     }
   }
   return first;
-}
-
-void LoadSeries::append_knots(double end, std::vector<double>& s) const {
-  for (int i = 0; i < kinks_.count(); ++i)
-    if (const double place = kinks_.place(i); place < end) s.push_back(place);
-  for (const double place : smooth_.knot_places())
-    if (place < end) s.push_back(place);
-  for (const LoadTerm* term : on_prescribed_) {
-    const NodeMap& map = system_.node_map(term->node);
-    std::array<double, 3> theta = phi_;
-    for (std::size_t k = 0; k < 3; ++k) {
-      theta[k] *= system_.ratio(term->node);
-      if (term->load->depends_on_motion()) theta[k] += map.coeff * u_[idx(map.prescribed)][k];
-    }
-    const double side = theta[1] < 0.0 ? -1.0 : 1.0;
-    for (double angle = theta[0];;) {
-      const LoadStretch stretch = term->load->stretch(t_, angle, side).value_or(LoadStretch{});
-      const double bound = side > 0.0 ? stretch.high : stretch.low;
-      const std::array<double, 3> g{side * (bound - theta[0]), -side * theta[1], -side * theta[2]};
-      if (!std::isfinite(bound) || !(side * (bound - angle) > 0.0)) break;
-      const std::optional<double> place = first_crossing(g, end);
-      if (!place) break;
-      s.push_back(*place);
-      angle = bound;
-    }
-  }
 }
 
 double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end) {

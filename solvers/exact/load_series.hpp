@@ -9,6 +9,7 @@
 /// expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
 #include <optional>
 
+#include "solvers/exact/kink_moments.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
 #include "solvers/exact/smooth_loads.hpp"
@@ -56,11 +57,35 @@ class LoadSeries {
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. held: some friction contact is stuck.
   Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
+  /// For a sweep (kink_response.hpp) in place of passes: lists the kinks that loads pass up to s = end of the step, where
+  /// the series stands at z_end; the loads are then on the stretches behind them. The whole step first. False: some
+  /// angle may turn back, or its load has a kink in time.
+  bool list_sweep_kinks(const TaylorSeries& series, double end, const double* z_end);
+  KinkMoments& kinks() { return kinks_; }
+  const KinkMoments& kinks() const { return kinks_; }
+  /// Adds what the kinks listed change of the loads' slopes, times a factor.
+  void add_kink_slopes(TaylorSeries& series, double factor) const;
+  /// Of each: |d/ds| of the acceleration that sets in [1/s^2], and of what a motion of its row turns, the acceleration that
+  /// comes back [1/s^2].
+  struct KinkSize {
+    int load;
+    double pull, gain;
+  };
+  const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
+  /// Bound of the accelerations of all of them, sum |jump theta'| h^2/sqrt(m): energies tell that they move an unknown of
+  /// mass m over s by no more than this s^3/(6 sqrt(m)).
+  double kink_push() const { return kink_push_; }
+  /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
+  double kink_work(const TaylorSeries& series, double s) const;
+  /// Some load has straight stretches, and all that do not are none.
+  bool tables_alone() const { return !loads_.empty() && smooth_.empty(); }
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
+  /// Of the motion, what kinks leave inside the step at most.
+  double kinks_inside() const { return smooth_.kinked() ? kMostInside : kinks_inside_; }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;
   /// The step became r h; only where nothing was projected.
@@ -96,6 +121,9 @@ class LoadSeries {
     double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
     double contraction = 0.0;                          // by its kinks in this step: Pass::contraction
     bool watched = false;                              // its angle may turn back in this step
+    LoadStretch next = {};                             // behind this bound, at this time
+    double next_bound = 0.0, next_t = 0.0;
+    int next_direction = 0;  // 0: none is known
   };
   void move(double t, const Vector& z, const Vector& v);
   void look_up(Linear& load, double direction);
@@ -105,9 +133,16 @@ class LoadSeries {
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
   void expand_angle(const Linear& load, const TaylorSeries& series);
   double find_kinks(const TaylorSeries& series);
+  double given_kink_work(const TaylorSeries& series, int kink, double end) const;
+  void find_ranges(const TaylorSeries& series);
+  bool list_kinks(const TaylorSeries& series, double to, bool projected);
+  /// The stretch behind this bound of a load's stretch, asked for once a step.
+  const LoadStretch& beyond(Linear& load, double bound, bool rises) const;
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
-  double relative_move(const TaylorSeries& series, int row) const;
+  double relative_move(const TaylorSeries& series, int row) const {
+    return series.reach(row) * per_reach_[idx(row < series.size() ? series.kind(row) : 0)];
+  }
   double held_rest(const LegendreProjection& forces, int row) const;
   void note_forces(int row);
 
@@ -124,11 +159,19 @@ class LoadSeries {
   LegendreProjection of_loads_;           // of this pass, where there are laws too
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
   std::vector<double> largest_force_;     // by row, of steps in which friction held
+  std::vector<double> changes_;           // by row, of the projection in this pass
+  TaylorSeries::Norm per_reach_{};        // relative_move() over the row's reach, by kind
   KinkMoments kinks_;
+  /// A kink that leaves more of the motion than this inside the step ends it.
+  static constexpr double kMostInside = 1e-6;
+  double kinks_inside_ = 0.0;  // by tables
+  double kink_push_ = 0.0;
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
-  std::vector<double> theta_, power_, ranges_;
+  std::vector<double> theta_, power_;
+  std::vector<double> ranges_;  // by row: how far it comes, and what its terms and their slopes add up to
+  std::vector<KinkSize> kink_sizes_;  // of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
   int leaving_ = -1;

@@ -1,5 +1,6 @@
 #pragma once
 /// The inner loops of TaylorSeries, over columns padded to whole lanes.
+#include <array>
 #include <cstddef>
 
 namespace drev {
@@ -17,12 +18,30 @@ struct BlockDiagonals {
   const DiagonalView* views;
 };
 
-/// next = factor w (p - K x_0 - c_factor C x_1), row by row with the scaling w; C is its main diagonal c_main where
-/// that is not null, else the views of c, none where they are null. Returns the largest |next|, or NaN if any is not
-/// finite.
-double series_term(int stride, const BlockDiagonals& k, const BlockDiagonals& c, const double* c_main,
-                   double c_factor, const double* p, const double* x_0, const double* x_1, const double* w,
-                   double factor, double* next);
+/// The series of M z'' + C z' + K z = sum P_k s^k with a diagonal M over a step of h [s], s = (t - t_0)/h. Columns hold
+/// the coefficients of s^k, or, where derivatives is set, those of s^k/k!.
+struct SeriesRecursion {
+  int stride;
+  BlockDiagonals k, c;         ///< c.views: null where c_main is C, or where there is none
+  const double* c_main;        ///< C, where it has a main diagonal alone; else null
+  const double* inverse_mass;  ///< by rows
+  const double* p;             ///< P_k at p + (k - p_first) stride, k = p_first ... p_degree
+  int p_first, p_degree;
+  const double* zeros;  ///< P_k above
+  double* z;            ///< Z_k at z + k stride
+  double h;
+  /// The diagonals below, on and above the main one, where k and c have the others alone; null: k and c have all.
+  std::array<const double*, 3> k_chain{}, c_chain{};
+  bool derivatives = false;
+
+  /// Z_k = factor M^-1 (P_{k-2} - K Z_{k-2} - damping_factor C Z_{k-1}).
+  double factor(int k) const { return derivatives ? h * h : h * h / (static_cast<double>(k) * (k - 1)); }
+  double damping_factor(int k) const { return derivatives ? 1.0 / h : (k - 1) / h; }
+};
+
+/// Z_k for k = first ... last, and the largest |Z_k| of
+/// each, or NaN if any is not finite, in sizes from 0 on.
+void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes);
 
 /// z = sum Z_k s^k and v = sum k Z_k s^(k-1) from columns Z_k at z_0 + k stride.
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v);
@@ -37,8 +56,15 @@ void polynomial_values(int count, int terms, const double* c, const double* x, d
 /// out_j += sum_q weight[j count + q] f_q, j < terms: columns f_q at f + q stride, out_j at out + j stride.
 void weighted_sums(int stride, int terms, int count, const double* weight, const double* f, double* out);
 
+/// sum_k factor[k] sum_i c_i (x_ki + y_ki)^2 with columns x_k, k < terms, and y_k, k < y_terms.
+double weighted_squares(int stride, int terms, const double* factor, const double* c, const double* x,
+                        int y_terms, const double* y);
+
 /// Of the columns behind the first: end = sum Z_k, size = sum |Z_k|, bend = sum k |Z_k| without the first.
 void series_ranges(int stride, int degree, const double* z_0, double* end, double* size, double* bend);
+
+/// z = sum k (k-1) (k-2) (k-3)/384 |Z_k| s^k, and v the same of the derivative's coefficients.
+void series_beyond_cubic(int stride, int degree, const double* z_0, double s, double* z, double* v);
 
 /// int_0^s (sum P_k s^k) . z' ds with the columns P_k, k = 0 ... p_degree.
 double series_work(int stride, int degree, const double* z_0, int p_degree, const double* p, double s);

@@ -16,8 +16,7 @@ void SmoothLoads::add(const LoadTerm& term) {
   } else {
     calls_ = true;
     place.knots = dynamic_cast<const KnottedLoad*>(term.load);
-    if (place.knots != nullptr && place.knots->turns() > 0)
-      place.curves = std::make_shared<const CurveCells>(*place.knots);
+    if (place.knots != nullptr) place.curves = system_.knotted_loads().curves_of(*term.load);
   }
   loads_.push_back(std::move(place));
 }

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/exact/curve_cells.hpp"
+#include "core/law/curve_cells.hpp"
 #include "solvers/exact/harmonic_cells.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/taylor_series.hpp"

@@ -7,8 +7,10 @@ namespace drev {
 
 namespace {
 
-constexpr double kShorten = 0.9;        // of the step at which the loads' rest is just small enough
-constexpr double kLoosest = 1e-3;       // tolerance of a pass that is not the last
+constexpr double kShorten = 0.9;  // of the step at which the loads' rest is just small enough
+constexpr double kOfFirstChange =
+    0.03;                          // of what the last step's first pass changed: tolerance of this step's
+constexpr double kLoosest = 1e-3;  // tolerance of a pass that is not the last
 constexpr double kPassesAgree = 1e-15;  // of the motion: rounding of what is projected
 constexpr double kInside = 0.01;        // of the tolerance: what the motion inside the step may be off by
 constexpr double kTorqueRest = 1e-10;   // of the forces on a train that friction holds
@@ -16,9 +18,48 @@ constexpr double kJump = 1e-4;          // of the tolerance: error allowed per u
 constexpr double kBehindKnot = 1e-3;    // of the step to it: behind the last node of Gauss' rule
 constexpr double kBeforeEnd = 0.98;     // of the step: a knot that its nodes see
 constexpr double kNearStart = 1e-8;     // of the step
-constexpr int kMaxPasses = 20;          // of projected loads
+constexpr int kMostNewton = 10;
+constexpr double kAlong = 1e-9;  // of the motion: what points on the way of a swept step may be off by
+constexpr double kAtChange = 1e-12, kRoundingOfTime = 4e-16;  // of the step; of the time
+constexpr int kMaxPasses = 20;                                // of projected loads
+// How far a kink's response, between s^3 and s^7 from somewhere on, lies from the cubic through its ends: of y and y' there,
+// twice the most.
+constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 }  // namespace
+
+/// The step without passes: only kinks of tables change its forces. False: it wants passes.
+bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h,
+                                  const Limits& limits, double& got) {
+  sweeps_ = expanded_ = false;
+  share_ = limits.share;
+  if (refused_ || !known.tables_alone() || !smooth.empty() || !expanded.empty() || !friction.empty() ||
+      !series.sweeps() || !offsets.none() || !laws.lossless())
+    return false;
+  got = series.expand(from.state.z, from.state.v, h, limits.share);
+  if (got < h) return true;
+  kinks.reset();
+  if (kinks.find(1.0, nullptr, limits.share)) return sweeps_ = true;
+  kinks.undo();
+  expanded_ = true;
+  return false;
+}
+
+bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
+  series.evaluate(s, z, v);
+  if (!sweeps_) return true;
+  if (!(kinks.found() && kinks.end() == s)) {
+    z_end_ = z;
+    if (!kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong))) return false;
+  }
+  if (!kinks.any()) return true;
+  const double per_time = 1.0 / series.step();
+  for (int i = 0; i < series.size(); ++i) {
+    z[i] += kinks.y(i);
+    v[i] += per_time * kinks.rate(i);
+  }
+  return true;
+}
 
 StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const LawSeries& laws, double h,
                                               const Limits& limits) {
@@ -35,13 +76,20 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   // Loads and smooth laws can be stiffer than what bounded the largest step.
   const double steepest = 1.5 * kFastestTimesStep / series.rate();
   if (h > steepest) return {steepest};
+  if (double got = 0.0; attempt_sweep(from, laws, h, limits, got)) return {got};
   bool settled = false;
   const bool projects = known.projects() || !smooth.empty();
   // Each pass needs to be no better than the next one takes up of it.
-  double tolerance = projects ? std::clamp(share / contraction_, share, kLoosest) : share;
+  // Nor better than what the first one is about to change.
+  double tolerance =
+      projects ? std::clamp(std::max(share / contraction_, kOfFirstChange * first_change_), share, kLoosest)
+               : share;
+  if (expanded_) tolerance = share;
   for (int pass = 0;; ++pass) {
     const bool last = !projects || settled;
-    const double got = series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
+    // A sweep that was given up leaves the first one.
+    const double got =
+        pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
     if (expanded.turns_back(series)) return {h, true};
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
@@ -56,10 +104,31 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     }
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     contraction_ = std::max(made.contraction, 1e-300);
+    if (pass == 0) first_change_ = made.change;
     // What this pass was off by comes back in the next one times the contraction factor.
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
     tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
   }
+}
+
+const double* StepExpansion::beyond_cubic(double s) {
+  const int n = series.size(), stride = series.stride();
+  beyond_cubic_.resize(idx(2 * stride));
+  series.beyond_cubic(s, beyond_cubic_.data());
+  std::copy_n(beyond_cubic_.begin() + stride, n, beyond_cubic_.begin() + n);
+  if (sweeps_ && kinks.any()) {
+    const double per_time = 1.0 / series.step();
+    for (int i = 0; i < n; ++i) {
+      const double y = std::abs(kinks.y(i)), rate = std::abs(kinks.rate(i));
+      beyond_cubic_[idx(i)] += kOfKinks * y + kOfKinkRates * rate;
+      beyond_cubic_[idx(n + i)] += 10.0 * kOfKinkRates * per_time * rate;
+    }
+  } else if (known.kinked())
+    for (int i = 0; i < n; ++i) {
+      beyond_cubic_[idx(i)] += known.kinks_inside() * series.z_scale()[idx(series.kind(i))];
+      beyond_cubic_[idx(n + i)] += known.kinks_inside() * series.v_scale()[idx(series.kind(i))];
+    }
+  return beyond_cubic_.data();
 }
 
 std::optional<double> StepExpansion::first_knot(double end) {
@@ -74,6 +143,33 @@ std::optional<double> StepExpansion::first_knot(double end) {
   take(smooth);
   take(expanded);
   return first;
+}
+
+LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedState& end) {
+  LawWork sum = smooth.work(series, s, end);
+  sum += expanded.work(series, s, end);
+  sum.input += known.work(series, s, end.state.z) + laws.input(s) + friction.input(s);
+  if (sweeps_) return sum += {kinks.work(), kinks.dissipated()};
+  sum.dissipated += series.dissipated(s) + laws.dissipated(s) + friction.dissipated(s);
+  return sum;
+}
+
+std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeries& laws, double t,
+                                                                         State& at) {
+  const LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
+  if (found.unsure) return std::nullopt;
+  if (!found.change || found.change->s > kinks.limit()) return SweptEnd{kinks.limit()};
+  SweptEnd end{found.change->s, found.change};
+  for (int newton = 0; newton < kMostNewton; ++newton) {
+    end.change->s = end.s;
+    if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
+    if (!kinks.any()) return end;
+    const double later = laws.later(*end.change, series.swept(0), series.swept(-1));
+    if (std::abs(later) <= kAtChange || end.s * series.step() < kRoundingOfTime * std::abs(t)) return end;
+    end.s += later;
+    if (!(end.s > 0.0 && end.s <= 1.0)) break;
+  }
+  return std::nullopt;
 }
 
 bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState& from, const LawSeries& laws,

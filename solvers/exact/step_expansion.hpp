@@ -8,6 +8,7 @@
 
 #include "solvers/exact/expanded_laws.hpp"
 #include "solvers/exact/friction_series.hpp"
+#include "solvers/exact/kink_response.hpp"
 #include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
@@ -22,7 +23,13 @@ inline constexpr double kFastestTimesStep = 3.0;
 class StepExpansion {
  public:
   explicit StepExpansion(const System& system)
-      : series(system), known(system), offsets(system), smooth(system), expanded(system), friction(system) {
+      : series(system),
+        known(system),
+        offsets(system),
+        smooth(system),
+        expanded(system),
+        friction(system),
+        kinks(series, known) {
     if (!expanded.empty()) series.act_through(&expanded);
     if (!friction.empty()) series.act_through(&friction);  // which counts on all others
   }
@@ -55,17 +62,35 @@ class StepExpansion {
       if (!expanded.scale_of(law, series, scale)) smooth.expand_scale(law, series, scale);
     });
   }
+  /// Whether kinks of the step add to the series by their response at each s, in place of a projection.
+  bool sweeps() const { return sweeps_; }
+  /// The unknowns and their rates at s of the step; not exactly: to 1e-9 of the motion, where it is swept. False: no
+  /// response to kinks is found there.
+  bool evaluate(double s, Vector& z, Vector& v, bool exactly = true);
+  /// Back to s after a look elsewhere in the step: where loads are then. room: for a state.
+  void return_to(double s, State& room) {
+    if (sweeps_ && kinks.end() != s) evaluate(s, room.z, room.v);
+  }
+  /// Whether steps may be swept from here on, or are to have passes in any case.
+  void allow_sweeps(bool allowed) { refused_ = !allowed; }
+
+  /// Observer::looks_inside() over the step up to s.
+  const double* beyond_cubic(double s);
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
   /// A step that the series does not hold for can be shortened to what it does.
   bool shortens() const { return !known.projects() && smooth.empty() && expanded.empty(); }
-  /// Of all laws but linear pieces, from 0 to s; end: what was evaluated at s.
-  LawWork work(double s, const EvaluatedState& end) {
-    LawWork sum = smooth.work(series, s, end);
-    return sum += expanded.work(series, s, end);
-  }
+  /// Of all that acts, from 0 to s; end: what was evaluated at s.
+  LawWork work(const LawSeries& laws, double s, const EvaluatedState& end);
+  /// Of a step that is swept: its first change, and the s where it ends. None: passes have to tell. t: time at its start;
+  /// `at` is room for a state.
+  struct SweptEnd {
+    double s = 1.0;
+    std::optional<LawSeries::Change> change = {};
+  };
+  std::optional<SweptEnd> first_swept_change(LawSeries& laws, double t, State& at);
 
   TaylorSeries series;
   LoadSeries known;
@@ -73,10 +98,19 @@ class StepExpansion {
   ProjectedLaws smooth;
   ExpandedLaws expanded;
   FrictionSeries friction;
+  KinkResponse kinks;
 
  private:
+  bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
+                     double& got);
+
+  std::vector<double> beyond_cubic_;
+  bool sweeps_ = false, refused_ = false, expanded_ = false;
+  double share_ = 0.0;
+  Vector z_end_;
   double knot_clearance_ = 0.0;
-  double contraction_ = 1.0;  // of the last step: how the projection's change came back
+  double contraction_ = 1.0;   // of the last step: how the projection's change came back
+  double first_change_ = 0.0;  // of the motion, by the last step's first projection
 };
 
 /// The least tolerance of a step: below it is rounding.

@@ -101,9 +101,20 @@ void TaylorSeries::find_storage() {
   k_ = k_base_;
   c_ = c_base_;
   if (diagonals_.empty()) return;
+  find_views(true);
+  chain_ = main_ >= 0 && static_cast<int>(k_views_.size()) <= stride_ / kLanes;
+  if (!chain_) find_views(false);
+}
+
+/// The views of each block of lanes; far: without those of the main diagonal and its neighbours.
+void TaylorSeries::find_views(bool far) {
+  const SparseMatrix& p = system_.pattern();
+  k_views_.clear();
+  c_views_.clear();
   block_begin_.assign(1, 0);
   for (int begin = 0; begin < stride_; begin += kLanes) {
     for (const Diagonal& d : diagonals_) {
+      if (far && std::abs(d.offset) <= 1) continue;
       bool any = false;
       for (int row = begin; row < std::min(begin + kLanes, n_); ++row)
         for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
@@ -244,34 +255,70 @@ bool TaylorSeries::add_term_forces(int k, double factor, double* term) const {
   return any;
 }
 
-TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
-  const double* p = k - 2 <= right_degree_ ? p_.data() + idx((k - 2) * stride_) : zeros_.data();
-  const double* x_0 = coefficients(k - 2);
-  if (row_slopes_.size() > 0) {
-    add_row_forces(p, x_0);
-    p = with_rows_.data();
+/// The diagonals below, on and above the main one; zeros for one that there is not.
+TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) const {
+  Chain chain{zeros_.data(), zeros_.data(), zeros_.data()};
+  for (const Diagonal& d : diagonals_)
+    if (std::abs(d.offset) <= 1) chain[idx(d.offset + 1)] = values.data() + d.values;
+  return chain;
+}
+
+SeriesRecursion TaylorSeries::recursion(double h) {
+  const bool whole = damped_ && !main_damping_;
+  return {.stride = stride_,
+          .k = {block_begin_.data(), k_views_.data()},
+          .c = {block_begin_.data(), whole ? c_views_.data() : nullptr},
+          .c_main = damped_ && main_damping_ ? c_.data() + diagonals_[idx(main_)].values : nullptr,
+          .inverse_mass = inverse_mass_.data(),
+          .p = p_.data(),
+          .p_first = 0,
+          .p_degree = right_degree_,
+          .zeros = zeros_.data(),
+          .z = z_.data() + idx(pad_),
+          .h = h,
+          .k_chain = chain_ ? chain_of(k_) : Chain{},
+          .c_chain = chain_ && whole ? chain_of(c_) : Chain{}};
+}
+
+void TaylorSeries::next_terms(int first, int last, double h) {
+  if (by_diagonals()) {
+    double largest[kMaxDegree];
+    series_terms(recursion(h), first, last, largest);
+    for (int k = first; k <= last; ++k) sizes_[idx(k)] = {largest[k - first], 0.0};
+    return;
   }
-  const double* x_1 = coefficients(k - 1);
-  double* next = z_.data() + idx(pad_ + k * stride_);
-  const double factor = h * h / (static_cast<double>(k) * (k - 1)), c_factor = (k - 1) / h;
-  if (!diagonals_.empty() && diagonal_mass_) {
-    const bool main_alone = damped_ && main_damping_, whole = damped_ && !main_damping_;
-    const double largest = series_term(stride_, {block_begin_.data(), k_views_.data()},
-                                       {block_begin_.data(), whole ? c_views_.data() : nullptr},
-                                       main_alone ? c_.data() + diagonals_[idx(main_)].values : nullptr,
-                                       c_factor, p, x_0, x_1, inverse_mass_.data(), factor, next);
-    const bool more = add_term_forces(k, factor, next);
-    rows_of(next);
-    return kinds_.empty() && !more ? Norm{largest, 0.0} : norm(next);
-  }
+  for (int k = first; k <= last; ++k) sizes_[idx(k)] = next_term(k, h);
+}
+
+/// One term without the kernel: where the mass has to be solved for, or no diagonals are kept.
+void TaylorSeries::product_term(const SeriesRecursion& r, int k) {
+  const double* p = k - 2 <= r.p_degree ? r.p + idx((k - 2 - r.p_first) * stride_) : zeros_.data();
   std::copy_n(p, n_, solve_in_.data());
-  subtract_product(k_, false, x_0, 1.0, solve_in_.data());
-  if (damped_) subtract_product(c_, main_damping_, x_1, c_factor, solve_in_.data());
+  subtract_product(k_, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
+  if (damped_)
+    subtract_product(c_, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k), solve_in_.data());
   solve_mass(solve_in_, solve_out_);
-  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * factor;
-  add_term_forces(k, factor, next);
+  double* next = r.z + idx(k * stride_);
+  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * r.factor(k);
+}
+
+TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
+  SeriesRecursion one = recursion(h);
+  if (row_slopes_.size() > 0) {
+    add_row_forces(k - 2 <= right_degree_ ? right_side(k - 2) : zeros_.data(), coefficients(k - 2));
+    one.p = with_rows_.data();
+    one.p_first = one.p_degree = k - 2;
+  }
+  double* next = one.z + idx(k * stride_);
+  double largest = 0.0;
+  const bool by_kernel = !diagonals_.empty() && diagonal_mass_;
+  if (by_kernel)
+    series_terms(one, k, k, &largest);
+  else
+    product_term(one, k);
+  const bool more = add_term_forces(k, one.factor(k), next);
   rows_of(next);
-  return norm(next);
+  return by_kernel && kinds_.empty() && !more ? Norm{largest, 0.0} : norm(next);
 }
 
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
@@ -302,9 +349,14 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       known_degree = std::max(known_degree, forces->known_degree());
       products = true;
     }
+  double last = 0.0;
+  int known = 1;  // the last term there is
   for (int k = 2; k <= kMaxDegree; ++k) {
-    const Norm size = next_term(k, h);
-    sizes_[idx(k)] = size;
+    if (k > known) {
+      known = std::min(std::max(k, known_degree + 2), kMaxDegree);
+      next_terms(k, known, h);
+    }
+    const Norm& size = sizes_[idx(k)];
     for (std::size_t i = 0; i < 2; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i]);
       v_scale[i] = std::max(v_scale[i], k * size[i] / h);
@@ -312,14 +364,16 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     degree_ = k;
     ++products_;
     if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
-    if (k < known_degree + 3) continue;  // a term of the right side may still be to come
-    const double last = excess(k);
-    const double first = k_all * h * h / (k * (k + 1.0)) * excess(k - 1) + c_all * h / (k + 1.0) * last;
+    if (k < known_degree + 2) continue;  // a term of the right side may still be to come
+    const double before = last;
+    last = excess(k);
+    if (k < known_degree + 3) continue;
+    const double first = k_all * h * h / (k * (k + 1.0)) * before + c_all * h / (k + 1.0) * last;
     const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     const bool is_small = first <= 1.0 && second <= 1.0;
     if (is_small && !products) return h_;
     // Terms of products fall like a geometric series, whose rest is a multiple of the last ones.
-    if (is_small && last <= kLastOfProducts && excess(k - 1) <= kLastOfProducts) return h_;
+    if (is_small && last <= kLastOfProducts && before <= kLastOfProducts) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
@@ -373,6 +427,11 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
     z[i] = sums[i];
     v[i] = sums[stride_ + i] / h_;
   }
+}
+
+void TaylorSeries::beyond_cubic(double s, double* out) const {
+  series_beyond_cubic(stride_, degree_, coefficients(0), s, out, out + stride_);
+  for (int i = 0; i < stride_; ++i) out[stride_ + i] /= h_;
 }
 
 void TaylorSeries::at_nodes(double* z, double* v) const {

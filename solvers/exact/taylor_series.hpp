@@ -17,6 +17,7 @@
 /// equations by the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
 #include <drev/core/assembler.hpp>
 
+#include <algorithm>
 #include <array>
 
 #include "solvers/exact/legendre_projection.hpp"
@@ -88,8 +89,25 @@ class TaylorSeries {
   /// overflow. tolerance: relative to the largest deflection and speed noted so far.
   double expand(const Vector& z, const Vector& v, double h, double tolerance);
 
+  /// Of forces f on the unknowns that come on top of the right side in the step, the motion y that they add up to
+  /// s = e, by one backward sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
+  /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each.
+  /// Only where sweeps() holds. Source: variation of constants, with exp(A (e - s)) as its Taylor series.
+  void sweep(const double* moments, int degree);
+  bool sweeps() const;
+  static constexpr int kMostSwept = 28;  ///< largest degree of a sweep
+  /// After sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
+  const double* swept(int part) const {
+    return swept_.data() + idx(pad_ + (swept_degree_ + 1 - part) * stride_);
+  }
+
+  /// Loss in all dampers, those of pieces too, up to s; swept_too: with the motion swept up to there [J].
+  double loss(double s, bool swept_too);
+
   long products() const { return products_; }  ///< with the matrices, one a degree
   int degree() const { return degree_; }
+  /// Size of term k of the step's series, of unknowns of a kind.
+  double size(int k, std::size_t kind) const { return sizes_[idx(k)][kind]; }
   double step() const { return h_; }
   int size() const { return n_; }
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
@@ -99,6 +117,9 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
+  /// Of each row, and of its rate, how far it lies at most from the cubic through its values and rates at 0 and s
+  /// (cubic_peak.hpp); out: stride() of either.
+  void beyond_cubic(double s, double* out) const;
   /// z, and v where it is not null, at the nodes of Gauss's rule: rows of node q at q stride().
   void at_nodes(double* z, double* v) const;
   /// The degree up to which terms count in energies.
@@ -120,6 +141,10 @@ class TaylorSeries {
     if (row >= n_) return row_mobility_[row - n_];
     return diagonal_mass_ ? inverse_mass_[idx(row)] : mass_norm_;
   }
+  /// |k| between two unknowns over the first one's mass [1/s^2].
+  double coupling(int row, int other) const;
+  /// Whether some third one is coupled with both.
+  bool share_neighbour(int row, int other) const;
   /// The same of the unknown that a force on a row moves most.
   double reach(int row) const { return row < n_ ? mobility(row) : row_reach_[row - n_]; }
 
@@ -129,9 +154,21 @@ class TaylorSeries {
     std::size_t values;
   };
   void find_storage();
+  void find_views(bool far);
   void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
                         double* out) const;
   double largest_eigenvalue(const std::vector<double>& values);
+  /// Whether terms come from the kernel alone.
+  bool by_diagonals() const {
+    return !diagonals_.empty() && diagonal_mass_ && row_slopes_.size() == 0 && kinds_.empty() &&
+           std::none_of(term_forces_.begin(), term_forces_.end(),
+                        [](const TermForces* forces) { return forces->active(); });
+  }
+  using Chain = std::array<const double*, 3>;
+  Chain chain_of(const std::vector<double>& values) const;
+  SeriesRecursion recursion(double h);
+  void product_term(const SeriesRecursion& recursion, int k);
+  void next_terms(int first, int last, double h);
   Norm next_term(int k, double h);
   void find_rows();
   /// Sets the loaded rows of a column from its unknowns.
@@ -155,11 +192,16 @@ class TaylorSeries {
   int main_ = -1;                                // which diagonal is the main one
   std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
+  bool chain_ = false;  // nearly all of them are the main one and its neighbours
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
-  double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
+  double mass_norm_ = 0.0;     // of M^-1, largest row sum, where M is not diagonal
+  std::vector<double> swept_;  // columns of the sweep behind two of zeros
+  int swept_degree_ = 0;
+  std::vector<double> weights_;  // of terms in Legendre coefficients of the rates up to here
+  double weights_at_ = 0.0;
   std::vector<double> p_, z_, rates_, forces_, zeros_;
   // Of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;

@@ -11,6 +11,7 @@ std::optional<std::string> why_not_exact(const System& system) {
   for (const GeneralTerm& g : system.generals())
     return name(g.element) +
            " is a general element, whose force and history the series does not know; take an implicit method";
+  if (auto why = system.why_not_varying_inertia("exact propagation")) return why;
   for (const FrictionTerm& f : system.frictions()) {
     if (f.friction->rigid())
       for (const Entry& e : f.nodes)

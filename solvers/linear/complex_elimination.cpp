@@ -35,12 +35,27 @@ struct ComplexElimination::Pivoted {
 ComplexElimination::~ComplexElimination() = default;
 ComplexElimination::ComplexElimination(ComplexElimination&&) noexcept = default;
 
-ComplexElimination::ComplexElimination(const SparseMatrix& pattern)
-    : n_(static_cast<int>(pattern.rows())), pattern_(pattern) {
+ComplexElimination::ComplexElimination(const SparseMatrix& pattern, const std::vector<bool>& held)
+    : held_(held), pattern_(pattern) {
+  held_.resize(idx(static_cast<int>(pattern.rows())), false);
+  std::vector<int> kept, place(held_.size(), -1);
+  for (int u = 0; u < static_cast<int>(held_.size()); ++u)
+    if (!held_[idx(u)]) {
+      place[idx(u)] = static_cast<int>(kept.size());
+      kept.push_back(u);
+    }
+  n_ = static_cast<int>(kept.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int column : kept)
+    for (SparseMatrix::InnerIterator it(pattern_, column); it; ++it)
+      if (const int row = place[idx(static_cast<int>(it.row()))]; row >= 0)
+        entries.emplace_back(row, place[idx(column)], 1.0);
+  SparseMatrix of_kept(n_, n_);
+  of_kept.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(n_);
-  if (n_ > 0) Eigen::AMDOrdering<int>()(pattern_, permutation);
-  order_.assign(permutation.indices().begin(), permutation.indices().end());
-  std::vector<int> number(order_.size());
+  if (n_ > 0) Eigen::AMDOrdering<int>()(of_kept, permutation);
+  for (const int i : permutation.indices()) order_.push_back(kept[idx(i)]);
+  std::vector<int> number(held_.size(), -1);
   for (int j = 0; j < n_; ++j) number[idx(order_[idx(j)])] = j;
 
   // Rows of each column of L: those of the matrix and those that its children hand up, in ascending order.
@@ -125,6 +140,10 @@ bool ComplexElimination::factorize_pivoted(const Vector& m, const Vector& c, con
   }
   for (Eigen::Index slot = 0; slot < k.size(); ++slot)
     pivoted_->a.valuePtr()[slot] = k[slot] + s * c[slot] + s * s * m[slot];
+  for (int column = 0; column < static_cast<int>(held_.size()); ++column)
+    for (Eigen::SparseMatrix<Complex>::InnerIterator it(pivoted_->a, column); it; ++it)
+      if (held_[idx(column)] || held_[idx(static_cast<int>(it.row()))])
+        it.valueRef() = it.row() == column ? 1.0 : 0.0;
   if (!pivoted_->analysed) pivoted_->lu.analyzePattern(pivoted_->a);
   pivoted_->analysed = true;
   pivoted_->lu.factorize(pivoted_->a);
@@ -134,7 +153,7 @@ bool ComplexElimination::factorize_pivoted(const Vector& m, const Vector& c, con
 
 void ComplexElimination::solve(Complex* x) {
   if (use_pivoted_) {
-    Eigen::Map<Eigen::VectorXcd> values(x, n_);
+    Eigen::Map<Eigen::VectorXcd> values(x, static_cast<Eigen::Index>(held_.size()));
     const Eigen::VectorXcd found = pivoted_->lu.solve(Eigen::VectorXcd(values));
     values = found;
     return;

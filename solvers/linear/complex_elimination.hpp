@@ -25,8 +25,9 @@ class ComplexElimination {
  public:
   static constexpr double kLostPivot = 1e-5;
 
-  /// pattern: square, compressed, symmetric in structure.
-  explicit ComplexElimination(const SparseMatrix& pattern);
+  /// pattern: square, compressed, symmetric in structure. held: unknowns that are 0, by their number; their equations
+  /// are left out, and their places of a right side must be 0.
+  explicit ComplexElimination(const SparseMatrix& pattern, const std::vector<bool>& held = {});
   ~ComplexElimination();
   ComplexElimination(ComplexElimination&&) noexcept;
 
@@ -34,7 +35,7 @@ class ComplexElimination {
   bool factorize(const Vector& m, const Vector& c, const Vector& k, std::complex<double> s);
   /// b -> x, size() entries in place. After a factorisation that succeeded.
   void solve(std::complex<double>* x);
-  int size() const { return n_; }
+  int size() const { return n_; }  ///< unknowns that are not held
 
  private:
   friend class LaneElimination;
@@ -43,6 +44,7 @@ class ComplexElimination {
   bool factorize_pivoted(const Vector& m, const Vector& c, const Vector& k, Complex s);
 
   int n_ = 0;
+  std::vector<bool> held_;          // of each unknown of the pattern
   std::vector<int> order_;          // order_[j]: unknown eliminated as number j
   std::vector<int> diagonal_slot_;  // of the pattern, by number
   std::vector<int> begin_;          // of column j of L in row_; n_ + 1

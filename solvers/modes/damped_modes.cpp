@@ -1,19 +1,18 @@
 #include <drev/core/assembler.hpp>
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
+#include "core/dense/factorization.hpp"
 #include "solvers/modes/tied_system.hpp"
 
 namespace drev {
@@ -32,8 +31,7 @@ Matrix dense(const SparseMatrix& pattern, const Vector& values) {
 Matrix basis_by_stiffness(const Matrix& k, bool symmetric) {
   if (!symmetric) {
     // K^' P = Q R: what R does not reach is orthogonal to the rows of K^.
-    const Matrix q = Eigen::ColPivHouseholderQR<Matrix>(k.transpose()).householderQ();
-    return q.rowwise().reverse();
+    return pivoted_basis(k.transpose()).rowwise().reverse();
   }
   const SymmetricEigen eigen = symmetric_eigen(k);
   const Vector size = eigen.values.cwiseAbs();
@@ -71,15 +69,15 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
                            ": the eigenproblem is dense"}});
   const Assembler assembler(system);
   Vector values;
-  const Eigen::LLT<Matrix> mass(dense(system.pattern(), system.mass_values()));
-  if (mass.info() != Eigen::Success)
+  const CholeskyFactor mass(dense(system.pattern(), system.mass_values()));
+  if (!mass.positive_definite())
     throw SolverError("damped modes of " + system.name() + ": mass matrix not positive definite");
   // L^-1 A L^-T
   const auto reduced = [&](const Weights& weights) {
     assembler.contact_values(weights, options.contact, values);
     if (options.damping.size() > 0) values += weights.c * options.damping;
-    const Matrix half = mass.matrixL().solve(dense(system.pattern(), values));
-    return Matrix(mass.matrixL().solve(half.transpose()).transpose());
+    const Matrix half = mass.solve_lower(dense(system.pattern(), values));
+    return Matrix(mass.solve_lower(half.transpose()).transpose());
   };
   Matrix k = reduced({0.0, 0.0, 1.0}), c = reduced({0.0, 1.0, 0.0});
   if (system.symmetric_tangent()) k = (0.5 * (k + k.transpose())).eval();
@@ -97,7 +95,7 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
     const ModeSet undamped = solve_modes(system, {.count = e, .contact = options.contact});
     Matrix x(n, n);
     x << undamped.rigid_vectors, undamped.vectors;
-    v = mass.matrixU() * x;
+    v = mass.lower().transpose() * x;
     for (int j = 0; j < e; ++j) scale[j] = undamped.omega(j);
     k.setZero();
     k.diagonal().tail(e) = scale.cwiseAbs2();
@@ -122,12 +120,12 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
   std::sort(oscillating.begin(), oscillating.end(),
             [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
+  const Matrix to_unknowns = mass.solve_lower_transposed(v);
   set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
   for (std::size_t j = 0; j < oscillating.size(); ++j) {
     set.modes.push_back(to_mode(eigen.values[oscillating[j]]));
     // Rates are lambda times the shape: the common factor is scaled away.
-    const Eigen::VectorXcd y = v * eigen.vectors.col(oscillating[j]).tail(n);
-    const Eigen::VectorXcd z = mass.matrixU().solve(y);
+    const Eigen::VectorXcd z = to_unknowns * eigen.vectors.col(oscillating[j]).tail(n);
     auto shape = set.shapes.col(static_cast<Eigen::Index>(j));
     for (int i = 0; i < system.node_count(); ++i) {
       for (const Entry& e : system.row_of(i)) shape[i] += e.coeff * z[e.index];

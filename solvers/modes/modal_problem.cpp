@@ -3,12 +3,12 @@
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
+#include "core/dense/factorization.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/linear/low_fill_factor.hpp"
 #include "solvers/linear/vector_kernels.hpp"
@@ -250,9 +250,9 @@ void ModalProblem::polish(const ShiftInvertProblem& problem, ShiftInvertResult& 
   products(x.data(), problem.mass ? mx.data() : x.data(), problem.size, count, g.data());
   const Eigen::VectorXd size = g.diagonal().cwiseSqrt().cwiseInverse();
   g = size.asDiagonal() * g * size.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Upper> root(g);
+  const CholeskyFactor root(g.transpose());  // G is written above its diagonal.
   Eigen::MatrixXd c = Eigen::MatrixXd::Identity(count, count);
-  if (root.info() == Eigen::Success) root.matrixU().solveInPlace(c);
+  if (root.positive_definite()) c = root.solve_lower_transposed(c);
   x = over_unknowns(std::move(x), size.asDiagonal() * c);
 }
 

@@ -1,6 +1,6 @@
 #include <drev/core/element.hpp>
 #include <drev/core/scalar_force.hpp>
-#include <drev/solvers/modes/mode_energy.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include "core/element_parts.hpp"
 
@@ -44,6 +44,7 @@ ModeEnergy mode_energy(const System& system, const DampedModeSet& modes) {
       energy.kinetic.row(row) += kinetic;
       energy.elastic.row(row) += elastic;
       energy.dissipated.row(row) += forms(terms.damping, x);
+      if (terms.deviation_damping.size() > 0) energy.dissipated.row(row) += forms(terms.deviation_damping, x);
       if (terms.rayleigh) mass += kinetic, stiffness += elastic;
       rayleigh[e].first += terms.rayleigh_a;
       rayleigh[e].second += terms.rayleigh_b;

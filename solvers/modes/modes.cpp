@@ -1,4 +1,4 @@
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/modes.hpp>

@@ -1,6 +1,5 @@
 #include <drev/core/error.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
-#include <drev/solvers/modes/settling.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,9 +1,9 @@
 #include "solvers/periodic/branch_tracer.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/periodic/bracketed_maximum.hpp"
 
 namespace drev {
@@ -51,7 +51,7 @@ bool BranchTracer::solve(double speed, Vector& x) {
   Vector r, next_r;
   if (!balance_.residual(x, speed, r)) return false;
   for (int k = 0; k < 40; ++k) {
-    const Vector d = balance_.tangent().partialPivLu().solve(-r);
+    const Vector d = lu_solve(balance_.tangent(), Vector(-r));
     if (!d.allFinite()) return false;
     const double left = r.norm();
     double part = 1.0;
@@ -112,7 +112,7 @@ bool BranchTracer::correct(const Vector& normal, const Vector& target, double to
   for (iterations = 1; iterations <= kMostIterations; ++iterations) {
     if (!linearize(u, normal, matrix, r)) return false;
     right << -r, -dot(normal, u - target);
-    const Vector d = matrix.partialPivLu().solve(right);
+    const Vector d = lu_solve(matrix, right);
     if (!d.allFinite()) return false;
     u += d;
     const double size = std::sqrt(dot(d, d));
@@ -130,7 +130,7 @@ bool BranchTracer::tangent(const Vector& u, const Vector& along, Vector& t) {
   if (!balance_.speed_slope(u.head(n), u[n], slope_) || !linearize(u, along, matrix, r)) return false;
   Vector right = Vector::Zero(u.size());
   right[n] = 1.0;
-  t = matrix.partialPivLu().solve(right);
+  t = lu_solve(matrix, right);
   t /= std::sqrt(dot(t, t));
   return t.allFinite();
 }

@@ -3,15 +3,14 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/law/law_force.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -31,7 +30,7 @@ double largest_floquet_exponent(const System& system, double period, int pieces)
   Assembler assembler(system);
   const Eigen::Index n = system.size();
   const Eigen::MatrixXd stiffness = dense(assembler, {.k = 1.0});
-  const auto mass = dense(assembler, {.m = 1.0}).llt();
+  const CholeskyFactor mass(dense(assembler, {.m = 1.0}));
   const Eigen::MatrixXd drag = mass.solve(dense(assembler, {.c = 1.0}));
   // Rates in units of a frequency of the train, so that z and v/w are of one size.
   const double w = std::sqrt(mass.solve(stiffness).cwiseAbs().rowwise().sum().maxCoeff());
@@ -53,7 +52,7 @@ double largest_floquet_exponent(const System& system, double period, int pieces)
       rates.topRightCorner(n, n).diagonal().setConstant(w);
       rates.bottomLeftCorner(n, n) = -mass.solve(k) / w;
       rates.bottomRightCorner(n, n) = -drag;
-      found = turns.emplace(slopes, (rates * (period / pieces)).exp()).first;
+      found = turns.emplace(slopes, exponential(rates * (period / pieces))).first;
     }
     product = found->second * product;
   }
@@ -63,8 +62,7 @@ double largest_floquet_exponent(const System& system, double period, int pieces)
 FloquetProduct::FloquetProduct(const System& system) : system_(system) {
   Assembler assembler(system);
   stiffness_ = dense(assembler, {.k = 1.0});
-  inverse_ =
-      dense(assembler, {.m = 1.0}).llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
+  inverse_ = CholeskyFactor(dense(assembler, {.m = 1.0})).inverse();
   drag_ = inverse_ * dense(assembler, {.c = 1.0});
   Vector closed;
   assembler.contact_values({.k = 1.0}, Contact::closed, closed);
@@ -138,7 +136,7 @@ FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double
     }
     i = next;
     if (panels[first].constant) {
-      product = (rates(balance, first, 0.0) * (length * time)).exp() * product;
+      product = exponential(rates(balance, first, 0.0) * (length * time)) * product;
       continue;
     }
     // Steps in which the fastest mode turns by no more than a third of a radian.
@@ -149,7 +147,7 @@ FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double
       const auto at = [&](double part) { return sign * (-1.0 + (2.0 * s + 1.0 + part) / steps); };
       const Eigen::MatrixXd a = rates(balance, first, at(-1.0 / root)),
                             b = rates(balance, first, at(1.0 / root));
-      product = (0.5 * h * (a + b) - root / 12.0 * h * h * (a * b - b * a)).exp() * product;
+      product = exponential(0.5 * h * (a + b) - root / 12.0 * h * h * (a * b - b * a)) * product;
     }
   }
   FloquetMultipliers out;

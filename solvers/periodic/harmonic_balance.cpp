@@ -3,10 +3,11 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <set>
 #include <unsupported/Eigen/FFT>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -290,7 +291,7 @@ bool HarmonicBalance::direction(const Harmonics& right, int samples, Harmonics& 
     Vector right_side = Vector::Zero(m + 1);
     right_side[0] = size_0;
     const Eigen::MatrixXd part = h.topLeftCorner(m + 1, m);
-    y = part.householderQr().solve(right_side);
+    y = least_squares(part, right_side);
     if ((part * y - right_side).norm() <= kGmresTolerance * size_0) break;
     basis.push_back(next / h(m, m - 1));
   }

@@ -20,19 +20,29 @@ class LaneSections {
   };
 
   LaneSections(const System& system, const std::vector<SectionRows>& sections);
-  /// Sums of all rows over z.
-  void find(const LaneArray& re, const LaneArray& im);
-  /// After find(). beyond: of the section's complex stiffness.
-  Number of(std::size_t section, Row row) const {
-    const std::size_t r = kRows * section + static_cast<std::size_t>(row);
-    return {re_[r].v, im_[r].v};
-  }
+  struct Result {
+    Number torque, twist;
+    Lanes heat{};
+  };
+  /// From a solution z at the frequencies w. k_re, k_im: of each frequency term, what is beyond the matrices, at w
+  /// with its sign.
+  void find(const LaneArray& re, const LaneArray& im, const Lanes& w, const LaneArray& k_re,
+            const LaneArray& k_im);
+  const Result& of(std::size_t section) const { return results_[section]; }
 
  private:
   std::vector<int> begin_, index_;
   std::vector<double> coeff_;
+  std::vector<int> term_;  // of each section; -1: none
   LaneArray re_, im_;
+  std::vector<Result> results_;
 };
+
+/// Values on a pattern that frequency terms add to at each lane's own frequency: those of all lanes, then
+/// times[i] addition[term[i]] at each slot.
+void add_at_slots(const std::vector<int>& slots, const std::vector<int>& terms,
+                  const std::vector<double>& times, const LaneArray& additions, const double* common,
+                  LaneRow* values);
 
 /// input: w/2 Im(p conj z) summed over the unknowns [W]; dissipated: w^2/2 Re(z' C z), C on a pattern by columns;
 /// one value an entry, or one a lane of each.

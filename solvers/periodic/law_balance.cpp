@@ -5,9 +5,10 @@
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -94,6 +95,8 @@ void LawBalance::find_terms(std::vector<Finding>& findings) {
   }
   for (const FrictionTerm& term : system_.frictions())
     refuse(term.element, "sticks and slips, which a sweep does not take; run it in time (drev run)");
+  if (const auto why = system_.why_not_varying_inertia("a sweep"))
+    findings.push_back({system_.name(), "", "", "", *why});
   for (const GeneralTerm& term : system_.generals())
     refuse(term.element, "is a general element, which a sweep of a nonlinear model does not take");
   for (int k = 0; system_.any_prescribed_moves() && k < system_.prescribed_count(); ++k)
@@ -282,7 +285,7 @@ bool LawBalance::linear_start(double speed, Vector& x) {
                              Complex(0.0, direction_ * kLoss * term.stiffness);
         matrix.col(term.x) += left * compliance_[idx(n)].col(static_cast<Eigen::Index>(t));
       }
-      here = matrix.partialPivLu().solve(here).eval();
+      here = lu_solve(matrix, here);
     } else {
       for (std::size_t t = 0; t < terms_.size(); ++t) {
         const Term& term = terms_[t];
@@ -305,7 +308,7 @@ bool LawBalance::double_harmonics(double speed, Vector& x) {
   const int low = harmonics_;
   Vector r;
   if (!residual(x, speed, r)) return false;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(tangent());
+  const LuFactor factor(tangent());
   set_harmonics(2 * low);
   x = resized(x, low, 2 * low);
   const Eigen::Index block = 2 * harmonics_ + 1;
@@ -315,7 +318,7 @@ bool LawBalance::double_harmonics(double speed, Vector& x) {
   for (int k = 0; k < kMostCorrections; ++k) {
     if (!residual(x, speed, r)) return false;
     Vector d = -resized(r, harmonics_, low);
-    d = factor.solve(d).eval();
+    d = factor.solve(d);
     d = resized(d, low, harmonics_);
     std::vector<Eigen::Vector2cd> mean;
     for (std::size_t t = 0; t < terms_.size(); ++t) {
@@ -330,7 +333,7 @@ bool LawBalance::double_harmonics(double speed, Vector& x) {
                                    compliance_[idx(n)].col(static_cast<Eigen::Index>(t));
       Eigen::VectorXcd right(inputs());
       for (int i = 0; i < inputs(); ++i) right[i] = -line(r, i, n);
-      const Eigen::VectorXcd part = matrix.partialPivLu().solve(right);
+      const Eigen::VectorXcd part = lu_solve(matrix, right);
       for (int i = 0; i < inputs(); ++i) {
         d[i * block + 2 * n - 1] = part[i].real();
         d[i * block + 2 * n] = part[i].imag();

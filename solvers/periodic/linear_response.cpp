@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 namespace drev {
 
@@ -17,7 +18,8 @@ namespace {
 using Complex = std::complex<double>;
 using Section = LinearResponse::Section;
 
-constexpr double kNoDrag = 1e-13;  // of the largest damping
+constexpr double kNoDrag = 1e-13;    // of the largest damping
+constexpr double kSameChain = 1e-9;  // rounding of an element's chain
 
 template <class Values>
 auto product(const std::vector<Entry>& row, const Values& z) {
@@ -34,11 +36,7 @@ std::string element_name(const System& system, ElementId id) {
 
 LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& options,
                                const std::vector<double>& orders, std::vector<Finding>& findings)
-    : system_(system),
-      assembler_(system),
-      orders_(orders),
-      elimination_(system.pattern()),
-      lanes_(elimination_) {
+    : system_(system), assembler_(system), orders_(orders) {
   check_model(options.close_contacts, findings);
   content_.emplace(system, orders, findings);
   for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system.row_of(load->node));
@@ -48,8 +46,15 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   sections_ = find_section_rows(system, options.sections, findings);
   direction_ = reference_direction(system_);
   if (findings.empty()) mean_.emplace(system_, damping_, stiffness_, options.balance, findings);
+  elimination_.emplace(system.pattern(), find_held());
+  lanes_.emplace(*elimination_);
   rows_.emplace(system_, sections_);
   z_.resize(idx(system.size()));
+  carried_.resize(system.frequency_terms().size());
+  for (const FrequencyTerm& term : system.frequency_terms()) {
+    follows_mean_ |= term.stiffness->follows_mean_torque();
+    follows_amplitude_ |= term.stiffness->follows_amplitude();
+  }
   for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()));
 }
 
@@ -60,6 +65,7 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
   if (system_.size() == 0) refuse("", "every node is prescribed: nothing vibrates");
   if (!system_.reference())
     refuse("", "no shaft turns nominally: orders need a reference shaft (nominal_speed or constant_speed)");
+  if (const auto why = system_.why_not_varying_inertia("a sweep")) refuse("", *why);
   for (const ScalarTerm& term : system_.scalars()) {
     const std::string name = element_name(system_, term.element);
     if (!close_contacts)
@@ -92,46 +98,144 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
 void LinearResponse::add_frequency_terms(double omega) {
   damping_at_omega_ = damping_here_;
   stiffness_at_omega_ = stiffness_here_;
-  const SparseMatrix& pattern = system_.pattern();
-  beyond_.clear();
-  for (const FrequencyTerm& term : system_.frequency_terms()) {
-    const Complex k = term.stiffness->beyond_matrices(omega);
-    beyond_.push_back(k);
-    for (const Entry& c : term.z)
-      for (const Entry& r : term.z) {
-        const int* first = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index];
-        const int* last = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index + 1];
-        const auto slot = std::lower_bound(first, last, r.index) - pattern.innerIndexPtr();
-        stiffness_at_omega_[slot] += k.real() * r.coeff * c.coeff;
-        damping_at_omega_[slot] += k.imag() / omega * r.coeff * c.coeff;
-      }
+  Complex k = 0.0;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (i == 0 || slot_terms_[i] != slot_terms_[i - 1]) k = beyond(idx(slot_terms_[i]), omega);
+    stiffness_at_omega_[slots_[i]] += k.real() * slot_times_[i];
+    damping_at_omega_[slots_[i]] += k.imag() / omega * slot_times_[i];
   }
 }
 
+void LinearResponse::spread_frequency_terms(const Lanes& w) {
+  if (!spread_) {
+    damping_lanes_.resize(static_cast<std::size_t>(damping_here_.size()));
+    stiffness_lanes_.resize(damping_lanes_.size());
+    for (std::size_t e = 0; e < damping_lanes_.size(); ++e) {
+      damping_lanes_[e].v = Lanes{} + damping_here_[static_cast<Eigen::Index>(e)];
+      stiffness_lanes_[e].v = Lanes{} + stiffness_here_[static_cast<Eigen::Index>(e)];
+    }
+    spread_ = true;
+  }
+  for (std::size_t t = 0; t < beyond_re_.size(); ++t) {
+    Lanes re{}, im{}, over{};
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double omega = std::abs(w[lane]);
+      const Complex k = beyond(t, omega);
+      re[lane] = k.real();
+      im[lane] = w[lane] > 0.0 ? k.imag() : -k.imag();  // at a negative w k* is conjugate
+      over[lane] = k.imag() / omega;
+    }
+    beyond_re_[t].v = re, beyond_im_[t].v = im, beyond_over_[t].v = over;
+  }
+  add_at_slots(slots_, slot_terms_, slot_times_, beyond_re_, stiffness_here_.data(), stiffness_lanes_.data());
+  add_at_slots(slots_, slot_terms_, slot_times_, beyond_over_, damping_here_.data(), damping_lanes_.data());
+}
+
+Complex LinearResponse::beyond(std::size_t term, double omega) const {
+  const FrequencyStiffness& stiffness = *system_.frequency_terms()[term].stiffness;
+  return term_held_[term] ? *stiffness.beyond_held(omega, carried_[term])
+                          : stiffness.beyond_matrices(omega, carried_[term]);
+}
+
+std::vector<bool> LinearResponse::find_held() {
+  const SparseMatrix& pattern = system_.pattern();
+  const auto terms = system_.frequency_terms();
+  std::vector<bool> held(idx(system_.size()), false), used(idx(system_.size()), false);
+  term_held_.assign(terms.size(), false);
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    for (const Entry& c : terms[t].z)
+      for (const Entry& r : terms[t].z) {
+        const int* first = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index];
+        const int* last = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index + 1];
+        slots_.push_back(static_cast<int>(std::lower_bound(first, last, r.index) - pattern.innerIndexPtr()));
+        slot_terms_.push_back(static_cast<int>(t));
+        slot_times_.push_back(r.coeff * c.coeff);
+      }
+  for (LaneArray* rows : {&beyond_re_, &beyond_im_, &beyond_over_}) rows->resize(terms.size());
+  const auto use = [&](const std::vector<Entry>& row) {
+    for (const Entry& e : row) used[idx(e.index)] = true;
+  };
+  for (const std::vector<Entry>& row : load_rows_) use(row);
+  for (const ScalarTerm& term : system_.scalars()) use(term.z);
+  for (const Section& s : sections_)
+    if (s.frequency_term < 0) use(s.stiffness), use(s.damping), use(s.twist);
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const FrequencyTerm& term = terms[t];
+    const auto same = [&](const FrequencyTerm& other) { return other.element == term.element; };
+    if (std::count_if(terms.begin(), terms.end(), same) > 1 || !term.stiffness->beyond_held(1.0, {}))
+      continue;
+    const NodeRange internal = system_.element_instances()[idx(index(term.element))].internal;
+    std::vector<int> inner;
+    for (const NodeId id : internal) {
+      const std::vector<Entry> row = system_.row_of(index(id));
+      if (row.size() == 1 && row[0].coeff == 1.0 && !used[idx(row[0].index)]) inner.push_back(row[0].index);
+    }
+    if (static_cast<int>(inner.size()) != internal.count) continue;
+    // Nothing else may act on them: they must give, condensed, what the element says that they do.
+    bool alone = true;
+    for (const double omega : {10.0, 1000.0}) {
+      Complex given = 0.0;
+      for (const int unknown : inner) {
+        Complex own = 0.0, coupling = 0.0;
+        std::size_t others = 0;
+        for (int slot = pattern.outerIndexPtr()[unknown]; slot < pattern.outerIndexPtr()[unknown + 1];
+             ++slot) {
+          const int row = pattern.innerIndexPtr()[slot];
+          const Complex s(stiffness_[slot] - omega * omega * mass_[slot], omega * damping_[slot]);
+          if (row == unknown) own = s;
+          if (row == unknown || s == 0.0) continue;
+          const auto at =
+              std::find_if(term.z.begin(), term.z.end(), [&](const Entry& e) { return e.index == row; });
+          if (at != term.z.end()) coupling = s / at->coeff;
+          alone = alone && at != term.z.end();
+          ++others;
+        }
+        alone = alone && others == term.z.size() && own != 0.0;
+        given -= coupling * coupling / own;
+      }
+      const Complex without = *term.stiffness->beyond_held(omega, {}),
+                    with = term.stiffness->beyond_matrices(omega, {});
+      alone =
+          alone && std::abs(given - (without - with)) <= kSameChain * (std::abs(with) + std::abs(without));
+    }
+    if (!alone) continue;
+    term_held_[t] = true;
+    for (const int unknown : inner) held[idx(unknown)] = true;
+  }
+  return held;
+}
+
 const Vector& LinearResponse::damping_at(double speed) {
+  std::swap(damping_here_, damping_before_);
+  std::swap(stiffness_here_, stiffness_before_);
   damping_here_ = damping_;
   stiffness_here_ = stiffness_;
   content_->add_slopes(direction_ * speed, &damping_here_, &stiffness_here_);
+  // Most loads that follow the speed have no slope of their own.
+  spread_ = spread_ && damping_here_ == damping_before_ && stiffness_here_ == stiffness_before_;
   return damping_here_;
 }
 
-void LinearResponse::mean(double speed, Point& point) {
+std::vector<double> LinearResponse::mean_motion(double speed, Vector& unbalanced, Vector& load_sum) {
   const auto& contents = content_->at(direction_ * speed);
   Vector p = -direction_ * speed * system_.nominal_drag().head(system_.size());
   // Ratios to rounding leave that of the dampers between nodes of one speed.
   if (p.cwiseAbs().maxCoeff() <= kNoDrag * speed * damping_.cwiseAbs().maxCoeff()) p.setZero();
   const std::vector<Vector>& rigid = mean_->rigid();
-  point.load_sum = Vector::Zero(static_cast<Eigen::Index>(rigid.size()));
+  load_sum = Vector::Zero(static_cast<Eigen::Index>(rigid.size()));
   for (std::size_t f = 0; f < rigid.size(); ++f)
-    point.load_sum[static_cast<Eigen::Index>(f)] += rigid[f].cwiseProduct(p).cwiseAbs().sum();
+    load_sum[static_cast<Eigen::Index>(f)] += rigid[f].cwiseProduct(p).cwiseAbs().sum();
   for (std::size_t l = 0; l < contents.size(); ++l) {
     for (const Entry& e : load_rows_[l]) p[e.index] += e.coeff * contents[l].mean;
     for (std::size_t f = 0; f < rigid.size(); ++f)
-      point.load_sum[static_cast<Eigen::Index>(f)] +=
-          std::abs(product(load_rows_[l], rigid[f]) * contents[l].mean);
+      load_sum[static_cast<Eigen::Index>(f)] += std::abs(product(load_rows_[l], rigid[f]) * contents[l].mean);
   }
-  mean_->solve(p, &point.unbalanced);
-  const std::vector<double> z(p.begin(), p.end());
+  mean_->solve(p, &unbalanced);
+  return {p.begin(), p.end()};
+}
+
+void LinearResponse::mean(double speed, Point& point) {
+  const std::vector<double> z = mean_motion(speed, point.unbalanced, point.load_sum);
   const auto count = static_cast<Eigen::Index>(sections_.size());
   point.mean.resize(count);
   point.twist_mean.resize(count);
@@ -142,23 +246,104 @@ void LinearResponse::mean(double speed, Point& point) {
   }
 }
 
-void LinearResponse::vibration(double speed, Point& point, int only) {
+void LinearResponse::find_active(double speed, int only) {
   const auto& contents = content_->at(direction_ * speed);
-  if (damping_here_.size() == 0 || content_->follows_speed()) damping_at(speed);
-  const auto orders = static_cast<Eigen::Index>(orders_.size()),
-             count = static_cast<Eigen::Index>(sections_.size());
-  point.amplitude.setZero(orders, count);
-  point.twist.setZero(orders, count);
-  point.heat.setZero(count);
-  point.input_power = point.dissipated_power = 0.0;
   active_.clear();
-  for (int k = 0; k < static_cast<int>(orders); ++k) {
+  for (int k = 0; k < static_cast<int>(orders_.size()); ++k) {
     if (only >= 0 && k != only) continue;
     const bool any = std::any_of(contents.begin(), contents.end(), [k](const OrderContent::Content& c) {
       return c.amplitudes[static_cast<std::size_t>(k)] != 0.0;
     });
     if (any) active_.push_back(k);
   }
+}
+
+double LinearResponse::amplitude_of(std::size_t t, double speed) {
+  twist_squares_.assign(carried_.size(), 0.0);
+  for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, trial_);
+  return std::sqrt(twist_squares_[t]);
+}
+
+void LinearResponse::find_carried_loads(double speed) {
+  constexpr double kClose = 1e-12;  // relative, of amplitudes
+  constexpr int kMostRounds = 100, kMostSteps = 200;
+  const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
+  if (follows_mean_) {
+    Vector unbalanced, sums;
+    const std::vector<double> z = mean_motion(speed, unbalanced, sums);
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      carried_[t].mean_torque = terms[t].stiffness->static_stiffness() * product(terms[t].z, z);
+  }
+  if (!follows_amplitude_) return;
+  const auto orders = static_cast<Eigen::Index>(orders_.size()),
+             count = static_cast<Eigen::Index>(sections_.size());
+  trial_.amplitude.setZero(orders, count);
+  trial_.twist.setZero(orders, count);
+  trial_.heat.setZero(count);
+  find_active(speed, -1);
+  for (CarriedLoad& load : carried_) load.amplitude = 0.0;
+  const auto refuse = [&](std::size_t t) {
+    throw SolverError(system_.name() + ", " + to_text(to_rpm(speed)) + " rpm: no amplitude of " +
+                      element_name(system_, terms[t].element) +
+                      " was found that its response under it has; is anything damped there?");
+  };
+  bool several = false;
+  for (int round = 0; round < kMostRounds; ++round) {
+    bool moved = false;
+    std::size_t number = 0;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      if (!terms[t].stiffness->follows_amplitude()) continue;
+      several = number++ > 0;
+      const double before = carried_[t].amplitude;
+      const auto beyond = [&](double a) {  // of the response over what was assumed
+        carried_[t].amplitude = a;
+        return amplitude_of(t, speed) - a;
+      };
+      // Illinois' variant of the false position between 0 and an amplitude that the response does not reach.
+      double low = 0.0, at_low = beyond(0.0), high = at_low, at_high = 0.0;
+      if (!std::isfinite(at_low)) refuse(t);
+      int steps = 0;
+      while (high > 0.0 && (at_high = beyond(high)) > 0.0) {
+        low = high, at_low = at_high, high *= 2.0;
+        if (!std::isfinite(at_high) || ++steps > kMostSteps) refuse(t);
+      }
+      double found = high;
+      for (int side = 0; high > 0.0 && at_high < 0.0 && high - low > kClose * high;) {
+        if (++steps > kMostSteps) refuse(t);
+        found = (low * at_high - high * at_low) / (at_high - at_low);
+        const double at = beyond(found);
+        if (at == 0.0) break;
+        if (std::abs(at) <= 1e-3 * kClose * found) break;
+        if (at > 0.0) {
+          low = found, at_low = at;
+          if (side > 0) at_high *= 0.5;
+          side = 1;
+        } else {
+          high = found, at_high = at;
+          if (side < 0) at_low *= 0.5;
+          side = -1;
+        }
+      }
+      carried_[t].amplitude = found;
+      moved |= std::abs(found - before) > 10.0 * kClose * found;
+    }
+    if (!moved || (round == 0 && !several)) return;
+  }
+  throw SolverError(system_.name() + ", " + to_text(to_rpm(speed)) +
+                    " rpm: the amplitudes of several elements that follow them did not settle");
+}
+
+void LinearResponse::vibration(double speed, Point& point, int only) {
+  content_->at(direction_ * speed);
+  if (damping_here_.size() == 0 || content_->follows_speed()) damping_at(speed);
+  if (follows_mean_ || follows_amplitude_) find_carried_loads(speed);
+  const auto orders = static_cast<Eigen::Index>(orders_.size()),
+             count = static_cast<Eigen::Index>(sections_.size());
+  point.amplitude.setZero(orders, count);
+  point.twist.setZero(orders, count);
+  point.heat.setZero(count);
+  point.input_power = point.dissipated_power = 0.0;
+  find_active(speed, only);
   for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, point);
 }
 
@@ -166,10 +351,10 @@ bool LinearResponse::solve_lane(int lane, double omega) {
   for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = {p_re_[i].v[lane], p_im_[i].v[lane]};
   const bool own = !system_.frequency_terms().empty();
   if (own) add_frequency_terms(std::abs(omega));
-  const bool solved = elimination_.factorize(mass_, own ? damping_at_omega_ : damping_here_,
-                                             own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
+  const bool solved = elimination_->factorize(mass_, own ? damping_at_omega_ : damping_here_,
+                                              own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
   if (solved)
-    elimination_.solve(z_.data());
+    elimination_->solve(z_.data());
   else
     std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
   for (std::size_t i = 0; i < z_.size(); ++i) {
@@ -199,59 +384,41 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   re_ = p_re_;
   im_ = p_im_;
   const bool own = !system_.frequency_terms().empty();
-  if (own) {
-    damping_lanes_.resize(static_cast<std::size_t>(damping_here_.size()));
-    stiffness_lanes_.resize(damping_lanes_.size());
-    beyond_lanes_.resize(system_.frequency_terms().size());
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (lane < used) add_frequency_terms(std::abs(w[lane]));
-      for (std::size_t e = 0; e < damping_lanes_.size(); ++e) {
-        damping_lanes_[e].v[lane] = damping_at_omega_[static_cast<Eigen::Index>(e)];
-        stiffness_lanes_[e].v[lane] = stiffness_at_omega_[static_cast<Eigen::Index>(e)];
-      }
-      for (std::size_t t = 0; t < beyond_.size(); ++t) beyond_lanes_[t][idx(lane)] = beyond_[t];
-    }
-  }
+  if (own) spread_frequency_terms(w);
   // One or two frequencies are not worth the lanes.
   constexpr int kWorthLanes = 3;
   Lanes lost = Lanes{} + 1.0;
   if (used >= kWorthLanes && own)
-    lanes_.solve(mass_.data(), damping_lanes_.data(), stiffness_lanes_.data(), w, re_, im_, lost);
+    lanes_->solve(mass_.data(), damping_lanes_.data(), stiffness_lanes_.data(), w, re_, im_, lost);
   else if (used >= kWorthLanes)
-    lanes_.solve(mass_.data(), damping_here_.data(), stiffness_here_.data(), w, re_, im_, lost);
+    lanes_->solve(mass_.data(), damping_here_.data(), stiffness_here_.data(), w, re_, im_, lost);
   std::array<bool, kLanes> singular{};
   for (int lane = 0; lane < used; ++lane)
     if (lost[lane] != 0.0) singular[idx(lane)] = !solve_lane(lane, w[lane]);
-  rows_->find(re_, im_);
+  if (follows_amplitude_) {
+    twist_squares_.resize(carried_.size());
+    for (std::size_t t = 0; t < carried_.size(); ++t) {
+      Lanes re{}, im{};
+      for (const Entry& e : system_.frequency_terms()[t].z) {
+        re += e.coeff * re_[idx(e.index)].v;
+        im += e.coeff * im_[idx(e.index)].v;
+      }
+      for (int lane = 0; lane < used; ++lane)
+        twist_squares_[t] += singular[idx(lane)] ? std::numeric_limits<double>::infinity()
+                                                 : re[lane] * re[lane] + im[lane] * im[lane];
+    }
+  }
+  rows_->find(re_, im_, w, beyond_re_, beyond_im_);
   const auto each_lane = [&](const auto& task) {
     for (int lane = 0; lane < used; ++lane) task(lane, static_cast<Eigen::Index>(active_[first + idx(lane)]));
   };
   for (std::size_t s = 0; s < sections_.size(); ++s) {
-    const Section& section = sections_[s];
+    const LaneSections::Result& found = rows_->of(s);
     const auto c = static_cast<Eigen::Index>(s);
-    using Row = LaneSections::Row;
-    const LaneSections::Number elastic = rows_->of(s, Row::stiffness), rate = rows_->of(s, Row::damping),
-                               twist = rows_->of(s, Row::twist), damper = rows_->of(s, Row::damper);
-    // i w times a number turns it.
-    Lanes re = elastic.re - w * rate.im, im = elastic.im + w * rate.re;
-    Lanes heat = 0.5 * w * w * (damper.re * twist.re + damper.im * twist.im);
-    if (section.frequency_term >= 0) {
-      // The matrices' torque and what is beyond them; heat = w/2 Im(T conj x). At a negative w k* is conjugate.
-      const LaneSections::Number own_row = rows_->of(s, Row::beyond);
-      Lanes k_re{}, k_im{};
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const Complex k = beyond_lanes_[idx(section.frequency_term)][idx(lane)];
-        k_re[lane] = k.real();
-        k_im[lane] = w[lane] > 0.0 ? k.imag() : -k.imag();
-      }
-      re += k_re * own_row.re - k_im * own_row.im;
-      im += k_re * own_row.im + k_im * own_row.re;
-      heat = 0.5 * w * (im * twist.re - re * twist.im);
-    }
     each_lane([&](int lane, Eigen::Index k) {
-      point.amplitude(k, c) = {re[lane], im[lane]};
-      point.twist(k, c) = {twist.re[lane], twist.im[lane]};
-      point.heat[c] += heat[lane];
+      point.amplitude(k, c) = {found.torque.re[lane], found.torque.im[lane]};
+      point.twist(k, c) = {found.twist.re[lane], found.twist.im[lane]};
+      point.heat[c] += found.heat[lane];
     });
   }
   Lanes input{}, dissipated{};

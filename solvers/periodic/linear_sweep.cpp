@@ -1,4 +1,4 @@
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
@@ -40,10 +40,10 @@ SweepSection to_section(const LinearResponse::Section& given, Eigen::Index order
   section.name = given.name;
   section.unit = given.unit;
   section.contact = given.contact;
-  section.amplitude.setZero(orders, speeds);
+  section.amplitude.resize(orders, speeds);
   if (!given.twist.empty()) {
     section.twist_unit = given.twist_unit;
-    section.twist.setZero(orders, speeds);
+    section.twist.resize(orders, speeds);
   }
   for (Vector* values :
        {&section.mean, &section.maximum, &section.minimum, &section.maximum_angle, &section.minimum_angle,

@@ -1,7 +1,8 @@
 #include "solvers/periodic/mean_equilibrium.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -77,7 +78,7 @@ void MeanEquilibrium::drag_along(Vector& p) const {
   for (Eigen::Index i = 0; i < count; ++i) r.col(i) = rigid_[dragged_[static_cast<std::size_t>(i)]];
   const Eigen::MatrixXd drag = assembler_.product(damping_, r);
   const Eigen::MatrixXd damping = r.transpose() * drag;
-  p -= drag * damping.completeOrthogonalDecomposition().solve(r.transpose() * p);
+  p -= drag * least_squares(damping, r.transpose() * p);
 }
 
 void MeanEquilibrium::solve(Vector& p, Vector* left) {

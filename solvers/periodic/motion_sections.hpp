@@ -1,5 +1,7 @@
 #pragma once
 /// What a periodic motion of LawBalance comes to in sections: extremes over the cycle, means, orders, heat.
+#include <drev/solvers/periodic/motion_figures.hpp>
+
 #include <functional>
 
 #include "solvers/periodic/law_balance.hpp"
@@ -14,14 +16,8 @@ class MotionSections {
   explicit MotionSections(std::vector<SectionRows> sections) : sections_(std::move(sections)) {}
   const std::vector<SectionRows>& sections() const { return sections_; }
 
-  /// Over sections. maximum, minimum: with the mean, as those of the twist (the
-  /// deflection of a law).
-  struct Figures {
-    Vector maximum, minimum, mean, twist_mean, twist_maximum, twist_minimum, heat;
-    Eigen::MatrixXcd amplitude;  ///< lines x sections
-    Eigen::MatrixXd samples;     ///< kSamples x sections, evenly over the cycle
-    Vector z, v, left_over;      ///< where psi = 0
-    bool separates = false;
+  struct Figures : MotionFigures {
+    Eigen::MatrixXd samples;  ///< kSamples x sections, evenly over the cycle
   };
   /// lines: numbers of harmonics whose amplitudes are wanted. False: no motion.
   bool find(LawBalance& balance, const Vector& x, double speed, const std::vector<int>& lines,

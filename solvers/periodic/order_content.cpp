@@ -1,5 +1,8 @@
 #include "solvers/periodic/order_content.hpp"
 
+#include <drev/core/law/harmonic_load.hpp>
+#include <drev/core/law/knotted_load.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/law/speed_scaled_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
@@ -19,6 +22,7 @@ constexpr double kSettled = 1e-9;  // of the largest amplitude
 constexpr double kSame = 1e-12;    // of the largest torque: the load is one and the same
 constexpr double kNoLine = 1e-13;  // of the rms: rounding of the transform
 constexpr int kProbes = 24;        // angles at which a load is asked whether time, speed and turns matter
+constexpr double kWidestPanel = 0.35, kPanelPhase = 2.5;  // rad of the node, of the highest order
 constexpr int kFewestSamples = 256, kMostSamples = 1 << 16;
 
 LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0,
@@ -46,56 +50,81 @@ bool same_everywhere(const First& first, const Second& second) {
 
 OrderContent::OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings)
     : system_(system), orders_(std::move(orders)) {
-  const double some_speed = system.reference_speed() > 0.0 ? system.reference_speed() : 1.0;
   for (const LoadTerm& term : system.loads()) {
     if (system.node_map(term.node).prescribed >= 0) continue;  // carried by the reaction
-    const std::string place = system.name() + "/" + system.element_instances()[idx(index(term.element))].name;
-    const double ratio = system.ratio(term.node), speed = ratio * some_speed;
-    const auto now = [&](double angle) { return at_angle(term, angle, speed); };
-    const auto refuse = [&](const std::string& why) { findings.push_back({place, "", "", "", why}); };
     Source source;
-    bool in_time = !term.load->frequencies().empty() || !term.load->breakpoints().empty();
-    for (const double t : {0.0173, 0.291, 1.37, 11.3, 97.7})
-      in_time = in_time || !same_everywhere(now, [&](double a) { return at_angle(term, a, speed, t); });
-    if (in_time) {
-      refuse(
-          "is a function of the time and has no orders; a sweep takes loads that follow the angle, such as "
-          "engine_order_torque and cam_torque, and constant ones");
+    if (const Source* relative = family_source(term))
+      (source = *relative).scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
+    else if (!inspect(term, source, findings))
       continue;
-    }
-    for (const double factor : {0.5, 1.7, 3.1})
-      source.follows_speed = source.follows_speed || !same_everywhere(now, [&](double a) {
-                               return at_angle(term, a, factor * speed);
-                             });
     follows_speed_ = follows_speed_ || source.follows_speed;
-    source.constant =
-        ratio == 0.0 || same_everywhere(now, [&](double) { return at_angle(term, 0.0, speed); });
-    if (ratio == 0.0 && !same_everywhere(now, [&](double) { return at_angle(term, 0.0, speed); })) {
-      refuse("follows the angle of " + system.node_names()[idx(term.node)] +
-             ", which does not turn with the reference shaft");
-      continue;
-    }
-    if (!source.constant && !term.load->table()) {
-      bool repeats = false;
-      for (const int turns : {1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns}) {
-        repeats = same_everywhere(now, [&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
-        // Rounding of the angle itself moves a steep load by more than its own rounding.
-        if (!repeats) continue;
-        source.turns = turns;
-        break;
-      }
-      if (!repeats) {
-        refuse("does not repeat within " + std::to_string(kMostTurns) + " turns of its node");
-        continue;
-      }
-    }
-    constexpr double kTurned = 0.3;  // rad
-    source.by_angle = same_everywhere([&](double a) { return at_angle(term, a + kTurned, speed); },
-                                      [&](double a) { return at_angle(term, a, speed, 0.0, kTurned); });
     loads_.push_back(&term);
     sources_.push_back(source);
   }
   content_.resize(loads_.size());
+}
+
+const OrderContent::Source* OrderContent::family_source(const LoadTerm& term) const {
+  const auto* scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
+  for (std::size_t l = 0; scaled && scaled->family().id && l < loads_.size(); ++l) {
+    const auto* other = dynamic_cast<const SpeedScaledLoad*>(loads_[l]->load);
+    if (other && other->family().id == scaled->family().id &&
+        system_.ratio(loads_[l]->node) == system_.ratio(term.node))
+      return &sources_[l];
+  }
+  return nullptr;
+}
+
+bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Finding>& findings) const {
+  const std::string place = system_.name() + "/" + system_.element_instances()[idx(index(term.element))].name;
+  const auto refuse = [&](const std::string& why) {
+    findings.push_back({place, "", "", "", why});
+    return false;
+  };
+  const double some_speed = system_.reference_speed() > 0.0 ? system_.reference_speed() : 1.0;
+  const double ratio = system_.ratio(term.node), speed = ratio * some_speed;
+  const std::string does_not_turn = "follows the angle of " + system_.node_names()[idx(term.node)] +
+                                    ", which does not turn with the reference shaft";
+  if (const auto* harmonics = dynamic_cast<const HarmonicLoad*>(term.load)) {
+    source.constant = harmonics->orders().terms.empty();
+    source.by_angle = source.harmonics = true;
+    return source.constant || ratio != 0.0 || refuse(does_not_turn);
+  }
+  const SpeedScaledLoad* scaled = source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
+  const auto now = [&](double angle) { return at_angle(term, angle, speed); };
+  bool in_time = !term.load->frequencies().empty() || !term.load->breakpoints().empty();
+  for (const double t : {0.0173, 0.291, 1.37, 11.3, 97.7})
+    in_time =
+        in_time || (!scaled && !same_everywhere(now, [&](double a) { return at_angle(term, a, speed, t); }));
+  if (in_time)
+    return refuse(
+        "is a function of the time and has no orders; a sweep takes loads that follow the angle, such as "
+        "engine_order_torque and cam_torque, and constant ones");
+  for (const double factor : {0.5, 1.7, 3.1})
+    source.follows_speed =
+        source.follows_speed ||
+        (scaled ? scaled->speed_factors(factor * speed) != scaled->speed_factors(speed)
+                : !same_everywhere(now, [&](double a) { return at_angle(term, a, factor * speed); }));
+  const auto standing = [&](double) { return at_angle(term, 0.0, speed); };
+  source.constant = ratio == 0.0 || same_everywhere(now, standing);
+  if (ratio == 0.0 && !same_everywhere(now, standing)) return refuse(does_not_turn);
+  source.table = term.load->table().has_value();
+  if (!source.constant && !source.table) {
+    bool repeats = false;
+    for (const int turns : {1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns}) {
+      repeats = same_everywhere(now, [&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
+      // Rounding of the angle itself moves a steep load by more than its own rounding.
+      if (!repeats) continue;
+      source.turns = turns;
+      break;
+    }
+    if (!repeats)
+      return refuse("does not repeat within " + std::to_string(kMostTurns) + " turns of its node");
+  }
+  constexpr double kTurned = 0.3;  // rad
+  source.by_angle = same_everywhere([&](double a) { return at_angle(term, a + kTurned, speed); },
+                                    [&](double a) { return at_angle(term, a, speed, 0.0, kTurned); });
+  return true;
 }
 
 /// lines: of the node's own angle, forward; spacing: order of line 1 a turn of the reference shaft.
@@ -116,6 +145,22 @@ void OrderContent::pick(const std::vector<Complex>& lines, double spacing, bool 
   }
   content.left_out = std::sqrt(std::max(0.0, content.rms * content.rms - taken));
   if (content.left_out < 1e-7 * content.rms) content.left_out = 0.0;  // of the difference, rounding
+}
+
+int OrderContent::fewest_samples(double spacing) const {
+  const double highest = orders_.empty() ? 1.0 : orders_.back();
+  int samples = kFewestSamples;
+  while (samples < 8.0 * highest / spacing && samples < kMostSamples) samples *= 2;
+  return samples;
+}
+
+double OrderContent::difference(const Content& coarse, const Content& fine) {
+  double size = std::max(std::abs(fine.mean), fine.rms), difference = std::abs(fine.mean - coarse.mean);
+  for (std::size_t k = 0; k < fine.amplitudes.size(); ++k) {
+    size = std::max(size, std::abs(fine.amplitudes[k]));
+    difference = std::max(difference, std::abs(fine.amplitudes[k] - coarse.amplitudes[k]));
+  }
+  return difference > 0.0 ? difference / size : 0.0;
 }
 
 OrderContent::Content OrderContent::of_table(const LoadTerm& term) const {
@@ -156,10 +201,37 @@ OrderContent::Content OrderContent::of_table(const LoadTerm& term) const {
   return content;
 }
 
+/// By the load's actual or nominal angle alike: a slope that repeats with the angle has no mean.
+OrderContent::Content OrderContent::of_harmonics(const LoadTerm& term) const {
+  const LoadOrders given = dynamic_cast<const HarmonicLoad&>(*term.load).orders();
+  const double ratio = system_.ratio(term.node);
+  Content content;
+  content.node = term.node;
+  content.mean = given.mean;
+  content.amplitudes.assign(orders_.size(), 0.0);
+  double square = 0.0, taken = 0.0;
+  for (std::size_t i = 0; i < given.terms.size();) {
+    const double order = given.terms[i].order * std::abs(ratio);
+    Complex c = 0.0;
+    for (const double same = given.terms[i].order; i < given.terms.size() && given.terms[i].order == same;
+         ++i)
+      c += Complex(given.terms[i].cosine, -given.terms[i].sine);
+    square += 0.5 * std::norm(c);
+    for (std::size_t k = 0; k < orders_.size(); ++k)
+      if (std::abs(orders_[k] - order) <= kWholeLine * order) {
+        content.amplitudes[k] = ratio > 0.0 ? c : std::conj(c);
+        taken += 0.5 * std::norm(c);
+      }
+  }
+  content.rms = std::sqrt(square);
+  content.left_out = std::sqrt(std::max(0.0, square - taken));
+  if (content.left_out < 1e-7 * content.rms) content.left_out = 0.0;  // of the difference, rounding
+  return content;
+}
+
 OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& source, double speed) const {
   const double ratio = system_.ratio(term.node);
   const double spacing = std::abs(ratio) / source.turns;
-  const double highest = orders_.empty() ? 1.0 : *std::max_element(orders_.begin(), orders_.end());
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<double> torque;
@@ -190,18 +262,11 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
     return content;
   };
   if (source.samples > 0) return content_with(source.samples);
-  int samples = kFewestSamples;
-  while (samples < 8.0 * highest / spacing && samples < kMostSamples) samples *= 2;
+  int samples = fewest_samples(spacing);
   Content content = content_with(samples);
   while (samples < kMostSamples) {
     Content finer = content_with(2 * samples);
-    double size = 0.0, difference = 0.0;
-    for (std::size_t k = 0; k < orders_.size(); ++k) {
-      size = std::max(size, std::abs(finer.amplitudes[k]));
-      difference = std::max(difference, std::abs(finer.amplitudes[k] - content.amplitudes[k]));
-    }
-    difference = std::max(difference, std::abs(finer.mean - content.mean));
-    if (difference <= kSettled * std::max({size, std::abs(finer.mean), finer.rms})) break;
+    if (difference(content, finer) <= kSettled) break;
     content = std::move(finer);
     samples *= 2;
   }
@@ -209,68 +274,175 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
   return content;
 }
 
-OrderContent::Content OrderContent::of_curves(const LoadTerm& term, Source& source, double speed) const {
+/// The curves of a load that says its torque as curves scaled by the speed: those of another one of its family turned,
+/// integrated between their knots, or from samples.
+void OrderContent::find_curves(std::size_t load, double speed) {
+  Source& source = sources_[load];
+  if (!source.curves.empty()) return;
+  const LoadTerm& term = *loads_[load];
+  const auto& scaled = dynamic_cast<const SpeedScaledLoad&>(*term.load);
+  const double ratio = system_.ratio(term.node);
+  if (const Source* relative = family_source(term); relative && !relative->curves.empty()) {
+    const auto& first = dynamic_cast<const SpeedScaledLoad&>(
+        *loads_[static_cast<std::size_t>(relative - sources_.data())]->load);
+    const double behind = scaled.family().start - first.family().start;
+    source.curves = relative->curves;
+    source.products = relative->products;
+    for (std::size_t k = 0; k < orders_.size(); ++k) {
+      const Complex turned = std::polar(1.0, -orders_[k] / ratio * behind);
+      for (Content& curve : source.curves) curve.amplitudes[k] *= turned;
+    }
+    return;
+  }
+  const auto count = static_cast<Eigen::Index>(scaled.speed_factors(ratio * speed).size());
+  if (!integrate_curves(term, source, ratio * speed, count)) sample_curves(term, source, count);
+}
+
+bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double speed,
+                                    Eigen::Index count) const {
+  const auto* knotted = dynamic_cast<const KnottedLoad*>(term.load);
+  const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
+  if (!knotted) return false;
+  const double ratio = system_.ratio(term.node), period = source.turns * kTwoPi;
+  const double highest = orders_.empty() ? 0.0 : orders_.back() / std::abs(ratio);
+  const double widest = std::min(kWidestPanel, kPanelPhase / std::max(highest, kPanelPhase));
+  // Waves of whole numbers of periods only: the others are in no load that repeats.
+  std::vector<std::pair<std::size_t, double>> waves;  // number of the order, order of the node's angle
+  for (std::size_t k = 0; k < orders_.size(); ++k) {
+    const double order = orders_[k] / std::abs(ratio), line = std::round(order * source.turns);
+    if (line >= 1.0 && std::abs(order * source.turns - line) <= kWholeLine * line)
+      waves.emplace_back(k, line / source.turns);
+  }
+  Vector means = Vector::Zero(count), values(count);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count, static_cast<Eigen::Index>(waves.size()));
+  const auto point = [&](double angle, double weight) {
+    for (Eigen::Index k = 0; k < count; ++k) values[k] = load.curve(static_cast<int>(k), angle);
+    means += weight * values;
+    products.noalias() += weight * values * values.transpose();
+    double before = 0.0, spacing = 0.0;
+    Complex wave = 1.0, step = 1.0;
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+      if (waves[i].second - before != spacing) {
+        spacing = waves[i].second - before;
+        step = std::polar(1.0, -spacing * angle);
+      }
+      wave = {wave.real() * step.real() - wave.imag() * step.imag(),
+              wave.real() * step.imag() + wave.imag() * step.real()};
+      before = waves[i].second;
+      for (Eigen::Index k = 0; k < count; ++k)
+        sums(k, static_cast<Eigen::Index>(i)) += weight * values[k] * wave;
+    }
+  };
+  constexpr double kAhead = 1e-9;  // rad: past a knot that was found
+  for (double at = 0.0; at < period * (1.0 - kWholeLine);) {
+    const double knot = std::max(knotted->piece(at, 1.0, speed).high, at + kAhead);
+    const double next = knot < period * (1.0 - kWholeLine) ? knot : period;
+    const int panels = static_cast<int>(std::ceil((next - at) / widest));
+    const double half = 0.5 * (next - at) / panels;
+    for (int p = 0; p < panels; ++p)
+      for (std::size_t g = 0; g < kGaussPoints.size(); ++g)
+        for (const double side : {-1.0, 1.0})
+          point(at + half * (2 * p + 1 + side * kGaussPoints[g]), half * kGaussWeights[g] / period);
+    at = next;
+  }
+  for (Eigen::Index k = 0; k < count; ++k) {
+    Content content;
+    content.mean = means[k];
+    content.amplitudes.assign(orders_.size(), 0.0);
+    content.rms = std::sqrt(std::max(0.0, products(k, k) - means[k] * means[k]));
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+      const Complex c = 2.0 * sums(k, static_cast<Eigen::Index>(i));
+      if (std::abs(c) > kNoLine * content.rms)
+        content.amplitudes[waves[i].first] = ratio > 0.0 ? c : std::conj(c);
+    }
+    source.curves.push_back(std::move(content));
+  }
+  source.products = products - means * means.transpose();
+  return true;
+}
+
+void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const {
   const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
   const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
-  const std::vector<double> factors = load.speed_factors(ratio * speed);
-  const auto count = static_cast<Eigen::Index>(factors.size());
-  if (source.curves.empty()) {
-    Eigen::MatrixXd values(kMostSamples, count);
-    Eigen::FFT<double> fft;
-    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  const auto curves_with = [&](int samples) {
+    std::vector<Content> curves;
     std::vector<Complex> lines;
-    std::vector<double> column(static_cast<std::size_t>(kMostSamples));
+    std::vector<double> column(static_cast<std::size_t>(samples));
+    Eigen::MatrixXd values(samples, count);
     for (Eigen::Index k = 0; k < count; ++k) {
       Content content;
-      for (int i = 0; i < kMostSamples; ++i)
-        values(i, k) = load.curve(static_cast<int>(k), source.turns * kTwoPi * i / kMostSamples);
+      for (int i = 0; i < samples; ++i)
+        values(i, k) = load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
       content.mean = values.col(k).mean();
       values.col(k).array() -= content.mean;
-      content.rms = std::sqrt(values.col(k).squaredNorm() / kMostSamples);
-      std::copy_n(values.col(k).data(), kMostSamples, column.begin());
+      content.rms = std::sqrt(values.col(k).squaredNorm() / samples);
+      std::copy_n(values.col(k).data(), samples, column.begin());
       fft.fwd(lines, column);
-      lines.resize(static_cast<std::size_t>(kMostSamples) / 2);
-      for (Complex& line : lines) line *= 2.0 / kMostSamples;
+      lines.resize(static_cast<std::size_t>(samples) / 2);
+      for (Complex& line : lines) line *= 2.0 / samples;
       pick(lines, spacing, ratio > 0.0, content);
-      source.curves.push_back(std::move(content));
+      curves.push_back(std::move(content));
     }
-    source.products = values.transpose() * values / kMostSamples;
+    source.products = values.transpose() * values / samples;
+    return curves;
+  };
+  int samples = fewest_samples(spacing);
+  source.curves = curves_with(samples);
+  while (samples < kMostSamples) {
+    samples *= 2;
+    const std::vector<Content> coarse = std::move(source.curves);
+    source.curves = curves_with(samples);
+    bool settled = true;
+    for (std::size_t k = 0; k < coarse.size(); ++k)
+      settled = settled && difference(coarse[k], source.curves[k]) <= kSettled;
+    if (settled) break;
   }
-  Content sum;
+}
+
+/// The load at a speed, put into its place.
+void OrderContent::sum_curves(const LoadTerm& term, const Source& source, double speed, Content& sum) const {
+  const std::vector<double> factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
+  const Eigen::Map<const Vector> f(factors.data(), static_cast<Eigen::Index>(factors.size()));
   sum.node = term.node;
+  sum.mean = 0.0;
   sum.amplitudes.assign(orders_.size(), 0.0);
-  const Eigen::Map<const Vector> f(factors.data(), count);
   sum.rms = std::sqrt(std::max(0.0, f.dot(source.products * f)));
   double taken = 0.0;
-  const auto curve = [&](Eigen::Index k) -> const Content& {
-    return source.curves[static_cast<std::size_t>(k)];
-  };
-  for (Eigen::Index k = 0; k < count; ++k) sum.mean += f[k] * curve(k).mean;
-  for (std::size_t o = 0; o < orders_.size(); ++o) {
-    for (Eigen::Index k = 0; k < count; ++k) sum.amplitudes[o] += f[k] * curve(k).amplitudes[o];
-    taken += 0.5 * std::norm(sum.amplitudes[o]);
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const Content& curve = source.curves[k];
+    sum.mean += factors[k] * curve.mean;
+    for (std::size_t o = 0; o < orders_.size(); ++o) sum.amplitudes[o] += factors[k] * curve.amplitudes[o];
   }
+  for (const Complex& c : sum.amplitudes) taken += 0.5 * std::norm(c);
   sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - taken));
   if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
-  return sum;
 }
 
 const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
+  if (speed == speed_) return content_;
+  speed_ = speed;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     Source& source = sources_[l];
     if (source.known) continue;
     const LoadTerm& term = *loads_[l];
+    const bool no_slope = source.by_angle || !term.load->depends_on_motion();
     if (source.constant) {
       const LoadResponse r = at_angle(term, 0.0, system_.ratio(term.node) * speed);
       content_[l] = {
           term.node, r.torque, r.dtorque_dangle, r.dtorque_dspeed, std::vector<Complex>(orders_.size()),
           0.0,       0.0};
+    } else if (source.harmonics) {
+      content_[l] = of_harmonics(term);
+    } else if (source.table) {
+      content_[l] = of_table(term);
+    } else if (no_slope && source.scaled) {
+      find_curves(l, speed);
+      sum_curves(term, source, speed, content_[l]);
     } else {
-      const bool no_slope = source.by_angle || !term.load->depends_on_motion();
-      const bool scaled = no_slope && dynamic_cast<const SpeedScaledLoad*>(term.load) != nullptr;
-      content_[l] = term.load->table() ? of_table(term)
-                    : scaled           ? of_curves(term, source, speed)
-                                       : of_samples(term, source, speed);
+      content_[l] = of_samples(term, source, speed);
     }
     source.known = !source.follows_speed;
   }

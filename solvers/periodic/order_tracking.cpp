@@ -31,7 +31,17 @@ OrderTracking::OrderTracking(const System& system, const std::vector<std::string
 void OrderTracking::look(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c)
     values_[c] = channels_[c].evaluate(assembler, point.state);
-  for (std::size_t k = 0; k < turns_.size(); ++k) turns_[k] = std::polar(1.0, -tracks_.orders[k] * turned_);
+  // Orders of even spacing are a rotation each.
+  Complex wave = 1.0, rotation = 1.0;
+  double before = 0.0, spacing = 0.0;
+  for (std::size_t k = 0; k < turns_.size(); ++k) {
+    if (tracks_.orders[k] - before != spacing) {
+      spacing = tracks_.orders[k] - before;
+      rotation = std::polar(1.0, -spacing * turned_);
+    }
+    turns_[k] = wave = wave * rotation;
+    before = tracks_.orders[k];
+  }
   const double speed = std::abs(assembler.nominal().rate);
   interval_ = speed > 0.0 && highest_ > 0.0 ? kTwoPi / (kPointsOfPeriod * highest_ * speed) : 0.0;
   time_ = point.state.t;

@@ -1,5 +1,5 @@
 #include <drev/core/channel.hpp>
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
@@ -171,6 +171,7 @@ double given_period(const System& system, const PeriodicOptions& options, Period
 
 std::string refusal(const System& system) {
   if (system.size() == 0) return "every node is prescribed";
+  if (const auto why = system.why_not_varying_inertia("harmonic balance")) return *why;
   if (const auto floating = system.floating_parts(Contact::closed); !floating.empty())
     return "a part of the model floats freely (with " + floating.front() + ")";
   if (const auto why = why_not_friction(system, "a periodic steady state by harmonic balance")) return *why;

@@ -54,9 +54,17 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::Mat
   return to;
 }
 
+/// Whether the loads damp otherwise at another of the speeds.
+bool damping_follows(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
+  if (!response.content().follows_speed() || speeds.size() < 2) return false;
+  const Vector first = load_damping(system, speeds.front());
+  return first != load_damping(system, speeds[speeds.size() / 2]) ||
+         first != load_damping(system, speeds.back());
+}
+
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         const std::function<void()>& pause) {
-  const bool follows = response.content().follows_speed() && speeds.size() > 1;
+  const bool follows = damping_follows(system, response, speeds);
   const int count = follows ? kModeSpeeds : 1;
   SweepModes modes;
   modes.speeds.resize(count);
@@ -85,7 +93,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 /// to its damped mode (damped_pairs.hpp). Those that do not close in, or on one that is there already, are 0.
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         double highest, const std::function<void()>& pause) {
-  const bool follows = response.content().follows_speed() && speeds.size() > 1;
+  const bool follows = damping_follows(system, response, speeds);
   const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
   ModeSet undamped;
   for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {

@@ -48,27 +48,33 @@ class TrigonometricSum {
   };
   void sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used);
   /// Local maxima (sign 1) and minima (-1) that may be the extremes.
-  void find_tops(int used, double sign);
+  void find_tops(int used);
+  void take_marked(int used, double sign, const LaneRow* marks);
   /// The tops of up to kLanes places in tops_, each followed to its extremum; those that cannot reach `least`, not to
   /// their end.
   void refine(const int* places, int count, const Lanes& least);
   static int place_of(const Top& top);
+  /// Of the tops in tops_: the highest of each sum and sign first, in order_.
+  void put_leaders_first();
 
   double base_ = 0.0, step_ = 0.0;
   int highest_ = 0, points_ = 0;
   std::vector<int> multiples_;
   std::vector<double> cubes_;  // of them
   /// Sums over even and odd multiples n, of cosines and of sines: those of a quarter of the cycle give all four.
-  std::vector<int> by_parity_;             // rows of the orders, even multiples first
-  int even_ = 0;                           // so many of them
-  std::vector<double> cosines_, sines_;    // [point of a quarter][place in by_parity_]
-  LaneArray re_, im_, samples_;            // of kLanes sums: amplitudes by order; values at the points
-  LaneArray top_re_, top_im_;              // amplitudes of the tops that are being followed, by order
-  LaneArray power_re_, power_im_;          // exp(i n angle) at them
-  bool dense_ = false;                     // few multiples between those of the orders
-  Lanes slack_{}, thirds_{};               // of each sum
+  std::vector<int> by_parity_;                 // rows of the orders, even multiples first
+  int even_ = 0;                               // so many of them
+  std::vector<double> cosines_, sines_;        // [point of a quarter][place in by_parity_]
+  LaneArray re_, im_, samples_;                // of kLanes sums: amplitudes by order; values at the points
+  LaneArray top_re_, top_im_;                  // amplitudes of the tops that are being followed, by order
+  LaneArray power_re_, power_im_;              // exp(i n angle) at them
+  std::vector<double> turned_re_, turned_im_;  // exp(i angle) of the points
+  bool dense_ = false;                         // few multiples between those of the orders
+  Lanes slack_{}, thirds_{};                   // of each sum
+  Lanes highest_sample_{}, lowest_sample_{};
   std::array<double, 2 * kLanes> best_{};  // largest of the points or found so far, of each sum and sign
   std::vector<Top> tops_;
+  std::vector<int> order_;  // of tops_
 };
 
 }  // namespace drev

@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
 #include "solvers/linear/sturm_count.hpp"
 #include "solvers/modes/lanczos.hpp"
 

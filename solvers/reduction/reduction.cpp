@@ -1,4 +1,4 @@
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/reduction/reduction.hpp>

@@ -1,7 +1,7 @@
-#include <drev/core/control/sampled_controller.hpp>
+#include <drev/core/control/controllers.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/accuracy/error_growth.hpp>
-#include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
 
 #include <algorithm>
 #include <sstream>

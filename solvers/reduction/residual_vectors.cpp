@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {

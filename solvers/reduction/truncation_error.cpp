@@ -2,9 +2,10 @@
 
 #include <drev/solvers/modes/modes.hpp>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -65,7 +66,7 @@ TruncationError::TruncationError(const System& full, const Reduction& reduction,
   // Modes that the reduced space holds leave nothing.
   const Eigen::MatrixXd& r = basis_;
   const Eigen::MatrixXd mass_r = assembler_.product(full.mass_values(), r);
-  const Eigen::LLT<Eigen::MatrixXd> reduced_mass(r.transpose() * mass_r);
+  const CholeskyFactor reduced_mass(r.transpose() * mass_r);
   std::vector<int> followed;
   for (int j = 0; j < modes.count(); ++j) {
     const Vector share = mass_r.transpose() * modes.vectors.col(j);

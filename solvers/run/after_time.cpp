@@ -38,6 +38,14 @@ double AfterTime::next_stop(double t) const {
   return stop;
 }
 
+bool AfterTime::looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                             const double* beyond_cubic) {
+  if (!started_) return false;
+  bool looks = false;  // each is asked: what it hears tells it that nothing passes its peaks
+  for (Observer* o : observers_) looks |= o->looks_inside(from, to, beyond_cubic);
+  return looks;
+}
+
 bool AfterTime::watches_loads() const {
   return std::any_of(observers_.begin(), observers_.end(),
                      [](const Observer* o) { return o->watches_loads(); });

@@ -22,6 +22,8 @@ class AfterTime final : public Observer {
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override;
   bool needs_acceleration() const override;
   bool started() const { return started_; }
 

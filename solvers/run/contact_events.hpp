@@ -34,6 +34,7 @@ class ContactEvents final : public Observer {
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override { return false; }
   const std::vector<ContactEvent>& all() const { return all_; }
 
  private:

@@ -10,6 +10,9 @@
 
 namespace drev {
 
+// Of the largest force of one contact: what it may be off by.
+static constexpr double kLargestOfContact = 1e-4;
+
 std::vector<double> equivalent_masses(const System& system) {
   std::vector<double> all(system.scalars().size(), 0.0);
   SparseCholesky mass;
@@ -76,6 +79,8 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     const auto gap = term.force->gap();
     if (!gap) continue;
     terms_.push_back(j);
+    rows_.push_back(term.z);
+    in_unknowns_.push_back(term.phase_node < 0 && !term.varies);
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
     records_.emplace_back().element = system.element_instances()[idx(index(term.element))].name;
@@ -100,6 +105,25 @@ void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& 
     records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
     records_[i].largest_force_time = point.state.t;
   }
+}
+
+bool ContactStatistics::needs_acceleration() const { return forces_ && forces_->needs_acceleration(); }
+
+bool ContactStatistics::looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                                     const double* beyond_cubic) {
+  bool looks = forces_ && forces_->looks_inside(from, to, beyond_cubic);
+  for (std::size_t i = 0; inside_steps_ && !looks && i < terms_.size(); ++i) {
+    double beyond = 0.0;
+    for (const Entry& e : rows_[i]) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
+    const auto reach =
+        in_unknowns_[i] ? force_reach(*motion_, static_cast<int>(terms_[i]), from, to, beyond) : std::nullopt;
+    // A contact that this step begins has no largest force yet. Those at the step's ends are noted anyway.
+    const bool begins = intervals_[i].side != motion_->side(static_cast<int>(terms_[i]));
+    const double ends = std::max(std::abs(from.responses[terms_[i]].y), std::abs(to.responses[terms_[i]].y));
+    const double largest = std::max(ends, begins ? 0.0 : intervals_[i].largest);
+    looks = !(reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest);
+  }
+  return looks;
 }
 
 void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& from,

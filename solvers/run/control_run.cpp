@@ -1,6 +1,7 @@
 #include "solvers/run/control_run.hpp"
 
 #include <drev/core/assembler.hpp>
+#include <drev/core/control/sampled_controller.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,10 @@ void ControlRun::start(const Assembler& assembler, const State& state) {
     c.outputs.resize(c.controller->output_count());
     ask(c, assembler, state, true);
   }
+}
+
+double ControlRun::point(const Controlled& c, double number) const {
+  return t_start_ + number * c.controller->step();
 }
 
 double ControlRun::next_stop(double t) const {

@@ -1,13 +1,15 @@
 #pragma once
 /// ControlRun: the sampled controllers of a system in one run (sampled_controller.hpp): when they are asked, what they
 /// see, and what acts from then on.
-#include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/control/signal.hpp>
 
 #include <memory>
 #include <vector>
 
 namespace drev {
+
+class ControlSession;
+class SampledController;
 
 class ControlRun {
  public:
@@ -32,11 +34,11 @@ class ControlRun {
     std::string name;
     const SampledController* controller = nullptr;
     std::vector<Signal> signals;
-    std::unique_ptr<ControlSession> session = {};
+    std::shared_ptr<ControlSession> session = {};
     double points = 0.0;  ///< asked so far, without the first
     std::vector<double> inputs = {}, outputs = {};
   };
-  double point(const Controlled& c, double number) const { return t_start_ + number * c.controller->step(); }
+  double point(const Controlled& c, double number) const;
   void ask(Controlled& c, const Assembler& assembler, const State& state, bool first);
 
   const System& system_;

@@ -4,6 +4,8 @@
 ///   y(s) = y_0 + d_0 s + (3 D - 2 d_0 - d_1) s^2 + (d_0 + d_1 - 2 D) s^3,   d = rate h,  D = y_1 - y_0
 ///
 /// Error of the value: h^4 |y''''| / 384.
+#include <drev/core/law/law_piece.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -25,6 +27,19 @@ inline std::optional<CubicPeak> cubic_peak(double y_0, double rate_0, double y_1
   const double s = d_0 / (d_0 > 0.0 ? root - b : -root - b);
   if (!(s > 0.0 && s < 1.0)) return std::nullopt;
   return CubicPeak{y_0 + s * (d_0 + s * (b + s * a)), s};
+}
+
+/// The interval that the cubic stays in: between its ends where it is monotone (slopes of the rise's sign, of at most
+/// three times its size; F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021), else an end slope d raises it above, or
+/// lowers it below, both ends by at most max |s (1-s)^2| d = 4/27 d.
+inline Interval cubic_reach(double y_0, double rate_0, double y_1, double rate_1, double h) {
+  constexpr double kBulge = 4.0 / 27.0;
+  const double low = std::min(y_0, y_1), high = std::max(y_0, y_1), steepest = 3.0 * (high - low);
+  const double d_0 = y_0 <= y_1 ? h * rate_0 : -h * rate_0, d_1 = y_0 <= y_1 ? h * rate_1 : -h * rate_1;
+  if (d_0 >= 0.0 && d_1 >= 0.0 && d_0 <= steepest && d_1 <= steepest) return {low, high};
+  const double up = kBulge * h * std::max(rate_0, 0.0) + kBulge * h * std::max(-rate_1, 0.0);
+  const double down = kBulge * h * std::max(-rate_0, 0.0) + kBulge * h * std::max(rate_1, 0.0);
+  return {low - down, high + up};
 }
 
 }  // namespace drev

@@ -7,6 +7,9 @@
 
 namespace drev {
 
+// Of the window: over shorter steps its weight at their middle is that of the whole step.
+static constexpr double kShortStep = 1e-3;
+
 MeanSpeed::MeanSpeed(const System& system, double begin, double end)
     : system_(system), begin_(begin), end_(end) {
   for (const std::string& name : system.floating_parts(Contact::closed)) {
@@ -22,6 +25,10 @@ void MeanSpeed::start(const Assembler& assembler, const EvaluatedState& point) {
     part.deviation = assembler.node_motion(part.node, point.state).value;
     part.sum = 0.0;
   }
+}
+
+bool MeanSpeed::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double*) {
+  return !parts_.empty() && to.state.t - from.state.t > kShortStep * (end_ - begin_);
 }
 
 void MeanSpeed::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {

@@ -27,6 +27,8 @@ class MeanSpeed final : public Observer {
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override;
 
   /// One each part; none before a step has been seen.
   std::vector<PartSpeed> parts() const;

@@ -44,6 +44,13 @@ class Observer {
   /// Whether it reads accelerations, or loads and forces of the whole system (p, kz, cv, total). Where no
   /// observer does, points inside a step of exact propagation have none: a is not a number there.
   virtual bool needs_acceleration() const { return true; }
+  /// Asked before exact propagation shows a step: whether it wants points inside, close enough for cubics between them;
+  /// where no observer does, the step is shown whole but for next_stop(). beyond_cubic: of each unknown, how far it
+  /// lies at most from the cubic through its values and rates at both ends [rad or m]; behind them the same of each rate.
+  virtual bool looks_inside(const EvaluatedState& /*from*/, const EvaluatedState& /*to*/,
+                            const double* /*beyond_cubic*/) {
+    return true;
+  }
   /// Whether it watches what kinks where a load does (loads, accelerations, reactions, ideal gears): exact
   /// propagation then shows it the points at which tables' kinks are passed.
   virtual bool watches_loads() const { return false; }

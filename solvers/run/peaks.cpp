@@ -14,6 +14,23 @@ constexpr double kNear = 0.05;   // of the range so far: steps that may hold a n
 constexpr double kShort = 1e-6;  // of the longest step: nothing moves in shorter ones
 }  // namespace
 
+std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
+                                    const EvaluatedState& to, double beyond) {
+  const auto side = motion.side(law);
+  if (!side) return std::nullopt;
+  const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
+  if (*side == 0) {
+    if (a.y != 0.0 || b.y != 0.0) return std::nullopt;
+    return Interval{0.0, 0.0};
+  }
+  // An end on an edge of the gap has the slope of either side.
+  const double k = std::max(a.dy_dx, b.dy_dx);
+  if (std::min(a.dy_dx, b.dy_dx) < 0.0) return std::nullopt;
+  const Interval reach = cubic_reach(a.y, k * from.inputs[idx(law)].x_dot, b.y, k * to.inputs[idx(law)].x_dot,
+                                     to.state.t - from.state.t);
+  return Interval{reach.low - k * beyond, reach.high + k * beyond};
+}
+
 Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
     : channels_(std::move(channels)),
       peaks_(channels_.size()),
@@ -46,7 +63,70 @@ bool Peaks::watches_loads() const {
   return std::any_of(channels_.begin(), channels_.end(), [](const Channel& c) { return c.follows_loads(); });
 }
 
+void Peaks::find_rows(const System& system) {
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const int law = std::max(channels_[c].deflection_of(), channels_[c].force_of());
+    if (law < 0) continue;
+    const ScalarTerm& term = system.scalars()[idx(law)];
+    const bool moves_alone =
+        term.phase_node >= 0 || term.varies;  // by more than known motions, of degree 2 in time
+    if (!moves_alone && (channels_[c].force_of() < 0 || !channels_[c].rate_needs_acceleration()))
+      watched_[c].row = term.z;
+  }
+}
+
+double Peaks::along(std::size_t c, const Vector& x, const Vector& x_dot) const {
+  double y = 0.0;
+  for (const Entry& e : channels_[c].z_row()) y += e.coeff * x[e.index];
+  for (const Entry& e : channels_[c].v_row()) y += e.coeff * x_dot[e.index];
+  return y;
+}
+
+bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
+                     const double* beyond_cubic) const {
+  const Watched& w = watched_[c];
+  const double h = to.state.t - from.state.t;
+  Interval reach;
+  double beyond = 0.0;
+  if (w.two_entries) {
+    reach = cubic_reach(w.last, w.sum(from.state.v), w.sum(to.state.z), w.sum(to.state.v), h);
+    beyond = std::abs(w.first.coeff) * beyond_cubic[w.first.index] +
+             std::abs(w.second.coeff) * beyond_cubic[w.second.index];
+  } else if (channels_[c].is_linear()) {
+    // Its rate reads the acceleration, which is the rate's rate.
+    reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
+                        along(c, to.state.v, to.state.a), h);
+    for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
+    for (const Entry& e : channels_[c].v_row())
+      beyond += std::abs(e.coeff) * beyond_cubic[to.state.z.size() + e.index];
+  } else if (!w.row.empty()) {
+    for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
+    if (const int law = channels_[c].deflection_of(); law >= 0) {
+      const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
+      reach = cubic_reach(a.x, a.x_dot, b.x, b.x_dot, h);
+    } else {
+      const auto force = force_reach(*motion_, channels_[c].force_of(), from, to, beyond);
+      if (!force) return true;
+      reach = *force;
+      beyond = 0.0;
+    }
+  } else {
+    return true;
+  }
+  return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
+}
+
+bool Peaks::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
+  passed_over_ = false;
+  if (!inside_steps_) return false;
+  for (std::size_t c = 0; c < channels_.size(); ++c)
+    if (may_pass(c, from, to, beyond_cubic)) return true;
+  passed_over_ = true;
+  return false;
+}
+
 void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
+  find_rows(assembler.system());
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double y = value(c, assembler, point);
     peaks_[c] = {{y, point.state.t, y, point.state.t}};
@@ -76,7 +156,8 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
     Peak& p = peaks_[c];
     p.note(y, to.state.t);
     const double near = kNear * (p.max - p.min);
-    if (inside_steps_ && length > kShort * longest_ && (higher > p.max - near || lower < p.min + near))
+    if (inside_steps_ && !passed_over_ && length > kShort * longest_ &&
+        (higher > p.max - near || lower < p.min + near))
       look_inside(c, assembler, from, to, before, y);
     set_bounds(c);
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// Largest and smallest value of channels over a run, with their times.
 #include <drev/core/channel.hpp>
+#include <drev/core/law/law_piece.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/peak.hpp>
 
@@ -9,7 +10,13 @@
 namespace drev {
 
 class Assembler;
+class System;
 struct EvaluatedState;
+
+/// The interval that the force of a law (of System::scalars()) stays in over a step of exact propagation in which its
+/// deflection lies by at most `beyond` off the cubic through both ends; none where it is not known to be y_0 + k x.
+std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
+                                    const EvaluatedState& to, double beyond);
 
 class Peaks final : public Observer {
  public:
@@ -20,6 +27,8 @@ class Peaks final : public Observer {
 
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   void restart(const Assembler& assembler, const EvaluatedState& point) override;
   bool needs_acceleration() const override;
@@ -45,16 +54,24 @@ class Peaks final : public Observer {
       return first.coeff * x[first.index] + second.coeff * x[second.index];
     }
     double last = 0.0;
+    std::vector<Entry> row;        ///< of the unknowns that a channel of a law follows
     double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
   };
   void set_bounds(std::size_t c);
+  void find_rows(const System& system);
+  /// Of a linear channel: its row over the unknowns times x, and its row over their rates times x_dot.
+  double along(std::size_t c, const Vector& x, const Vector& x_dot) const;
+  /// Whether the value may pass its peaks within a step.
+  bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
+                const double* beyond_cubic) const;
 
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
   std::vector<Watched> watched_;
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
-  double longest_ = 0.0;  // step so far [s]
+  double longest_ = 0.0;      // step so far [s]
+  bool passed_over_ = false;  // no value passes its peaks inside this step
 };
 
 }  // namespace drev

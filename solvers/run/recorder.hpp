@@ -30,6 +30,9 @@ class Recorder final : public Observer {
   void restart(const Assembler& assembler, const EvaluatedState& point) override {
     values_.restart(assembler, point);
   }
+  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override {
+    return values_.watches_loads();
+  }
   bool needs_acceleration() const override { return values_.needs_acceleration(); }
   bool watches_loads() const override { return values_.watches_loads(); }
 

@@ -27,6 +27,7 @@ class StiffTwists final : public Observer {
   bool due();
   void look(const Assembler& assembler, const EvaluatedState& point);
   bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override { return false; }
   /// Adds a warning for the element of which rounding leaves least, and the error of each of which it leaves less than
   /// the digits printed.
   void warn(RunSummary& summary) const;

@@ -1,4 +1,4 @@
-#include <drev/solvers/stepping/butcher_tableau.hpp>
+#include "solvers/stepping/butcher_tableau.hpp"
 
 #include <cmath>
 #include <vector>

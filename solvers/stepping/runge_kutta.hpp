@@ -1,7 +1,6 @@
 #pragma once
 /// One step of a Runge-Kutta method, explicit or diagonally implicit (butcher_tableau.hpp).
-#include <drev/solvers/stepping/butcher_tableau.hpp>
-
+#include "solvers/stepping/butcher_tableau.hpp"
 #include "solvers/stepping/stepper.hpp"
 
 namespace drev {

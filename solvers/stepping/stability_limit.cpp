@@ -2,14 +2,14 @@
 
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
-#include <drev/solvers/stepping/butcher_tableau.hpp>
 
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/stepping/butcher_tableau.hpp"
 
 namespace drev {
 

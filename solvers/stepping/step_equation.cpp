@@ -211,6 +211,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
   const int phase_passes = phases_ && scheme_.order() > 2 ? kPhasePasses : 1;
   lambda_start_ = lambda_;
   const double kappa_z = scheme_.beta * problem.h * problem.h, kappa_v = scheme_.gamma * problem.h;
+  const double rate = kappa_v / kappa_z;
 
   NewtonResult result;
   double change = 0.0;  // of z since the loads were evaluated
@@ -255,10 +256,10 @@ NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
     const bool phases_left = pass < phase_passes;
     // A motion that is not finite ends the passes too.
     if (!phases_left && (!system_.loads_depend_on_motion() ||
-                         !(assembler_.load_steepness() * change > options_.load_tolerance * scale)))
+                         !(assembler_.load_steepness(rate) * change > options_.load_tolerance * scale)))
       break;
     clock_.enter(RunSection::loads);
-    const bool known_steepness = std::isfinite(assembler_.load_steepness());
+    const bool known_steepness = std::isfinite(assembler_.load_steepness(rate));
     if (!known_steepness) p_last_ = to.p;
     assembler_.external(to.state.z, to.state.v, to.p);
     if (phases_left) {

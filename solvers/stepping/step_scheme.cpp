@@ -1,11 +1,12 @@
 #include <drev/core/error.hpp>
-#include <drev/solvers/stepping/butcher_tableau.hpp>
 #include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+
+#include "solvers/stepping/butcher_tableau.hpp"
 
 namespace drev {
 

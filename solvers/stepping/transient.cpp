@@ -1,6 +1,5 @@
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/run/observer.hpp>
-#include <drev/solvers/stepping/butcher_tableau.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/run/stops.hpp"
+#include "solvers/stepping/butcher_tableau.hpp"
 #include "solvers/stepping/coarse_steps.hpp"
 #include "solvers/stepping/halved_step.hpp"
 #include "solvers/stepping/located_step.hpp"

@@ -1,11 +1,12 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
-#include <drev/solvers/strength/iacs_m68.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "solvers/strength/iacs_m68.hpp"
 
 namespace drev {
 

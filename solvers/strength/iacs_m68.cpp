@@ -1,5 +1,6 @@
+#include "solvers/strength/iacs_m68.hpp"
+
 #include <drev/core/units.hpp>
-#include <drev/solvers/strength/iacs_m68.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 
 #include <cmath>

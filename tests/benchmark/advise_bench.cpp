@@ -4,12 +4,12 @@
 //   build/release/bin/bench_advise
 //   build/release/bin/bench_advise "[rungs]"    with every model tried
 #include <drev/advice/advise.hpp>
-#include <drev/advice/recipe.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 
 #include <algorithm>
 #include <cstdio>
 
+#include "advice/recipe.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/advice_models.hpp"
 

@@ -70,8 +70,8 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
 }
 
 TEST_CASE("Mesh laws under exact propagation: stiffness by phase and damping, beside constant and none") {
-  // The camshaft's gear drive, 2 s at a tolerance of 1e-8. Errors of the angles at 0.05 s over the largest, beside
-  // dormand_prince at 1e-12, which shares no series.
+  // The camshaft's gear drive, 2 s at a tolerance of 1e-8. Errors of the angles at 2 ms over the largest, beside
+  // dormand_prince at 1e-11, which shares no series and takes seconds for that.
   std::printf("| mesh | time [s] | steps | ratio | error |\n|---|---|---|---|---|\n");
   struct Row {
     const char* name;
@@ -132,8 +132,8 @@ TEST_CASE("Mesh laws under exact propagation: stiffness by phase and damping, be
     CHECK(run.ok());
     if (constant == 0.0) constant = seconds;
     State at_tolerance = State::initial(system), other = at_tolerance;
-    propagate(system, {.tolerance = 1e-8, .t_end = 0.05}, at_tolerance);
-    simulate(system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-12, .t_end = 0.05}, other);
+    propagate(system, {.tolerance = 1e-8, .t_end = 0.002}, at_tolerance);
+    simulate(system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-11, .t_end = 0.002}, other);
     std::printf("| %s | %.3f | %ld | %.2f | %.1e |\n", row.name, seconds, run.steps, seconds / constant,
                 (at_tolerance.z - other.z).lpNorm<Eigen::Infinity>() / other.z.lpNorm<Eigen::Infinity>());
   }

@@ -1,6 +1,8 @@
 // Ten modes of a whole shaft as one sparse system, by drev and by SciPy's eigsh (ARPACK and SuperLU) on the same matrices,
 // and what chains of segments make of them. Processor time and peak memory.
-//   build/release/bin/bench_shafts
+//   build/release/bin/bench_shafts                     up to 1.2e6 unknowns, SciPy's up to 3e5
+//   build/release/bin/bench_shafts "Large:*"           1.2e6 with SciPy's (minutes)
+//   build/release/bin/bench_shafts "Larger:*"          3.0e6 (4 GB)
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/shafts/contour_shaft.hpp>
 #include <drev/solvers/modes/modes.hpp>
@@ -35,10 +37,10 @@ double peak_memory(bool reset) {
   return 0.0;
 }
 
-/// Six throws of a plain stepped shaft: necks of 160 mm, journals and collars of 240 mm.
-ShaftContour stepped_shaft() {
+/// Throws of a plain stepped shaft: necks of 160 mm, journals and collars of 240 mm.
+ShaftContour stepped_shaft(int throws = 6) {
   ShaftContour contour{.shear_modulus = 8e10, .density = 7850.0};
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < throws; ++i)
     for (const auto& [length, diameter] : {std::pair{0.06, 0.16}, {0.12, 0.24}, {0.06, 0.16}, {0.1, 0.22}})
       contour.stations.push_back(
           {.length = length,
@@ -66,7 +68,48 @@ void write_raw(std::ofstream& file, const T* values, long count) {
   file.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(sizeof(T)) * count);
 }
 
+/// A row of the table; SciPy's where a Python is named.
+std::vector<double> print_whole(const ShaftContour& contour, int halvings, const std::string& python) {
+  peak_memory(true);
+  const double start = shaft_seconds();
+  const WholeShaft shaft = whole_shaft(contour, halvings);
+  const double assembled = shaft_seconds();
+  const WholeShaftModes modes = whole_shaft_modes(shaft, kModes);
+  const double solved = shaft_seconds();
+  std::printf("%8d; %.2f + %.2f s, %.0f MB, %d solves", modes.unknowns, assembled - start, solved - assembled,
+              peak_memory(false), modes.solves);
+  std::fflush(stdout);
+  if (!python.empty()) {
+    const ScratchFolder folder;
+    {
+      const SparseMatrix& k = shaft.stiffness;
+      std::ofstream file(folder.text() + "/shaft.bin", std::ios::binary);
+      const long size[2] = {k.rows(), k.nonZeros()};
+      write_raw(file, size, 2);
+      write_raw(file, k.outerIndexPtr(), k.rows() + 1);
+      write_raw(file, k.innerIndexPtr(), k.nonZeros());
+      write_raw(file, k.valuePtr(), k.nonZeros());
+      write_raw(file, shaft.mass.data(), k.nonZeros());
+    }
+    std::istringstream text(output_of(python + peer_file("shaft_modes.py") + folder.text() + "/shaft.bin " +
+                                          to_text(whole_shaft_shift(shaft)) + " " + std::to_string(kModes),
+                                      folder));
+    double seconds = 0.0, memory = 0.0, off = 0.0, f = 0.0;
+    text >> seconds >> memory;
+    for (std::size_t i = 0; i < modes.frequency_Hz.size() && text >> f; ++i)
+      off = std::max(off, std::abs(f / modes.frequency_Hz[i] - 1.0));
+    std::printf("; %.2f s, %.0f MB; %.1e", seconds, memory, off);
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+  return modes.frequency_Hz;
+}
+
 }  // namespace
+
+TEST_CASE("Large: modes of a whole shaft", "[.]") { print_whole(stepped_shaft(), 3, benchmark::python()); }
+
+TEST_CASE("Larger: modes of a whole shaft", "[.]") { print_whole(stepped_shaft(15), 3, ""); }
 
 TEST_CASE("Modes of a whole shaft") {
   const std::string python = benchmark::python();
@@ -75,40 +118,9 @@ TEST_CASE("Modes of a whole shaft") {
   std::printf(
       "unknowns; assembly, factor and ten modes [s], peak memory [MB]; SciPy's the same; largest "
       "difference\n");
-  for (int halvings = 1; halvings <= 3; ++halvings) {
-    peak_memory(true);
-    const double start = shaft_seconds();
-    const WholeShaft shaft = whole_shaft(contour, halvings);
-    const double assembled = shaft_seconds();
-    const WholeShaftModes modes = whole_shaft_modes(shaft, kModes);
-    const double solved = shaft_seconds();
-    std::printf("%8d; %.2f + %.2f s, %.0f MB, %d solves", modes.unknowns, assembled - start,
-                solved - assembled, peak_memory(false), modes.solves);
-    whole_Hz = modes.frequency_Hz;
-    if (!python.empty() && halvings <= 2) {  // SuperLU takes minutes with the third
-      const ScratchFolder folder;
-      {
-        const SparseMatrix& k = shaft.stiffness;
-        std::ofstream file(folder.text() + "/shaft.bin", std::ios::binary);
-        const long size[2] = {k.rows(), k.nonZeros()};
-        write_raw(file, size, 2);
-        write_raw(file, k.outerIndexPtr(), k.rows() + 1);
-        write_raw(file, k.innerIndexPtr(), k.nonZeros());
-        write_raw(file, k.valuePtr(), k.nonZeros());
-        write_raw(file, shaft.mass.data(), k.nonZeros());
-      }
-      std::istringstream text(output_of(python + peer_file("shaft_modes.py") + folder.text() + "/shaft.bin " +
-                                            to_text(whole_shaft_shift(shaft)) + " " + std::to_string(kModes),
-                                        folder));
-      double seconds = 0.0, memory = 0.0, off = 0.0, f = 0.0;
-      text >> seconds >> memory;
-      for (std::size_t i = 0; i < whole_Hz.size() && text >> f; ++i)
-        off = std::max(off, std::abs(f / whole_Hz[i] - 1.0));
-      std::printf("; %.2f s, %.0f MB; %.1e", seconds, memory, off);
-    }
-    std::printf("\n");
-    std::fflush(stdout);
-  }
+  for (int halvings = 1; halvings <= 3; ++halvings)
+    whole_Hz =
+        print_whole(contour, halvings, halvings <= 2 ? python : "");  // SuperLU takes minutes with the third
   std::printf("whole shaft [Hz]:");
   for (const double f : whole_Hz) std::printf(" %.2f", f);
   std::printf("\n");

@@ -4,8 +4,8 @@
 # --hostile: with 200 names that are attacks (hostile_model.sh, hostile_probe.html), with the page's policy and
 # without it, alone and compared, and printed. --hostile-break: with a page that takes them for markup.
 #
-# --sweep: the reports of a sweep, of one with branches and of a class calculation of the models in that folder
-# (sweep_probe.html, branches_probe.html).
+# --sweep: the reports of a sweep, of one with branches and of a class calculation of the models in that folder, and of a
+# study of many variants (sweep_probe.html, branches_probe.html, variants_probe.html).
 # Checked: no error, no request, all charts with the right number of points, none of which loses a peak, zoom
 # by mouse, wheel, keys and buttons, choice of a mode, themes, paper; sizes below 5 MB; a comparison; a PDF.
 # Prints how long the page took until it could be used, and checks nothing of that.
@@ -45,7 +45,7 @@ probe() {
   sed "/<meta charset/r $here/collect.html" "$1" >"$page"
   sed "s|^<script>|<script nonce=\"$nonce\">|" "$here/${3:-probe.html}" >>"$page"
   local budget=60000  # ms of the page's time; what waits for pictures polls
-  [[ ${3:-} != sweep_probe.html && ${3:-} != branches_probe.html ]] || budget=1200000
+  [[ ${3:-} != sweep_probe.html && ${3:-} != branches_probe.html && ${3:-} != variants_probe.html ]] || budget=1200000
   headless --window-size=1280,1000 --virtual-time-budget=$budget --dump-dom "file://$page" \
     >"$folder/dom.html" 2>"$log" || {
     fail "$2: the browser ended with an error"
@@ -93,6 +93,10 @@ if [ "${2:-}" = --sweep ]; then
   probe class.html class sweep_probe.html
   "$drev" sweep "$3/gear_pair/gear_pair.toml" --speeds 1500:100:2500 --report branches.html --quiet
   probe branches.html branches branches_probe.html
+  "$drev" run gear_drive --vary 'backlash_mm=uniform(0.1,0.2)' --vary 'engine_rpm=normal(750,10)' \
+    --sample saltelli:128 --step 2e-5 --duration 0.02 --out table --report variants.html --quiet
+  below_5_MB variants.html
+  probe variants.html variants variants_probe.html
   exit $failed
 fi
 "$drev" run camshaft --every 5e-6 --report main.html --quiet  # a million samples

@@ -41,7 +41,7 @@ GearDrawing random_drawing(Random& r) {
   g.module = r.spoiled(std::pow(10.0, r.between(-3.3, -1.5)));
   g.pressure_angle = r.spoiled(r.chance(0.6) ? 0.3490658503988659 : r.between(0.24, 0.45));
   g.helix_angle = r.chance(0.7) ? 0.0 : r.spoiled(r.between(0.0, 0.6));
-  g.internal = r.chance(0.03);
+  g.internal = r.chance(0.15);
   if (r.chance(0.2)) g.rack = {r.between(0.7, 1.3), r.between(1.0, 1.6), r.spoiled(r.between(0.0, 0.45))};
   for (GearData* gear : {&g.gear_1, &g.gear_2}) {
     gear->teeth = r.chance(0.01) ? r.whole(-3, 3000) : r.whole(10, 150);
@@ -51,8 +51,12 @@ GearDrawing random_drawing(Random& r) {
     if (r.chance(0.2)) gear->tip_alteration = r.between(-0.4, 0.1);
     if (r.chance(0.2)) gear->tip_chamfer = r.spoiled(g.module * r.between(0.0, 0.2));
     gear->width = r.spoiled(g.module * r.between(2.0, 25.0));
-    if (r.chance(0.97)) gear->bore_diameter = r.spoiled(pitch * r.between(0.02, 0.98));
-    if (r.chance(0.2)) {
+    const bool ring = g.internal && gear == &g.gear_2 && r.chance(0.97);
+    if (ring) gear->teeth = g.gear_1.teeth + r.whole(3, 120);
+    if (ring) gear->tip_alteration = r.between(-0.4, 0.0);
+    if (ring) gear->outer_diameter = r.spoiled(g.module * (gear->teeth + 2.5 + r.between(0.2, 30.0)));
+    if (!ring && r.chance(0.97)) gear->bore_diameter = r.spoiled(pitch * r.between(0.02, 0.98));
+    if (!ring && r.chance(0.2)) {
       gear->hub_diameter = r.spoiled(gear->bore_diameter * r.between(1.0, 1.5));
       gear->rim_inner_diameter = r.spoiled(pitch * r.between(0.4, 0.95));
       gear->web_thickness = r.spoiled(gear->width * r.between(0.01, 1.1));
@@ -62,7 +66,8 @@ GearDrawing random_drawing(Random& r) {
   }
   if (r.chance(0.3))
     g.centre_distance =
-        r.spoiled(0.5 * g.module * (g.gear_1.teeth + g.gear_2.teeth) / std::cos(g.helix_angle) +
+        r.spoiled(0.5 * g.module * std::abs(g.gear_2.teeth + (g.internal ? -1 : 1) * g.gear_1.teeth) /
+                      std::cos(g.helix_angle) +
                   g.module * r.between(-0.5, 1.0));
   for (TipRelief& relief : d.cycle.tip_relief)
     if (r.chance(0.2))
@@ -74,6 +79,8 @@ GearDrawing random_drawing(Random& r) {
   d.cycle.points = r.whole(4, 24);
   d.cycle.corner_contact = r.chance(0.7);
   d.cycle.windup = r.chance(0.8);
+  if (r.chance(0.1))
+    for (int i = 0; i < 3; ++i) d.loads.push_back(r.spoiled(d.cycle.load * std::pow(3.0, i - 1)));
   return d;
 }
 
@@ -85,6 +92,7 @@ std::string fault_of(const GearDrawing& drawing, const GearMeshData& data) {
     if (!(value > 0.0) || !std::isfinite(value)) return "a figure is not positive";
   for (const double value : {e.mean, e.tangent_mean, e.error_mean, e.error_peak_to_peak})
     if (!(value >= 0.0) || !std::isfinite(value)) return "an error is not a number";
+  if (data.load_law && !(data.load_law->error.most >= 0.0)) return "a law over the load without an error";
   if (!(e.mean < f.mean)) return "an error as large as the figure";
   for (const MeshPoint& p : data.cycle.points())
     if (!(p.tangent >= 0.95 * p.secant) && drawing.cycle.tip_relief[0].depth == 0.0 &&

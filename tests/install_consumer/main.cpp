@@ -2,8 +2,7 @@
 // omega^2 = k (1 / J1 + 1 / J2), here 1200 (1/2 + 1/3) = 1000 (rad/s)^2. Exit status 0: they agree.
 #include <drev/core/model.hpp>
 #include <drev/core/system.hpp>
-#include <drev/elements/inertia.hpp>
-#include <drev/elements/shaft_spring.hpp>
+#include <drev/elements/catalogue.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <cmath>

@@ -15,14 +15,11 @@ struct RubberLaw {
   double k = kNotGiven;  ///< N m/rad, > 0
   double k3 = 0.0;       ///< N m/rad^3, >= 0
   double c = 0.0;        ///< N m s/rad, >= 0
-  ScalarResponse operator()(const ScalarInput& in) const {
-    const double x = in.x, x2 = x * x;
-    return {.y = (k + k3 * x2) * x + c * in.x_dot,
-            .dy_dx = k + 3 * k3 * x2,
-            .dy_dx_dot = c,
-            .stored_energy = (k / 2 + k3 * x2 / 4) * x2,
-            .dissipated_power = c * in.x_dot * in.x_dot};
+  template <class T>
+  T force(const T& x, const T& x_dot) const {
+    return (k + k3 * x * x) * x + c * x_dot;
   }
+  double stored_energy(double x) const { return (k / 2 + k3 * x * x / 4) * x * x; }
 };
 
 class RingDamper final : public Element {

@@ -1,6 +1,6 @@
 // Registers one type of its own, then one that drev has: neither may stay.
 #include <drev/app/model_file/plugin.hpp>
-#include <drev/elements/inertia.hpp>
+#include <drev/elements/catalogue.hpp>
 
 DREV_PLUGIN() {
   using namespace drev::app;

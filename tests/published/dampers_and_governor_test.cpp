@@ -91,39 +91,119 @@ TEST_CASE("Tuned viscous damper: fixed points, Brock's damping, minimax", "[trai
   }
 }
 
+namespace {
+
+/// J 10 and 4 with a coupling between; torques of order 2 (and more) on the first and of a square law on the second.
+System two_masses_coupled(ElasticCoupling::Params coupling, double speed, std::vector<Harmonic> torque) {
+  Model m("two masses");
+  m.add_node("a"), m.add_node("b");
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 10.0});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 4.0});
+  m.add<ElasticCoupling>("coupling", {"a", "b"}, std::move(coupling));
+  m.add<EngineOrderTorque>("torque", {"a"}, {.harmonics = std::move(torque), .twist_feedback = false});
+  m.set_reference("a", constant_speed(speed));
+  return m.build();
+}
+
+}  // namespace
+
 TEST_CASE("Coupling whose stiffness and loss follow the amplitude: equivalent linear solution",
           "[train_elements]") {
-  const auto amplitude = [](double omega, double assumed, double& torque) {
-    Model m("two masses");
-    m.add_node("a"), m.add_node("b");
-    m.add<Inertia>("J_a", {"a"}, {.inertia = 10.0});
-    m.add<Inertia>("J_b", {"b"}, {.inertia = 4.0});
-    m.add<ElasticCoupling>("coupling", {"a", "b"},
-                           {.material = {.stiffness = 2e5 * (1.0 - 20.0 * assumed),
-                                         .loss_factor = 0.05 + 30.0 * assumed,
-                                         .lowest_frequency = 30,
-                                         .highest_frequency = 60}});
-    m.add<EngineOrderTorque>("torque", {"a"}, {.harmonics = {{2.0, 100.0, 0.4}}, .twist_feedback = false});
-    m.set_reference("a", constant_speed(0.5 * omega));
-    const LinearSweep sweep =
-        sweep_linear(m.build(), {.speeds = {0.5 * omega}, .orders = {2.0}, .refine = false, .threads = 1});
-    torque = std::abs(section_of(sweep, "coupling.torque_Nm").amplitude(0, 0));
-    return std::abs(section_of(sweep, "coupling.torque_Nm").twist(0, 0));
+  // k = 2e5 (1 - 20 A), eta = 0.05 + 30 A.
+  const ElasticCoupling::Params coupling{
+      .material = {.by_amplitude = {{0.0, 3e-3}, {2e5, 2e5 * 0.94}, {0.05, 0.14}},
+                   .lowest_frequency = 30,
+                   .highest_frequency = 60}};
+  const double w_0 = 264.575131106459;
+  std::vector<double> speeds;
+  for (const double factor : {.8, .9, .95, .98, 1.0, 1.1}) speeds.push_back(0.5 * factor * w_0);
+  const System system = two_masses_coupled(coupling, 0.5 * w_0, {{2.0, 100.0, 0.4}});
+  const LinearSweep sweep =
+      sweep_linear(system, {.speeds = speeds, .orders = {2.0}, .refine = false, .threads = 1});
+  const SweepSection& section = section_of(sweep, "coupling.torque_Nm");
+  const std::vector<double> twists{3.997837797e-4, 7.560077332e-4, 1.273799191e-3,
+                                   1.529658641e-3, 1.482632928e-3, 6.148384729e-4},
+      torques{79.469718, 149.30815, 249.23369, 297.93265, 289.01513, 121.73975};
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    CHECK(std::abs(section.twist(0, Eigen::Index(i))) == Approx(twists[i]).epsilon(2e-9));
+    CHECK(std::abs(section.amplitude(0, Eigen::Index(i))) == Approx(torques[i]).epsilon(5e-8));
+    CHECK(sweep.input_power[Eigen::Index(i)] ==
+          Approx(sweep.dissipated_power[Eigen::Index(i)]).epsilon(1e-9));
+  }
+  // Two orders: the amplitude is the root of the sum of squares; a coupling that stands there is the same.
+  const std::vector<Harmonic> torque{{2.0, 60.0, 0.4}, {2.5, 30.0, 0.0}};
+  const LinearSweep both = sweep_linear(two_masses_coupled(coupling, 0.5 * w_0, torque),
+                                        {.speeds = {0.45 * w_0}, .orders = {2.0, 2.5}, .refine = false});
+  const SweepSection& follows = section_of(both, "coupling.torque_Nm");
+  const double a = std::hypot(std::abs(follows.twist(0, 0)), std::abs(follows.twist(1, 0)));
+  const ElasticCoupling::Params fixed{.material = {.stiffness = 2e5 * (1.0 - 20.0 * a),
+                                                   .loss_factor = 0.05 + 30.0 * a,
+                                                   .lowest_frequency = 30,
+                                                   .highest_frequency = 60}};
+  const LinearSweep same = sweep_linear(two_masses_coupled(fixed, 0.5 * w_0, torque),
+                                        {.speeds = {0.45 * w_0}, .orders = {2.0, 2.5}, .refine = false});
+  for (const Eigen::Index k : {0, 1})
+    CHECK(std::abs(follows.twist(k, 0)) ==
+          Approx(std::abs(section_of(same, "coupling.torque_Nm").twist(k, 0))).epsilon(1e-10));
+  CHECK(a > 1e-4);
+  // In time it stands at the amplitude that it is given.
+  const ViscoelasticStiffness at(ViscoelasticStiffness::Params{.by_amplitude = coupling.material.by_amplitude,
+                                                               .at_amplitude = 1.5e-3,
+                                                               .lowest_frequency = 30,
+                                                               .highest_frequency = 60});
+  CHECK(at.at(250.0).real() == Approx(2e5 * 0.97));
+  CHECK(at.at(250.0).imag() == Approx(2e5 * 0.97 * 0.095));
+}
+
+TEST_CASE("Couplings whose stiffness follows mean torque and amplitude, two of them: each is what it carries",
+          "[train_elements]") {
+  // The propeller takes Q (w/w_0)^2 through both couplings; the engine's mean torque is balanced at the first node.
+  const ViscoelasticStiffness::Params progressive{
+      .by_mean_torque = {{0.0, 500.0, 1000.0}, {1e5, 1.5e5, 2.5e5}, {0.10, 0.12, 0.12}},
+      .by_amplitude = {{0.0, 4e-3}, {1e5, 0.8e5}, {0.10, 0.15}},
+      .lowest_frequency = 15,
+      .highest_frequency = 60};
+  const auto build = [](const ViscoelasticStiffness::Params& first,
+                        const ViscoelasticStiffness::Params& second, double speed) {
+    Model m("plant");
+    for (const char* n : {"engine", "gearbox", "propeller"}) m.add_node(n);
+    m.add<Inertia>("J_engine", {"engine"}, {.inertia = 10.0});
+    m.add<Inertia>("J_gearbox", {"gearbox"}, {.inertia = 2.0});
+    m.add<Inertia>("J_propeller", {"propeller"}, {.inertia = 6.0});
+    m.add<ElasticCoupling>("one", {"engine", "gearbox"}, {.material = first});
+    m.add<ElasticCoupling>("two", {"gearbox", "propeller"}, {.material = second});
+    m.add<EngineOrderTorque>("gas", {"engine"}, {.harmonics = {{1.5, 150.0, 0.0}}, .twist_feedback = false});
+    m.add<Propeller>("water", {"propeller"}, {.rated_torque = 900.0, .rated_speed = 150.0});
+    m.set_reference("engine", constant_speed(speed));
+    return m.build();
   };
-  for (const auto& [factor, expected, torque] : {std::tuple{.8, 3.997837797e-4, 79.469718},
-                                                 {.9, 7.560077332e-4, 149.30815},
-                                                 {.95, 1.273799191e-3, 249.23369},
-                                                 {.98, 1.529658641e-3, 297.93265},
-                                                 {1.0, 1.482632928e-3, 289.01513},
-                                                 {1.1, 6.148384729e-4, 121.73975}}) {
-    // Bisection: the response falls behind what is assumed once.
-    double low = 0.0, high = 3e-3, got = 0.0;
-    for (int i = 0; i < 40; ++i) {
-      const double middle = 0.5 * (low + high);
-      (amplitude(factor * 264.575131106459, middle, got) > middle ? low : high) = middle;
+  const std::vector<double> speeds{80.0, 110.0, 150.0};
+  const LinearSweep sweep =
+      sweep_linear(build(progressive, progressive, 150.0),
+                   {.speeds = speeds, .orders = {1.5}, .refine = false, .threads = 1, .balance = "engine"});
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const auto at = Eigen::Index(i);
+    INFO(speeds[i]);
+    const double torque = 900.0 * speeds[i] * speeds[i] / 22500.0;  // Q (w/w_0)^2
+    const double part = torque < 500.0 ? torque / 500.0 : torque / 500.0 - 1.0;
+    const double k_m = torque < 500.0 ? 1e5 + 0.5e5 * part : 1.5e5 + 1e5 * part,
+                 eta_m = torque < 500.0 ? 0.10 + 0.02 * part : 0.12;
+    const auto standing = [&](const std::string& name) {
+      const double a = std::abs(section_of(sweep, name).twist(0, at));
+      CHECK(std::abs(section_of(sweep, name).mean[at]) == Approx(torque).epsilon(1e-9));
+      return ViscoelasticStiffness::Params{.stiffness = k_m * (1.0 - 0.2 * a / 4e-3),
+                                           .loss_factor = eta_m * (1.0 + 0.5 * a / 4e-3),
+                                           .lowest_frequency = 15,
+                                           .highest_frequency = 60};
+    };
+    const LinearSweep same = sweep_linear(
+        build(standing("one.torque_Nm"), standing("two.torque_Nm"), 150.0),
+        {.speeds = {speeds[i]}, .orders = {1.5}, .refine = false, .threads = 1, .balance = "engine"});
+    for (const char* name : {"one.torque_Nm", "two.torque_Nm"}) {
+      CHECK(std::abs(section_of(same, name).amplitude(0, 0)) ==
+            Approx(std::abs(section_of(sweep, name).amplitude(0, at))).epsilon(1e-9));
+      CHECK(section_of(same, name).heat[0] == Approx(section_of(sweep, name).heat[at]).epsilon(1e-9));
     }
-    CHECK(low == Approx(expected).epsilon(2e-9));
-    CHECK(got == Approx(torque).epsilon(5e-8));
   }
 }
 

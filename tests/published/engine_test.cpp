@@ -3,14 +3,9 @@
 /// and crank, oscillating mass; shafts with a loss factor of 0.035. Expected: two separate programs (exact Fourier
 /// integrals in numpy; Holzer state vectors and midpoint integration in C++), which agree to 2e-8.
 #include <drev/app/model_file/model_file.hpp>
-#include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
-#include <drev/solvers/run/recorder.hpp>
-
-#include <cmath>
 
 #include "tests/catch.hpp"
 #include "tests/published/six_cylinder_train.hpp"
@@ -52,51 +47,6 @@ TEST_CASE("Six cylinders by their pressure: half range of the flywheel shaft, bo
   const LinearSweep mirrored = sweep_of("1-5-3-6-2-4");
   for (std::size_t s = 0; s < speeds.size(); ++s)
     CHECK(shaft_of(mirrored, 8).half_range()[Eigen::Index(s)] == Approx(other[s]).epsilon(1e-7));
-}
-
-TEST_CASE("Each cylinder misfiring: sweep and settled run in time agree", "[engine]") {
-  const double speed = rpm(2000.0), cycle = 2.0 * kTwoPi / speed, settled = 2.0 * cycle;
-  std::vector<double> orders;
-  for (int k = 1; k <= 1200; ++k) orders.push_back(0.5 * k);  // beyond all natural frequencies
-  std::vector<double> half_order;
-  // Damped enough to settle within two cycles: by exp(-20).
-  for (int misfiring = 0; misfiring <= 6; ++misfiring) {
-    EngineCylinders::Params engine = diesel("1-4-2-6-3-5", misfiring);
-    // A spline without the curve's jump: its orders fall with their fourth power.
-    engine.gas.interpolation = Interpolation::cubic;
-    engine.gas.angle.pop_back(), engine.gas.pressure.pop_back();
-    engine.twist_feedback = false;
-    double mean = 0.0;
-    const EngineCylinders alone(engine);
-    for (int k = 0; k < 6; ++k) mean += alone.mean_torque(k, speed);
-    Model m = train(0.0, speed, engine, 0.3);
-    m.add<EngineOrderTorque>("brake", {"n8"}, {.mean = -mean});
-    m.add<AbsoluteDamper>("grid", {"n8"}, {.damping = 500.0});
-    const System system = m.build();
-    const LinearSweep sweep =
-        sweep_linear(system, {.speeds = {speed}, .orders = orders, .refine = false, .threads = 1});
-    const SweepSection& shaft = shaft_of(sweep, 8);
-    const double half_range = shaft.half_range()[0];
-    half_order.push_back(std::abs(shaft.amplitude(0, 0)));
-    CHECK(sweep.input_power[0] == Approx(sweep.dissipated_power[0]).epsilon(1e-11));
-
-    if (misfiring == 0) continue;
-    Recorder recorder(system, {"shaft_8.torque_Nm"}, cycle / 144.0);
-    const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = settled + cycle}, {&recorder});
-    CHECK(run.ok());
-    double worst = 0.0;
-    for (std::size_t i = 2 * 144; i <= 3 * 144; ++i) {
-      const double phi = speed * cycle / 144.0 * static_cast<double>(i);
-      double expected = shaft.mean[0];
-      for (std::size_t k = 0; k < orders.size(); ++k)
-        expected += (shaft.amplitude(Eigen::Index(k), 0) * std::polar(1.0, orders[k] * phi)).real();
-      worst = std::max(worst, std::abs(recorder.samples(0)[i] - expected));
-    }
-    INFO(misfiring << ": " << worst / half_range << ", steps " << run.steps);
-    CHECK(worst < 1e-6 * half_range);
-  }
-  // Order 0.5 is what a misfire is known by.
-  for (int k = 1; k <= 6; ++k) CHECK(half_order[std::size_t(k)] > 20.0 * half_order[0]);
 }
 
 TEST_CASE("The model file of the six-cylinder diesel: half range, and a cylinder that misfires", "[engine]") {

@@ -6,6 +6,7 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "tests/problems/engine_chain.hpp"
@@ -38,8 +39,10 @@ inline EngineCylinders::Params diesel(const std::string& order, int misfiring = 
           .misfiring_cylinder = misfiring};
 }
 
-/// eta: loss factor of the shafts; with 0 they are viscous, c = viscous k/(2 pi 216.6 Hz).
-inline Model train(double eta, double speed, EngineCylinders::Params engine, double viscous = 0.035) {
+/// eta: loss factor of the shafts; with 0 they are viscous, c = viscous k/(2 pi 216.6 Hz). engine: none leaves the
+/// cylinders' torque out.
+inline Model train(double eta, double speed, std::optional<EngineCylinders::Params> engine,
+                   double viscous = 0.035) {
   Model m("six cylinders");
   std::vector<NodeRef> throws;
   for (std::size_t i = 0; i < Chain::kInertias.size(); ++i) {
@@ -61,7 +64,7 @@ inline Model train(double eta, double speed, EngineCylinders::Params engine, dou
     m.add<AbsoluteDamper>("drag_" + node, {node}, {.damping = 2.0});
     throws.emplace_back(node);
   }
-  m.add("engine", throws, std::make_shared<const EngineCylinders>(std::move(engine)));
+  if (engine) m.add("engine", throws, std::make_shared<const EngineCylinders>(std::move(*engine)));
   m.set_reference("n8", constant_speed(speed));
   return m;
 }

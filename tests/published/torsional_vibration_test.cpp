@@ -8,6 +8,7 @@
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/models/modal_damping.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
@@ -19,6 +20,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/problems/engine_chain.hpp"
+#include "tests/problems/sampled_cylinder.hpp"
 #include "tests/problems/square_law.hpp"
 #include "tests/published/read_csv.hpp"
 
@@ -65,6 +67,26 @@ TEST_CASE("Six cylinders: natural frequencies", "[torsional_vibration]") {
   const std::vector<double> expected{216.583605,  592.740480,  984.922964,  1171.017408,
                                      1415.995017, 1660.043912, 1794.387580, 2993.473563};
   for (std::size_t i = 0; i < 8; ++i) CHECK(modes.frequency_Hz[i] == Approx(expected[i]).epsilon(2e-9));
+}
+
+TEST_CASE("Six cylinders as openTorsion's example samples them: its sums of amplitudes",
+          "[torsional_vibration]") {
+  // Expected: the example itself (openTorsion 0.3.2), whose torque is the stiffness times the twist.
+  const test::SampledCylinder::Curves curves = test::sampled_curves(test::measured_pressure());
+  LinearSweepOptions options{.sections = {"shaft_1.torque_Nm", "shaft_8.torque_Nm"}, .refine = false};
+  for (const double speed : {1000.0, 1500.0, 2000.0, 2175.0, 2500.0})
+    options.speeds.push_back(test::SampledCylinder::kSlower * rpm(speed));
+  const LinearSweep sweep = sweep_linear(test::sampled_engine(curves).build(), options);
+  const auto sum = [&](std::size_t section, Eigen::Index speed) {
+    return test::EngineChain::kStiffnesses[section == 0 ? 0 : 7] *
+           sweep.sections[section].twist.col(speed).cwiseAbs().sum();
+  };
+  CHECK(sum(1, 0) == Approx(2825.9136087512034).epsilon(1e-10));
+  CHECK(sum(1, 1) == Approx(4401.031632531314).epsilon(1e-10));
+  CHECK(sum(1, 2) == Approx(5959.822052802842).epsilon(1e-10));
+  CHECK(sum(1, 3) == Approx(9612.108595295269).epsilon(1e-10));
+  CHECK(sum(1, 4) == Approx(2458.647349935446).epsilon(1e-10));
+  CHECK(sum(0, 3) == Approx(872.4323352652184).epsilon(1e-10));
 }
 
 TEST_CASE("Six cylinders with a loss factor: every order of the flywheel shaft at five speeds",
@@ -170,22 +192,6 @@ class BladeTorque final : public Element, public Load {
   Params params_;
 };
 
-/// Damping between nodes, as a matrix.
-class DampingMatrix final : public Element {
- public:
-  struct Params {
-    Eigen::MatrixXd damping;
-  };
-  explicit DampingMatrix(Params params) : params_(std::move(params)) {}
-  std::string_view type() const override { return "damping matrix"; }
-  int min_nodes() const override { return static_cast<int>(params_.damping.rows()); }
-  void check(ParameterCheck& /*check*/) const override {}
-  void describe(int /*nodes*/, Terms& terms) const override { terms.damping = params_.damping; }
-
- private:
-  Params params_;
-};
-
 constexpr std::array<double, 6> kTurbineInertias{2.454e6, .826e6,  2.723e4,
                                                  2.612e2, 1.283e4, 1.509e4};  // lb in s^2
 
@@ -226,19 +232,7 @@ TEST_CASE("Steam turbine with double reduction: frequencies and forced vibration
   const std::vector<double> cycles{177.711152, 220.176283, 1282.584557, 2496.867189, 2883.382381};
   for (std::size_t i = 0; i < 5; ++i) CHECK(60.0 * modes.frequency_Hz[i] == Approx(cycles[i]).epsilon(5e-9));
 
-  // C = sum 2 zeta w (M x)(M x)' over the elastic modes, for x' M x = 1.
-  const std::vector<std::string> nodes{"propeller", "bull", "hp_gear", "hp_turbine", "lp_gear", "lp_turbine"};
-  const System undamped = m.build();
-  Eigen::MatrixXd modal = Eigen::MatrixXd::Zero(6, 6);
-  for (int j = 0; j < 5; ++j) {
-    Vector momentum(6);
-    for (int i = 0; i < 6; ++i)
-      momentum[i] = kTurbineInertias[std::size_t(i)] * kPoundInch *
-                    modes.shapes(undamped.node(nodes[std::size_t(i)]), j);
-    modal += 2.0 * 0.00398 * modes.omega(j) * momentum * momentum.transpose();
-  }
-  m.add("modal", {"propeller", "bull", "hp_gear", "hp_turbine", "lp_gear", "lp_turbine"},
-        std::make_shared<const DampingMatrix>(DampingMatrix::Params{modal}));
+  add_modal_damping(m, "modal", {.ratio = 0.00398});
   m.add<Dashpot>("drag_propeller", {"propeller"}, {.damping = kPoundInch * 3.86e6});
   m.add<Dashpot>("drag_hp", {"hp_turbine"}, {.damping = kPoundInch * 42.738});
   m.add<Dashpot>("drag_lp", {"lp_turbine"}, {.damping = kPoundInch * 108.77});

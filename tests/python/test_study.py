@@ -1,4 +1,6 @@
 """Many variants with a row of figures each: numbers of single runs and of the command, over threads, processes and Dask."""
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,43 @@ def test_dask_gives_the_same_rows():
         with distributed.Client(cluster) as client:
             study = drive.study(VALUES, client=client, **STEPS)
     same(study, drive.study(VALUES, **STEPS))
+
+
+def test_a_study_in_a_folder_is_durable_and_is_that_of_the_command(tmp_path, drev_command):
+    drive = drev.load("gear_drive")
+    words = [drev_command, "run", "gear_drive", "--table", "--step", "2e-5", "--duration", "0.01", "--out", tmp_path / "command"]
+    for name, values in {"backlash_mm": "0.1:0.02:0.3", "engine_rpm": "700,750"}.items():
+        words += ["--vary", f"{name}={values}"]
+    subprocess.run(words, check=True, capture_output=True)
+    calls = []
+
+    def interrupt(part, left):
+        calls.append(part)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+
+    with pytest.raises(drev.Interrupted, match="resume=True goes on"):
+        drive.study(VALUES, out=tmp_path / "python", jobs=1, progress=interrupt, **STEPS)
+    assert (tmp_path / "python/variants.partial.store").exists()
+    with pytest.raises(drev.ModelError, match="resume"):
+        drive.study(VALUES, out=tmp_path / "python", **STEPS)
+    with pytest.raises(drev.ModelError, match="another study"):
+        drive.study(VALUES, out=tmp_path / "python", resume=True, step_s=2e-5, duration_s=0.02)
+    study = drive.study(VALUES, out=tmp_path / "python", resume=True, **STEPS)
+    same(study, drive.study(VALUES, **STEPS))
+    assert (tmp_path / "python/variants.h5").read_bytes() == (tmp_path / "command/variants.h5").read_bytes()
+    assert not (tmp_path / "python/variants.partial.store").exists()
+    same(study, drive.study(VALUES, out=tmp_path / "python", resume=True, **STEPS))  # from the table
+
+
+def test_an_optimum_is_that_of_all_combinations():
+    drive = drev.load("gear_drive")
+    found = drive.optimise({"backlash_mm": [0.1, 0.15, 0.2]}, minimise="max_mesh_force_N", **STEPS)
+    study = drive.study({"backlash_mm": [0.1, 0.15, 0.2]}, **STEPS)
+    assert found.certain and found.value == study["max_mesh_force_N"].min()
+    assert found.parameters["backlash_mm"] == study["backlash_mm"][study["max_mesh_force_N"].argmin()]
+    assert "least max_mesh_force_N" in str(found)
+    searched = drive.optimise({"backlash_mm": "uniform(0.1,0.2)"}, maximise="max_mesh_force_N", variants=20, **STEPS)
+    assert not searched.certain and searched.value >= found.value and searched.data["variants"] <= 20
+    with pytest.raises(drev.ModelError, match="did you mean"):
+        drive.optimise({"backlash_mm": [0.1]}, minimise="max_mesh_force", **STEPS)

@@ -7,22 +7,15 @@ import copy
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
-import jsonschema
+from schema import opened
 
 drev, schema_path, folder = sys.argv[1:]
-shutil.rmtree(folder, ignore_errors=True)
-os.makedirs(folder)
-os.chdir(folder)
-with open(schema_path) as file:
-    schema = json.load(file)
-jsonschema.Draft202012Validator.check_schema(schema)
-validator = jsonschema.Draft202012Validator(schema)
+schema, validator = opened(schema_path, folder)
 
 
 def printed(*words, code=0):
@@ -127,7 +120,7 @@ with open("pair.toml") as file, open("chaos.toml", "w") as copied:  # no stable 
 
 with open("gears.toml", "w") as file:
     file.write('[geometry]\nmodule_mm = 4\nload_N_per_mm = 100\npoints = 10\n'
-               'gear_1 = { teeth = 20, profile_shift = -0.1, width_mm = 30, bore_diameter_mm = 35 }\n'
+               'loads = { load_N_per_mm = [30, 100] }\ngear_1 = { teeth = 20, profile_shift = -0.1, width_mm = 30, bore_diameter_mm = 35 }\n'
                'gear_2 = { teeth = 40, profile_shift = 0.1, width_mm = 30, bore_diameter_mm = 70 }\n')
 with open("shaft.toml", "w") as file:
     file.write('format = 1\nnote = "one step"\n[nodes]\na = { nominal_speed_rpm = 60 }\nb = {}\n[elements]\n'

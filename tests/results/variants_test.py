@@ -1,21 +1,16 @@
 """variants.json is as docs/variants.schema.json says, and variants.h5 has its rows; arguments: drev, the schema, a folder."""
 import json
 import os
-import shutil
 import subprocess
 import sys
 
 import h5py
 import jsonschema
 
+from schema import opened
+
 drev, schema_path, folder = sys.argv[1:]
-shutil.rmtree(folder, ignore_errors=True)
-os.makedirs(folder)
-os.chdir(folder)
-with open(schema_path) as file:
-    schema = json.load(file)
-jsonschema.Draft202012Validator.check_schema(schema)
-validator = jsonschema.Draft202012Validator(schema)
+schema, validator = opened(schema_path, folder)
 
 
 def study(out, *words, code=0):
@@ -35,6 +30,16 @@ results = [
     study("orders", "camshaft", "--set", "cylinders=6", "drive=held", "--vary", "firing_order=orders(6)",
           "--record", "end.angle_rad", "--step", "1e-4", "--duration", "0.01"),
     study("failed", "gear_drive", "--vary", "backlash_mm=0.1,-1", "--duration", "0.01", code=2)]
+
+with open(os.path.join(os.path.dirname(schema_path), "optimum.schema.json")) as file:
+    optimum_schema = json.load(file)
+jsonschema.Draft202012Validator.check_schema(optimum_schema)
+run = subprocess.run([drev, "optimise", "gear_drive", "--minimise", "max_mesh_force_N", "--step", "2e-5", "--duration", "0.01",
+                      "--vary", "backlash_mm=uniform(0.1,0.2)", "--variants", "12", "--json"], capture_output=True, text=True)
+assert run.returncode == 0, run.stderr
+optimum = json.loads(run.stdout)
+jsonschema.Draft202012Validator(optimum_schema).validate(optimum)
+assert optimum.keys() == optimum_schema["properties"].keys() and optimum["status"] == "success" and len(optimum["best"]) == 10
 
 met = set()
 

@@ -2,12 +2,12 @@
 // camshaft with 6 to 10 cylinders at 750 rpm and at its worst speed. The full model is run by another method
 // than the advice's, and the figure of the model advised is found anew from its recipe.
 #include <drev/advice/advise.hpp>
-#include <drev/advice/figure_estimate.hpp>
-#include <drev/advice/recipe.hpp>
 #include <drev/core/units.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 
+#include "advice/figure_estimate.hpp"
+#include "advice/recipe.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/advice_models.hpp"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
 
 namespace drev::problems {
 

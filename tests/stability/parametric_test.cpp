@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/dense_eigen.hpp"
+#include "core/dense/eigenvalues.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 

@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
 # Compiles every header of the rooms by itself, as the only include of a file and without precompiled
-# headers: each must include what it needs.
+# headers of drev: each must include what it needs.
 #
 #   headers_test.sh ROOT COMPILER OPTION...     options: include folders of the dependencies, and -D
 #
 # DREV_HEADERS="a.hpp b.hpp" in the environment: only these, below ROOT.
+#
+# Two things save time, and leave nothing out:
+#   - a header that is the first include of another one is compiled with that, as the first thing of a file
+#   - headers that include large ones of Eigen or nlohmann, directly or through others, start from just those,
+#     precompiled
 set -euo pipefail
 root=$1 compiler=$2
 shift 2
@@ -15,31 +20,64 @@ else
   headers=$(find . -regex "./\\(core\\|elements\\|solvers\\|models\\|advice\\|app\\)/.*\\.hpp" | sed 's|^\./||' | sort)
 fi
 [ -n "$headers" ] || { echo "No header found below $root: nothing was checked."; exit 1; }
-
-# Those that come to core/system.hpp, which includes Eigen, start from Eigen's precompiled sparse matrices: that is a
-# matter of time alone, since they include it in any case.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-echo "#include <Eigen/SparseCore>" >"$work/eigen.hpp"
-: >"$work/with_eigen"
-if [ -f core/system.hpp ]; then
-  "$compiler" "$@" -std=c++20 -Wall -Wextra -Wno-unused-function -Werror -x c++-header "$work/eigen.hpp" -o "$work/eigen.hpp.gch"
-  echo core/system.hpp >"$work/with_eigen"
-  known=0
-  while [ "$known" != "$(wc -l <"$work/with_eigen")" ]; do
-    known=$(wc -l <"$work/with_eigen")
-    sed 's|.*|include [<"](drev/)?&[>"]|' "$work/with_eigen" >"$work/patterns"
-    { cat "$work/with_eigen"; xargs grep -lE -f "$work/patterns" <<<"$headers" || true; } | sort -u >"$work/more"
-    mv "$work/more" "$work/with_eigen"
-  done
-fi
+large="Eigen/Core Eigen/SparseCore Eigen/Dense nlohmann/json.hpp"
 
-failed=0
-tr -s ' \n' '\n\n' <<<"$headers" | sed '/^$/d' |
-  xargs -P "$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)" -I{} sh -c '
-    header=$1 work=$2; shift 2
-    if grep -qxF "$header" "$work/with_eigen"; then set -- "$@" -include "$work/eigen.hpp"; fi
-    echo "#include \"$header\"" | "$@" -std=c++20 -fsyntax-only -Wall -Wextra -Wno-unused-function -Werror -I. -x c++ - \
-      || { echo "FAILED: $header does not compile by itself" >&2; exit 1; }' sh {} "$work" "$compiler" "$@" || failed=1
-[ $failed = 0 ] || exit 1
+# plan: a line a header that is to be compiled, with the large headers that it comes to, "_" for "/".
+# shellcheck disable=SC2086
+awk -v large="$large" '
+  function reach(header, mark,    i, list, n) {  # marks what the header comes to
+    if ((header, mark) in seen) return
+    seen[header, mark] = 1
+    n = split(includes[header], list, " ")
+    for (i = 1; i <= n; ++i) {
+      if (list[i] in is_large) heavy[mark, list[i]] = 1
+      else if (list[i] in includes) reach(list[i], mark)
+    }
+  }
+  BEGIN { count = split(large, all, " "); for (i = 1; i <= count; ++i) is_large[all[i]] = 1 }
+  FNR == 1 { includes[FILENAME] = ""; first[FILENAME] = ""; clean = 1 }
+  /^[ \t]*#[ \t]*include/ {
+    name = $0
+    sub(/^[^<"]*[<"](drev\/)?/, "", name)
+    sub(/[>"].*/, "", name)
+    if (clean) first[FILENAME] = name
+    includes[FILENAME] = includes[FILENAME] " " name
+    clean = 0
+    next
+  }
+  !/^[ \t]*(\/\/.*|#[ \t]*pragma[ \t]+once)?$/ { clean = 0 }
+  END {
+    for (header in includes) {
+      reach(header, header)
+      class[header] = ""
+      for (i = 1; i <= count; ++i)
+        if ((header, all[i]) in heavy) { name = all[i]; gsub("/", "_", name); class[header] = class[header] name "+" }
+    }
+    for (header in includes)
+      if (first[header] in includes && class[first[header]] == class[header]) with_another[first[header]] = 1
+    for (header in includes)
+      if (!(header in with_another)) print header, (class[header] == "" ? "-" : class[header])
+  }' $headers | sort >"$work/plan"
+
+# A set of large headers is precompiled where several come to it.
+printf '"%s"\n' "$@" -std=c++20 -Wall -Wextra -Wno-unused-function -Werror >"$work/options"
+cut -d ' ' -f 2 "$work/plan" | sort | uniq -c | while read -r users class; do
+  if [ "$class" = - ] || [ "$users" -lt 4 ]; then continue; fi
+  for header in $large; do
+    case "+$class" in *"+${header//\//_}+"*) echo "#include <$header>" ;; esac
+  done >"$work/$class.hpp"
+  "$compiler" "@$work/options" -x c++-header "$work/$class.hpp" -o "$work/$class.hpp.gch"
+done
+
+compile() {
+  local start=()
+  if [ -f "$work/$2.hpp" ]; then start=(-include "$work/$2.hpp"); fi
+  echo "#include \"$1\"" | "$compiler" "@$work/options" "${start[@]}" -fsyntax-only -I. -x c++ - ||
+    { echo "FAILED: $1 does not compile by itself" >&2; return 1; }
+}
+export -f compile
+export work compiler
+xargs -P "$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)" -L 1 bash -c 'compile "$@"' bash <"$work/plan" || exit 1
 echo "$(wc -w <<<"$headers") headers compile by themselves."

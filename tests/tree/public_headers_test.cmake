@@ -1,13 +1,22 @@
-# cmake -DROOT=<source tree> -P public_headers_test.cmake: every header of cmake/public_headers.txt is there, includes no
-# internal one, and pulls in at most 15 others, directly or through others. elements/catalogue.hpp, which is all
-# elements at once, is exempt from the number.
+# cmake -DROOT=<source tree> -P public_headers_test.cmake: the headers that are installed.
+#   - every header of cmake/public_headers.txt and cmake/public_parts.txt is there, stands in one of them, and includes no
+#     internal one
+#   - a public header pulls in at most 15 others, directly or through others (elements/catalogue.hpp, which is all
+#     elements at once, is exempt), and there are at most 60 of them
+#   - a part is pulled in by a public header: else nothing outside needs it
+#   - programs of examples, documentation and outside projects include public headers alone
 cmake_minimum_required(VERSION 3.22)
 set(most 15)
+set(most_public 60)
 set(exempt elements/catalogue.hpp)
 file(STRINGS ${ROOT}/cmake/public_headers.txt public REGEX "^[^#]")
+set(parts "")
+if(EXISTS ${ROOT}/cmake/public_parts.txt)
+  file(STRINGS ${ROOT}/cmake/public_parts.txt parts REGEX "^[^#]")
+endif()
 
 set(findings "")
-foreach(header IN LISTS public)
+foreach(header IN LISTS public parts)
   if(NOT EXISTS ${ROOT}/${header})
     string(APPEND findings "  ${header}: is listed, but is not there\n")
     continue()
@@ -25,6 +34,7 @@ foreach(header IN LISTS public)
 endforeach()
 
 set(largest 0)
+set(needed "")
 foreach(header IN LISTS public)
   set(reached "")
   set(open ${header})
@@ -38,6 +48,7 @@ foreach(header IN LISTS public)
       endif()
     endforeach()
   endwhile()
+  list(APPEND needed ${reached})
   list(LENGTH reached count)
   if(NOT header IN_LIST exempt)
     if(count GREATER most)
@@ -48,12 +59,37 @@ foreach(header IN LISTS public)
     endif()
   endif()
 endforeach()
+foreach(part IN LISTS parts)
+  if(part IN_LIST public)
+    string(APPEND findings "  ${part}: is listed twice\n")
+  elseif(NOT part IN_LIST needed)
+    string(APPEND findings "  ${part}: no public header includes this part: make it internal\n")
+  endif()
+endforeach()
+
+# README.md of the root alone: build folders hold others, among them those of this test's own fixtures.
+file(GLOB readme RELATIVE ${ROOT} ${ROOT}/README.md)
+file(GLOB_RECURSE programs RELATIVE ${ROOT} ${ROOT}/docs/*.md ${ROOT}/models/*main.cpp ${ROOT}/tests/install_consumer/*.cpp
+     ${ROOT}/tests/plugins/*.cpp)
+foreach(program IN LISTS readme programs)
+  file(STRINGS ${ROOT}/${program} lines REGEX "#include <drev/")
+  foreach(line IN LISTS lines)
+    string(REGEX MATCH "<drev/([^>]*)>" found "${line}")
+    if(NOT CMAKE_MATCH_1 IN_LIST public)
+      string(APPEND findings "  ${program}: includes ${found}, which is not public\n")
+    endif()
+  endforeach()
+endforeach()
 
 list(LENGTH public count)
+list(LENGTH parts part_count)
+if(count GREATER most_public)
+  string(APPEND findings "  cmake/public_headers.txt: ${count} headers, at most ${most_public}\n")
+endif()
 if(count EQUAL 0)
   message(FATAL_ERROR "cmake/public_headers.txt below ${ROOT} lists nothing: nothing was checked.")
 elseif(findings)
   message("${findings}")
   message(FATAL_ERROR "Public headers that are not as they should be.")
 endif()
-message("${count} public headers; the one that pulls in most has ${largest} others.")
+message("${count} public headers; the one that pulls in most has ${largest} others. ${part_count} parts of them.")

@@ -30,7 +30,7 @@ set(room_table
   "app/results:core solvers/* models/* app/base app/run"
   "app/report:core elements solvers/* models app/base app/model_file app/run app/results"
   "app/chart:core solvers/* models app/base app/run"
-  "app/study:core elements solvers/* models app/base app/run app/chart"
+  "app/study:core elements solvers/* models/* app/base app/run app/chart"
   "app/fmi/import:core app/base app/model_file"
   "app/fmi:core solvers/* models app/base app/model_file app/model_file/writing app/run app/fmi/import"
   "app/fmi/library:core app/fmi"

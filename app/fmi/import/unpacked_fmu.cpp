@@ -1,10 +1,12 @@
 #include "app/fmi/import/unpacked_fmu.hpp"
 
+#include <cstdlib>
 #include <dlfcn.h>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <vector>
 
 #include "app/fmi/import/unzip.hpp"
 
@@ -36,6 +38,16 @@ std::string platforms_in(const fs::path& binaries) {
 
 }  // namespace
 
+static std::vector<void*>& loaded_libraries() {
+  static std::vector<void*> libraries;
+  return libraries;
+}
+
+static void close_last_library() {
+  ::dlclose(loaded_libraries().back());
+  loaded_libraries().pop_back();
+}
+
 UnpackedFmu::UnpackedFmu(const std::string& file) : name_(fs::path(file).filename().string()) {
   std::error_code none;
   if (!fs::is_regular_file(file, none)) throw std::runtime_error("is no file");
@@ -56,6 +68,10 @@ void UnpackedFmu::load() const {
                              description_.identifier + ".so); " + platforms_in(binaries));
   library_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library_ == nullptr) throw std::runtime_error(std::string("cannot be loaded: ") + ::dlerror());
+  // Closed ahead of the library's own static objects, which its finalizers may use (PythonFMU's do): what is registered
+  // last runs first.
+  loaded_libraries().push_back(library_);
+  if (std::atexit(close_last_library) != 0) loaded_libraries().pop_back();
 }
 
 void* UnpackedFmu::function(const std::string& name) const {

@@ -17,7 +17,7 @@ class UnpackedFmu {
   /// What messages call it: the name of its file.
   const std::string& name() const { return name_; }
   std::filesystem::path resources() const { return folder_.path / "resources"; }
-  /// A function of its library, which is loaded with the first call and stays loaded. Throws std::runtime_error where
+  /// A function of its library, which is loaded with the first call and stays so until the process ends. Throws std::runtime_error where
   /// there is no library for this machine, or the library does not have the function.
   void* function(const std::string& name) const;
 

@@ -3,6 +3,7 @@
 #include <drev/models/gears/gear_drawing.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drev::app {
@@ -12,8 +13,10 @@ struct NamedDrawing {
   GearDrawing drawing;
 };
 
-/// The drawings of a file: its [geometry], or those of the gear meshes of a model file, whose parameters have their
-/// defaults. Throws ModelError with all that is wrong with them, and where there is none.
-std::vector<NamedDrawing> read_gear_drawings(const std::string& path);
+/// The drawings of a file: its [geometry], or those of the gear meshes of a model file, repeated ones each. settings: name
+/// and value of the model file's parameters that are not to have their defaults. Throws ModelError with all that is wrong
+/// with them, and where there is none.
+std::vector<NamedDrawing> read_gear_drawings(
+    const std::string& path, const std::vector<std::pair<std::string, std::string>>& settings = {});
 
 }  // namespace drev::app

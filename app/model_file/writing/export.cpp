@@ -2,7 +2,9 @@
 
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/elements/applied_torque.hpp>
+#include <drev/elements/friction/dry_friction.hpp>
 #include <drev/elements/machines/torque_function.hpp>
+#include <drev/elements/modal_damping.hpp>
 
 #include <cmath>
 #include <map>
@@ -113,8 +115,9 @@ class CaseWriter {
     std::string text = "[elements]\n";
     for (const ElementInstance& placement : model_.element_instances()) {
       const std::string& name = checked(placement.name);
-      std::vector<std::string> nodes;
-      for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(model_.name_of(ref)));
+      std::vector<std::string> nodes;  // modal damping is over the whole train
+      if (dynamic_cast<const ModalDamping*>(placement.element.get()) == nullptr)
+        for (const NodeRef& ref : placement.nodes) nodes.push_back(checked(model_.name_of(ref)));
       const NodeKind kind = nodes.empty() ? NodeKind::rotational : kinds_[nodes.front()];
       bool written = false;
       for (const ElementType& type : element_types()) {
@@ -135,6 +138,9 @@ class CaseWriter {
         if (torque->params().torque) refuse(name, "its torque is a function of C++");
       if (const auto* torque = dynamic_cast<const TorqueFunction*>(placement.element.get()))
         if (torque->params().torque) refuse(name, "its torque is a function of C++");
+      if (const auto* friction = dynamic_cast<const DryFriction*>(placement.element.get()))
+        if (const auto& g = friction->params().engagement_formula; g && g->params().function)
+          refuse(name, "its engagement is a function of C++");
     }
     return text;
   }

@@ -4,11 +4,9 @@ const page = JSON.parse(document.querySelector("script.run").textContent);
 const result = page.result;
 const span = [result.speeds_rpm[0], result.speeds_rpm.at(-1)];
 const CURVE_COLORS = ["--c0", "--c1", "--c2", "--c4", "--ink"];
-const LIMIT_SHOWN = 2.5; // a limit stretches the axis up to so many times the largest half range
 const STATES = { stable: null, unstable: [5, 4], "not judged": [9, 3, 2, 3] };
 
 const stateOf = (curve, i) => (curve.stable[i] === null ? "not judged" : curve.stable[i] ? "stable" : "unstable");
-const largest = (values) => values.reduce((a, b) => (b !== null && b > a ? b : a), 0);
 
 /// Stretches of a curve over which the speed goes one way and the state is one: what a chart can draw.
 function piecesOf(curve) {
@@ -117,8 +115,7 @@ function sectionChart(parent, group, s, c) {
   const all = result.branches.flatMap((curve) => curve.sections[c].half_range);
   const readable = readableUnit(s.unit, largest(all)),
     most = largest(all);
-  const limits = page.limits[c].filter((limit) => largest(limit.values) <= LIMIT_SHOWN * most);
-  const beyond = page.limits[c].filter((limit) => !limits.includes(limit));
+  const { limits, farAbove } = limitsOf(page.limits[c], most, s.unit);
   const lines = [];
   result.branches.forEach((curve, b) => {
     const counts = {};
@@ -169,13 +166,7 @@ function sectionChart(parent, group, s, c) {
       states.map((state) => key(keyMark("--ink", STATES[state]), state)),
       limits.map((limit) => key(keyMark("--warn", [8, 4]), limit.name)),
       runs.length ? key("● ", "a run that does not repeat") : null,
-      beyond.length
-        ? make(
-            "span",
-            { class: "unit" },
-            ` Far above the chart: ${beyond.map((l) => `${l.name}, ${quantity(largest(l.values), s.unit)}`).join("; ")}.`,
-          )
-        : null,
+      farAbove,
     ),
     rows: () => {
       const rows = new Map();

@@ -146,7 +146,7 @@ function toolbar(group, ...more) {
 const curveName = (label) => `\u200b${label}`;
 
 /// One chart. options: {group, title, caption, labels, rows(from, to, columns) -> {rows, sparse}, xName, xLabel; and
-/// where they are not the usual: yLabel, valueRange, log, tall, middle, colors(), series(label, i), underlay}.
+/// where they are not the usual: yLabel, valueRange, log, legend, tall, middle, colors(), series(label, i), underlay}.
 class Chart {
   constructor(parent, options) {
     this.options = options;
@@ -214,7 +214,7 @@ class Chart {
       axisLabelFontSize: 11,
       connectSeparatedPoints: true,
       highlightCircleSize: 3,
-      legend: "follow",
+      legend: o.legend ?? "follow",
       labelsSeparateLines: true,
       interactionModel: interaction(o.group),
       animatedZooms: false,
@@ -243,6 +243,20 @@ class Chart {
     this.graph.resize();
     this.draw();
   }
+}
+
+const LIMIT_SHOWN = 2.5; // a limit stretches the axis up to so many times the largest value of the curves
+const largest = (values) => values.reduce((a, b) => (Number.isFinite(b) && b > a ? b : a), 0);
+
+/// Of the limits of a section those that are drawn beside curves up to `most`, and a remark on the others.
+function limitsOf(all, most, unit) {
+  const limits = all.filter((limit) => largest(limit.values) <= LIMIT_SHOWN * most);
+  const above = all.filter((limit) => !limits.includes(limit));
+  const texts = above.map((limit) => `${limit.name}, ${quantity(largest(limit.values), unit)}`);
+  return {
+    limits,
+    farAbove: texts.length ? make("span", { class: "unit" }, ` Far above the chart: ${texts.join("; ")}.`) : null,
+  };
 }
 
 /// A short line in the colour and dashes of a curve.

@@ -45,13 +45,21 @@ function showJudgement() {
         `${r.open_to ? "≥ " : ""}${sig(r.to_rpm, 5)}`,
         percent(r.worst),
         sig(r.worst_rpm, 5),
-        r.may_be_passed ? "may be barred and passed" : "may not be barred: it reaches 0.8 of the rated speed, or exceeds the transient limit",
+        r.may_be_passed ? "yes" : "no",
       ]),
     );
     if (exceeded.length)
       section.append(
         make("p", {}, "Ranges of speed in which the limit for continuous running is exceeded:"),
-        table(["section", "from [rpm]", "to [rpm]", "used", "at [rpm]", ""], exceeded),
+        table(["section", "from [rpm]", "to [rpm]", "used", "at [rpm]", "may be barred"], exceeded),
+        exceeded.some((row) => row[5] === "no")
+          ? make(
+              "p",
+              { class: "note" },
+              "No range may be barred, and passed quickly, that reaches 0.8 of the rated speed or exceeds the limit for " +
+                "passing.",
+            )
+          : "",
       );
     const barred = one.sections.flatMap((s) =>
       s.barred_by_rule.map((b) => [
@@ -72,7 +80,7 @@ function showJudgement() {
       section.append(
         make("p", {}, "Chatter: vibratory over mean force in a mesh above 1"),
         table(
-          ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", "speeds at which teeth would separate"],
+          ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", judged.contact === "closed" ? "speeds at which teeth would separate" : "speeds at which teeth separate"],
           one.chatter.map((r) => [
             r.section,
             sig(r.from_rpm, 5),

@@ -24,6 +24,7 @@ function readRun(element, index, count) {
     band.front = decode(band.front, Uint8Array);
     band.back = decode(band.back, Uint8Array);
   }
+  for (const c of run.waterfall ? run.waterfall.channels : []) c.amplitude = decode(c.amplitude, Float32Array);
   for (const c of run.spectra ? run.spectra.channels : []) c.amplitude = decode(c.amplitude, Float32Array);
   return run;
 }

@@ -2,7 +2,8 @@
 
 const page = JSON.parse(document.querySelector("script.run").textContent);
 const SHAFT_WIDTH = 900,
-  SHAFT_HEIGHT = 240;
+  SHAFT_DRAWN = 200, // most that the drawing is high, px
+  SHAFT_AROUND = 40;
 
 /// The contour, mirrored at its axis, in bands as dark as their nominal shear stress.
 function contourFigure(shaft) {
@@ -12,9 +13,10 @@ function contourFigure(shaft) {
   const most = Math.max(...r),
     peak = Math.max(...stress),
     length = z.at(-1);
-  const scale = Math.min((SHAFT_WIDTH - 20) / length, (SHAFT_HEIGHT - 40) / (2 * most));
+  const scale = Math.min((SHAFT_WIDTH - 20) / length, SHAFT_DRAWN / (2 * most));
   const x = (at) => 10 + scale * at,
-    middle = SHAFT_HEIGHT / 2,
+    height = Math.ceil(2 * scale * most + SHAFT_AROUND),
+    middle = scale * most + 10,
     parts = [];
   for (let i = 0; i + 1 < z.length; i += 1) {
     const high = scale * r[i];
@@ -37,7 +39,7 @@ function contourFigure(shaft) {
   );
   for (const station of shaft.stations)
     parts.push(
-      draw("line", { class: "axis", x1: x(station.from_m), x2: x(station.from_m), y1: SHAFT_HEIGHT - 18, y2: SHAFT_HEIGHT - 10 }),
+      draw("line", { class: "axis", x1: x(station.from_m), x2: x(station.from_m), y1: height - 18, y2: height - 10 }),
     );
   return make(
     "figure",
@@ -45,7 +47,7 @@ function contourFigure(shaft) {
     make(
       "div",
       { class: "wide" },
-      draw("svg", { viewBox: `0 0 ${SHAFT_WIDTH} ${SHAFT_HEIGHT}`, width: SHAFT_WIDTH, role: "img", "aria-label": `contour of ${shaft.name}` }, ...parts),
+      draw("svg", { viewBox: `0 0 ${SHAFT_WIDTH} ${height}`, width: SHAFT_WIDTH, role: "img", "aria-label": `contour of ${shaft.name}` }, ...parts),
     ),
     make(
       "figcaption",
@@ -79,30 +81,35 @@ function showShafts() {
           ["segments", String(shaft.segments.length)],
         ],
       ),
-      table(
-        ["station", "from [mm]", "length [mm]", "d [mm]", "bore [mm]", "J [mm⁴]", "own stiffness [N m/rad]", "in the shaft [N m/rad]", "inertia [kg m²]", "stress factor", "at"],
-        shaft.stations.map((s) => [
-          s.name,
-          sig(1e3 * s.from_m, 5),
-          sig(1e3 * s.length_m, 5),
-          sig(1e3 * s.diameter_m, 5),
-          sig(1e3 * s.bore_m, 4),
-          sig(1e12 * s.torsion_constant_m4, 6),
-          sig(s.own_stiffness_Nm_per_rad, 5),
-          sig(s.stiffness_Nm_per_rad, 5),
-          sig(s.inertia_kg_m2, 5),
-          s.stress_factor === null ? "no limit" : sig(s.stress_factor, 4),
-          s.stress_place,
-        ]),
+      make(
+        "div",
+        { class: "stations" },
+        table(
+          ["station", "from [mm]", "length [mm]", "d [mm]", "bore [mm]", "J [mm⁴]", "own stiffness [N\u00a0m/rad]", "in the shaft [N\u00a0m/rad]", "inertia [kg\u00a0m²]", "stress factor", "at"],
+          shaft.stations.map((s) => [
+            s.name,
+            sig(1e3 * s.from_m, 5),
+            sig(1e3 * s.length_m, 5),
+            sig(1e3 * s.diameter_m, 5),
+            sig(1e3 * s.bore_m, 4),
+            sig(1e12 * s.torsion_constant_m4, 6),
+            sig(s.own_stiffness_Nm_per_rad, 5),
+            sig(s.stiffness_Nm_per_rad, 5),
+            sig(s.inertia_kg_m2, 5),
+            s.stress_factor === null ? "no limit" : sig(s.stress_factor, 4),
+            s.stress_place,
+          ]),
+        ),
       ),
     );
 }
 
 function showInputs() {
-  byId("inputs").append(
-    make("p", {}, make("code", {}, page.command)),
-    table(["parameter", "value", "default", "unit", "meaning"], page.inputs.map((i) => [i.name, String(i.value), String(i.default), i.unit || "", i.meaning])),
-  );
+  byId("inputs").append(make("p", {}, make("code", {}, page.command)));
+  if (page.inputs.length)
+    byId("inputs").append(
+      table(["parameter", "value", "default", "unit", "meaning"], page.inputs.map((i) => [i.name, String(i.value), String(i.default), i.unit || "", i.meaning])),
+    );
 }
 
 showAll(showHead, showShafts, showInputs);

@@ -280,4 +280,87 @@ function showOrders(section, run) {
     chart.channel = channel.name;
   }
   group.describe(group.window);
+  showWaterfall(section, run, group, places);
+}
+
+/// The waterfall of a run-up: of evenly spaced orders a line each, its amplitude above its order. places: of the windows,
+/// by ascending speed.
+function showWaterfall(section, run, group, places) {
+  const fall = run.waterfall;
+  if (!fall) return;
+  const highest = fall.orders[fall.orders.length - 1],
+    windows = fall.speed_rpm.length;
+  // At most 30 lines are drawn.
+  const every = Math.ceil(fall.orders.length / 30),
+    lines = fall.orders.map((_, k) => k).filter((k) => (k + 1) % every === 0),
+    spacing = fall.orders[0] * every;
+  section.append(
+    make("h3", {}, headed(run, "Waterfall")),
+    make(
+      "p",
+      { class: "note" },
+      `A line every ${tidy(spacing)} orders up to ${tidy(highest)}: the amplitude of that order over the speed stands on ` +
+        "the line's own height. Orders of the loads lie along the lines; what swings with a frequency of its own crosses " +
+        "them along a hyperbola. Dashed: natural frequencies, contacts closed. waterfall.csv of --out has all orders.",
+    ),
+  );
+  for (const channel of fall.channels) {
+    const most = channel.amplitude.reduce((a, b) => Math.max(a, b), 0);
+    if (!(most > 0)) continue;
+    const readable = readableUnit(channel.unit, most),
+      name = channelName(channel.name),
+      height = highest / 4; // orders that the largest amplitude takes
+    const largest = lines.map((k) =>
+      channel.amplitude.subarray(k * windows, (k + 1) * windows).reduce((a, b) => Math.max(a, b), 0),
+    );
+    const chart = new Chart(section, {
+      group,
+      title: `Waterfall of ${channel.name}`,
+      tall: true,
+      legend: "never",
+      xName: "rpm",
+      xLabel: "speed of the reference shaft [rpm]",
+      yLabel: "order",
+      valueRange: [0, highest + height],
+      labels: lines.map((k) => `order ${orderText(fall.orders[k])}`),
+      colors: () => largest.map((value) => style(value > 0.03 * most ? "--c0" : "--line")),
+      series: () => ({ strokePattern: null, strokeWidth: 1 }),
+      caption: make(
+        "span",
+        {},
+        make("b", {}, name.place),
+        make(
+          "span",
+          { class: "unit" },
+          ` ${name.quantity}; a height of 1 order is ${sig((most * readable.factor) / height, 3)} ${readable.unit}`,
+        ),
+      ),
+      rows: () => ({
+        sparse: true,
+        rows: places.map((w) => [
+          fall.speed_rpm[w],
+          ...lines.map((k) => fall.orders[k] + (height * channel.amplitude[k * windows + w]) / most),
+        ]),
+      }),
+      underlay: (context, area, g) => {
+        const [low, high] = g.xAxisRange();
+        for (const mode of run.modes)
+          for (let i = 0; i < 40; ++i) {
+            const [a, b] = [i, i + 0.6].map((part) => Math.max(low + ((high - low) * part) / 40, 1e-9));
+            const at = (rpm) => (60 * mode.frequency_Hz) / rpm;
+            if (at(b) > highest) continue;
+            line(
+              context,
+              g.toDomXCoord(a),
+              g.toDomYCoord(Math.min(at(a), highest)),
+              g.toDomXCoord(b),
+              g.toDomYCoord(at(b)),
+              style("--line"),
+              [],
+            );
+          }
+      },
+    });
+    chart.channel = channel.name;
+  }
 }

@@ -16,10 +16,7 @@ const span = [sweep.speeds_rpm[0], sweep.speeds_rpm.at(-1)];
 const whole = span[0] < span[1] ? span : [0.99 * span[0], 1.01 * span[1]];
 const speedAxis = `speed of ${page.shaft} [rpm]`;
 const NAMED_ORDERS = 5;
-const LIMIT_SHOWN = 2.5; // a limit stretches the axis up to so many times the largest amplitude
 const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
-
-const largest = (values) => values.reduce((a, b) => (Number.isFinite(b) && b > a ? b : a), 0);
 
 /// Amplitudes of an order over the speeds.
 const orderOf = (s, k) => s.amplitude.subarray(k * sweep.speeds_rpm.length, (k + 1) * sweep.speeds_rpm.length);
@@ -102,8 +99,7 @@ function sectionChart(parent, group, s, index) {
     readable = readableUnit(s.unit, largest(s.half_range)),
     most = Math.max(largest(s.half_range), s.peaks[0].half_range ?? 0) * readable.factor;
   const others = page.sweeps.slice(1).map((other) => ({ name: other.name, s: other.sections[index] }));
-  const limits = s.limits.filter((limit) => largest(limit.values) * readable.factor <= LIMIT_SHOWN * most);
-  const beyond = s.limits.filter((limit) => !limits.includes(limit));
+  const { limits, farAbove } = limitsOf(s.limits, most / readable.factor, s.unit);
   const curves = [
     { label: "half range", values: s.half_range, color: "--ink", look: { strokeWidth: 2, strokePattern: null } },
     ...others.map(({ name, s: other }) => ({
@@ -144,13 +140,7 @@ function sectionChart(parent, group, s, index) {
       make("b", {}, s.name),
       make("span", { class: "unit" }, ` [${readable.unit}] `),
       curves.map(key),
-      beyond.length
-        ? make(
-            "span",
-            { class: "unit" },
-            ` Far above the chart: ${beyond.map((l) => `${l.name}, ${quantity(largest(l.values), s.unit)}`).join("; ")}.`,
-          )
-        : null,
+      farAbove,
     ),
     rows: () => {
       const rows = Array.from(sweep.speeds_rpm, (speed, i) => [

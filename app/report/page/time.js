@@ -60,8 +60,65 @@ function timeChart(parent, channel) {
   return chart;
 }
 
+/// Of a run-up: the speed at which the reference shaft turns nominally, in place of the time, along the axis of all
+/// charts over time. Where the speed rises and falls again it stands there twice.
+const rising = runs.every(
+  (run) => run.speeds && JSON.stringify(run.speeds) === JSON.stringify(runs[0].speeds),
+)
+  ? runs[0].speeds
+  : null;
+
+function speedAt(t) {
+  const { time_s: times, speed_rpm: speeds } = rising,
+    i = Math.min(Math.max(placeOf(times, t), 1), times.length - 1);
+  return speeds[i - 1] + ((speeds[i] - speeds[i - 1]) * (t - times[i - 1])) / (times[i] - times[i - 1]);
+}
+
+/// Ticks at round speeds, where they are passed between two times.
+function speedTicks(a, b, pixels, options, g) {
+  const { time_s: times, speed_rpm: speeds } = rising;
+  const inside = times.map((t, i) => i).filter((i) => times[i] > a && times[i] < b);
+  const points = [[a, speedAt(a)], ...inside.map((i) => [times[i], speeds[i]]), [b, speedAt(b)]];
+  const all = points.map(([, speed]) => speed);
+  const found = [];
+  for (const tick of Dygraph.numericLinearTicks(Math.min(...all), Math.max(...all), pixels, options, g))
+    for (let i = 1; i < points.length; ++i) {
+      const [[t0, s0], [t1, s1]] = [points[i - 1], points[i]];
+      if (s0 === s1 || (s0 - tick.v) * (s1 - tick.v) > 0 || s0 === tick.v) continue;
+      found.push({ v: t0 + ((t1 - t0) * (tick.v - s0)) / (s1 - s0), label: tick.label && tidy(tick.v) });
+    }
+  return found;
+}
+
+function axisChoice() {
+  const select = make(
+    "select",
+    {
+      "aria-label": "Axis of the histories",
+      change: () => {
+        const speed = select.value === "speed";
+        document.querySelectorAll("select.timeaxis").forEach((other) => (other.value = select.value));
+        drawAll();
+        for (const chart of histories.charts)
+          chart.graph?.updateOptions({
+            xlabel: asMarkup(speed ? "speed of the reference shaft [rpm]" : "time [s]"),
+            axes: {
+              x: speed
+                ? { ticker: speedTicks, valueFormatter: (t) => `${sig(speedAt(t), 5)} rpm, ${sig(t, 7)} s` }
+                : { ticker: Dygraph.numericLinearTicks, valueFormatter: (t) => `s ${sig(t, 7)}` },
+            },
+          });
+      },
+    },
+    make("option", { value: "time" }, "time [s]"),
+    make("option", { value: "speed" }, "speed [rpm]"),
+  );
+  select.classList.add("timeaxis");
+  return make("label", {}, "Axis ", select);
+}
+
 function bar(section) {
-  const tools = toolbar(histories);
+  const tools = toolbar(histories, ...(rising ? [axisChoice()] : []));
   histories.outputs.push(histories.output);
   section.append(tools);
 }

@@ -1,5 +1,6 @@
 // The long form of the friction trains: friction_suite [COUNT [FIRST]] tries COUNT (2000) trains from seed FIRST (1) on
-// and prints what became of them (docs/validation.md).
+// and prints what became of them (docs/friction.md), then the same trains with break-away ratios in loops of contacts, too,
+// which are judged by themselves.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -32,5 +33,19 @@ int main(int argc, char** argv) {
       "%d of %d trains agree, %d failed; largest difference of those that agree %.2g, largest energy error "
       "%.2g, %ld changes (%ld by the other code), at most %ld in one train\n",
       agree, count, failed, worst, energy, changes, events, most);
-  return agree == count ? 0 : 1;
+  int sound = 0;
+  most = 0;
+  for (int seed = first; seed < first + count; ++seed) {
+    const auto verdict =
+        drev::test::judge_alone(drev::test::random_friction_train(static_cast<unsigned>(seed), true));
+    sound += verdict.failure.empty();
+    most = std::max(most, verdict.changes);
+    if (!verdict.failure.empty())
+      std::printf("seed %d with break-away in loops: %s\n", seed, verdict.failure.c_str());
+  }
+  std::printf(
+      "with break-away ratios in loops: %d of %d run and close their balance, at most %ld changes in one "
+      "train\n",
+      sound, count, most);
+  return agree == count && sound == count ? 0 : 1;
 }

@@ -65,7 +65,7 @@ FrictionTrain::Gear random_gear(TrainRandom& random, int a, int b) {
 
 }  // namespace
 
-FrictionTrain random_friction_train(unsigned seed) {
+FrictionTrain random_friction_train(unsigned seed, bool break_away_in_loops) {
   using Kind = FrictionTrain::Contact::Kind;
   TrainRandom random(1000003ull * seed + 17);
   FrictionTrain train;
@@ -105,8 +105,6 @@ FrictionTrain random_friction_train(unsigned seed) {
   }
   if (train.contacts.empty() && train.gears.empty())
     train.contacts.push_back(random_contact(random, Kind::brake, 0, -1, train.duration));
-  // Where contacts close a loop (side by side, or over the ground), rigid bodies do not tell how they share a torque
-  // at rest, and so not which breaks away first.
   std::vector<int> part(idx(n + 1));
   for (int i = 0; i <= n; ++i) part[idx(i)] = i;
   bool loop = false;
@@ -118,7 +116,7 @@ FrictionTrain random_friction_train(unsigned seed) {
   for (const FrictionTrain::Contact& c : train.contacts) join(c.a, c.b);
   for (const FrictionTrain::Gear& g : train.gears) join(g.a, g.b), join(g.a, -1);  // it holds itself, too
   for (FrictionTrain::Contact& c : train.contacts)
-    if (loop) c.break_away = 1.0;
+    if (loop && !break_away_in_loops) c.break_away = 1.0;
   return train;
 }
 
@@ -202,29 +200,48 @@ double train_difference(const std::vector<double>& a, const Vector& b) {
 
 }  // namespace
 
+namespace {
+
+RunSummary run_train(const System& system, const FrictionTrain& train, double more, State& state) {
+  state = State::initial(system);
+  for (Eigen::Index i = 0; i < state.v.size(); ++i)
+    if (state.v[i] != 0.0) state.v[i] *= 1.0 + more;
+  return propagate(system, {.tolerance = 1e-12, .t_end = train.duration, .energy_tolerance = 1e-9}, state);
+}
+
+void enter(const RunSummary& summary, FrictionVerdict& verdict) {
+  verdict.changes = summary.friction_changes;
+  verdict.steps = summary.steps;
+  verdict.energy_error = summary.energy.relative_error();
+  if (!summary.ok()) verdict.failure = summary.reason;
+}
+
+}  // namespace
+
 FrictionVerdict judge(const FrictionTrain& train) {
   FrictionVerdict verdict;
   try {
     const System system = to_model(train).build();
-    const auto run = [&](double more, State& state) {
-      state = State::initial(system);
-      for (Eigen::Index i = 0; i < state.v.size(); ++i)
-        if (state.v[i] != 0.0) state.v[i] *= 1.0 + more;
-      return propagate(system, {.tolerance = 1e-12, .t_end = train.duration, .energy_tolerance = 1e-9},
-                       state);
-    };
     State state, near;
-    const RunSummary summary = run(0.0, state);
-    verdict.changes = summary.friction_changes;
-    verdict.steps = summary.steps;
-    verdict.energy_error = summary.energy.relative_error();
-    if (!summary.ok()) verdict.failure = summary.reason;
-    run(1e-9, near);
+    enter(run_train(system, train, 0.0, state), verdict);
+    run_train(system, train, 1e-9, near);
     const FrictionMotion own = integrate(train, 5e-6);
     verdict.events = own.events;
     verdict.difference = std::max(train_difference(own.angle, state.z), train_difference(own.speed, state.v));
     const std::vector<double> z(state.z.begin(), state.z.end()), v(state.v.begin(), state.v.end());
     verdict.sensitivity = std::max(train_difference(z, near.z), train_difference(v, near.v));
+  } catch (const std::exception& error) {
+    verdict.failure = error.what();
+  }
+  return verdict;
+}
+
+FrictionVerdict judge_alone(const FrictionTrain& train) {
+  FrictionVerdict verdict;
+  try {
+    const System system = to_model(train).build();
+    State state;
+    enter(run_train(system, train, 0.0, state), verdict);
   } catch (const std::exception& error) {
     verdict.failure = error.what();
   }

@@ -11,3 +11,19 @@ TEST_CASE("Random trains that stick and slip move as an event-splitting integrat
     CHECK(verdict.agrees());
   }
 }
+
+TEST_CASE("Random trains: a self-holding gear without bearing torques, whose two bounds share a line") {
+  const drev::test::FrictionVerdict verdict = drev::test::judge(drev::test::random_friction_train(1070));
+  INFO("difference " << verdict.difference << ' ' << verdict.failure);
+  CHECK(verdict.agrees());
+}
+
+TEST_CASE("Random trains with break-away ratios in loops of contacts run, end and close their balance") {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const drev::test::FrictionVerdict verdict =
+        drev::test::judge_alone(drev::test::random_friction_train(seed, true));
+    INFO("seed " << seed << ' ' << verdict.failure);
+    CHECK(verdict.failure.empty());
+    CHECK(verdict.changes < 1000);
+  }
+}

@@ -1,7 +1,6 @@
 // Simpler models made from a model are those that one would write by hand.
 #include "advice/simplify.hpp"
 
-#include <drev/advice/figure_estimate.hpp>
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
@@ -11,6 +10,7 @@
 
 #include <cmath>
 
+#include "advice/figure_estimate.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -140,7 +140,7 @@ TEST_CASE("A spring between two nodes of one ideal train sees its one unknown") 
   // motor and mid (-2): x = q_mid - q_motor = -3 z: k = 9 k_s.
   Model m = train();
   m.add<PolylineSpring>("across", {"motor", "mid"}, {.x = {-1, 1}, .y = {-5, 5}});
-  // Its closure asks for equal speeds, which the gear denies.
+  // Its speed ratio constraint asks for equal speeds, which the gear denies.
   CHECK(only_fault(m, {"across", "gear_1", "cannot turn"}));
   Model n("coaxial");
   for (const char* name : {"a", "b", "c"}) {

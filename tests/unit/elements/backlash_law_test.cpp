@@ -15,6 +15,14 @@ namespace {
 constexpr double kStiffness = 2e8;  // N/m
 constexpr CurvePoint kConstant{kStiffness, 0.0};
 
+/// The law at a constant stiffness, as an element's.
+struct LawAtConstantStiffness {
+  BacklashLaw law;
+  ScalarResponse operator()(const ScalarInput& in) const { return law.evaluate(in.x, in.x_dot, kConstant); }
+  std::span<const double> kinks() const { return law.kinks(); }
+  std::optional<Gap> gap() const { return law.gap(); }
+};
+
 BacklashLaw law(MeshDamping damping_law, double backlash = 80e-6, double damping = 1000.0) {
   return BacklashLaw({.normal_backlash = backlash, .damping = damping, .damping_law = damping_law});
 }
@@ -100,16 +108,38 @@ TEST_CASE("without backlash every damping law is the same linear spring and damp
 }
 
 TEST_CASE("every damping law is sound at random states") {
-  struct Functor {
-    BacklashLaw law;
-    ScalarResponse operator()(const ScalarInput& in) const { return law.evaluate(in.x, in.x_dot, kConstant); }
-    std::span<const double> kinks() const { return law.kinks(); }
-    std::optional<Gap> gap() const { return law.gap(); }
-  };
   for (const auto kind :
        {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only, MeshDamping::always})
     for (const double backlash : {0.0, 80e-6, 0.7853981633974483})
-      CHECK(check_element(LawElement<Functor>({law(kind, backlash)}), 2, {.samples = 2000}).text() == "");
+      CHECK(check_element(LawElement<LawAtConstantStiffness>({law(kind, backlash)}), 2, {.samples = 2000})
+                .text() == "");
+}
+
+TEST_CASE("a flank that gets stiffer with its load, by hand and at random states") {
+  const Stiffening stiffening{{0.0, 5e-6, 20e-6}, {0.9, 1.0, 1.2}};
+  const BacklashLaw undamped({.normal_backlash = 80e-6, .stiffening = stiffening});
+  // p = 30 um: 5 um at 0.9, 15 um at 1, 10 um at 1.2: 31.5 um times 2e8 N/m.
+  const ScalarResponse deep = undamped.evaluate(70e-6, 1.0, kConstant);
+  CHECK(deep.y == Approx(6300.0));
+  CHECK(deep.dy_dx == Approx(1.2 * kStiffness));
+  // 0.9 p^2/2 to 5 um; 4.5 um + s to 20 um; 19.5 um + 1.2 s to 30 um.
+  CHECK(deep.stored_energy == Approx(kStiffness * 1e-12 * (11.25 + 67.5 + 112.5 + 195.0 + 60.0)));
+  CHECK(undamped.evaluate(-70e-6, 1.0, kConstant).y == Approx(-6300.0));
+  CHECK(undamped.evaluate(43e-6, 1.0, kConstant).y == Approx(540.0));
+  REQUIRE(undamped.gap());
+  CHECK(undamped.gap()->high == 40e-6);
+  CHECK(undamped.kinks().size() == 6);
+  // p = 10 um: 9.5 um times 2e8 N/m and the full damper.
+  const BacklashLaw damped({.normal_backlash = 80e-6, .damping = 1000.0, .stiffening = stiffening});
+  CHECK(damped.evaluate(50e-6, 0.1, kConstant).y == Approx(2000.0));
+  CHECK(damped.evaluate(50e-6, -1.95, kConstant).y == 0.0);  // lets go
+  for (const auto kind :
+       {MeshDamping::proportional, MeshDamping::limited, MeshDamping::contact_only, MeshDamping::always})
+    for (const double backlash : {0.0, 80e-6}) {
+      const BacklashLaw l(
+          {.normal_backlash = backlash, .damping = 1000.0, .damping_law = kind, .stiffening = stiffening});
+      CHECK(check_element(LawElement<LawAtConstantStiffness>({l}), 2, {.samples = 2000}).text() == "");
+    }
 }
 
 TEST_CASE("a loading cycle dissipates: work done over it is positive") {
@@ -144,4 +174,11 @@ TEST_CASE("backlash law: faults") {
   CHECK(faults({.normal_backlash = -0.5}) == "mesh: normal_backlash = -0.5 m, must be >= 0 and finite");
   CHECK(contains(faults({.damping = NAN}), "damping = NaN N s/m"));
   CHECK(contains(faults({.reference_penetration = 0.0}), "reference_penetration = 0 m"));
+  CHECK(faults({.normal_backlash = 80e-6, .damping = 1.0, .stiffening = {{0.0, 3e-6}, {0.9, 1.0}}}) == "");
+  CHECK(contains(faults({.normal_backlash = 80e-6, .damping = 1.0, .stiffening = {{0.0, 1e-6}, {0.9, 1.0}}}),
+                 "the penetration up to which the damping rises"));
+  CHECK(contains(faults({.stiffening = {{0.0, 2e-6, 2e-6}, {0.9, 1.0, 1.0}}}), "penetrations[2]"));
+  CHECK(contains(faults({.stiffening = {{1e-6}, {0.9}}}), "penetrations[0] = 1e-06 m, must be 0"));
+  CHECK(contains(faults({.stiffening = {{0.0, 2e-6}, {0.9, -1.0}}}), "slopes[1]"));
+  CHECK(contains(faults({.stiffening = {{0.0}, {}}}), "stiffening.slopes"));
 }

@@ -36,8 +36,12 @@ TEST_CASE("A coupling without loss is a shaft; with loss it brings its chain") {
   const std::complex<double> condensed =
       dynamic(1, 1) - (dynamic.block(1, 2, 1, n) * inner.inverse() * dynamic.block(2, 1, n, 1))(0, 0);
   CHECK(std::abs(condensed - lossy.spring().chain(w)) < 1e-9 * std::abs(condensed));
-  const std::complex<double> whole = condensed + all.frequency_stiffnesses[0].stiffness->beyond_matrices(w);
+  const std::complex<double> whole =
+      condensed + all.frequency_stiffnesses[0].stiffness->beyond_matrices(w, {});
   CHECK(std::abs(whole - std::complex<double>(2e5, 2e4)) < 1e-9 * std::abs(whole));
+  const auto beside = all.frequency_stiffnesses[0].stiffness->beyond_held(w, {});
+  REQUIRE(beside.has_value());
+  CHECK(std::abs(dynamic(1, 1) + *beside - std::complex<double>(2e5, 2e4)) < 1e-9 * std::abs(whole));
   // Passive: it never gives power, at any frequency.
   for (double f = 0.1; f < 1e5; f *= 1.7) CHECK(lossy.spring().chain(kTwoPi * f).imag() > 0.0);
 }

@@ -125,6 +125,48 @@ TEST_CASE("Pressure by load and by peak pressure; tangential pressure") {
   CHECK(classic.torque(0, deg(10) + 0.8, 99.0) == Approx(arm * (1e6 + 2e6 * std::cos(0.6))));
 }
 
+TEST_CASE("Firing gated by speed: compression alone outside, the straight mix over the ramp") {
+  EngineCylinders::Params p = engine_of(smooth_gas());
+  p.gas.firing = {.from_speed = 30.0, .to_speed = 260.0, .speed_ramp = 10.0};
+  const EngineCylinders gated(p), fires(engine_of(smooth_gas()));
+  CHECK(check_element(gated, 4).failures == std::vector<std::string>{});
+  const GasPressure pressure(p.gas, 2.0 * kTwoPi), plain(smooth_gas(), 2.0 * kTwoPi);
+  for (const double angle : {-0.7, -0.1, 0.2, 1.1, 4.0, 7.9}) {
+    const double fired = plain.at(angle, 1.0, false).pressure, motored = plain.at(angle, 1.0, true).pressure;
+    for (const auto& [speed, part] :
+         {std::pair{10.0, 0.0}, {33.0, 0.3}, {-33.0, 0.3}, {150.0, 1.0}, {258.0, 0.2}, {300.0, 0.0}}) {
+      INFO(angle << " " << speed);
+      const double expected = motored + part * (fired - motored);
+      CHECK(pressure.at(angle, speed, false).pressure == Approx(expected).epsilon(1e-13));
+      CHECK(pressure.at(angle, speed, true).pressure == Approx(motored).epsilon(1e-13));
+      // As curves with factors, and as a cubic between knots.
+      double sum = 0.0;
+      const std::vector<double> factors = pressure.factors(speed);
+      for (std::size_t k = 0; k < factors.size(); ++k)
+        sum += factors[k] * pressure.curve(static_cast<int>(k), angle, false);
+      CHECK(sum == Approx(expected).epsilon(1e-13));
+      const CubicPiece piece = pressure.piece(angle, 1.0, speed, false);
+      CHECK(piece.terms[0] == Approx(expected).epsilon(1e-11));
+      const double d = 0.4 * std::min(0.05, piece.high - angle);
+      CHECK(piece.terms[0] + d * (piece.terms[1] + d * (piece.terms[2] + d * piece.terms[3])) ==
+            Approx(pressure.at(angle + d, speed, false).pressure).epsilon(1e-10));
+    }
+    const double d = 1e-4;
+    CHECK(
+        pressure.at(angle, 35.0, false).speed_slope ==
+        Approx((pressure.at(angle, 35.0 + d, false).pressure - pressure.at(angle, 35.0 - d, false).pressure) /
+               (2.0 * d))
+            .epsilon(1e-6)
+            .margin(1e-3));
+  }
+  CHECK(gated.mean_torque(0, 150.0) == Approx(fires.mean_torque(0, 150.0)).epsilon(1e-12));
+  CHECK(std::abs(gated.mean_torque(0, 10.0)) < 1e-6 * fires.mean_torque(0, 150.0));
+  EngineCylinders::Params classic = engine_of({});
+  classic.mean_tangential_pressure = 1e5;
+  classic.gas.firing = p.gas.firing;
+  CHECK(test::contains(test::findings(EngineCylinders(classic)), "needs curves of pressure"));
+}
+
 TEST_CASE("Engine cylinders: bad input is named, all at once") {
   EngineCylinders::Params p = engine_of(smooth_gas());
   p.rod = 0.05;

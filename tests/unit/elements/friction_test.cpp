@@ -20,8 +20,8 @@ TEST_CASE("Dry friction: sliding torques by torque, table and coefficient") {
                        .engagement = TimeTable({1.0, 2.0}, {0.0, 1.0})});
   CHECK(check_element(clutch, 2).failures == std::vector<std::string>{});
   CHECK(clutch.sliding_torques() == std::vector<double>{80.0, 60.0});
-  CHECK(clutch.engagement(1.5).value == 0.5);
-  CHECK(clutch.engagement(1.5).slope == 1.0);
+  CHECK(clutch.engagement(1.5).terms[0] == 0.5);
+  CHECK(clutch.engagement(1.5).terms[1] == 1.0);
   CHECK(clutch.breakpoints() == std::vector<double>{1.0, 2.0});
   const Terms terms = test::described(clutch, 2);
   REQUIRE(terms.frictions.size() == 1);

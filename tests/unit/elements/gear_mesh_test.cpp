@@ -64,6 +64,8 @@ TEST_CASE("gear meshes are sound at random states") {
       p.damping_law = kind;
       p.transmission_error = std::vector<Harmonic>{{1, 5e-6, 0.0}, {2, 1e-6, 1.0}};
       CHECK(check_element(GearMesh(p), 2).text() == "");
+      p.stiffening = {{0.0, 8e-6, 3e-5}, {0.95, 1.0, 1.05}};
+      CHECK(check_element(GearMesh(p), 2).text() == "");
       p.normal_backlash = 0.0;
       p.transmission_error = TransmissionError::table({0.0, 0.2, 0.6}, {0.0, 4e-6, -3e-6});
       CHECK(check_element(GearMesh(p), 2).text() == "");

@@ -32,6 +32,17 @@ TEST_CASE("Torque curve over the speed") {
   CHECK(motor.evaluate({.speed = -10.0}).torque == Approx(100.0));
   CHECK(motor.evaluate({.speed = 500.0}).torque == 0.0);
   CHECK(test::contains(test::findings(TorqueCurve({.speeds = {1.0}, .torques = {}})), "at least 2"));
+  // A starter that lets go.
+  const TorqueCurve starter(
+      {.speeds = {0.0, 30.0}, .torques = {400.0, 250.0}, .gate = {.to_speed = 28.0, .speed_ramp = 2.0}});
+  CHECK(check_element(starter, 1).failures == std::vector<std::string>{});
+  CHECK(starter.evaluate({.speed = 10.0}).torque == Approx(350.0));
+  CHECK(starter.evaluate({.speed = 27.0}).torque == Approx(0.5 * 265.0));
+  CHECK(starter.evaluate({.speed = 27.0}).dtorque_dspeed == Approx(-0.5 * 265.0 - 0.5 * 5.0));
+  CHECK(starter.evaluate({.speed = 28.5}).torque == 0.0);
+  CHECK(test::contains(
+      test::findings(TorqueCurve({.speeds = {0.0, 1.0}, .torques = {1.0, 1.0}, .gate = {.from_speed = 5.0}})),
+      "speed_ramp"));
 }
 
 TEST_CASE("Generator: braking torque, short circuit, synchronous torque on the deviation") {

@@ -52,6 +52,23 @@ TEST_CASE("Backlash law: its pieces are the law") {
       }
 }
 
+TEST_CASE("Backlash law: pieces of a flank that gets stiffer with its load are the law") {
+  const double k = 2000.0;
+  for (const MeshDamping damping :
+       {MeshDamping::always, MeshDamping::contact_only, MeshDamping::limited, MeshDamping::proportional})
+    for (const double gap : {0.1, 0.0})
+      for (const double c : {30.0, 0.0}) {
+        const BacklashLaw law({.normal_backlash = gap,
+                               .damping = c,
+                               .damping_law = damping,
+                               .reference_penetration = 0.02,
+                               .stiffening = {{0.0, 0.03, 0.07}, {0.8, 1.0, 1.7}}});
+        check_pieces(law.pieces(k), 0.2, 10.0, [&](double x, double v) {
+          return law.evaluate(x, v, {k, 0.0});
+        });
+      }
+}
+
 TEST_CASE("Backlash law: proportional damping has linear pieces only without a gap or a damper") {
   const auto pieces = [](double gap, double c) {
     return BacklashLaw({.normal_backlash = gap, .damping = c}).pieces(1.0);

@@ -73,9 +73,7 @@ TEST_CASE("A formula by steps: every operation, with its slopes, and as text") {
 
 TEST_CASE("A gate by speed: closed outside, straight over its ramps") {
   const TorqueFunction gated({.torque = [](const TorqueVariables&) { return Dual(10.0); },
-                              .from_speed = 50.0,
-                              .to_speed = 100.0,
-                              .speed_ramp = 4.0});
+                              .gate = {.from_speed = 50.0, .to_speed = 100.0, .speed_ramp = 4.0}});
   CHECK(check_element(gated, 1).failures == std::vector<std::string>{});
   for (const auto& [speed, torque, slope] : {std::tuple{20.0, 0.0, 0.0},
                                              {51.0, 2.5, 2.5},
@@ -106,12 +104,12 @@ TEST_CASE("A torque function in time: run-up against a quadratic law, exact and 
 
 TEST_CASE("Torque function: bad input is named, all at once") {
   const std::string text =
-      test::findings(TorqueFunction({.breakpoints = {NAN}, .from_speed = 3.0, .to_speed = 2.0}));
+      test::findings(TorqueFunction({.breakpoints = {NAN}, .gate = {.from_speed = 3.0, .to_speed = 2.0}}));
   for (const char* part : {"exactly one of torque and formula", "breakpoints", "speed_ramp"})
     CHECK(test::contains(text, part));
-  CHECK(test::contains(
-      test::findings(TorqueFunction({.torque = fan, .from_speed = 3.0, .to_speed = 4.0, .speed_ramp = 1.0})),
-      "by two speed_ramps"));
-  CHECK(
-      test::contains(test::findings(TorqueFunction({.torque = fan, .speed_ramp = 1.0})), "needs from_speed"));
+  CHECK(test::contains(test::findings(TorqueFunction(
+                           {.torque = fan, .gate = {.from_speed = 3.0, .to_speed = 4.0, .speed_ramp = 1.0}})),
+                       "by two speed_ramps"));
+  CHECK(test::contains(test::findings(TorqueFunction({.torque = fan, .gate = {.speed_ramp = 1.0}})),
+                       "needs from_speed"));
 }

@@ -152,7 +152,7 @@ TEST_CASE("wrong matrices, speed_ratio_constraints and sizes are caught") {
                  "matrix not positive semi-definite: damping"));
   // A spring that ties speeds without saying so.
   CHECK(contains(report_terms([](Terms& t) { t.stiffness << 1, -1, -1, 1; }), "speed_ratio_constraints"));
-  // Closure of the wrong sign.
+  // A speed ratio constraint of the wrong sign.
   CHECK(contains(report_terms([](Terms& t) {
                    t.stiffness << 1, -1, -1, 1;
                    t.speed_ratio_constraints.push_back({.b = Eigen::Vector2d(1, 1)});

@@ -3,7 +3,6 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method_choice.hpp>
-#include <drev/solvers/method_trial.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>
-#include <drev/solvers/modes/settling.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/start.hpp>

@@ -92,6 +92,23 @@ TEST_CASE("SVG chart: values are placed linearly, up is larger") {
   CHECK(p[1].second < p[0].second);
 }
 
+TEST_CASE("SVG chart: to scale, a unit is as long along y as along x") {
+  for (const double height : {0.1, 0.3, 2.0}) {
+    const std::string svg = svg_chart({.y_label = "y [mm]", .to_scale = true},
+                                      {{.name = "box", .x = {0, 1, 1}, .y = {200, 200, 200 + height}}});
+    CHECK(fault_in(svg).empty());
+    const std::size_t at = svg.find("points=\"") + 8;
+    std::string text = svg.substr(at, svg.find('"', at) - at);
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream numbers(text);
+    double x0, y0, x1, y1, x2, y2;
+    REQUIRE(numbers >> x0 >> y0 >> x1 >> y1 >> x2 >> y2);
+    CHECK(std::abs((y1 - y2) / height / (x1 - x0) - 1.0) < 0.01);
+  }
+  CHECK_THROWS_AS(svg_chart({.log_y = true, .to_scale = true}, {{.name = "a", .x = {1, 2}, .y = {1, 2}}}),
+                  ModelError);
+}
+
 TEST_CASE("SVG chart: a long line is thinned to the pixels and keeps its peaks") {
   constexpr std::size_t kPoints = 500000;
   std::vector<double> t(kPoints), y(kPoints);

@@ -1,11 +1,11 @@
 // drev class: what it judges of the genset, against the sweep and the rule by hand; its report. Rainflow counts of runs.
-#include <drev/solvers/strength/iacs_m68.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "solvers/strength/iacs_m68.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 
@@ -115,6 +115,57 @@ TEST_CASE("By rule, with a barred range: a shaft below the strength that its cri
   const auto text = drev_command({"class", (folder / "line.toml").string(), "--speeds", "30:0.5:105"});
   for (const char* part : {"LIMITS EXCEEDED", "barred by IACS UR M68.5", "Rev.3 February 2021", "Not judged"})
     CHECK(contains(text.out, part));
+}
+
+TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fired and misfiring",
+          "[class]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "pair.toml")
+      << "format = 1\ninclude = [\"" DREV_SOURCE_DIR
+         "/models/gear_pair/gear_pair.toml\"]\n[nodes]\nmachine = {}\n"
+         "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
+         "damping_Nms_per_rad = 5 }\n[class]\nmisfire = { torque_Nm = 30 }\n[class.sections]\n"
+         "shaft = { permissible_torque_Nm = 20 }\n";
+  const std::string file = (folder / "pair.toml").string(), report = (folder / "pair.html").string();
+  const std::string speeds = "1800:100:2100";
+  const nlohmann::json judged = class_json_of({"class", file, "--speeds", speeds, "--report", report});
+  CHECK(judged.at("contact").is_null());
+  REQUIRE(judged.at("cases").size() == 2);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const nlohmann::json& one = judged["cases"][c];
+    CHECK(contains(one.at("notes")[0].get<std::string>(), "Contacts as they are"));
+    std::vector<std::string> words{"sweep", file, "--speeds", speeds};
+    if (c == 1) words.insert(words.end(), {"--set", "torque_Nm=30"});
+    const nlohmann::json sweep = class_json_of(words);
+    const auto shaft = std::find_if(sweep.at("sections").begin(), sweep.at("sections").end(),
+                                    [](const auto& s) { return s.at("name") == "shaft.torque_Nm"; });
+    const auto section = static_cast<std::size_t>(shaft - sweep.at("sections").begin());
+    for (std::size_t i = 0; i < judged.at("speeds_rpm").size(); ++i) {
+      double worst = 0.0;
+      for (const nlohmann::json& branch : sweep.at("branches"))
+        for (std::size_t m = 0; m < branch.at("speed_rpm").size(); ++m)
+          if (branch["asked"][m] == true && branch["stable"][m] == true &&
+              std::abs(branch["speed_rpm"][m].get<double>() - judged["speeds_rpm"][i].get<double>()) < 1e-6)
+            worst = std::max(worst, branch["sections"][section]["half_range"][m].get<double>());
+      // With too little torque nothing is stable at one of the speeds: a run's lowest and highest value.
+      for (const nlohmann::json& run : sweep.at("runs"))
+        if (worst == 0.0 &&
+            std::abs(run["speed_rpm"].get<double>() - judged["speeds_rpm"][i].get<double>()) < 1e-6)
+          worst = 0.5 * (run["highest"][section].get<double>() - run["lowest"][section].get<double>());
+      CHECK(worst > 0.0);
+      CHECK(one.at("sections")[0].at("half_range_Nm")[i].get<double>() == Approx(worst).epsilon(1e-12));
+    }
+    // Only with little torque the mesh's force swings beyond its mean.
+    CHECK(one.at("chatter").empty() == (c == 0));
+  }
+  CHECK(contains(read_file(report), "Contacts as they are"));
+  const auto text = drev_command({"class", file, "--speeds", speeds});
+  CHECK(contains(text.out, "they separate at"));
+  CHECK_FALSE(contains(text.out, "taken as closed"));
+  const auto refused = drev_command(
+      {"class", DREV_SOURCE_DIR "/models/engine/engine.toml", "--speeds", "900", "--cycle", "1"});
+  CHECK(refused.exit_code == 2);
 }
 
 TEST_CASE("A model without [class] is told what it lacks", "[class]") {

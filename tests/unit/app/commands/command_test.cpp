@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 TEST_CASE("Help and version") {
   for (const char* command : {"run", "modes", "sweep", "campbell", "list", "chart", "study", "advise",
-                              "check", "export", "report"}) {
+                              "optimise", "check", "export", "report"}) {
     const auto help = drev_command({command, "--help"});
     CHECK(help.exit_code == 0);
     CHECK(contains(help.out, "Examples:"));

@@ -104,6 +104,11 @@ TEST_CASE("A table is the same on any number of threads, and one that is complet
   const auto again = drev_command(study((folder / "one").string(), "0:0.05:0.4", {"--resume"}));
   CHECK(again.exit_code == 0);
   CHECK(contains(again.out, "complete already"));
+  const std::string before = table_in(folder / "one");
+  const auto other = drev_command(study((folder / "one").string(), "0:0.05:0.3", {"--resume"}));
+  CHECK(other.exit_code == 2);
+  CHECK(contains(other.err, "cannot go on with another study"));
+  CHECK(table_in(folder / "one") == before);
 }
 
 TEST_CASE(
@@ -120,6 +125,56 @@ TEST_CASE(
   REQUIRE(summary.at("failures").size() == 1);
   CHECK(summary.at("failures")[0].at("variant") == 3);
   CHECK(contains(summary.at("failures")[0].at("reason"), "cylinders = 11"));
+  const auto again =
+      drev_command({"run", "camshaft", "--vary", "cylinders=6,8,9,11,7", "--set", "drive=held", "--step",
+                    "1e-4", "--duration", "0.01", "--resume", "--out", (folder / "r").string()});
+  CHECK(again.exit_code == 2);  // as at first
+  CHECK(contains(again.out, "complete already"));
+}
+
+TEST_CASE("A study's report has its figures, points of the table, and the command that gives it again") {
+  const TemporaryFolder folder;
+  const std::string page = (folder / "page.html").string();
+  Words words{"run",        "camshaft",
+              "--set",      "drive=held",
+              "--vary",     "backlash_mm=uniform(0.1,0.2)",
+              "--vary",     "damping=case_1,case_2",
+              "--sample",   "lhs:40",
+              "--step",     "1e-4",
+              "--duration", "0.01",
+              "--out",      (folder / "r").string(),
+              "--report"};
+  words.push_back(page);
+  const auto run = drev_command(words);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const std::string begin = "<script type=\"application/json\" class=\"run\">";
+  const auto data_of = [&] {
+    const std::string html = read_file(page);
+    const std::size_t at = html.find(begin) + begin.size();
+    return Json::parse(html.substr(at, html.find("</script>", at) - at));
+  };
+  const Json data = data_of();
+  CHECK(data.at("result") == Json::parse(read_file(folder / "r/variants.json")));
+  CHECK(contains(data.at("command").get<std::string>(),
+                 "--vary 'backlash_mm=uniform(0.1,0.2)' --vary damping=case_1,case_2"));
+  const Json& points = data.at("points");
+  CHECK(points.at("count") == 40);
+  CHECK(points.at("parameters")[1].at("names") == Json{"case_1", "case_2"});
+  for (const Json& figure : data.at("result").at("figures"))
+    for (const Json& column : points.at("figures"))
+      if (column.at("name") == figure.at("name"))
+        CHECK(column.at("values")[figure.at("max").at("variant").get<std::size_t>()] ==
+              figure.at("max").at("value"));
+  std::filesystem::remove(page);
+  words.push_back("--resume");
+  REQUIRE(drev_command(words).exit_code == 0);  // from the table that is there
+  CHECK(data_of().at("points") == points);
+  words.back() = "--quiet";
+  words[words.size() - 2] = (folder / "page.txt").string();
+  const auto wrong = drev_command(words);
+  CHECK(wrong.exit_code == 2);
+  CHECK(contains(wrong.err, "--report"));
 }
 
 TEST_CASE("What is wrong with a table's command line is listed at once, before anything is run") {
@@ -145,7 +200,10 @@ TEST_CASE("A study resumed with a changed model is refused by its change, and no
                             "[run]\nduration_s = 20\nmethod = \"average_acceleration\"\nstep_us = 1\n";
   };
   write("0.01");
-  const Words words{"run", model, "--vary", "k=8000:1:8031", "--table", "--out", out, "--jobs", "1"};
+  const std::string plugin = (folder / "ring_damper.so").string();
+  std::filesystem::copy_file(DREV_PLUGIN_FOLDER "/libring_damper.so", plugin);
+  const Words words{"run", model,    "--vary", "k=8000:1:8031", "--table", "--out",
+                    out,   "--jobs", "1",      "--plugin",      plugin};
   {
     const Process process(words);
     for (int i = 0; i < 3000 && !VariantStore::description_in(out); ++i)
@@ -171,12 +229,14 @@ TEST_CASE("A study resumed with a changed model is refused by its change, and no
   Words resumed = words;
   resumed.push_back("--resume");
   write("0.02");
+  std::ofstream(plugin, std::ios::app) << "more";
   resumed.insert(resumed.end(), {"--duration", "10"});
   const auto changed = drev_command(resumed);
   INFO(changed.err);
   CHECK(changed.exit_code == 2);
   CHECK(contains(changed.err, "train.toml has changed (checksum "));
   CHECK(contains(changed.err, "in line 8: "));
+  CHECK(contains(changed.err, "ring_damper.so has changed (checksum "));
   CHECK(contains(changed.err, "inertia_kg_m2 = 0.01"));
   CHECK(contains(changed.err, "duration_s was nothing and is 10"));
   CHECK(VariantStore::progress_in(out).first == 1);

@@ -2,6 +2,8 @@
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -223,4 +225,48 @@ TEST_CASE("Damped modes as tables", "[sweep]") {
   }
   CHECK(read_file(out + "/shapes.csv").starts_with("mode,node,amplitude,phase_deg\n1,ring,"));
   CHECK(read_file(out + "/energy.csv").starts_with("mode,element,kinetic,elastic,dissipated\n1,"));
+}
+
+TEST_CASE("Meissner's tongue by the command: its ends, and a motion that grows without bound", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "meissner.toml")
+      << "format = 1\n[nodes]\npinion = { nominal_speed_rpm = 19, hold = true }\nwheel = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"wheel\", inertia_kg_m2 = 1 }\n"
+         "load = { type = \"engine_order_torque\", node = \"wheel\", mean_Nm = 1 }\n"
+         "mesh = { type = \"gear_mesh\", nodes = [\"pinion\", \"wheel\"], base_radius_1_m = 1, "
+         "base_radius_2_m = 1, "
+         "teeth_1 = 1, teeth_2 = 1, damping_Ns_per_m = 0.04, damping_law = \"always\", stiffness_step = { "
+         "single_N_per_m = 0.8, double_N_per_m = 1.2, contact_ratio = 1.5 } }\n";
+  const std::vector<std::string> words{
+      "sweep", (folder / "meissner.toml").string(), "--speeds", "17.2,19.1,21", "--tolerance", "1e-3"};
+  std::vector<std::string> as_json = words;
+  as_json.emplace_back("--json");
+  const auto printed = drev_command(as_json);
+  REQUIRE(printed.exit_code == 0);
+  const Json json = Json::parse(printed.out);
+  std::vector<double> ends;
+  for (const Json& change : json.at("changes"))
+    if (change.at("what") == "period doubling") ends.push_back(change.at("speed_rpm"));
+  REQUIRE(ends.size() == 2);
+  std::sort(ends.begin(), ends.end());
+  // Closed form of Floquet's theorem, as in nonlinear_sweep_test.cpp.
+  CHECK(ends[0] == Approx(drev::to_rpm(1.8770879929279)).epsilon(1e-9));
+  CHECK(ends[1] == Approx(drev::to_rpm(2.1184359568012)).epsilon(1e-9));
+  const auto text = drev_command(words);
+  CHECK(contains(text.out, "17.2 to 17.92, 20.23 to 21"));
+  CHECK(contains(text.out, "grows without bound"));
+}
+
+TEST_CASE("Both folds of a gear pair to eight digits by the command", "[sweep]") {
+  const auto printed = drev_command({"sweep", kGearPair, "--speeds", "1500:100:2000", "--json"});
+  REQUIRE(printed.exit_code == 0);
+  const double natural = drev::to_rpm(std::sqrt(2e8 * 0.05 * 0.05 / 0.01) / 30.0);
+  const Json json = Json::parse(printed.out);
+  std::vector<double> folds;
+  for (const Json& change : json.at("changes"))
+    if (change.at("what") == "fold") folds.push_back(change.at("speed_rpm").get<double>() / natural);
+  REQUIRE(folds.size() == 2);
+  std::sort(folds.begin(), folds.end());
+  CHECK(folds[0] == Approx(0.7080316187).epsilon(2e-9));
+  CHECK(folds[1] == Approx(0.8284639844).epsilon(2e-9));
 }

@@ -92,6 +92,33 @@ TEST_CASE("An archive is unpacked inside its folder and within its limits alone"
                     Catch::Contains("no ZIP archive"));
 }
 
+TEST_CASE("Folders that killed processes have left are removed, those of living ones stay") {
+  const TemporaryFolder place;
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", place.path.c_str(), 1);
+  {
+    const TemporaryFolder living;
+    const fs::path abandoned = place.path / "drev_fmu_killed", young = place.path / "drev_fmu_young",
+                   foreign = place.path / "foreign";
+    for (const fs::path& path : {abandoned, young, foreign}) {
+      fs::create_directory(path);
+      std::ofstream(path / "file") << "text";
+    }
+    const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    for (const fs::path& path : {abandoned, foreign, living.path}) fs::last_write_time(path, old);
+    const TemporaryFolder next;
+    CHECK_FALSE(fs::exists(abandoned));
+    CHECK(fs::exists(young));
+    CHECK(fs::exists(foreign));
+    CHECK(fs::exists(living.path));
+  }
+  if (kept.empty())
+    unsetenv("TMPDIR");
+  else
+    setenv("TMPDIR", kept.c_str(), 1);
+}
+
 TEST_CASE("What of an FMU does not fit the model is said with every variable") {
   const TemporaryFolder folder;
   const std::string file = archive(folder.path, {{"modelDescription.xml", kDescription2}});

@@ -4,6 +4,7 @@
 #include <drev/core/system.hpp>
 
 #include "app/model_file/node_fields.hpp"
+#include "app/model_file/writing/export.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 
@@ -57,6 +58,31 @@ TEST_CASE("Every example of the page on model files is sound") {
       CHECK(model_case.model.build().size() > 0);
     }
   }
+}
+
+TEST_CASE("Every example of the page on elements of trains, exported and read back, is the same model") {
+  const std::string path = DREV_SOURCE_DIR "/docs/example.toml";
+  const std::size_t first = page().find("# Elements of real trains in model files");
+  int exported = 0;
+  for (const std::string& example : examples()) {
+    if (page().find(example) < first) continue;
+    INFO(example);
+    const app::ModelFile file(whole(example), path, "");
+    const Parameters parameters(file.entry().name, file.entry().parameters);
+    const ModelCase model_case = file.entry().build(parameters);
+    const std::string text = app::export_model(file.entry(), parameters, model_case);
+    INFO(text);
+    const app::ModelFile again(text, path, "");
+    const ModelCase back = again.entry().build(Parameters(again.entry().name, again.entry().parameters));
+    CHECK(app::export_model(file.entry(), parameters, back) == text);
+    const System a = model_case.model.build(), b = back.model.build();
+    REQUIRE(a.mass_values().size() == b.mass_values().size());
+    CHECK(a.mass_values() == b.mass_values());
+    CHECK(a.damping_values() == b.damping_values());
+    CHECK(a.stiffness_values() == b.stiffness_values());
+    ++exported;
+  }
+  CHECK(exported >= 20);
 }
 
 TEST_CASE("Every element has an example and every key is on the page") {

@@ -174,6 +174,7 @@ TEST_CASE("Every element, exported and read back, gives the same bits") {
                    .internal = true,
                    .stiffness = MeshStiffness::step(1e7, 1.7e7, 1.6),
                    .reference_penetration = 1e-6,
+                   .stiffening = {{0.0, 2e-6, 5e-6}, {0.9, 1.0, 1.1}},
                    .transmission_error = TransmissionError::table({0.0, 0.5}, {0.0, 1e-6}),
                    .mesh_phase = 0.1});
   m.add<AppliedTorque>("ramp", {"car"}, {.table = TimeTable({0.0, 0.01, 0.01}, {0.0, 20.0, 3.0})});

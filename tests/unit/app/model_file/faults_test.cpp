@@ -318,3 +318,25 @@ TEST_CASE("Faults of a file's run options are named in the file") {
   CHECK(contains(test::drev_command({"run", "two_inertia", "--run", "slow"}).err, "for model files only"));
   CHECK(contains(test::drev_command({"check", "nowhere.toml"}).err, "nowhere.toml: there is no such file"));
 }
+
+TEST_CASE("Modal damping of a model file damps the whole train: it takes no node") {
+  const auto build = [](const std::string& keys) {
+    const app::ModelFile file(
+        "format = 1\n[nodes]\na = {}\nb = {}\n[elements]\n"
+        "J_a = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+        "J_b = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+        "modal = { type = \"modal_damping\", ratio = 0.01" +
+            keys +
+            " }\n"
+            "k = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 100 }\n",
+        "modal.toml", "");
+    return file.entry().build(Parameters(file.entry().name, file.entry().parameters));
+  };
+  CHECK(build("").model.element_instances().back().name == "modal");  // over the train as a whole
+  try {
+    build(", node = \"a\"");
+    FAIL("was taken");
+  } catch (const ModelError& error) {
+    CHECK(contains(error.what(), "takes no node"));
+  }
+}

@@ -79,6 +79,16 @@ TEST_CASE("A gear mesh by its geometry is the one that C++ makes of the drawing"
   CHECK(std::abs(mesh.stiffness.at(0.85).value / (13.25e9 * 0.13) - 1.0) < 0.02);
   CHECK(std::abs(mesh.stiffness.at(0.35).value / (19.57e9 * 0.13) - 1.0) < 0.02);
   CHECK(!mesh.transmission_error.varies());
+  // Loads between which the stiffness follows them: at the mean load as without, where it is stiffer behind.
+  const GearMesh::Params loaded =
+      mesh_of(case_of(kHead + kDrawing + " }\nloads = { load_N_per_mm = [30, 100, 300] }\n"), "z");
+  REQUIRE(loaded.stiffening.slopes.size() == 4);
+  CHECK(loaded.stiffening.penetrations[0] == 0.0);
+  CHECK(loaded.stiffening.slopes[0] < 1.0);
+  CHECK(loaded.stiffening.slopes[3] > 1.0);
+  has(message_of(kHead + "stiffening = { penetration_um = [0, 5], slope = [0.9, 1.1] }\n" + kDrawing +
+                 " }\nloads = { load_N_per_mm = [30, 100, 300] }\n"),
+      "has stiffening beside the loads of its geometry");
   // Tip relief brings an unloaded error along; a backlash given is taken.
   const GearMesh::Params relieved = mesh_of(case_of(kHead + "normal_backlash_mm = 0.2\n" + kDrawing +
                                                     ", tip_relief_um = 20, tip_relief_length_mm = 25 }\n"),

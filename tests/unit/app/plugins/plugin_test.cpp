@@ -212,16 +212,19 @@ TEST_CASE("What a file says of a plugin's element is told at its place, and its 
 TEST_CASE("What is wrong with a plugin is said of each, and nothing is run") {
   const TemporaryFolder folder;
   const std::string text = written(folder / "text.so", "not a library\n");
-  const Outcome all = drev_command(
-      {"run", kDisc, "--plugin", kHardening, "--plugin", "no/such.so," + text + "," + plugin("no_plugin"),
-       "--plugin", plugin("wrong_version") + "," + plugin("missing_symbol") + "," + plugin("taken_name")});
+  const Outcome all = drev_command({"run", kDisc, "--plugin", kHardening, "--plugin",
+                                    "no/such.so," + text + "," + plugin("no_plugin"), "--plugin",
+                                    plugin("wrong_version") + "," + plugin("missing_symbol") + "," +
+                                        plugin("taken_name") + "," + plugin("other_headers")});
   CHECK(all.exit_code == 2);
   CHECK(all.out.empty());
-  CHECK(contains(all.err, "6 faults"));
+  CHECK(contains(all.err, "7 faults"));
   CHECK(contains(all.err, "no/such.so, is no file"));
   CHECK(contains(all.err, "text.so, cannot be loaded as a plugin of drev 0."));
   CHECK(contains(all.err, "no_plugin.so, is no plugin of drev: it lacks DREV_PLUGIN()"));
   CHECK(contains(all.err, "wrong_version.so, was built for drev 0.0.9, of old; this is drev 0."));
+  CHECK(contains(all.err, "other_headers.so, was built for drev 0."));
+  CHECK(contains(all.err, ", headers 0123456789ab, with Eigen "));
   CHECK(contains(all.err, "from_a_later_version"));
   CHECK(contains(all.err, "type = shaft_spring, is registered already, by drev itself"));
   // What a plugin had registered before its fault is gone.

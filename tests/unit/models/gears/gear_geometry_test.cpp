@@ -148,6 +148,7 @@ TEST_CASE("Web, rim, hub and bore of a gear's inertia", "[gears]") {
 TEST_CASE("An internal pair follows from the same formulas", "[gears]") {
   GearGeometry p = gear_pairs::pair(2, 24, 72, 0, 0);
   p.internal = true;
+  p.gear_2.bore_diameter = kNotGiven;
   p.gear_2.tip_alteration = -0.2;  // clear of the fillet of gear 1
   const GearPair pair(p);
   CHECK(std::abs(pair.centre_distance() - 0.048) < 1e-15);

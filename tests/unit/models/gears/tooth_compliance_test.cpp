@@ -1,8 +1,9 @@
 // Compliance of teeth on their gears against an independent finite-element program (triangles with six nodes, 38,000 nodes,
 // five teeth; docs/gears.md), its convergence, reciprocity and the windup of a disc.
+#include "models/gears/tooth_compliance.hpp"
+
 #include <drev/core/error.hpp>
 #include <drev/models/gears/mesh_cycle.hpp>
-#include <drev/models/gears/tooth_compliance.hpp>
 
 #include <cmath>
 

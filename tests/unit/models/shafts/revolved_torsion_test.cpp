@@ -43,12 +43,56 @@ TEST_CASE("Steps with and without fillets: added length and stress concentration
   }
 }
 
+TEST_CASE("Published end corrections of sharp steps beside finite elements", "[shafts]") {
+  // Lengths to be added in parts of d ("penetration"), E. J. Nestorides, A Handbook on Torsional Vibration, 1958, as API
+  // RP 684 prints them; the last for D/d without end, here 8. Right at 1.5 alone.
+  struct Correction {
+    double large, published, ratio;  // of the published value to finite elements
+  };
+  for (const Correction& c : {Correction{1.25, 0.055, 1.21},
+                              {1.5, 0.085, 0.99},
+                              {2.0, 0.100, 0.80},
+                              {3.0, 0.107, 0.72},
+                              {8.0, 0.125, 0.78}}) {
+    const double D = c.large;
+    const RevolvedTorsion found =
+        solve_revolved({{2.0, 0.5, 0.5}, {2.0 * D, 0.5 * D, 0.5 * D}}, {2.0}, {.accuracy = 1e-4});
+    const double added = (found.flexibility.value - 2.0 / polar(1.0) - 2.0 * D / polar(D)) * polar(1.0);
+    CHECK(std::abs(c.published / added - c.ratio) < 0.01);
+    // A rigid disc on a half-space (E. Reissner, H. F. Sagoci, J. Appl. Phys. 15, 1944: theta = 3 T/(16 G a^3)).
+    if (D == 8.0) CHECK(added > 3.0 * std::numbers::pi / 64.0);
+  }
+}
+
 TEST_CASE("A step in a bored shaft", "[shafts]") {
   const RevolvedTorsion found = solve_revolved({{2.0, 0.5, 0.5, 0.25, 0.0, 0.1}, {2.0, 0.75, 0.75, 0.25}}, {},
                                                {.accuracy = 1e-4, .judge = {true, false}});
   const double small = polar(1.0) - polar(0.5), large = polar(1.5) - polar(0.5);
   CHECK(std::abs((found.flexibility.value - 2.0 / small - 2.0 / large) * small - 0.04881) < 1e-4);
   CHECK(found.peak[0].value * 2.0 * small == Approx(1.3544).epsilon(0.003));
+}
+
+TEST_CASE("A blind bore that begins at a shoulder, between bores that begin before and behind it",
+          "[shafts]") {
+  const auto flexibility = [](std::vector<RevolvedStation> stations) {
+    return solve_revolved(stations, {}, {.accuracy = 1e-5}).flexibility;
+  };
+  const double e = 0.08, r = 0.2;  // of the small diameter
+  const RevolvedStation thick{4.0, 1.5, 1.5}, thin{4.0, 1.0, 1.0, 2.0 * r};
+  const Estimate here = flexibility({thick, thin});
+  const Estimate before = flexibility({{4.0 - e, 1.5, 1.5}, {e, 1.5, 1.5, 2.0 * r}, thin});
+  const Estimate behind = flexibility({thick, {e, 1.0, 1.0}, {4.0 - e, 1.0, 1.0, 2.0 * r}});
+  CHECK(behind.value < here.value);
+  CHECK(here.value < before.value);
+  CHECK(before.value / behind.value < 1.0006);
+  CHECK(here.error < 1e-5 * here.value);
+  // The end of the bore as a cut of the mesh, four times as fine and more: 25795.53 of a shaft of 100 mm.
+  CHECK(here.value * std::pow(20.0, 3) == Approx(25795.53).epsilon(2e-5));
+  // Either end of the shaft first, and with a fillet.
+  CHECK(flexibility({thin, thick}).value == Approx(here.value).epsilon(1e-5));
+  RevolvedStation filleted = thin;
+  filleted.round_left = 0.1;
+  CHECK(flexibility({thick, filleted}).value * std::pow(20.0, 3) == Approx(25658.9).epsilon(2e-5));
 }
 
 TEST_CASE("Short collars do not carry their own section over their width", "[shafts]") {
@@ -68,6 +112,15 @@ TEST_CASE("Short collars do not carry their own section over their width", "[sha
     CHECK(std::abs(found.flexibility.value * polar(1.0) - 4.0 - c.equivalent) < 1e-4);
     CHECK(found.peak[0].value / kNominal == Approx(c.factor).epsilon(0.003));
     CHECK(found.peak[2].value == Approx(found.peak[0].value).epsilon(0.003));
+    // Its own section over its width is stiffer by 1.7 to 10, whatever is added at its shoulders.
+    const double naive = c.width / std::pow(c.diameter, 4);
+    CHECK(c.equivalent / naive > 1.7);
+    if (c.diameter > 1.5) continue;
+    // Twice the length that one shoulder adds (0.07254 above) is enough for a collar as wide as the shaft alone.
+    const double corrected = naive + 2.0 * 0.07254;
+    const double off = c.width < 0.3 ? 0.24 : c.width < 0.6 ? 0.03 : 0.001;
+    CHECK(std::abs(corrected / (found.flexibility.value * polar(1.0) - 4.0) - 1.0) ==
+          Approx(off).margin(0.4 * off));
   }
 }
 
@@ -149,6 +202,40 @@ TEST_CASE("Meshes of smooth contours converge at the third order or better, shar
   };
   CHECK(order(0.3) > 2.9);
   CHECK(order(0.0) > 1.1);
+}
+
+TEST_CASE("A step with a fillet converges to four digits and more", "[shafts]") {
+  // D/d 1.5, r/d 0.1: three meshes of the independent program add 0.0529966, 0.0529978, 0.0529979 of d; K_t 1.3798.
+  double last = 1.0;
+  for (const double accuracy : {1e-3, 1e-4, 1e-5}) {
+    const RevolvedTorsion found = solve_revolved({{2.0, 0.5, 0.5, 0.0, 0.0, 0.1}, {3.0, 0.75, 0.75}}, {},
+                                                 {.accuracy = accuracy, .judge = {true, false}});
+    const double off =
+        std::abs((found.flexibility.value - 2.0 / polar(1.0) - 3.0 / polar(1.5)) * polar(1.0) - 0.0529979);
+    INFO("accuracy " << accuracy << ", off by " << off);
+    CHECK(off < found.flexibility.error * polar(1.0) + 1e-7);
+    CHECK(off <= last);
+    last = off;
+    if (accuracy < 2e-5) CHECK(found.peak[0].value / kNominal == Approx(1.3798).epsilon(1e-3));
+  }
+  CHECK(last < 2e-6);
+}
+
+TEST_CASE("A shallow round groove doubles the stress", "[shafts]") {
+  // Half a circle in a half-plane under shear: K_t = 2, from which it falls with depth over diameter.
+  double last = 0.0;
+  for (const double depth : {0.02, 0.01, 0.005}) {
+    const double net = 1.0 - 2.0 * depth;
+    const RevolvedTorsion found = solve_revolved(
+        {{0.5, 0.5, 0.5}, {2.0 * depth, 0.5 * net, 0.5 * net, 0.0, depth, depth}, {0.5, 0.5, 0.5}}, {},
+        {.accuracy = 1e-4, .judge = {false, true, false}});
+    const double factor = found.peak[1].value / kNominal * std::pow(net, 3);
+    INFO("depth " << depth << ", K_t " << factor);
+    CHECK(factor > last);
+    CHECK(factor < 2.0);
+    if (depth < 0.006) CHECK(2.0 * factor - last == Approx(2.0).epsilon(0.005));
+    last = factor;
+  }
 }
 
 TEST_CASE("Spans end at planes inside a uniform part", "[shafts]") {

@@ -70,6 +70,14 @@ TEST_CASE("Torsion of sections against independent finite elements: keyways, cam
   const SectionTorsion cam = solve_section(cam_outline(1.0, cosine_lift(0.5)));
   CHECK(cam.area == Approx(kPi_ * (1.0 + 1.0 / 6.0 + 1.0 / 32.0)).epsilon(1e-6));
   CHECK(cam.polar == Approx(2.479680).epsilon(1e-6));
+  CHECK(std::hypot(cam.centroid[0], cam.centroid[1]) == Approx(0.186390).epsilon(1e-5));
+  CHECK(cam.modulus() == Approx(1.47592).epsilon(2e-3));
+  CHECK(std::hypot(cam.peak_at[0], cam.peak_at[1]) == Approx(std::hypot(0.589, 0.821)).epsilon(0.01));
+  const SectionTorsion high = solve_section(cam_outline(1.0, cosine_lift(0.8)));
+  CHECK(high.area == Approx(4.230678).epsilon(1e-6));
+  CHECK(high.polar == Approx(3.556281).epsilon(1e-6));
+  CHECK(std::hypot(high.centroid[0], high.centroid[1]) == Approx(0.32351).epsilon(2e-5));
+  CHECK(std::hypot(high.peak_at[0], high.peak_at[1]) == Approx(std::hypot(0.576, 0.832)).epsilon(0.01));
 }
 
 TEST_CASE("A spline is stiffer than its minor circle and softer than its major one, with a peak in the round",

@@ -1,10 +1,13 @@
-// Engine cylinders, dampers with a loss factor, planets: variants in lockstep (or one by one, where a model needs that)
-// are single runs.
+// Engine cylinders, dampers with a loss factor, planets, gears on bearings, couplings with play, modal damping: variants
+// in lockstep (or one by one, where a model needs that) are single runs.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/models/modal_damping.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <array>
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -126,4 +129,78 @@ TEST_CASE("Planetary trains: elastic meshes in lockstep, a rigid set one by one"
     return m.build();
   };
   CHECK(compare(rigid, {.step = 1e-4, .t_end = 0.02}) != "");
+}
+
+TEST_CASE("Gears on bearings with backlash in lockstep", "[batch]") {
+  const auto gears = [](std::size_t i) {
+    const double part = static_cast<double>(i);
+    Model m("gears on bearings");
+    for (const char* n : {"1", "2"}) {
+      const std::string gear = std::string("gear_") + n, centre = std::string("centre_") + n;
+      m.add_node(gear);
+      m.add_node(centre, NodeKind::translational);
+      m.add<Inertia>("J_" + gear, {gear}, {.inertia = 0.01});
+      m.add<Inertia>("m_" + centre, {centre}, {.inertia = 8.0});
+      m.add<GroundSpring>("bearing_" + centre, {centre},
+                          {.stiffness = 2e8 * (1.0 + 0.05 * part), .damping = 500.0});
+    }
+    m.add<LateralGearMesh>("mesh", {"gear_1", "gear_2", "centre_1", "centre_2"},
+                           {.base_radius_1 = 0.05,
+                            .base_radius_2 = 0.05,
+                            .stiffness = 3e8,
+                            .normal_backlash = 60e-6 + 2e-6 * part,
+                            .damping = 2e3,
+                            .damping_law = MeshDamping::limited});
+    m.add<AppliedTorque>("swing", {"gear_2"}, {.harmonics = {{300.0, 200.0, 0.0}}});
+    return m.build();
+  };
+  const TransientOptions options{.step = 1e-6, .t_end = 4e-3};
+  CHECK(compare(gears, options) == "");
+  const System one = gears(0);
+  State state = State::initial(one);
+  CHECK(propagate(one, {.t_end = options.t_end}, state).contact_changes > 3);  // the flanks part and meet
+}
+
+TEST_CASE("A coupling with play and a stop in lockstep", "[batch]") {
+  const auto play = [](std::size_t i) {
+    const double part = static_cast<double>(i);
+    Model m("play");
+    m.add_node("motor"), m.add_node("load");
+    m.add<Inertia>("J_motor", {"motor"}, {.inertia = 0.02});
+    m.add<Inertia>("J_load", {"load"}, {.inertia = 0.05});
+    m.add<DeadBandCoupling>("spline", {"motor", "load"},
+                            {.stiffness = 4e4, .gap = 0.004 + 1e-4 * part, .damping = 8.0});
+    m.add<DeadBandCoupling>("stop", {"load"},
+                            {.stiffness = 2e4,
+                             .gap = 0.02,
+                             .damping = 5.0,
+                             .damping_law = MeshDamping::proportional,
+                             .reference_penetration = 1e-3});
+    m.add<AppliedTorque>("swing", {"motor"}, {.harmonics = {{40.0, 120.0, 0.0}}});
+    return m.build();
+  };
+  const TransientOptions options{.step = 1e-5, .t_end = 0.06};
+  CHECK(compare(play, options) == "");
+  const System one = play(0);
+  State state = State::initial(one);
+  CHECK(propagate(one, {.t_end = options.t_end}, state).contact_changes > 5);
+}
+
+TEST_CASE("Trains with modal damping in lockstep", "[batch]") {
+  const auto damped = [](std::size_t i) {
+    Model m("modal damping");
+    const std::array<double, 4> inertia{0.1, 0.05, 0.08, 0.4};
+    for (std::size_t k = 0; k < inertia.size(); ++k) {
+      const std::string node = "n" + std::to_string(k);
+      m.add_node(node);
+      m.add<Inertia>("J_" + node, {node}, {.inertia = inertia[k]});
+      if (k > 0)
+        m.add<ShaftSpring>("shaft_" + std::to_string(k), {"n" + std::to_string(k - 1), node},
+                           {.stiffness = 2e4 * static_cast<double>(k)});
+    }
+    m.add<AppliedTorque>("swing", {"n0"}, {.harmonics = {{60.0, 50.0, 0.0}}});
+    add_modal_damping(m, "modal", {.ratios = {0.02, 0.01 + 0.002 * static_cast<double>(i)}});
+    return m.build();
+  };
+  CHECK(compare(damped, {.step = 2e-5, .t_end = 0.05}) == "");
 }

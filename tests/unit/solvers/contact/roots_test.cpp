@@ -100,3 +100,21 @@ TEST_CASE("First crossing: random polynomials against a dense scan") {
   }
   CHECK(crossings > 2000);
 }
+
+TEST_CASE("First crossing: signs at points alone miss crossings that the bound of the curvature finds") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(0.05, 0.9);
+  std::uniform_real_distribution<double> decades(-6.0, -1.0);
+  int missed_by_signs = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double first = anywhere(random), apart = std::pow(10.0, decades(random));
+    const auto g = with_roots({first, first + apart, 1.5, 2.5});
+    bool seen = false;  // the certificate removed: a fall below zero at one of 64 points
+    for (int k = 1; k <= 64; ++k) seen |= polynomial_value(g, k / 64.0) < 0.0;
+    missed_by_signs += !seen;
+    const auto s = first_crossing(g, 1.0);
+    REQUIRE(s.has_value());
+    CHECK(std::abs(*s - first) < 1e-14 / apart + 1e-12);
+  }
+  CHECK(missed_by_signs > 200);
+}

@@ -50,6 +50,34 @@ TEST_CASE("Exact propagation: a rebound from a flank whose damping grows with pe
   CHECK(std::abs(run.energy.worst_imbalance) < 1e-11);
 }
 
+TEST_CASE("Exact propagation: a rebound from a flank that gets stiffer with its load") {
+  // Harmonic motion on each stretch of the spring; the way back is the way there. k follows the phase, by nothing: the
+  // angle of the given gear rests.
+  const double k = 4e6, half_gap = 1e-4, speed = 0.5, mass = 2.0, p_1 = 1e-4, first = 0.8, second = 1.3;
+  for (const MeshStiffness& stiffness : {MeshStiffness(k), MeshStiffness::table({0.0, 0.5}, {k, 2.0 * k})}) {
+    Model m = disc_on_mesh(mass, 0.0,
+                           {.teeth_1 = 1,
+                            .teeth_2 = 1,
+                            .stiffness = stiffness,
+                            .normal_backlash = 2.0 * half_gap,
+                            .stiffening = {{0.0, p_1}, {first, second}}});
+    m.set_initial("disc", 0.0, speed);
+    const System system = m.build();
+    State state = State::initial(system);
+    const double w_1 = std::sqrt(first * k / mass), w_2 = std::sqrt(second * k / mass);
+    const double t_1 = std::asin(p_1 * w_1 / speed) / w_1, v_1 = speed * std::cos(w_1 * t_1);
+    const double t_2 =
+        std::atan2(v_1 * w_2, first / second * p_1 * w_2 * w_2) / w_2;  // from p_1 to the deepest place
+    const double apart = half_gap / speed + 2.0 * (t_1 + t_2), end = apart + 1e-4;
+    const RunSummary run = propagate(system, {.tolerance = 1e-12, .t_end = end}, state);
+    REQUIRE(run.ok());
+    CHECK(run.contact_changes == 4);  // of stretches, too
+    CHECK(state.v[0] == Approx(-speed).epsilon(1e-11));
+    CHECK(std::abs(state.z[0] - (half_gap - speed * (end - apart))) < 1e-13);
+    CHECK(std::abs(run.energy.worst_imbalance) < 1e-11);
+  }
+}
+
 TEST_CASE("Exact propagation: a mesh whose stiffness rises linearly with the angle, by Bessel functions") {
   // x'' + (a + b t) x = 0, b > 0: x = sqrt(s) Z_1/3(2/3 s^(3/2)), s = b^(1/3) (t + a/b).
   const double mass = 0.5, speed = 4.0 * kPi, low = 2e5, high = 4e5, end = 0.2;  // of a mesh period of 0.5 s

@@ -15,29 +15,12 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
+#include "tests/unit/solvers/exact/friction_run.hpp"
 
 using namespace drev;
+using test::channel_at, test::FrictionRun, test::ran_to;
 
 namespace {
-
-double channel(const System& system, const State& state, const std::string& name) {
-  Assembler assembler(system);
-  assembler.set_time(state.t);
-  return find_channel(system, name).evaluate(assembler, state);
-}
-
-struct Ran {
-  RunSummary summary;
-  State state;
-};
-
-Ran run(const System& system, double t_end) {
-  Ran r{.summary = {}, .state = State::initial(system)};
-  r.summary = propagate(system, {.tolerance = 1e-14, .t_end = t_end, .energy_tolerance = 1e-11}, r.state);
-  INFO(r.summary.brief_report());
-  CHECK(r.summary.ok());
-  return r;
-}
 
 Model two_inertias(double j_1, double w_1, double j_2, double w_2) {
   Model m("two inertias");
@@ -57,16 +40,16 @@ TEST_CASE("Friction: a clutch engages, constant torque, ramp, torque falling wit
     Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
     m.add<Clutch>("clutch", {"a", "b"}, std::move(clutch));
     const System system = m.build();
-    const Ran r = run(system, 1.0);
+    const FrictionRun r = ran_to(system, 1.0);
     REQUIRE(r.summary.friction_events.size() == 1);
     CHECK(r.summary.friction_events[0].becomes == "stuck");
     CHECK(r.summary.friction_events[0].t == Approx(slip_time).epsilon(1e-9));
     CHECK(r.state.v[0] == Approx(90.0 / 11.0).epsilon(1e-14));
     CHECK(r.state.v[1] == Approx(90.0 / 11.0).epsilon(1e-14));
-    CHECK(channel(system, r.state, "clutch.slip_speed_rad_per_s") == 0.0);
-    CHECK(std::abs(channel(system, r.state, "clutch.torque_Nm")) < 1e-12);
+    CHECK(channel_at(system, r.state, "clutch.slip_speed_rad_per_s") == 0.0);
+    CHECK(std::abs(channel_at(system, r.state, "clutch.torque_Nm")) < 1e-12);
     // J_1 J_2/(J_1 + J_2) dw^2/2
-    CHECK(channel(system, r.state, "clutch.heat_J") == Approx(0.3 / 1.1 * 800.0).epsilon(1e-12));
+    CHECK(channel_at(system, r.state, "clutch.heat_J") == Approx(0.3 / 1.1 * 800.0).epsilon(1e-12));
   };
   engage({.torque = 60.0}, 2.0 / 11.0);
   engage({.normal_force = 1000.0, .geometry = 0.15, .friction_coefficient = 0.4}, 2.0 / 11.0);
@@ -76,7 +59,7 @@ TEST_CASE("Friction: a clutch engages, constant torque, ramp, torque falling wit
   // It opens for good at 0.1 s: nothing changes from there on.
   Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
   m.add<Clutch>("clutch", {"a", "b"}, {.torque = 60.0, .engagement = TimeTable({0.1, 0.1}, {1.0, 0.0})});
-  const Ran open = run(m.build(), 1.0);
+  const FrictionRun open = ran_to(m.build(), 1.0);
   CHECK(open.state.v[0] == Approx(18.0).epsilon(1e-14));
   CHECK(open.summary.friction_events[0].becomes == "open");
 }
@@ -93,7 +76,7 @@ TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
   m.add<BearingFriction>("bearing", {"mass"}, {.torque = 4.0, .break_away_ratio = 1.5});
   const System system = m.build();
   const double slip = 3.0 * kPi / 20.0, period = slip + 0.2;
-  const Ran r = run(system, 0.3 + 10.0 * period);
+  const FrictionRun r = ran_to(system, 0.3 + 10.0 * period);
   const auto& events = r.summary.friction_events;
   REQUIRE(events.size() >= 20);
   for (int i = 0; i < 10; ++i) {
@@ -103,7 +86,7 @@ TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
     CHECK(events[k + 1].t == Approx(0.3 + slip + i * period).epsilon(1e-12));
     CHECK(events[k + 1].becomes == "stuck");
   }
-  CHECK(channel(system, r.state, "bearing.heat_J") == Approx(10.0 * 0.536991118).epsilon(1e-8));
+  CHECK(channel_at(system, r.state, "bearing.heat_J") == Approx(10.0 * 0.536991118).epsilon(1e-8));
 }
 
 TEST_CASE("Friction: free decay stops at the turning points of Coulomb friction (case F7)") {
@@ -116,7 +99,7 @@ TEST_CASE("Friction: free decay stops at the turning points of Coulomb friction 
   const System system = m.build();
   for (int i = 1; i <= 7; ++i) {
     const double expected[] = {-0.0425, 0.035, -0.0275, 0.02, -0.0125, 0.005, 0.0025};
-    const Ran r = run(system, i * kPi / 20.0 + (i == 7 ? 5.0 : 0.0));
+    const FrictionRun r = ran_to(system, i * kPi / 20.0 + (i == 7 ? 5.0 : 0.0));
     if (i < 7) CHECK(r.state.z[0] == Approx(expected[i - 1]).epsilon(1e-12));
     if (i == 7) CHECK(r.state.z[0] == Approx(0.0025).epsilon(1e-11));
     if (i == 7) CHECK(r.summary.friction_events.back().t == Approx(1.099557429).epsilon(1e-9));
@@ -160,6 +143,81 @@ TEST_CASE("Friction: forced Coulomb oscillator, sliding and with stops (case F8,
   for (const std::size_t i : {2u, 3u}) CHECK(times[i] == Approx(10.739176161).epsilon(2e-7));
 }
 
+TEST_CASE(
+    "Friction: forced Coulomb oscillator that never stops stays on its closed form (case F8, Den Hartog)") {
+  // x'' + x + R sgn x' = cos(b t + phi): from a turning point A, x' = 0, with cos phi = A/V, sin phi = -R U/V the motion
+  // is periodic: half a cycle later it turns at -A.
+  for (const auto& [b, r, expected] :
+       {std::tuple{0.7, 0.5, 1.744253936}, {1.3, 0.3, 1.315348197}, {2.0, 0.4, .266666667}}) {
+    const double v = 1.0 / (1.0 - b * b), u = std::sin(kPi / b) / (b * (1.0 + std::cos(kPi / b))),
+                 a = std::sqrt(v * v - r * r * u * u);
+    INFO(b);
+    CHECK(a == Approx(expected).epsilon(2e-9));
+    Model m("forced");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<GroundSpring>("spring", {"n"}, {.stiffness = 1.0});
+    m.add<BearingFriction>("bearing", {"n"}, {.torque = r});
+    m.add<AppliedTorque>("load", {"n"},
+                         {.harmonics = {{b / (2.0 * kPi), 1.0, std::atan2(-r * u / v, a / v)}}});
+    m.set_initial("n", a, 0.0);
+    const System system = m.build();
+    for (const int half_cycles : {1, 2, 7, 20}) {
+      const FrictionRun half = ran_to(system, half_cycles * kPi / b - 1e-9);
+      CHECK(std::abs(half.state.z[0]) == Approx(a).epsilon(1e-10));
+      CHECK(half.state.z[0] * (half_cycles % 2 == 0 ? 1.0 : -1.0) > 0.0);
+      for (const FrictionEvent& e : half.summary.friction_events) CHECK(e.becomes != "stuck");
+    }
+  }
+}
+
+TEST_CASE("Friction: engagement by a formula, closed forms of sticking and of slipping again") {
+  const double rate = 60.0 * (1.0 / 0.5 + 1.0 / 0.6);  // of the slip speed, fully engaged
+  const auto pressed = [](double t_0, double tau) {
+    return TimeCurve(
+        {.function = [=](const Dual& t) { return 1.0 - exp(-(t - t_0) / tau); }, .from = t_0, .to = 2.0});
+  };
+  {  // constant torque: 40 = rate (s - tau (1 - exp(-s/tau))), s = t - t_0
+    Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
+    m.add<Clutch>("clutch", {"a", "b"}, {.torque = 60.0, .engagement_formula = pressed(0.05, 0.1)});
+    double s = 0.2;
+    for (int i = 0; i < 50; ++i)
+      s -= (rate * (s - 0.1 * (1.0 - std::exp(-s / 0.1))) - 40.0) / (rate * (1.0 - std::exp(-s / 0.1)));
+    const System system = m.build();
+    const FrictionRun r = ran_to(system, 1.0);
+    REQUIRE(r.summary.friction_events.size() >= 1);
+    CHECK(r.summary.friction_events.back().becomes == "stuck");
+    CHECK(r.summary.friction_events.back().t == Approx(0.05 + s).epsilon(1e-9));
+    CHECK(channel_at(system, r.state, "clutch.heat_J") == Approx(0.3 / 1.1 * 800.0).epsilon(1e-12));
+  }
+  {  // torque falling with the slip speed, 60 - w/2: ln((120 - w)/80) = rate/120 integral of g, w = 0 at the end
+    Model m = two_inertias(0.5, 30.0, 0.6, -10.0);
+    m.add<Clutch>("clutch", {"a", "b"},
+                  {.slip_speeds = {0.0, 100.0},
+                   .sliding_torques = {60.0, 10.0},
+                   .engagement_formula = pressed(0.0, 0.1)});
+    double s = 0.3;
+    for (int i = 0; i < 50; ++i)
+      s -= (rate / 120.0 * (s - 0.1 * (1.0 - std::exp(-s / 0.1))) - std::log(1.5)) /
+           (rate / 120.0 * (1.0 - std::exp(-s / 0.1)));
+    const FrictionRun r = ran_to(m.build(), 1.0);
+    CHECK(r.summary.friction_events.back().t == Approx(s).epsilon(1e-9));
+  }
+  {  // stuck, and let go: 10 N m on a, of which the clutch passes on 10 J_b/(J_a + J_b) = 60 exp(-t/0.1) at the end
+    Model m = two_inertias(0.5, 5.0, 0.6, 5.0);
+    m.add<Clutch>("clutch", {"a", "b"},
+                  {.torque = 60.0,
+                   .engagement_formula = TimeCurve(
+                       {.function = [](const Dual& t) { return exp(-t / 0.1); }, .from = 0.0, .to = 3.0})});
+    m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0}, {10.0})});
+    const FrictionRun r = ran_to(m.build(), 0.5);
+    REQUIRE(r.summary.friction_events.size() >= 1);
+    CHECK(r.summary.friction_events.front().t ==
+          Approx(0.1 * std::log(60.0 / (10.0 * 0.6 / 1.1))).epsilon(1e-9));
+    CHECK(r.summary.friction_events.front().becomes == "sliding backward");
+  }
+}
+
 TEST_CASE("Friction: two clutches side by side carry together, and slip together") {
   Model m = two_inertias(1.0, 5.0, 2.0, 5.0);
   m.add<Clutch>("one", {"a", "b"}, {.torque = 10.0});
@@ -167,15 +225,40 @@ TEST_CASE("Friction: two clutches side by side carry together, and slip together
   // The clutches carry two thirds of it: 30 N m at 45, after 4.5 s.
   m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 100.0})});
   const System system = m.build();
-  const Ran r = run(system, 4.4);
+  const FrictionRun r = ran_to(system, 4.4);
   CHECK(r.state.v[0] == Approx(5.0 + 4.4 * 22.0 / 3.0).epsilon(1e-13));
-  CHECK(channel(system, r.state, "one.torque_Nm") + channel(system, r.state, "two.torque_Nm") ==
+  CHECK(channel_at(system, r.state, "one.torque_Nm") + channel_at(system, r.state, "two.torque_Nm") ==
         Approx(-44.0 * 2.0 / 3.0).epsilon(1e-12));
-  const Ran slips = run(system, 6.0);
+  const FrictionRun slips = ran_to(system, 6.0);
   // a' = 10 t - 30 behind 4.5 s, b' = 15.
   CHECK(slips.state.v[0] == Approx(5.0 + 33.75 + 5.0 * (36.0 - 20.25) - 45.0).epsilon(1e-13));
   CHECK(slips.state.v[1] == Approx(5.0 + 33.75 + 22.5).epsilon(1e-13));
   CHECK(slips.summary.friction_changes <= 4);
+}
+
+TEST_CASE("Friction: break-away in loops: contacts hold while some sharing of the torque lets them") {
+  {  // Side by side: 1.5 (10 + 20) N m, two thirds of the load; then 30.
+    Model m = two_inertias(1.0, 0.0, 2.0, 0.0);
+    m.add<Clutch>("one", {"a", "b"}, {.torque = 10.0, .break_away_ratio = 1.5});
+    m.add<Clutch>("two", {"a", "b"}, {.torque = 20.0, .break_away_ratio = 1.5});
+    m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 100.0})});
+    const FrictionRun r = ran_to(m.build(), 8.0);
+    REQUIRE(r.summary.friction_events.size() == 2);
+    for (const FrictionEvent& e : r.summary.friction_events) CHECK(e.t == Approx(6.75).epsilon(1e-12));
+    CHECK(r.state.v[1] == Approx(6.75 * 6.75 * 5.0 / 3.0 + 15.0 * 1.25).epsilon(1e-12));
+  }
+  {  // Over the ground, with different ratios: two blocks tied by a joint on floors of 1.2 times 2 and 1.6 times 3.
+    Model m = two_inertias(1.0, 0.0, 2.0, 0.0);
+    m.add<BearingFriction>("floor_a", {"a"}, {.torque = 2.0, .break_away_ratio = 1.2});
+    m.add<BearingFriction>("floor_b", {"b"}, {.torque = 3.0, .break_away_ratio = 1.6});
+    m.add<CoulombJoint>("joint", {"a", "b"}, {.torque = 50.0, .break_away_ratio = 2.0});
+    m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 10.0})});
+    const FrictionRun r = ran_to(m.build(), 9.2);
+    REQUIRE(r.summary.friction_events.size() == 2);
+    for (const FrictionEvent& e : r.summary.friction_events) CHECK(e.t == Approx(7.2).epsilon(1e-12));
+    CHECK(r.state.v[0] == Approx((0.5 * (9.2 * 9.2 - 7.2 * 7.2) - 5.0 * 2.0) / 3.0).epsilon(1e-12));
+    CHECK(r.state.v[1] == Approx(r.state.v[0]).epsilon(1e-14));
+  }
 }
 
 TEST_CASE("Friction: a row of blocks at rest lets go one after the other as the load grows") {
@@ -191,13 +274,13 @@ TEST_CASE("Friction: a row of blocks at rest lets go one after the other as the 
   m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 10.0}, {0.0, 20.0})});
   const System system = m.build();
   // Together a and b go when the load is their floors and what bc holds: 2 + 2 + 1 = 5 N m, 2.5 s; c never.
-  const Ran r = run(system, 4.0);
+  const FrictionRun r = ran_to(system, 4.0);
   CHECK(r.state.v[0] == Approx(0.5 * (1.5 * 1.5)).epsilon(1e-12));
   CHECK(r.state.v[1] == Approx(r.state.v[0]).epsilon(1e-14));
   CHECK(r.state.v[2] == 0.0);
-  CHECK(channel(system, r.state, "bc.state") == -1.0);
-  CHECK(channel(system, r.state, "ab.state") == 0.0);
-  CHECK(channel(system, r.state, "floor_c.torque_Nm") == Approx(1.0).epsilon(1e-12));
+  CHECK(channel_at(system, r.state, "bc.state") == -1.0);
+  CHECK(channel_at(system, r.state, "ab.state") == 0.0);
+  CHECK(channel_at(system, r.state, "floor_c.torque_Nm") == Approx(1.0).epsilon(1e-12));
 }
 
 TEST_CASE("Friction: a train that is held at rest stays there, and its energy is no error") {
@@ -206,7 +289,7 @@ TEST_CASE("Friction: a train that is held at rest stays there, and its energy is
   m.add<Brake>("brake_a", {"a"}, {.torque = 5.0});
   m.add<Brake>("brake_b", {"b"}, {.torque = 5.0});
   m.add<AppliedTorque>("load", {"a"}, {.harmonics = {{3.0, 4.0, 0.3}}});
-  const Ran r = run(m.build(), 1.0);
+  const FrictionRun r = ran_to(m.build(), 1.0);
   CHECK(r.summary.friction_changes == 0);
   CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-15);
 }
@@ -222,8 +305,8 @@ TEST_CASE("Friction: a train held at rest lets go when its harmonic load says so
     m.set_initial("n", 0.0, speed);
     const System system = m.build();
     const double lets_go = std::asin(5.0 / 6.0) / (6.0 * kPi);
-    CHECK(run(system, 0.999 * lets_go).summary.steps < 20);
-    const Ran r = run(system, 0.1);
+    CHECK(ran_to(system, 0.999 * lets_go).summary.steps < 20);
+    const FrictionRun r = ran_to(system, 0.1);
     const auto& events = r.summary.friction_events;
     const auto slides = std::find_if(events.begin(), events.end(), [](const FrictionEvent& e) {
       return e.becomes == "sliding forward" && e.t > 1e-6;
@@ -241,7 +324,7 @@ TEST_CASE("Friction: a train held at rest lets go when its harmonic load says so
   m.add<Brake>("brake_a", {"a"}, {.torque = 5.0});
   m.add<Brake>("brake_b", {"b"}, {.torque = 5.0});
   m.add<AppliedTorque>("load", {"a"}, {.harmonics = {{30.0, 4.0, 0.3}}});
-  const Ran r = run(m.build(), 1.0);
+  const FrictionRun r = ran_to(m.build(), 1.0);
   CHECK(r.summary.friction_changes == 0);
   CHECK(r.summary.steps < 20 * 30);
 }
@@ -252,7 +335,7 @@ TEST_CASE("Friction: a stuck clutch costs no more than the shaft that it could b
   Model rigid = m;
   m.add<Clutch>("clutch", {"a", "b"}, {.torque = 1e6});
   rigid.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 300.0});
-  const Ran stuck = run(m.build(), 5.0), shaft = run(rigid.build(), 5.0);
+  const FrictionRun stuck = ran_to(m.build(), 5.0), shaft = ran_to(rigid.build(), 5.0);
   CHECK(stuck.summary.friction_changes == 0);
   CHECK(stuck.summary.steps <= shaft.summary.steps);
   CHECK(stuck.summary.solves <= shaft.summary.solves);

@@ -3,6 +3,7 @@
 // Covers solvers/exact/step_expansion.hpp and solvers/run/observer.hpp through propagate().
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
@@ -182,4 +183,60 @@ TEST_CASE("A table and harmonics in one model cost no more steps than the dearer
   };
   const long one = steps(true, false), other = steps(false, true);
   CHECK(steps(true, true) < 2 * std::max(one, other));
+}
+
+namespace {
+
+/// Counts what it is shown; it asks for points inside steps, or does without.
+class Shown final : public Observer {
+ public:
+  explicit Shown(bool inside) : inside_(inside) {}
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override { ++count; }
+  bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override { return inside_; }
+  long count = 0;
+
+ private:
+  bool inside_;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "Steps are shown whole where no peak passes inside: the same peaks and contacts from fewer points") {
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", "gears");
+  const ModelCase camshaft = camshaft_entry().build(parameters);
+  const System system = camshaft.model.build();
+  struct Watched {
+    std::vector<Peak> peaks;
+    std::vector<ContactRecord> contacts;
+    long shown = 0, steps = 0;
+  };
+  const auto watch = [&](bool inside) {
+    Peaks peaks(find_channels(system, camshaft.torques));
+    ContactStatistics contacts(system);
+    Shown shown(inside);
+    const RunSummary run = propagate(system, {.tolerance = 1e-10, .t_end = 0.2}, {&peaks, &contacts, &shown});
+    REQUIRE(run.ok());
+    return Watched{peaks.peaks(), contacts.records(), shown.count, run.steps};
+  };
+  const Watched few = watch(false), all = watch(true);
+  CHECK(all.shown > 8 * all.steps);
+  CHECK(2 * few.shown < all.shown);
+  for (std::size_t c = 0; c < all.peaks.size(); ++c) {
+    CAPTURE(c);
+    CHECK(few.peaks[c].max == Approx(all.peaks[c].max).epsilon(1e-9));
+    CHECK(few.peaks[c].min == Approx(all.peaks[c].min).epsilon(1e-9));
+  }
+  for (std::size_t i = 0; i < all.contacts.size(); ++i) {
+    const ContactRecord &a = few.contacts[i], &b = all.contacts[i];
+    CHECK(a.front_impacts == b.front_impacts);
+    CHECK(a.back_impacts == b.back_impacts);
+    CHECK(a.largest_force == Approx(b.largest_force).epsilon(1e-9));
+    CHECK(a.time_separated == Approx(b.time_separated).epsilon(1e-9));
+    CHECK(a.front_force.mean() == Approx(b.front_force.mean()).epsilon(1e-4));
+    CHECK(a.impact_energy == Approx(b.impact_energy).epsilon(1e-9));
+  }
 }

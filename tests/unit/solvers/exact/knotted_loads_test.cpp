@@ -1,18 +1,21 @@
-// Exact propagation of loads that say their knots: what they say is the load itself, and a run that passes knots inside
-// its steps is that of the same load without them, which is only called. Covers core/law/knotted_load.hpp,
-// solvers/exact/curve_cells.hpp.
+// Loads that say their knots: what they say is the load itself; looked up all at once they are what each gives when it is
+// called; a run, by steps or with knots inside the steps of exact propagation, is that of the same load without them.
+// Covers core/law/knotted_load.hpp, core/table_loads.hpp, core/law/curve_cells.hpp.
+#include <drev/core/assembler.hpp>
 #include <drev/core/law/knotted_load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/couplings/absolute_damper.hpp>
 #include <drev/elements/dashpot.hpp>
 #include <drev/elements/engine/engine_cylinders.hpp>
+#include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/inertia.hpp>
 #include <drev/elements/shaft_spring.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
-#include "solvers/exact/curve_cells.hpp"
+#include "core/law/curve_cells.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -89,7 +92,7 @@ class OnlyCalled final : public Element {
     const Load& load;
   };
   EngineCylinders engine_;
-  Terms terms_{4};
+  Terms terms_{nodes()};
   std::vector<Hidden> loads_;
 };
 
@@ -155,6 +158,97 @@ TEST_CASE("A cylinder's pieces and curves are its torque, on both sides of every
       }
     }
   }
+}
+
+TEST_CASE("Cylinders looked up at once give what each gives when called, and a bound of their slopes",
+          "[step]") {
+  const Motion steady = constant_speed(200.0), back = constant_speed(-90.0),
+               rising = run_up(150.0, 220.0, 0.0, 0.1);
+  std::vector<EngineCylinders::Params> all = engines();
+  all.push_back(all[0]);
+  all.back().twist_feedback = false;
+  all.push_back(all[1]);
+  all.back().gas.firing = {.from_speed = 120.0, .to_speed = 205.0, .speed_ramp = 20.0};
+  for (const EngineCylinders::Params& engine : all)
+    for (const Motion* nominal : {&steady, &back, &rising, static_cast<const Motion*>(nullptr)}) {
+      const System system = train<EngineCylinders>(engine, nominal),
+                   called = train<OnlyCalled>(engine, nominal);
+      REQUIRE(system.knotted_loads().size() == 4);
+      REQUIRE(system.moving_loads().empty());
+      REQUIRE(called.knotted_loads().size() == 0);
+      Assembler at_once(system), one_by_one(called);
+      Vector z(5), v(5), p, expected, moved;
+      std::uint32_t seed = 7;
+      const auto random = [&seed] {
+        return static_cast<double>((seed = seed * 1664525u + 1013904223u)) / 4294967296.0;
+      };
+      for (int i = 0; i < 200; ++i) {
+        const double t = i < 100 ? 0.001 * i : 0.2 * random();  // by small steps, then anywhere
+        for (Eigen::Index k = 0; k < 5; ++k) {
+          z[k] = 0.02 * random() + (i % 7 == 0 ? 30.0 * random() : 0.0);
+          v[k] = (nominal == nullptr ? 170.0 : 0.0) + 20.0 * random();
+        }
+        at_once.set_time(t), one_by_one.set_time(t);
+        at_once.external(z, v, p);
+        one_by_one.external(z, v, expected);
+        INFO(i << " t = " << t);
+        REQUIRE((p - expected).lpNorm<Eigen::Infinity>() < 1e-9 * 3000.0);
+        const double change = 1e-9, rate = 1e4;
+        const double bound = change * at_once.load_steepness(rate);
+        at_once.external(z.array() + change, v.array() + rate * change, moved);
+        CHECK((moved - p).lpNorm<Eigen::Infinity>() < 1.01 * bound + 1e-9);
+      }
+    }
+}
+
+TEST_CASE("A cylinder on the carrier of a rigid planetary set, whose motion follows from two unknowns",
+          "[step]") {
+  const auto build = [](auto engine) {
+    Model m("set");
+    for (const char* node : {"sun", "ring", "carrier"}) {
+      m.add_node(node);
+      m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 0.05});
+      m.set_initial(node, 0.0, 150.0);
+    }
+    m.add<PlanetarySet>("set", {"sun", "ring", "carrier"}, {.ratio = 2.0});
+    m.add<Dashpot>("drag", {"ring"}, {.damping = 0.1});
+    m.add("engine", {"carrier"}, engine);
+    return m.build();
+  };
+  EngineCylinders::Params p = engine_of(rough_gas());
+  p.firing_angles = {deg(10)};
+  const System system = build(std::make_shared<const EngineCylinders>(p)),
+               called = build(std::make_shared<const OnlyCalled>(p));
+  REQUIRE(system.loaded_rows() == 1);
+  REQUIRE(system.knotted_loads().size() == 1);
+  State with = State::initial(system), without = with;
+  const TransientOptions options{.step = 2e-5, .t_end = 0.05};
+  REQUIRE(simulate(system, options, with).ok());
+  REQUIRE(simulate(called, options, without).ok());
+  CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-10 * without.z.lpNorm<Eigen::Infinity>());
+  CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-8 * without.v.lpNorm<Eigen::Infinity>());
+}
+
+TEST_CASE("Cylinders in steps: the motion of the same engine that is called", "[step]") {
+  const Motion steady = constant_speed(200.0), rising = run_up(150.0, 220.0, 0.0, 0.1);
+  const auto all = engines();
+  for (const std::size_t k : {0u, 3u, 5u, 7u})
+    for (const Motion* nominal : {&steady, &rising, static_cast<const Motion*>(nullptr)})
+      for (const char* method : {"average_acceleration", "generalized_alpha", "dormand_prince"}) {
+        const System system = train<EngineCylinders>(all[k], nominal),
+                     called = train<OnlyCalled>(all[k], nominal);
+        State with = State::initial(system);
+        if (nominal == nullptr) with.v.setConstant(170.0);
+        State without = with;
+        const TransientOptions options{.scheme = step_scheme(method), .step = 1e-5, .t_end = 0.03};
+        const RunSummary run = simulate(system, options, with), other = simulate(called, options, without);
+        INFO(k << " " << method << ": " << run.load_passes << ", " << other.load_passes);
+        REQUIRE(run.ok());
+        REQUIRE(other.ok());
+        CHECK(run.load_passes <= other.load_passes + other.load_passes / 100);
+        CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-10 * without.z.lpNorm<Eigen::Infinity>());
+        CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-8 * without.v.lpNorm<Eigen::Infinity>());
+      }
 }
 
 TEST_CASE("Knots inside the steps of exact propagation: the motion of the same load that is called",

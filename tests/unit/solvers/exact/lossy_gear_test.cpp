@@ -14,29 +14,14 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
+#include "tests/unit/solvers/exact/friction_run.hpp"
 
 using namespace drev;
+using test::channel_at, test::FrictionRun;
 
 namespace {
 
-double value(const System& system, const State& state, const std::string& name) {
-  Assembler assembler(system);
-  assembler.set_time(state.t);
-  return find_channel(system, name).evaluate(assembler, state);
-}
-
-struct GearRun {
-  RunSummary summary;
-  State state;
-};
-
-GearRun ran(const System& system, double t_end) {
-  GearRun r{.summary = {}, .state = State::initial(system)};
-  r.summary = propagate(system, {.tolerance = 1e-14, .t_end = t_end, .energy_tolerance = 1e-10}, r.state);
-  INFO(r.summary.brief_report());
-  CHECK(r.summary.ok());
-  return r;
-}
+FrictionRun ran(const System& system, double t_end) { return test::ran_to(system, t_end, 1e-10); }
 
 Model gear_train(double j_1, double j_2, LossyGear::Params gear) {
   Model m("lossy gear");
@@ -59,7 +44,7 @@ TEST_CASE("Lossy gear: Demo1 of the Modelica Standard Library (case G1)") {
   m.add<AppliedTorque>("sine", {"a"}, {.harmonics = {{1.0, 10.0, -kPi / 2.0}}});
   m.add<AppliedTorque>("ramp", {"b"}, {.table = TimeTable({0.0, 4.0}, {-10.0, 0.0})});
   const System system = m.build();
-  const GearRun end = ran(system, 0.5);
+  const FrictionRun end = ran(system, 0.5);
   const std::vector<std::pair<double, std::string>> expected{{.0804771338559, "stuck"},
                                                              {.1995199008476, "sliding forward"},
                                                              {.3713427780495, "stuck"},
@@ -71,12 +56,12 @@ TEST_CASE("Lossy gear: Demo1 of the Modelica Standard Library (case G1)") {
   }
   CHECK(std::abs(end.state.v[1] - -.0162619294) < 1e-10);
   CHECK(end.state.v[0] == Approx(2.0 * end.state.v[1]).epsilon(1e-14));
-  CHECK(value(system, end.state, "gear.heat_J") == Approx(.0185210833).epsilon(1e-8));
+  CHECK(channel_at(system, end.state, "gear.heat_J") == Approx(.0185210833).epsilon(1e-8));
   const State at_004 = ran(system, 0.04).state, at_03 = ran(system, 0.3).state;
   CHECK(std::abs(at_004.v[1] - -.0208414939) < 1e-10);
   CHECK(std::abs(at_03.v[1] - .0131811951) < 1e-10);
   CHECK(std::abs(at_03.z[1] - -5.17318149e-4) < 1e-12);
-  CHECK(value(system, ran(system, 0.1).state, "gear.state") == 0.0);
+  CHECK(channel_at(system, ran(system, 0.1).state, "gear.state") == 0.0);
 }
 
 TEST_CASE("Lossy gear: efficiency by quadrant (case G2)") {
@@ -84,16 +69,16 @@ TEST_CASE("Lossy gear: efficiency by quadrant (case G2)") {
     Model m = gear_train(1.0, 1.5, {.ratio = 0.5, .efficiency_forward = 0.5, .efficiency_backward = 0.5});
     load(m, first ? "a" : "b", 10.0);
     const System system = m.build();
-    const GearRun r = ran(system, 0.5);
+    const FrictionRun r = ran(system, 0.5);
     const double a_b = first ? 10.0 / 3.5 : 10.0 / 9.5;
     CHECK(r.state.v[1] == Approx(0.5 * a_b).epsilon(1e-14));
-    CHECK(value(system, r.state, "gear.driving_shaft") == (first ? 1.0 : 2.0));
-    const double in = value(system, r.state, "gear.torque_in_Nm"),
-                 out = value(system, r.state, "gear.torque_out_Nm");
+    CHECK(channel_at(system, r.state, "gear.driving_shaft") == (first ? 1.0 : 2.0));
+    const double in = channel_at(system, r.state, "gear.torque_in_Nm"),
+                 out = channel_at(system, r.state, "gear.torque_out_Nm");
     CHECK(in == Approx((first ? 10.0 : 0.0) - 2.0 * a_b).epsilon(1e-13));
     CHECK(out == Approx(1.5 * a_b - (first ? 0.0 : 10.0)).epsilon(1e-13));
     CHECK((first ? out / (2.0 * in) : 2.0 * in / out) == Approx(0.5).epsilon(1e-13));
-    CHECK(value(system, r.state, "gear.loss_power_W") ==
+    CHECK(channel_at(system, r.state, "gear.loss_power_W") ==
           Approx(in * r.state.v[0] - out * r.state.v[1]).epsilon(1e-13));
   }
 }
@@ -108,7 +93,7 @@ TEST_CASE("Lossy gear: which shaft drives is not obvious (Modelica's Demo3, case
   m.set_initial("a", 0.0, 10.0);  // and with it b
   m.add<AppliedTorque>("step", {"a"}, {.table = TimeTable({0.5, 0.5}, {0.0, 1.0})});
   const System system = m.build();
-  const GearRun r = ran(system, 2.0);
+  const FrictionRun r = ran(system, 2.0);
   REQUIRE(r.summary.friction_events.size() == 1);
   CHECK(r.summary.friction_events[0].t == Approx(0.02).epsilon(1e-13));
   CHECK(r.state.z[0] == Approx(0.1).epsilon(1e-13));
@@ -127,15 +112,15 @@ TEST_CASE("Lossy gear: a self-locking worm holds its load, and must be driven to
     return m.build();
   };
   const System system = worm(1.0);
-  const GearRun held = ran(system, 0.19);
+  const FrictionRun held = ran(system, 0.19);
   CHECK(held.summary.friction_changes == 0);
   CHECK(held.state.v.lpNorm<Eigen::Infinity>() == 0.0);
-  CHECK(value(system, held.state, "gear.loss_torque_Nm") == Approx(11.9).epsilon(1e-13));
-  const GearRun lowered = ran(system, 0.5);
+  CHECK(channel_at(system, held.state, "gear.loss_torque_Nm") == Approx(11.9).epsilon(1e-13));
+  const FrictionRun lowered = ran(system, 0.5);
   REQUIRE(lowered.summary.friction_events.size() == 1);
   CHECK(lowered.summary.friction_events[0].t == Approx(0.2).epsilon(1e-13));
   CHECK(lowered.state.v[0] == Approx(5.0 * 0.3 * 0.3 / 0.8).epsilon(1e-12));  // (1 - 0.2) a = 10 t - 2
-  CHECK(value(system, lowered.state, "gear.driving_shaft") == 2.0);
+  CHECK(channel_at(system, lowered.state, "gear.driving_shaft") == 2.0);
   // 1 - 0.2 x 10 < 0: no acceleration fulfils it.
   CHECK_THROWS_WITH(propagate(worm(10.0), {.t_end = 0.5}), Catch::Contains("jams"));
 }
@@ -185,7 +170,7 @@ TEST_CASE("Lossy gears, a brake and a bearing at rest let go together, at the to
   const System system = m.build();
   // c takes 4, two asks 2/0.5 = 4 at b, with the bearing 5, 2.5 referred to a; one asks (2.5 + 1)/0.8.
   const double torque = 3.5 / 0.8, t_0 = torque / 4.0;
-  const GearRun r = ran(system, 2.0);
+  const FrictionRun r = ran(system, 2.0);
   REQUIRE(r.summary.friction_events.size() == 4);
   for (const FrictionEvent& e : r.summary.friction_events) CHECK(e.t == Approx(t_0).epsilon(1e-12));
   // From there on 4 (t - t_0) accelerates 1 + (0.5 + 0.25 * 0.5 / 0.5) 0.5 / 0.8.
@@ -244,7 +229,7 @@ TEST_CASE("Lossy gear: between events it costs what an ideal gear does") {
     m.set_initial("motor", 0.0, 1.0);
     return m.build();
   };
-  const GearRun ideal = ran(train(false, 0.0), 5.0), stuck = ran(train(true, 1e3), 5.0);
+  const FrictionRun ideal = ran(train(false, 0.0), 5.0), stuck = ran(train(true, 1e3), 5.0);
   CHECK(stuck.summary.friction_changes == 0);
   CHECK(stuck.state.z[0] == Approx(std::sin(5.0 * std::sqrt(500.0)) / std::sqrt(500.0)).epsilon(1e-11));
   CHECK(stuck.summary.steps <= ideal.summary.steps + ideal.summary.steps / 10);

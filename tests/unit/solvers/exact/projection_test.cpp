@@ -2,6 +2,7 @@
 // long double.
 #include <cmath>
 
+#include "solvers/exact/kink_moments.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "tests/catch.hpp"
 

@@ -1,7 +1,7 @@
 /// Energy of modes by element against closed forms of two free discs.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/modes/mode_energy.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <algorithm>
 

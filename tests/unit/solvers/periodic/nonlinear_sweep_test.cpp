@@ -1,13 +1,14 @@
 // Sweeps of nonlinear models: branches, folds, stability, tongues, runs, free trains. Expected values come from
 // programs that put closed-form pieces together (shooting, saltation), to 1e-10.
 // Covers solvers/periodic/law_balance.hpp, mean_equilibrium.hpp, motion_sections.hpp, section_rows.hpp,
-// branch_tracer.hpp, floquet.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and solvers/at_speed.hpp.
+// branch_tracer.hpp, floquet.hpp, motion_figures.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and
+// solvers/at_speed.hpp, worst_motions.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/at_speed.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
+#include <drev/solvers/worst_motions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include <set>
 #include <sstream>
 
+#include "solvers/at_speed.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -322,4 +324,101 @@ TEST_CASE("Faults of a nonlinear sweep are listed at once", "[nonlinear_sweep]")
   CHECK_THROWS_AS(sweep_nonlinear(m.build(), {.speeds = {1.0, 2.0}}), ModelError);
   CHECK_THROWS_AS(at_speed(m.build(), 0.0), ModelError);
   CHECK(cycle_turns(Pair{}.build()) == 1.0);
+}
+
+TEST_CASE("What a sweep of contacts comes to at each speed: the worst of its stable motions",
+          "[nonlinear_sweep]") {
+  const NonlinearSweep sweep =
+      sweep_nonlinear(Pair{}.build(), {.speeds = {0.60, 0.72, 0.80, 0.84, 1.0}, .tolerance = 1e-4});
+  const WorstMotions worst = worst_motions(sweep);
+  CHECK(worst.missing.empty());
+  CHECK(worst.by_runs.empty());
+  REQUIRE(worst.sweep.speeds == sweep.speeds);
+  REQUIRE(worst.sweep.sections.size() == sweep.sections.size());
+  const SweepSection& mesh = worst.sweep.sections[0];
+  for (std::size_t i = 0; i < sweep.speeds.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    double expected = 0.0;
+    int stable = 0;
+    for (const SweptMotion& motion : motions_at(sweep, sweep.speeds[i])) {
+      if (motion.stable) expected = std::max(expected, motion.half_range()[0]), ++stable;
+      if (motion.stable && motion.separates) CHECK(mesh.separates(at));
+    }
+    INFO(sweep.speeds[i]);
+    CHECK(stable == (sweep.speeds[i] > 0.708 && sweep.speeds[i] < 0.828 ? 2 : 1));
+    CHECK(mesh.half_range()[at] == expected);
+    CHECK(mesh.mean[at] == Approx(0.1).margin(1e-3));
+  }
+  // Between 0.60 and 0.72 the upper branch begins, at its fold, above both of them.
+  const double fold = 0.7080316187;
+  REQUIRE_FALSE(worst.sweep.peaks.empty());
+  CHECK(std::any_of(worst.sweep.peaks.begin(), worst.sweep.peaks.end(), [&](const SweepPeak& p) {
+    return p.section == 0 && p.speed > fold - 1e-3 && p.speed < 0.72 && p.half_range > mesh.half_range()[1];
+  }));
+
+  // Chaos: the run's lowest and highest value.
+  const NonlinearSweep chaos = sweep_nonlinear(
+      Pair{.error = 0.5}.build(), {.speeds = {1.0, 1.001}, .sections = {"mesh.force_N"}, .tolerance = 1e-2});
+  const WorstMotions run = worst_motions(chaos);
+  CHECK(run.by_runs == chaos.speeds);
+  CHECK(run.sweep.sections[0].half_range()[0] ==
+        Approx(0.5 * (chaos.runs[0].highest[0] - chaos.runs[0].lowest[0])).epsilon(1e-14));
+
+  NonlinearSweep none = sweep;
+  none.branches.clear();
+  none.runs.clear();
+  CHECK(worst_motions(none).missing == none.speeds);
+}
+
+TEST_CASE("The cycle of a train of several shafts is found by the turns of each", "[nonlinear_sweep]") {
+  Model m("two stages");
+  for (const char* node : {"motor", "middle", "output"}) m.add_node(node);
+  m.constant_speed("motor", 100.0);
+  m.add<IdealGear>("one", {"motor", "middle"}, {.ratio = -21.0 / 83.0});
+  m.add<IdealGear>("two", {"middle", "output"}, {.ratio = -19.0 / 77.0});
+  m.add_node("load");
+  m.add<Inertia>("J", {"load"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"output", "load"}, {.stiffness = 1e4, .damping = 1.0});
+  m.add<EngineOrderTorque>("gas", {"load"}, {.harmonics = {{2.0, 10.0, 0.0}}, .twist_feedback = false});
+  // Half a turn of the load's shaft.
+  CHECK(cycle_turns(m.build()) == Approx(0.5 * 83.0 * 77.0 / (21.0 * 19.0)).epsilon(1e-12));
+}
+
+TEST_CASE("Two meshes of one train: their forces satisfy the equation of motion over the cycle",
+          "[nonlinear_sweep]") {
+  // Pinion held - mesh 1 - wheel - mesh 2 - second wheel, both with backlash and a transmission error of their own.
+  Model m("two meshes");
+  for (const char* node : {"pinion", "wheel", "second"}) m.add_node(node);
+  m.constant_speed("pinion", 1.0);
+  m.add<Inertia>("J_1", {"wheel"}, {.inertia = 1.0});
+  m.add<Inertia>("J_2", {"second"}, {.inertia = 0.4});
+  GearMesh::Params mesh = Pair{}.mesh();
+  m.add<GearMesh>("mesh_1", {"pinion", "wheel"}, mesh);
+  mesh.transmission_error = std::vector<Harmonic>{{1.0, 0.03, 1.0}};
+  m.add<GearMesh>("mesh_2", {"wheel", "second"}, mesh);
+  m.add<EngineOrderTorque>("torque", {"second"}, {.mean = 0.1, .twist_feedback = false});
+  const System system = m.build();
+  const NonlinearSweep sweep = sweep_nonlinear(system, {.speeds = {0.5, 0.8, 1.1, 1.6}, .tolerance = 1e-4});
+  CHECK(sweep.unsolved.empty());
+  int checked = 0, separated = 0;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions) {
+      if (!motion.asked || !motion.stable) continue;
+      INFO(motion.speed);
+      ++checked;
+      separated += motion.separates ? 1 : 0;
+      // From its state a run comes back to it, within the stated error.
+      const System here = at_speed(system, motion.speed);
+      State state = State::initial(here);
+      state.z = motion.z;
+      state.v = motion.v;
+      REQUIRE(
+          propagate(here, {.tolerance = 1e-11, .t_end = kTwoPi * branch.turns / motion.speed}, state).ok());
+      CHECK((state.z - motion.z).cwiseAbs().maxCoeff() < 1e-3 * motion.z.cwiseAbs().maxCoeff());
+      // Either mesh carries the load's mean torque.
+      for (Eigen::Index c = 0; c < motion.mean.size(); ++c)
+        CHECK(std::abs(motion.mean[c]) == Approx(0.1).margin(1e-6));
+    }
+  CHECK(checked >= 4);
+  CHECK(separated > 0);
 }

@@ -73,6 +73,46 @@ TEST_CASE("Windows are whole turns: a load that is its own order comes out exact
   }
 }
 
+TEST_CASE("Three orders with their phases over a run-up from 1000 rpm: amplitudes and phases stay the same") {
+  // cos(phi/2 + 0.3) + 2 cos(3 phi - 1.1) + cos(6 phi + 0.7)/2 while the speed is 1000 + 150 t rpm, ten seconds.
+  Model m("three orders");
+  const NodeId end = m.add_node("end"), disc = m.add_node("disc");
+  m.set_reference(end, run_up(rpm(1000.0), rpm(2500.0), 0.0, 10.0));
+  m.hold(end);
+  m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {end, disc}, {.stiffness = 1e4, .damping = 10.0});
+  m.add<EngineOrderTorque>(
+      "load", {disc},
+      {.harmonics = {{0.5, 1.0, 0.3}, {3.0, 2.0, -1.1}, {6.0, 0.5, 0.7}}, .twist_feedback = false});
+  const System system = m.build();
+  std::vector<double> even;
+  for (int k = 1; k <= 26; ++k) even.push_back(0.25 * k);
+  OrderTracking three(system, {"load.torque_Nm"}, {0.5, 3.0, 6.0}, 4.0, true),
+      waterfall(system, {"load.torque_Nm"}, even, 4.0, true);
+  REQUIRE(
+      run_method(system, {.name = kExact, .tolerance = 1e-9}, {.t_end = 10.0}, {&three, &waterfall}).ok());
+  const double amplitude[] = {1.0, 2.0, 0.5}, phase[] = {0.3, -1.1, 0.7};
+  const OrderTracks& tracks = three.tracks();
+  REQUIRE(tracks.time.size() > 100);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t w = 0; w < tracks.time.size(); ++w) {
+      CHECK(tracks.amplitude[0][k][w] == Approx(amplitude[k]).margin(1e-4));
+      CHECK(tracks.phase[0][k][w] == Approx(phase[k]).margin(1e-3));
+    }
+  // The waterfall: what is no order of the load is half a window's line away from one, or zero.
+  const OrderTracks& map = waterfall.tracks();
+  for (std::size_t k = 0; k < even.size(); ++k) {
+    double distance = 100.0, beside = 0.0;
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(even[k] - tracks.orders[std::size_t(i)]) < distance)
+        distance = std::abs(even[k] - tracks.orders[std::size_t(i)]), beside = amplitude[i];
+    for (std::size_t w = 0; w < map.time.size(); ++w) {
+      const double expected = distance == 0.0 ? beside : distance == 0.25 ? 0.5 * beside : 0.0;
+      CHECK(map.amplitude[0][k][w] == Approx(expected).margin(1e-3));
+    }
+  }
+}
+
 TEST_CASE(
     "A run-up through a resonance: the motion itself, and amplitude and phase of its order by the window") {
   // x'' + 0.02 x' + x = cos(alpha t^2 / 2 + p) on a shaft that runs up at alpha: the disc's own inertia torque is taken

@@ -1,6 +1,6 @@
 // A reduction that is tried before it is used: its channels beside the full model's by another method, and
 // what is refused.
-#include <drev/solvers/reduction/reduction_trial.hpp>
+#include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>

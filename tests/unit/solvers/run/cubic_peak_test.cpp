@@ -1,6 +1,9 @@
 // The extremum of the cubic through two ends, where the function is a cubic: exact.
 #include "solvers/run/cubic_peak.hpp"
 
+#include <algorithm>
+#include <random>
+
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -26,4 +29,27 @@ TEST_CASE("A parabola's peak is found; rates of one sign have none") {
   CHECK(peak->s == Approx(0.5).epsilon(1e-15));
   CHECK_FALSE(cubic_peak(0.0, 1.0, 1.0, 2.0, 1.0));
   CHECK_FALSE(cubic_peak(0.0, 0.0, 1.0, 0.0, 1.0));
+}
+
+TEST_CASE("The reach of a cubic holds its values, and is that of its ends where it is monotone") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int monotone = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double y_0 = any(random), r_0 = 3.0 * any(random), y_1 = any(random), r_1 = 3.0 * any(random),
+                 h = 0.7;
+    const Interval reach = cubic_reach(y_0, r_0, y_1, r_1, h);
+    double low = std::min(y_0, y_1), high = std::max(y_0, y_1);
+    const double rise = y_1 - y_0, d_0 = h * r_0, d_1 = h * r_1;
+    for (int k = 0; k <= 1000; ++k) {
+      const double s = 1e-3 * k;
+      const double y = y_0 + s * (d_0 + s * (3.0 * rise - 2.0 * d_0 - d_1 + s * (d_0 + d_1 - 2.0 * rise)));
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+    CHECK(reach.low <= low + 1e-12);
+    CHECK(reach.high >= high - 1e-12);
+    monotone += reach.low == std::min(y_0, y_1) && reach.high == std::max(y_0, y_1);
+  }
+  CHECK(monotone > 200);
 }

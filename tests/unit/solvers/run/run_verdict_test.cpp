@@ -9,8 +9,9 @@
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <cctype>
+#include <charconv>
 #include <functional>
-#include <regex>
 
 #include "tests/catch.hpp"
 #include "tests/problems/unit_oscillator.hpp"
@@ -60,7 +61,16 @@ void check_all(const Paths& paths, RunStatus status, const std::string& reason) 
 }
 
 std::string without_numbers(const std::string& text) {
-  return std::regex_replace(text, std::regex("-?[0-9][0-9.]*(e[+-]?[0-9]+)?"), "#");
+  std::string left;
+  for (const char* at = text.data(); at != text.data() + text.size();) {
+    double number = 0.0;
+    const auto read = std::from_chars(at, text.data() + text.size(), number);
+    const bool is_number =
+        read.ec == std::errc() && (*at == '-' || std::isdigit(static_cast<unsigned char>(*at)) != 0);
+    left += is_number ? '#' : *at;
+    at = is_number ? read.ptr : at + 1;
+  }
+  return left;
 }
 
 /// A spring of 1 N/m whose force is no number from a time on, nor beyond a deflection.
@@ -134,8 +144,10 @@ TEST_CASE("Same fault, same message: an energy balance that is off, with what he
   for (const Ended* run : {&paths.stepping, &paths.lockstep, &paths.exact})
     CHECK(run->summary.status == RunStatus::energy_error);
   const auto balance = [](const Ended& run) {
-    const std::string text = without_numbers(run.summary.reason);
-    return std::regex_replace(text, std::regex("gained from nothing|lost by the method"), "#");
+    std::string text = without_numbers(run.summary.reason);
+    for (const std::string way : {"gained from nothing", "lost by the method"})
+      if (const auto at = text.find(way); at != std::string::npos) text.replace(at, way.size(), "#");
+    return text;
   };
   const std::string head = "the energy balance is off by # % (#, worst at t = # s; at most # % passes): ";
   CHECK(balance(paths.stepping) == head + "take a smaller step");

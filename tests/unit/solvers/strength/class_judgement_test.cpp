@@ -2,10 +2,10 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
-#include <drev/solvers/strength/iacs_m68.hpp>
 
 #include <cmath>
 
+#include "solvers/strength/iacs_m68.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

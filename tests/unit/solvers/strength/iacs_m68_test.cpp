@@ -1,5 +1,6 @@
 // Covers solvers/strength/iacs_m68.hpp, section_strength.hpp: permissible stresses by IACS UR M68.5.
-#include <drev/solvers/strength/iacs_m68.hpp>
+#include "solvers/strength/iacs_m68.hpp"
+
 #include <drev/solvers/strength/section_strength.hpp>
 
 #include <cmath>

@@ -1,5 +1,6 @@
 #pragma once
-/// Eigenvalues of small dense matrices by Eigen's solvers, compiled once: their templates are large.
+/// Eigenvalues of small dense matrices: symmetric ones by Eigen's solver, compiled once, since its templates are large;
+/// general ones by LAPACK.
 #include <drev/core/system.hpp>
 
 #include <Eigen/Core>
@@ -20,11 +21,12 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 
 struct GeneralEigen {
   Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors;  ///< a column each, of length 1; none where it did not converge
+  Eigen::MatrixXcd
+      vectors;  ///< a column each, of length 1; none where it did not converge, or was not asked for
   bool converged = false;
 };
 
-/// A x = lambda x, A square.
+/// A x = lambda x, A square. Entries that are not finite: not converged.
 GeneralEigen general_eigen(const Eigen::MatrixXd& a);
 
 /// Largest |lambda| of A x = lambda x, A square; NaN where the eigensolver did not converge.

@@ -1,4 +1,4 @@
-#include "solvers/exact/curve_cells.hpp"
+#include "core/law/curve_cells.hpp"
 
 #include <drev/core/units.hpp>
 
@@ -40,20 +40,27 @@ CurveCells::CurveCells(const KnottedLoad& load) : period_(kTwoPi * load.turns())
 
 /// True if the cells are narrow enough.
 bool CurveCells::fill(const KnottedLoad& load, std::size_t count) {
+  // cos(j angle_q) at the nodes' angles, for all cells.
+  static const auto cosine = [] {
+    std::array<std::array<double, kOfCell>, kOfCell> table{};
+    for (std::size_t q = 0; q < kOfCell; ++q)
+      for (std::size_t j = 0; j < kOfCell; ++j)
+        table[q][j] = std::cos(static_cast<double>(j) * kPi * (static_cast<double>(q) + 0.5) /
+                               static_cast<double>(kOfCell));
+    return table;
+  }();
   width_ = period_ / static_cast<double>(count);
   reach_ = 0.5 * kOverlap * width_;
-  cells_.assign(count, {});
+  std::vector<Cell> cells(count);
   std::array<double, 2> tail{}, largest{};
   for (std::size_t i = 0; i < count; ++i) {
-    Cell& cell = cells_[i];
+    Cell& cell = cells[i];
     cell.centre = (static_cast<double>(i) + 0.5) * width_;
     std::array<std::array<double, kOfCell>, 2> a{};
     for (std::size_t q = 0; q < kOfCell; ++q) {
-      const double angle = kPi * (static_cast<double>(q) + 0.5) / static_cast<double>(kOfCell);
-      const KnottedLoad::Curves c = load.curves(cell.centre + reach_ * std::cos(angle));
+      const KnottedLoad::Curves c = load.curves(cell.centre + reach_ * cosine[q][1]);
       for (std::size_t j = 0; j < kOfCell; ++j) {
-        const double weight =
-            (j > 0 ? 2.0 : 1.0) / static_cast<double>(kOfCell) * std::cos(static_cast<double>(j) * angle);
+        const double weight = (j > 0 ? 2.0 : 1.0) / static_cast<double>(kOfCell) * cosine[q][j];
         a[0][j] += weight * c.factor;
         a[1][j] += weight * c.by_speed_squared;
       }
@@ -65,14 +72,21 @@ bool CurveCells::fill(const KnottedLoad& load, std::size_t count) {
     cell.factor = to_powers(a[0], reach_);
     cell.by_speed = to_powers(a[1], reach_);
   }
+  cells_ = std::make_shared<const std::vector<Cell>>(std::move(cells));
   return tail[0] <= kCellTail * largest[0] && tail[1] <= kCellTail * largest[1];
 }
 
+CurveCells CurveCells::shifted(double by) const {
+  CurveCells other = *this;
+  other.start_ += by;
+  return other;
+}
+
 CurveCells::Place CurveCells::at(double angle) const {
-  const double within = angle - period_ * std::floor(angle / period_);
-  const auto last = static_cast<double>(cells_.size() - 1);
+  const double from_start = angle - start_, within = from_start - period_ * std::floor(from_start / period_);
+  const auto last = static_cast<double>(cells_->size() - 1);
   const double i = within > 0.0 ? std::min(std::floor(within / width_), last) : 0.0;  // a NaN: the first
-  const Cell& cell = cells_[static_cast<std::size_t>(i)];
+  const Cell& cell = (*cells_)[static_cast<std::size_t>(i)];
   return {&cell, within - cell.centre};
 }
 

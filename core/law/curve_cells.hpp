@@ -6,6 +6,7 @@
 #include <drev/core/law/knotted_load.hpp>
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace drev {
@@ -14,11 +15,13 @@ class CurveCells {
  public:
   static constexpr int kTerms = 16;
   struct Cell {
-    double centre = 0.0;                              ///< rad, within the first period
+    double centre = 0.0;                              ///< rad from the curves' start, within the first period
     std::array<double, kTerms> factor{}, by_speed{};  ///< S and G, of (theta - centre)^k
   };
   /// load.turns() > 0.
   explicit CurveCells(const KnottedLoad& load);
+  /// The same curves further on: S(theta - by) and G(theta - by). They share the cells.
+  CurveCells shifted(double by) const;
 
   struct Place {
     const Cell* cell;
@@ -35,8 +38,8 @@ class CurveCells {
 
  private:
   bool fill(const KnottedLoad& load, std::size_t count);
-  double period_ = 0.0, width_ = 0.0, reach_ = 0.0;
-  std::vector<Cell> cells_;
+  double period_ = 0.0, width_ = 0.0, reach_ = 0.0, start_ = 0.0;
+  std::shared_ptr<const std::vector<Cell>> cells_;
 };
 
 }  // namespace drev

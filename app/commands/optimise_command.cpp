@@ -1,0 +1,183 @@
+#include <drev/core/version.hpp>
+
+#include <algorithm>
+#include <thread>
+
+#include "app/base/csv_cell.hpp"
+#include "app/base/interrupt.hpp"
+#include "app/base/output_file.hpp"
+#include "app/base/progress.hpp"
+#include "app/base/text_layout.hpp"
+#include "app/cli/exit_codes.hpp"
+#include "app/cli/option_values.hpp"
+#include "app/cli/print.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/run_variants.hpp"
+#include "app/variants/optimum.hpp"
+
+namespace drev::app {
+
+namespace {
+
+constexpr std::size_t kTold = 10;  // of the best variants
+constexpr int kMostOptimumThreads = 1024;
+
+struct OptimumRequest {
+  VariantStudy study;
+  OptimumOptions options;
+};
+
+/// Which figure, and whether its largest value is meant.
+std::pair<std::string, bool> goal_of(const CommandLine& line, std::vector<Finding>& findings) {
+  const auto least = line.option("--minimise"), largest = line.option("--maximise");
+  if (least.has_value() == largest.has_value())
+    findings.push_back({kCommandLine, "--minimise", "", "",
+                        std::string(least ? "cannot be given with --maximise" : "or --maximise is needed") +
+                            ": the figure meant, such as max_torque_Nm"});
+  return {least ? *least : largest.value_or(""), largest.has_value()};
+}
+
+OptimumRequest request_optimum(const CommandLine& line) {
+  std::vector<Finding> findings;
+  OptimumOptions options;
+  const auto [figure, largest] = goal_of(line, findings);
+  options.largest = largest;
+  const auto count = [&](const char* option, int most, auto& value) {
+    if (const auto text = line.option(option))
+      value = static_cast<std::remove_reference_t<decltype(value)>>(
+          read_count(option, *text, most, "", findings));
+  };
+  count("--variants", static_cast<int>(OptimumOptions::kMostVariants), options.variants);
+  count("--seed", 1000000000, options.seed);
+  options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  count("--jobs", kMostOptimumThreads, options.threads);
+  std::vector<Finding> of_words;  // study_of() says them
+  double combinations = 1.0;
+  for (const Varied& v :
+       read_varied(line.list("--vary").value_or(std::vector<std::string>{}), 0.0, of_words)) {
+    if (v.kind == Varied::Kind::normal)
+      findings.push_back(
+          {kCommandLine, "--vary", v.name + "=" + v.text, "", "has no bounds: give NAME=uniform(LOW,HIGH)"});
+    combinations *= v.count() == 0 ? HUGE_VAL : static_cast<double>(v.count());
+  }
+  CommandLine asked = line;
+  asked.findings.insert(asked.findings.end(), findings.begin(), findings.end());
+  if (combinations > static_cast<double>(options.variants))
+    asked.options["--sample"] = {"lhs:" + std::to_string(first_sample(options.variants)) + ":" +
+                                 std::to_string(options.seed)};
+  OptimumRequest request{study_of(asked), std::move(options)};
+  std::vector<std::string> names;
+  for (const FigureColumn& column : request.study.figures()) names.push_back(column.name);
+  const auto at = std::find(names.begin(), names.end(), figure);
+  if (at == names.end())
+    throw ModelError(std::vector<Finding>{{kCommandLine, largest ? "--maximise" : "--minimise", figure, "",
+                                           "is no figure of the model; there are " + join(names) +
+                                               did_you_mean(figure, names) +
+                                               "; --record CHANNEL adds CHANNEL.max and CHANNEL.min"}});
+  request.options.figure = static_cast<std::size_t>(at - names.begin());
+  return request;
+}
+
+Json values_object(const ParameterValues& values) {
+  Json object = Json::object();
+  for (const auto& [name, text] : values) {
+    double value = 0.0;
+    object[name] = read_number(text, value) ? number(value) : Json(text);
+  }
+  return object;
+}
+
+std::string values_text(const ParameterValues& values) {
+  std::vector<std::string> parts;
+  for (const auto& [name, text] : values) parts.push_back(name + "=" + text);
+  return join(parts, " ");
+}
+
+Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
+  const FigureColumn& figure = request.study.figures()[request.options.figure];
+  Json object{{"$schema", "urn:drev:optimum:1"}, {"kind", "optimum"}, {"drev", DREV_VERSION}};
+  object["status"] = optimum.interrupted ? "interrupted" : optimum.order.empty() ? "failed" : "success";
+  object["study"] = request.study.description();
+  object["study"].erase("files");
+  object["figure"] = figure.name;
+  object["unit"] = figure.unit;
+  object["goal"] = request.options.largest ? "largest" : "least";
+  object["variants"] = optimum.tried.size();
+  object["without_figure"] = optimum.tried.size() - optimum.order.size();
+  object["all_combinations"] = optimum.all;
+  object["best"] = Json::array();
+  for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
+    const TriedVariant& tried = optimum.tried[optimum.order[i]];
+    object["best"].push_back({{"value", number(tried.figure)},
+                              {"variant", optimum.order[i]},
+                              {"varied", values_object(tried.values)}});
+  }
+  return object;
+}
+
+std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) {
+  const FigureColumn& figure = request.study.figures()[request.options.figure];
+  const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
+  std::string text =
+      labelled("variants", std::to_string(optimum.tried.size()) + " of " + request.study.request().words +
+                               (optimum.all ? ", all combinations"
+                                            : ", by a Latin hypercube and a search from its best")) +
+      labelled("method", to_text(request.study.request().method));
+  if (const std::size_t none = optimum.tried.size() - optimum.order.size())
+    text += labelled("failed", std::to_string(none) + " variants, which have no figure");
+  if (optimum.interrupted) text += labelled("interrupted", "this is the best so far");
+  if (optimum.order.empty()) return text + labelled("optimum", "none: no variant succeeded");
+  const TriedVariant& best = optimum.tried[optimum.order[0]];
+  text += labelled((request.options.largest ? "largest " : "least ") + figure.name,
+                   digits(best.figure, 8) + unit) +
+          labelled("at", values_text(best.values)) +
+          labelled("certain", optimum.all
+                                  ? "yes: every combination was computed"
+                                  : "no: a search proves nothing; see whether another --seed finds less") +
+          "\nThe best variants\n";
+  std::vector<std::vector<std::string>> rows{{"parameters", figure.name + unit}};
+  for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
+    const TriedVariant& tried = optimum.tried[optimum.order[i]];
+    rows.push_back({values_text(tried.values), digits(tried.figure, 8)});
+  }
+  return text + columns_text(rows);
+}
+
+/// A row a variant, in the order of computation.
+std::string tried_csv(const OptimumRequest& request, const Optimum& optimum) {
+  std::string csv;
+  for (const Varied& v : request.study.plan().varied()) csv += csv_cell(v.name) + ",";
+  csv += "status," + csv_cell(request.study.figures()[request.options.figure].name) + "\n";
+  for (const TriedVariant& tried : optimum.tried) {
+    for (const auto& [name, value] : tried.values) csv += csv_cell(value) + ",";
+    csv += std::string(status_text(tried.status)) + ",";
+    if (std::isfinite(tried.figure)) csv += short_digits(tried.figure, 17);
+    csv += "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+int optimise_command(const CommandLine& line) {
+  OptimumRequest request = request_optimum(line);
+  watch_signals();
+  Progress shown;
+  request.options.go_on = [&](double part) {
+    shown.update(part);
+    return !interrupted();
+  };
+  const Optimum optimum = find_optimum(request.study, request.options);
+  shown.clear();
+  const Json object = optimum_object(request, optimum);
+  if (const auto out = line.option("--out")) {
+    create_directory(*out);
+    write_file(*out, "tried", "csv", tried_csv(request, optimum));
+    write_file(*out, "optimum", "json", json_text(object));
+  }
+  print(line.json ? json_text(object) : optimum_text(request, optimum));
+  if (optimum.interrupted) return kInterrupted;
+  return optimum.order.empty() ? kNotTrusted : kSuccess;
+}
+
+}  // namespace drev::app

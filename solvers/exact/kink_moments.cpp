@@ -1,0 +1,205 @@
+#include "solvers/exact/kink_moments.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "solvers/exact/lane_pair.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kMomentNodes = 10;
+constexpr int kSweepNodes = 8;
+constexpr int kMaxNewton = 30;
+constexpr double kSettled = 1e-8;       // last Newton step in s
+constexpr double kSweepSettled = 1e-5;  // the same where a force is continuous, so that its square counts
+
+/// s where theta = target, from the line between 0 and `end`, where theta is at_end. By Newton's rule, within [0, end].
+template <class L>
+[[gnu::always_inline]] inline void find_place(const double* theta, std::size_t terms, const L& target,
+                                              const L& at_end, double end, double settled, L& s) {
+  L x;
+  load(theta, x);
+  s = end * (target - x) / (at_end - x);
+  for (int newton = 0; newton < kMaxNewton; ++newton) {
+    L value{}, slope{};
+    for (std::size_t k = terms; k-- > 0;) {
+      load(theta + k * kLanes, x);
+      slope = slope * s + value;
+      value = value * s + x;
+    }
+    L step = (value - target) / slope;
+    s -= step;
+    double places[kLanes];
+    store(s, places);
+    for (double& at : places) at = at < 0.0 ? 0.0 : at > end ? end : at;
+    load(places, s);
+    magnitude(step);
+    if (largest_of(step) < settled) break;  // the next step would be its square
+  }
+}
+
+/// theta at two places.
+template <class L>
+[[gnu::always_inline]] inline void angles(const double* theta, std::size_t terms, const L& s_0, const L& s_1,
+                                          L& f_0, L& f_1) {
+  L x;
+  f_0 = L{};
+  f_1 = L{};
+  for (std::size_t k = terms; k-- > 0;) {
+    load(theta + k * kLanes, x);
+    f_0 = f_0 * s_0 + x;
+    f_1 = f_1 * s_1 + x;
+  }
+}
+
+/// Moments int_s^1 jump (theta - knot) L_j du of kLanes kinks, behind the s at which theta = knot, by Gauss's rule with
+/// kMomentNodes nodes between s and 1: exact where theta is of degree 11 there.
+struct Moments {
+  template <class L>
+  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
+                                         const double* jump, const double* end, const double* nodes,
+                                         const double* weights, double* place, double* moments) {
+    L target, delta, at_end, s;
+    load(knot, target);
+    load(jump, delta);
+    load(end, at_end);
+    find_place(theta, terms, target, at_end, 1.0, kSettled, s);
+    store(s, place);
+    L sum[kProjectionTerms] = {};
+    const L rest = 1.0 - s;
+    for (int q = 0; q < kMomentNodes; q += 2) {
+      const L s_0 = s + nodes[q] * rest, s_1 = s + nodes[q + 1] * rest;
+      L f_0, f_1;
+      angles(theta, terms, s_0, s_1, f_0, f_1);
+      for (int node = 0; node < 2; ++node) {
+        const L u = 2.0 * (node == 0 ? s_0 : s_1) - 1.0;
+        L below = weights[q + node] * ((node == 0 ? f_0 : f_1) - target), now = u * below;
+        sum[0] += below;
+        sum[1] += now;
+        for (int j = 1; j < kProjectionDegree; ++j) {
+          const L next = ((2.0 * j + 1.0) / (j + 1.0)) * (u * now) - (j / (j + 1.0)) * below;
+          below = now;
+          now = next;
+          sum[j + 1] += now;
+        }
+      }
+    }
+    for (int j = 0; j < kProjectionTerms; ++j) {
+      sum[j] *= (2.0 * j + 1.0) * (delta * rest);
+      store(sum[j], moments + j * kLanes);
+    }
+  }
+};
+
+/// Moments int_s^e (e - s)^j/j! jump (theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes.
+struct SweepMoments {
+  template <class L>
+  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
+                                         const double* jump, const double* end, double s_end,
+                                         const double* nodes, const double* weights, int degree,
+                                         double* place, double* moments) {
+    L target, delta, at_end, s;
+    load(knot, target);
+    load(jump, delta);
+    load(end, at_end);
+    find_place(theta, terms, target, at_end, s_end, kSweepSettled, s);
+    store(s, place);
+    const L rest = s_end - s;
+    L f[kSweepNodes];
+    for (int q = 0; q < kSweepNodes; q += 2) {
+      angles(theta, terms, s + nodes[q] * rest, s + nodes[q + 1] * rest, f[q], f[q + 1]);
+      for (int node = q; node < q + 2; ++node) f[node] = weights[node] * (f[node] - target);
+    }
+    L power = delta * rest;  // jump rest^(j+1)/j!
+    for (int j = 0;; ++j) {
+      L sum = f[0] + f[1];
+      for (int q = 2; q < kSweepNodes; ++q) sum += f[q];
+      sum *= power;
+      store(sum, moments + j * kLanes);
+      if (j == degree) break;
+      power *= (1.0 / (j + 1)) * rest;
+      for (int q = 0; q < kSweepNodes; ++q) f[q] = (1.0 - nodes[q]) * f[q];
+    }
+  }
+};
+
+template <int kNodes>
+struct NodesAndWeights {
+  std::array<double, kNodes> nodes, weights;
+  NodesAndWeights() { find_gauss_rule(kNodes, nodes.data(), weights.data()); }
+};
+
+}  // namespace
+
+void KinkMoments::add(int row, double knot, double jump, double end, std::span<const double> theta) {
+  const auto i = static_cast<std::size_t>(count_++);
+  terms_ = theta.size();
+  const auto room = static_cast<std::size_t>(whole_lanes(count_));
+  if (row_.size() < room) {
+    row_.resize(room);
+    for (auto* list : {&knot_, &jump_, &end_, &place_}) list->resize(room);
+    theta_.resize(room * kMostTerms);
+  }
+  double* own = theta_.data() + i / kLanes * kGroup + i % kLanes;
+  for (std::size_t k = 0; k < terms_; ++k) own[k * kLanes] = theta[k];
+  row_[i] = row;
+  knot_[i] = knot;
+  jump_[i] = jump;
+  end_[i] = end;
+}
+
+/// The lanes behind the last kink repeat it; what they give is not used.
+void KinkMoments::fill_lanes() {
+  for (auto lane = static_cast<std::size_t>(count_); lane % kLanes != 0; ++lane) {
+    for (auto* list : {&knot_, &jump_, &end_}) (*list)[lane] = (*list)[lane - 1];
+    double* own = theta_.data() + lane / kLanes * kGroup + lane % kLanes;
+    for (std::size_t k = 0; k < terms_; ++k) own[k * kLanes] = own[k * kLanes - 1];
+  }
+}
+
+void KinkMoments::add_to(LegendreProjection& projection) {
+  if (count_ == 0) return;
+  static const NodesAndWeights<kMomentNodes> rule;
+  moments_.resize(kProjectionTerms * kLanes);
+  fill_lanes();
+  for (int first = 0; first < count_; first += kLanes) {
+    const auto at = static_cast<std::size_t>(first);
+    run_widest<Moments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
+                        static_cast<const double*>(knot_.data() + at),
+                        static_cast<const double*>(jump_.data() + at),
+                        static_cast<const double*>(end_.data() + at), rule.nodes.data(), rule.weights.data(),
+                        place_.data() + at, moments_.data());
+    const int lanes = std::min(kLanes, count_ - first);
+    for (int j = 0; j < kProjectionTerms; ++j)
+      for (int l = 0; l < lanes; ++l)
+        projection.coefficient(j, row_[static_cast<std::size_t>(first + l)]) +=
+            moments_[static_cast<std::size_t>(j * kLanes + l)];
+  }
+}
+
+void KinkMoments::add_to_sweep(double end, int degree, int stride, double* columns) {
+  degree_ = degree;
+  if (count_ == 0) return;
+  static const NodesAndWeights<kSweepNodes> rule;
+  const auto terms = idx_of(degree + 1);
+  sweep_moments_.resize(terms * idx_of(whole_lanes(count_)));
+  fill_lanes();
+  for (int first = 0; first < count_; first += kLanes) {
+    const auto at = static_cast<std::size_t>(first);
+    double* moments = sweep_moments_.data() + at * terms;
+    run_widest<SweepMoments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
+                             static_cast<const double*>(knot_.data() + at),
+                             static_cast<const double*>(jump_.data() + at),
+                             static_cast<const double*>(end_.data() + at), end, rule.nodes.data(),
+                             rule.weights.data(), degree, place_.data() + at, moments);
+    const int lanes = std::min(kLanes, count_ - first);
+    for (int l = 0; l < lanes; ++l) {
+      double* column = columns + row_[idx_of(first + l)];
+      for (int j = degree; j >= 0; --j, column += stride) *column += moments[j * kLanes + l];
+    }
+  }
+}
+
+}  // namespace drev

@@ -1,0 +1,48 @@
+#pragma once
+/// KinkMoments: kinks of forces that are linear in an angle theta(s) between knots. Behind the s at which theta passes the
+/// knot, jump (theta - knot) is added. Many knots at once, in lanes; integrals by Gauss's nodes between there and the end.
+#include <drev/core/lanes.hpp>
+
+#include <span>
+#include <vector>
+
+#include "solvers/exact/legendre_projection.hpp"
+
+namespace drev {
+
+class KinkMoments {
+ public:
+  void clear() { count_ = 0; }
+  int count() const { return count_; }
+  /// theta: its coefficients, as many for each kink, at most kMostTerms; it passes `knot` once before the end of the
+  /// step, or of the part of it that is looked at, and monotonously, and stands at `end` there.
+  void add(int row, double knot, double jump, double end, std::span<const double> theta);
+  /// Adds the moments of all kinks over the whole step.
+  void add_to(LegendreProjection& projection);
+  /// Adds W_j = int_s^e (e - s)^j/j! jump (theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.
+  void add_to_sweep(double end, int degree, int stride, double* columns);
+  /// After either: the s at which theta passes the knot of kink i.
+  double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
+  int row(int i) const { return row_[static_cast<std::size_t>(i)]; }
+  double knot(int i) const { return knot_[static_cast<std::size_t>(i)]; }
+  double end(int i) const { return end_[static_cast<std::size_t>(i)]; }
+  double jump(int i) const { return jump_[static_cast<std::size_t>(i)]; }
+  /// After add_to_sweep(): W_j of kink i alone.
+  double moment(int i, int j) const {
+    const auto at = static_cast<std::size_t>(i);
+    return sweep_moments_[(at / kLanes * idx_of(degree_ + 1) + idx_of(j)) * kLanes + at % kLanes];
+  }
+
+ private:
+  static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
+  void fill_lanes();
+  static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
+  int count_ = 0, degree_ = 0;
+  std::size_t terms_ = 0;
+  std::vector<int> row_;
+  std::vector<double> knot_, jump_, end_, place_;
+  std::vector<double> theta_;  // by group of lanes, degree, lane
+  std::vector<double> moments_, sweep_moments_;
+};
+
+}  // namespace drev

@@ -1,0 +1,100 @@
+#include "solvers/exact/kink_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drev {
+
+namespace {
+
+constexpr int kLeastSwept = 8, kMostCuts = 20;
+constexpr int kMostKinks = 1000;  // in a step; what they do to each other is bounded pair by pair
+constexpr double kOfShare = 0.1;  // what a sweep of finite degree leaves out
+
+}  // namespace
+
+void KinkResponse::undo() {
+  if (slopes_changed_) loads_.add_kink_slopes(series_, -1.0);
+  slopes_changed_ = false;
+  found_ = false;
+}
+
+bool KinkResponse::find(double end, const double* z_end, double share) {
+  undo();
+  if (!loads_.list_sweep_kinks(series_, end, z_end)) return false;
+  end_ = end;
+  if (end == 1.0) limit_ = 1.0;
+  KinkMoments& kinks = loads_.kinks();
+  if (kinks.count() == 0) return found_ = true;
+  if (kinks.count() > kMostKinks) return false;
+  // |y| <= pull end^3/6, and each degree of the sweep adds rate h end/(j + 3) of the one before.
+  const double h = series_.step(), growth = series_.rate() * h * end;
+  double scale = 0.0, rest = 0.0;
+  for (std::size_t kind = 0; kind < 2; ++kind)
+    if (series_.z_scale()[kind] > 0.0)
+      scale = std::max(scale, h / std::min(series_.z_scale()[kind] / h, series_.v_scale()[kind]));
+  for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) rest = std::max(rest, kink.pull);
+  if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
+  rest *= 0.5 * scale * end * end;
+  int degree = 0;
+  while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
+    rest *= growth / (++degree + 2.0);
+  if (rest > kOfShare * share) return false;
+  loads_.add_kink_slopes(series_, 1.0);
+  slopes_changed_ = true;
+  const int stride = series_.stride();
+  moments_.assign(idx((degree + 1) * stride), 0.0);
+  kinks.add_to_sweep(end, degree, stride, moments_.data());
+  series_.sweep(moments_.data(), degree);
+  if (end == 1.0 && !find_limit(share - rest, scale)) return false;
+  return found_ = true;
+}
+
+/// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
+bool KinkResponse::find_limit(double allowed, double scale) {
+  limit_ = 1.0;
+  for (int cuts = 0; cuts < kMostCuts; ++cuts) {
+    const Others others = error_of_others(limit_);
+    if (scale * others.error <= allowed) return true;
+    limit_ = others.between;
+  }
+  return false;
+}
+
+/// What kinks add to rows of later kinks ahead of these, and what these make of it, up to s = end: of a kink ahead by d in
+/// the same row pull d^3/6, one row away k/m h^2 pull d^5/120, two rows away about (rate h)^4/16 pull d^7/5040, three or more
+/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2.
+KinkResponse::Others KinkResponse::error_of_others(double end) const {
+  const KinkMoments& kinks = loads_.kinks();
+  const std::vector<LoadSeries::KinkSize>& sizes = loads_.kink_sizes();
+  const double h = series_.step(), square = h * h;
+  // (2 j + 4)! of rows j apart.
+  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), two = quarter * quarter / 40320.0,
+               more = quarter * quarter * quarter / 3628800.0;
+  Others others;
+  double most = 0.0;
+  for (int i = 0; i < kinks.count(); ++i) {
+    if (kinks.place(i) >= end) continue;
+    for (int k = 0; k < kinks.count(); ++k) {
+      const double d = kinks.place(i) - kinks.place(k);
+      if (!(d > 0.0)) continue;
+      const double d_2 = d * d, d_4 = d_2 * d_2;
+      double error = square * sizes[idx(i)].gain * sizes[idx(k)].pull * d_4;
+      const int row = kinks.row(i), other = kinks.row(k);
+      if (row == other)
+        error /= 24.0;
+      else if (const double beside = series_.coupling(row, other); beside > 0.0)
+        error *= d_2 * (square * beside / 720.0 + two * d_2);
+      else
+        error *= d_4 * (series_.share_neighbour(row, other) ? two : more * d_2);
+      others.error += error;
+      if (error > most) {
+        most = error;
+        others.between = 0.5 * (kinks.place(i) + kinks.place(k));
+      }
+    }
+  }
+  return others;
+}
+
+}  // namespace drev

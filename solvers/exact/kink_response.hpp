@@ -1,0 +1,60 @@
+#pragma once
+/// KinkResponse: what kinks of tables that a step passes do to the motion, by one backward sweep and without passes.
+///
+/// The series of the step has each load on the straight line that it starts on. Behind the s at which an angle passes a
+/// knot, the load carries jump (theta(s) - theta_k) more: that force along the series' path, in moments by Gauss's nodes
+/// (kink_moments.hpp), goes through one sweep (TaylorSeries::sweep). What it adds, y, bends the angle in turn: with the
+/// changed slope in the stiffness the sweep holds that, too, since y of a kink's row is zero ahead of it. Left out is
+/// what other kinks have added to that row before: of order h^4 of the same row's, and h^6 of its neighbours'; the
+/// step ends where that would matter. A knot's place follows from the series alone: a force is continuous there, so
+/// that an error of place counts squared.
+#include <vector>
+
+#include "solvers/exact/load_series.hpp"
+#include "solvers/exact/taylor_series.hpp"
+
+namespace drev {
+
+class KinkResponse {
+ public:
+  KinkResponse(TaylorSeries& series, LoadSeries& loads) : series_(series), loads_(loads) {}
+  KinkResponse(const KinkResponse&) = delete;
+
+  /// A new step: nothing is found, and no slope changed.
+  void reset() { found_ = slopes_changed_ = false; }
+  /// Finds y up to s = end, where the series stands at z_end; the whole step first. share: of the motion, what may be
+  /// left out. False: some load's kinks are none of this kind.
+  bool find(double end, const double* z_end, double share);
+  /// Back to the loads' slopes at the step's start.
+  void undo();
+  bool found() const { return found_; }
+  /// s to which y was found.
+  double end() const { return end_; }
+  /// Whether there are kinks up to there: else y = 0.
+  bool any() const { return found_ && loads_.kinks().count() > 0; }
+  double y(int row) const { return series_.swept(0)[row]; }
+  /// By s.
+  double rate(int row) const { return series_.swept(-1)[row]; }
+  /// s up to which the step holds: beyond, more would be left out than its share.
+  double limit() const { return limit_; }
+  /// Work of loads beyond what they do along the series [J].
+  double work() const { return any() ? loads_.kink_work(series_, end_) : 0.0; }
+  /// Loss in all dampers [J].
+  double dissipated() { return series_.loss(end_, any()); }
+
+ private:
+  struct Others {
+    double error = 0.0;    // of the motion by the scale
+    double between = 0.0;  // s between the two kinks that make most of it
+  };
+  Others error_of_others(double end) const;
+  bool find_limit(double allowed, double scale);
+
+  TaylorSeries& series_;
+  LoadSeries& loads_;
+  bool found_ = false, slopes_changed_ = false;
+  double end_ = 0.0, limit_ = 1.0;
+  std::vector<double> moments_;
+};
+
+}  // namespace drev

@@ -1,0 +1,214 @@
+// LoadSeries: the knots of tables that angles pass inside a step.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/roots.hpp"
+#include "solvers/exact/load_series.hpp"
+#include "solvers/exact/series_kernels.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
+// Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
+constexpr double kKinkInside = 1e-4;
+
+}  // namespace
+
+/// theta_ = the terms of the load's angle.
+void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series) {
+  theta_.assign(idx(std::max(series.degree(), 2) + 1), 0.0);
+  if (l.feedback)
+    for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = l.coeff * series.coefficient(k, l.row);
+  for (std::size_t k = 1; k < 3; ++k) theta_[k] += l.ratio * phi_[k];
+  theta_[0] = l.angle;
+}
+
+double LoadSeries::find_kinks(const TaylorSeries& series) {
+  of_kinks_.clear();
+  if (loads_.empty()) return 0.0;
+  find_ranges(series);
+  list_kinks(series, 1.0, true);
+  kinks_.add_to(of_kinks_);
+  double contraction = 0.0;
+  for (const Linear& l : loads_) contraction = std::max(contraction, l.contraction);
+  return contraction;
+}
+
+void LoadSeries::find_ranges(const TaylorSeries& series) {
+  ranges_.resize(idx(3 * stride_));
+  series_ranges(stride_, series.degree(), series.coefficients(0), ranges_.data(), ranges_.data() + stride_,
+                ranges_.data() + 2 * stride_);
+}
+
+bool LoadSeries::list_sweep_kinks(const TaylorSeries& series, double end, const double* z_end) {
+  if (end == 1.0)
+    find_ranges(series);
+  else
+    for (int i = 0; i < system_.size(); ++i) ranges_[idx(i)] = z_end[i] - series.coefficient(0, i);
+  if (!list_kinks(series, end, false)) return false;
+  // The work of a load whose angle follows no motion is known where its row is not moved by another kink before.
+  for (int i = 0; i < kinks_.count(); ++i)
+    for (int k = 0; k < kinks_.count(); ++k)
+      if (i != k && kinks_.row(i) == kinks_.row(k) && !loads_[idx(kink_sizes_[idx(i)].load)].feedback)
+        return false;
+  return true;
+}
+
+/// Lists the kinks that loads pass up to s = to in kinks_; ranges_ holds how far the unknowns come. projected: a kink
+/// that leaves too much inside the step ends it. False: some angle may turn back in the step, or leave it at such a kink.
+bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projected) {
+  kinks_.clear();
+  kink_sizes_.clear();
+  kinks_inside_ = kink_push_ = 0.0;
+  bool all = true;
+  const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
+  for (std::size_t i = 0; i < loads_.size(); ++i) {
+    Linear& l = loads_[i];
+    l.watched = false;
+    l.contraction = 0.0;
+    l.ahead = l.stretch;
+    l.ahead_angle_0 = l.angle_0;
+    const auto row = idx(l.row);
+    const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
+    // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
+    const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
+    if (l.angle + reach < l.stretch.high && l.angle - reach > l.stretch.low) continue;
+    const double first = angle_term(l, series, 1);
+    if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
+      l.watched = true;
+      all = false;
+      continue;
+    }
+    const bool rises = first > 0.0;
+    const double end =
+        l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+    double jumps = 0.0;
+    const double push =
+        (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first) * std::sqrt(series.mobility(l.row));
+    bool have_theta = false;
+    for (;;) {
+      const double bound = rises ? l.ahead.high : l.ahead.low;
+      if (rises ? end <= bound : end >= bound) break;
+      // The first one is the same in each pass.
+      const LoadStretch next =
+          jumps == 0.0 ? beyond(l, bound, rises)
+                       : l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+      const bool moves = rises ? next.high > bound : next.low < bound;
+      const double jump = next.angle_slope - l.ahead.angle_slope;
+      const double inside =
+          projected ? kKinkInside * std::abs(l.coeff * jump * first) * relative_move(series, l.row) : 0.0;
+      if (!moves || next.time_slope != l.ahead.time_slope || inside > kMostInside) {
+        l.watched = true;
+        all = false;
+        break;
+      }
+      if (!have_theta) {
+        expand_angle(l, series);
+        have_theta = true;
+      }
+      kinks_inside_ = std::max(kinks_inside_, inside);
+      kinks_.add(l.row, bound, l.coeff * jump, end, theta_);
+      const double size = std::abs(l.coeff * jump) * series.reach(l.row);
+      kink_sizes_.push_back(
+          {static_cast<int>(i), size * std::abs(first), l.feedback ? size * std::abs(l.coeff) : 0.0});
+      jumps += std::abs(jump);
+      kink_push_ += push * std::abs(jump);
+      l.ahead = next;
+      l.ahead_angle_0 = bound;
+    }
+    if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
+  }
+  return all;
+}
+
+void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
+  for (int i = 0; i < kinks_.count(); ++i) {
+    const Linear& l = loads_[idx(kink_sizes_[idx(i)].load)];
+    if (l.feedback) series.add_row_stiffness(l.row, -factor * l.coeff * kinks_.jump(i));
+  }
+}
+
+/// The same of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.
+double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double end) const {
+  const Linear& l = loads_[idx(kink_sizes_[idx(kink)].load)];
+  const GaussRule& rule = gauss_rule();
+  const double place = kinks_.place(kink), length = end - place, turn = l.angle - kinks_.knot(kink);
+  double sum = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    const double s = place + length * rule.s[q];
+    double rate = 0.0;
+    for (int k = series.degree(); k > 0; --k) rate = rate * s + k * series.coefficient(k, l.row);
+    sum += rule.weight[q] * length * (turn + l.ratio * s * (phi_[1] + s * phi_[2])) * rate;
+  }
+  sum += (kinks_.end(kink) - kinks_.knot(kink)) * series.swept(0)[l.row] -
+         l.ratio * ((phi_[1] + 2.0 * end * phi_[2]) * series.swept(1)[l.row] -
+                    2.0 * phi_[2] * series.swept(2)[l.row]);
+  return kinks_.jump(kink) * sum;
+}
+
+double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
+  const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
+  double sum = 0.0;
+  // int P y' of what acts along the series: by parts.
+  for (int i = 0; i < series.size(); ++i) {
+    const double p_1 = p_[idx(stride_ + i)], p_2 = p_[idx(2 * stride_ + i)];
+    sum +=
+        (p_[idx(i)] + s * (p_1 + s * p_2)) * y[i] - p_1 * y_sum[i] - 2.0 * p_2 * (s * y_sum[i] - y_sum_2[i]);
+  }
+  for (int i = 0; i < kinks_.count(); ++i) {
+    const Linear& l = loads_[idx(kink_sizes_[idx(i)].load)];
+    const double beyond = kinks_.end(i) - kinks_.knot(i);
+    if (!l.feedback) {
+      sum += given_kink_work(series, i, s);
+      continue;
+    }
+    // jump (theta - knot) along theta, less along the nominal motion.
+    const double turned = beyond + l.coeff * y[l.row];
+    const double along = kinks_.moment(i, 0) + kinks_.jump(i) * l.coeff * y_sum[l.row];
+    const double along_2 = kinks_.moment(i, 1) + kinks_.jump(i) * l.coeff * y_sum_2[l.row];
+    sum += 0.5 * kinks_.jump(i) / l.coeff * turned * turned -
+           l.ratio / l.coeff * ((phi_[1] + 2.0 * s * phi_[2]) * along - 2.0 * phi_[2] * along_2);
+  }
+  return sum;
+}
+
+const LoadStretch& LoadSeries::beyond(Linear& l, double bound, bool rises) const {
+  const int direction = rises ? 1 : -1;
+  if (l.next_direction != direction || l.next_bound != bound || l.next_t != t_) {
+    l.next = l.term->load->stretch(t_, bound, direction).value_or(LoadStretch{});
+    l.next_direction = direction;
+    l.next_bound = bound;
+    l.next_t = t_;
+  }
+  return l.next;
+}
+
+void LoadSeries::append_knots(double end, std::vector<double>& s) const {
+  for (int i = 0; i < kinks_.count(); ++i)
+    if (const double place = kinks_.place(i); place < end) s.push_back(place);
+  for (const double place : smooth_.knot_places())
+    if (place < end) s.push_back(place);
+  for (const LoadTerm* term : on_prescribed_) {
+    const NodeMap& map = system_.node_map(term->node);
+    std::array<double, 3> theta = phi_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      theta[k] *= system_.ratio(term->node);
+      if (term->load->depends_on_motion()) theta[k] += map.coeff * u_[idx(map.prescribed)][k];
+    }
+    const double side = theta[1] < 0.0 ? -1.0 : 1.0;
+    for (double angle = theta[0];;) {
+      const LoadStretch stretch = term->load->stretch(t_, angle, side).value_or(LoadStretch{});
+      const double bound = side > 0.0 ? stretch.high : stretch.low;
+      const std::array<double, 3> g{side * (bound - theta[0]), -side * theta[1], -side * theta[2]};
+      if (!std::isfinite(bound) || !(side * (bound - angle) > 0.0)) break;
+      const std::optional<double> place = first_crossing(g, end);
+      if (!place) break;
+      s.push_back(*place);
+      angle = bound;
+    }
+  }
+}
+
+}  // namespace drev

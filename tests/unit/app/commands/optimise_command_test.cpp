@@ -1,0 +1,144 @@
+// drev optimise: optima with a closed form, all combinations where they are few, the same for the same seed.
+// Covers app/variants/optimum.hpp.
+#include <drev/core/units.hpp>
+
+#include <algorithm>
+#include <complex>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+using drev::test::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr double kForcedFrequency = 10.0, kAbsorberInertia = 0.1;  // Hz, kg m^2
+
+/// A disc on a shaft under a harmonic torque, with a tuned absorber: it stands still where the absorber by itself has
+/// the torque's frequency, k = J w^2 (J. Ormondroyd, J. P. Den Hartog, Trans. ASME 50, 1928).
+std::string absorber_file(const TemporaryFolder& folder) {
+  const std::string path = (folder / "absorber.toml").string();
+  std::ofstream(path)
+      << "format = 1\n[parameters]\nk_Nm_per_rad = 300\n"
+         "[nodes]\nwall = { hold = true }\ndisc = {}\nring = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+         "J_ring = { type = \"inertia\", node = \"ring\", inertia_kg_m2 = 0.1 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"wall\", \"disc\"], stiffness_Nm_per_rad = 2000, "
+         "damping_Nms_per_rad = 1 }\n"
+         "rubber = { type = \"shaft_spring\", nodes = [\"disc\", \"ring\"], "
+         "stiffness_Nm_per_rad = \"k_Nm_per_rad\" }\n"
+         "pulse = { type = \"applied_torque\", node = \"disc\", harmonics = { frequency_Hz = [10], "
+         "amplitude_Nm = [10], phase_deg = [0] } }\n"
+         "[run]\nduration_s = 0.1\n";
+  return path;
+}
+
+Words search(const std::string& file, const Words& more) {
+  Words words{"optimise", file, "--start", "periodic", "--record", "disc.angle_rad", "--json"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("The absorber that stops a disc is found by a search") {
+  const TemporaryFolder folder;
+  const std::string file = absorber_file(folder);
+  const Words words =
+      search(file, {"--vary", "k_Nm_per_rad=uniform(100,900)", "--minimise", "disc.angle_rad.max",
+                    "--variants", "120", "--out", (folder / "r").string()});
+  const auto found = drev_command(words);
+  INFO(found.err);
+  REQUIRE(found.exit_code == 0);
+  const Json json = Json::parse(found.out);
+  const double omega = 2.0 * drev::kPi * kForcedFrequency;
+  CHECK(json.at("best")[0].at("varied").at("k_Nm_per_rad").get<double>() ==
+        Approx(kAbsorberInertia * omega * omega).epsilon(1e-4));
+  CHECK_FALSE(json.at("all_combinations").get<bool>());
+  CHECK(json.at("variants").get<int>() <= 120);
+  CHECK(json == Json::parse(read_file(folder / "r/optimum.json")));
+  const std::string tried = read_file(folder / "r/tried.csv");
+  CHECK(tried.starts_with("k_Nm_per_rad,status,disc.angle_rad.max\n"));
+  CHECK(std::count(tried.begin(), tried.end(), '\n') == json.at("variants").get<int>() + 1);
+  Words again = words;
+  again.insert(again.end(), {"--jobs", "1"});
+  CHECK(drev_command(again).out == found.out);
+}
+
+TEST_CASE(
+    "All combinations are computed where there are no more than the variants allowed; the best is certain") {
+  const TemporaryFolder folder;
+  const std::string file = absorber_file(folder);
+  const auto found = drev_command(search(
+      file, {"--vary", "k_Nm_per_rad=100:50:900", "--maximise", "disc.angle_rad.max", "--variants", "17"}));
+  INFO(found.err);
+  REQUIRE(found.exit_code == 0);
+  const Json json = Json::parse(found.out);
+  CHECK(json.at("all_combinations").get<bool>());
+  CHECK(json.at("variants") == 17);
+  CHECK(json.at("goal") == "largest");
+  // Amplitude of the disc by its frequency response, damping of the shaft with it.
+  const double w = 2.0 * drev::kPi * kForcedFrequency;
+  double most = 0.0, at = 0.0;
+  for (double k = 100.0; k <= 900.0; k += 50.0) {
+    const std::complex<double> absorber = k * kAbsorberInertia * w * w / (k - kAbsorberInertia * w * w);
+    const double amplitude = 10.0 / std::abs(std::complex<double>(2000.0 - w * w, w) - absorber);
+    if (amplitude > most) most = amplitude, at = k;
+  }
+  CHECK(json.at("best")[0].at("varied").at("k_Nm_per_rad") == at);
+  CHECK(json.at("best")[0].at("value").get<double>() == Approx(most).epsilon(1e-6));
+}
+
+TEST_CASE("A search among firing orders and numbers together comes near the best of all orders") {
+  const Words camshaft{"optimise",
+                       "camshaft",
+                       "--set",
+                       "drive=held",
+                       "cylinders=6",
+                       "--vary",
+                       "firing_order=orders(6)",
+                       "--minimise",
+                       "deflection_deg",
+                       "--duration",
+                       "0.02",
+                       "--step",
+                       "1e-4",
+                       "--json"};
+  Words all = camshaft, some = camshaft;
+  all.insert(all.end(), {"--variants", "120"});
+  some.insert(some.end(), {"--variants", "60", "--vary", "engine_rpm=uniform(740,760)"});
+  const auto every = drev_command(all), found = drev_command(some);
+  INFO(every.err << found.err);
+  REQUIRE(every.exit_code == 0);
+  REQUIRE(found.exit_code == 0);
+  const Json certain = Json::parse(every.out), json = Json::parse(found.out);
+  CHECK(certain.at("all_combinations").get<bool>());
+  CHECK(certain.at("variants") == 120);
+  CHECK_FALSE(json.at("all_combinations").get<bool>());
+  CHECK(json.at("variants") == 60);
+  const double best = certain.at("best")[0].at("value"), worst_told = certain.at("best")[9].at("value");
+  CHECK(json.at("best")[0].at("value").get<double>() < worst_told + 0.05 * best);
+}
+
+TEST_CASE("What is wrong with an optimisation is said at once") {
+  const auto wrong =
+      drev_command({"optimise", "gear_drive", "--vary", "backlash_mm=normal(0.1,0.01)", "--minimise",
+                    "max_mesh_force_N", "--maximise", "max_mesh_force_N", "--variants", "0"});
+  CHECK(wrong.exit_code == 2);
+  for (const char* part : {"has no bounds", "cannot be given with --maximise", "--variants"})
+    CHECK(contains(wrong.err, part));
+  const auto figure = drev_command({"optimise", "gear_drive", "--vary", "backlash_mm=0.1,0.2", "--minimise",
+                                    "max_mesh_force", "--step", "1e-4"});
+  CHECK(figure.exit_code == 2);
+  CHECK(contains(figure.err, "did you mean 'max_mesh_force_N'"));
+  CHECK(contains(figure.err, "front_contacts"));
+  CHECK(drev_command({"optimise", "gear_drive", "--minimise", "max_mesh_force_N"}).exit_code == 2);
+}

@@ -1,0 +1,80 @@
+// TimeCurve: a formula over time by cubics, and friction's engagement by it.
+#include <drev/elements/friction/clutch.hpp>
+#include <drev/elements/time_curve.hpp>
+
+#include <cmath>
+
+#include "tests/catch.hpp"
+#include "tests/unit/elements/checks.hpp"
+
+using namespace drev;
+
+namespace {
+
+TimeCurve::Params closing() {
+  return {.function = [](const Dual& t) { return 1.0 - exp(-(t - 0.1) / 0.2); }, .from = 0.1, .to = 1.7};
+}
+
+std::string curve_findings(TimeCurve::Params p) {
+  return test::findings(Clutch({.torque = 1.0, .engagement_formula = TimeCurve(std::move(p))}));
+}
+
+}  // namespace
+
+TEST_CASE("A formula over time: its values and slopes to the accuracy, constant outside") {
+  const auto exact = [](double t) { return 1.0 - std::exp(-(t - 0.1) / 0.2); };
+  for (const double accuracy : {1e-6, 1e-10}) {
+    TimeCurve::Params p = closing();
+    p.accuracy = accuracy;
+    const TimeCurve curve(p);
+    double worst = 0.0;
+    for (double t = 0.1; t < 1.7; t += 0.00137) worst = std::max(worst, std::abs(curve.at(t)[0] - exact(t)));
+    CHECK(worst < 1.2 * accuracy);
+    CHECK(worst > 1e-4 * accuracy);
+    // Of fourth order: some 10 times as many stretches for 10^4.
+    CHECK(curve.knots().size() < (accuracy < 1e-8 ? 400 : 40));
+    CHECK(curve.knots().front() == 0.1);
+    CHECK(curve.knots().back() == 1.7);
+  }
+  const TimeCurve curve(closing());
+  CHECK(curve.at(0.5)[1] == Approx(std::exp(-2.0) / 0.2).epsilon(1e-7));
+  CHECK(curve.at(0.0) == std::array<double, 4>{0.0, 0.0, 0.0, 0.0});
+  CHECK(curve.at(5.0)[0] == Approx(exact(1.7)));
+  CHECK(curve.at(5.0)[1] == 0.0);
+  CHECK(curve.smallest() >= -1e-10);
+}
+
+TEST_CASE("A formula over time: jumps and kinks at its breakpoints; one that is none is refused") {
+  TimeCurve::Params p{
+      .function = [](const Dual& t) { return t.value < 0.5 ? Dual(2.0) : 0.25 * t; }, .from = 0.0, .to = 1.0};
+  CHECK(test::contains(curve_findings(p), "none of the breakpoints"));
+  p.breakpoints = {0.5};
+  CHECK(curve_findings(p) == "");
+  const TimeCurve curve(p);
+  CHECK(curve.knots() == std::vector<double>{0.0, 0.5, 1.0});
+  CHECK(curve.at(0.499999)[0] == 2.0);
+  CHECK(curve.at(0.5)[0] == 0.125);
+  CHECK(curve.at(0.5)[1] == Approx(0.25));
+}
+
+TEST_CASE("A formula over time: bad input is named") {
+  TimeCurve::Params p = closing();
+  p.to = 0.0;
+  CHECK(test::contains(curve_findings(p), "must be behind from"));
+  p = closing();
+  p.accuracy = 1.0;
+  CHECK(test::contains(curve_findings(p), "accuracy"));
+  p = closing();
+  p.breakpoints = {0.9, 0.5};
+  CHECK(test::contains(curve_findings(p), "breakpoints"));
+  p = closing();
+  p.function = {};
+  CHECK(test::contains(curve_findings(p), "exactly one of function and formula"));
+  CHECK(test::contains(
+      curve_findings({.function = [](const Dual& t) { return 0.1 - t; }, .from = 0.0, .to = 1.0}),
+      "must be >= 0"));
+  CHECK(test::contains(test::findings(Clutch({.torque = 1.0,
+                                              .engagement = TimeTable({0.0}, {1.0}),
+                                              .engagement_formula = TimeCurve(closing())})),
+                       "beside engagement"));
+}

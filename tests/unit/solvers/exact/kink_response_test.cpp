@@ -1,0 +1,118 @@
+// Kinks of tables by one backward sweep: the motion behind them in closed form, and long runs beside passes.
+// Covers solvers/exact/kink_response.hpp and solvers/exact/kink_moments.hpp, also through propagate().
+#include "solvers/exact/kink_response.hpp"
+
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
+
+#include <cmath>
+
+#include "solvers/exact/kink_moments.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+TEST_CASE("Moments of kinks for a sweep: in closed form along a quadratic path") {
+  // theta = 0.2 s + 0.5 s^2 passes 0.12 at s_0: jump (theta - 0.12) = jump (theta'(s_0) u + 0.5 u^2), u = s - s_0, and
+  // int_0^r (r - u)^j/j! u^n du = n! r^(j+n+1)/(j+n+1)!.
+  const std::vector<double> theta{0.0, 0.2, 0.5};
+  const double place = -0.2 + std::sqrt(0.04 + 0.24), rate = 0.2 + place, jump = 30.0;
+  for (const double end : {1.0, 0.7}) {
+    KinkMoments kinks;
+    kinks.add(2, 0.12, jump, end * (0.2 + 0.5 * end), theta);
+    constexpr int kDegree = 9, kStride = 8;
+    std::vector<double> columns((kDegree + 1) * kStride);
+    kinks.add_to_sweep(end, kDegree, kStride, columns.data());
+    CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
+    double power = end - place, factorial = 1.0;  // r^(j+1), (j+1)!
+    for (int j = 0; j <= kDegree; ++j, power *= end - place, factorial *= j + 1) {
+      const double r = end - place;
+      const double truth = jump * power * r / (factorial * (j + 2)) * (rate + r / (j + 3));
+      CHECK(kinks.moment(0, j) == Approx(truth).epsilon(1e-13));
+      CHECK(columns[static_cast<std::size_t>((kDegree - j) * kStride + 2)] == Approx(truth).epsilon(1e-13));
+    }
+  }
+}
+
+namespace {
+
+/// A disc on a spring against a cam that starts to push at an angle, and a second disc on a shaft behind it.
+Model cams(int discs, double slope, double damping) {
+  Model m("cams");
+  m.add_node("bed");
+  m.constant_speed("bed", 10.0);
+  for (int i = 0; i < discs; ++i) {
+    const std::string node = "disc" + std::to_string(i), before = i ? "disc" + std::to_string(i - 1) : "bed";
+    m.add_node(node);
+    m.add<Inertia>("J" + node, {node}, {.inertia = 0.1});
+    m.add<ShaftSpring>("k" + node, {before, node}, {.stiffness = 2e4, .damping = damping});
+    m.add<CamTorque>(
+        "cam" + std::to_string(i), {node},
+        {.angle_table = PeriodicTable({0.0, 0.5, 1.0, 1.1, 1.3, 1.5, 2.0, 3.0},
+                                      {0.0, 0.0, -slope, -0.3 * slope, 0.4 * slope, slope, 0.0, 0.0}),
+         .phase = 0.17 * i,
+         .twist_feedback = true});
+  }
+  m.set_initial("disc0", 0.0, 3.0);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("A kink inside a step: one disc in closed form behind it") {
+  // One disc, damped by nothing; between its table's knots the motion is a vibration about a line.
+  const System system = cams(1, 40.0, 0.0).build();
+  constexpr double kInertia = 0.1, kStiffness = 2e4, kSpeed = 10.0;
+  // Angles by straight: from 0.0 to 0.5 nothing acts, then -slope (theta - 0.5)/0.5 up to 1.0.
+  const double w_0 = std::sqrt(kStiffness / kInertia);
+  const auto q_0 = [&](double t) { return 3.0 / w_0 * std::sin(w_0 * t); };
+  double at = 0.5 / kSpeed;  // where the angle passes 0.5
+  for (int i = 0; i < 50; ++i) at -= (kSpeed * at + q_0(at) - 0.5) / (kSpeed + 3.0 * std::cos(w_0 * at));
+  const double c = 80.0, w = std::sqrt((kStiffness + c) / kInertia);
+  // J q'' + (k + c) q = -c (Omega t - 0.5): about q_p = -c (Omega t - 0.5)/(k + c).
+  const auto line = [&](double t) { return -c * (kSpeed * t - 0.5) / (kStiffness + c); };
+  const double slope = -c * kSpeed / (kStiffness + c);
+  const double a = q_0(at) - line(at), b = (3.0 * std::cos(w_0 * at) - slope) / w;
+  for (const double t : {at + 1e-3, at + 4e-3, 0.07}) {
+    State state = State::initial(system);
+    REQUIRE(propagate(system, {.tolerance = 1e-13, .t_end = t}, state).ok());
+    const double phase = w * (t - at);
+    CHECK(state.z[0] == Approx(line(t) + a * std::cos(phase) + b * std::sin(phase)).margin(3e-14));
+    CHECK(state.v[0] == Approx(slope + w * (b * std::cos(phase) - a * std::sin(phase))).margin(1e-11));
+  }
+}
+
+TEST_CASE("Kinks by a sweep: the same motion whatever else cuts the steps, and the energy closed") {
+  for (const int discs : {2, 9, 40})
+    for (const double damping : {0.0, 2.0}) {
+      const System system = cams(discs, 40.0, damping).build();
+      INFO(discs << " discs, damping " << damping);
+      State whole = State::initial(system), cut = whole, coarse = whole;
+      const RunSummary run = propagate(system, {.tolerance = 1e-12, .t_end = 0.6}, whole);
+      REQUIRE(run.ok());
+      CHECK(std::abs(run.energy.relative_error()) < 1e-8);
+      for (int i = 1; i <= 977; ++i) {
+        cut.t = 0.6 * (i - 1) / 977;
+        REQUIRE(propagate(system, {.tolerance = 1e-13, .t_start = cut.t, .t_end = 0.6 * i / 977}, cut).ok());
+      }
+      const double scale = whole.z.lpNorm<Eigen::Infinity>(), rate = whole.v.lpNorm<Eigen::Infinity>();
+      CHECK((whole.z - cut.z).lpNorm<Eigen::Infinity>() < 2e-11 * scale);
+      CHECK((whole.v - cut.v).lpNorm<Eigen::Infinity>() < 1e-10 * rate);
+      // What kinks add to rows of other kinks is bounded: a loose tolerance holds, too.
+      REQUIRE(propagate(system, {.tolerance = 1e-6, .t_end = 0.6}, coarse).ok());
+      CHECK((coarse.z - cut.z).lpNorm<Eigen::Infinity>() < 3e-6 * scale);
+    }
+}
+
+TEST_CASE("A sweep takes the place of passes: products a step of the camshaft") {
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", "held");
+  const System system = camshaft_entry().build(parameters).model.build();
+  const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = 0.2});
+  REQUIRE(run.ok());
+  // Three series a step took 54; one and a sweep of degree 20 take 40.
+  CHECK(static_cast<double>(run.solves) < 46.0 * static_cast<double>(run.steps));
+  CHECK(std::abs(run.energy.relative_error()) < 1e-11);
+}
