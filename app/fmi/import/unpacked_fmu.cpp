@@ -43,9 +43,14 @@ static std::vector<void*>& loaded_libraries() {
   return libraries;
 }
 
+/// A library that shares symbols with others (STB_GNU_UNIQUE) stays loaded all the same, and is finalized after its
+/// static objects. PythonFMU's finalizer would then release one of them twice; called ahead, it finds nothing to do later.
 static void close_last_library() {
-  ::dlclose(loaded_libraries().back());
+  void* library = loaded_libraries().back();
   loaded_libraries().pop_back();
+  if (void* finalizer = ::dlsym(library, "finalizePythonInterpreter"))
+    reinterpret_cast<void (*)()>(finalizer)();
+  ::dlclose(library);
 }
 
 UnpackedFmu::UnpackedFmu(const std::string& file) : name_(fs::path(file).filename().string()) {
