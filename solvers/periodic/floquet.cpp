@@ -72,30 +72,25 @@ FloquetProduct::FloquetProduct(const System& system) : system_(system) {
   if (!(w_ > 0.0)) w_ = 1.0;
 }
 
-/// d(z, z'/w)/dt at a part of a panel, -1 to 1, by the polynomial through its points.
-Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t panel, double part) const {
+/// d(z, z'/w)/dt over a panel with the slopes that are constant there; varying: receives those that are not.
+Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t panel,
+                                      std::vector<Varying>* varying) const {
   const Eigen::Index n = system_.size();
   Eigen::MatrixXd k = stiffness_, c = Eigen::MatrixXd::Zero(n, n);
   const auto& terms = balance.terms();
-  std::array<double, LawBalance::kPoints> basis{};
-  const auto place = [](int g) { return g < 4 ? -kGaussPoints[idx(3 - g)] : kGaussPoints[idx(g - 4)]; };
-  for (int g = 0; g < LawBalance::kPoints; ++g) {
-    basis[idx(g)] = 1.0;
-    for (int other = 0; other < LawBalance::kPoints; ++other)
-      if (other != g) basis[idx(g)] *= (part - place(other)) / (place(g) - place(other));
-  }
-  const bool constant = balance.panels()[panel].constant;
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    LawBalance::Slopes s;
-    if (constant) {
-      s = balance.slopes(panel, 0, t);
-    } else {
+    const LawBalance::Slopes& s = balance.slopes(panel, 0, t);
+    bool same = true;
+    for (int g = 1; g < LawBalance::kPoints && varying != nullptr; ++g)
+      same = same && balance.slopes(panel, g, t) == s;
+    if (!same) {
+      Varying one{&terms[t], Eigen::Matrix<double, LawBalance::kPoints, 3>::Zero()};
       for (int g = 0; g < LawBalance::kPoints; ++g) {
         const LawBalance::Slopes& here = balance.slopes(panel, g, t);
-        s.x += basis[idx(g)] * here.x;
-        s.rate += basis[idx(g)] * here.rate;
-        s.angle += basis[idx(g)] * here.angle;
+        one.slopes.row(g) << here.x, here.rate, here.angle;
       }
+      varying->push_back(one);
+      continue;
     }
     for (const drev::Entry& a : terms[t].row) {
       for (const drev::Entry& b : terms[t].row) {
@@ -111,6 +106,110 @@ Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t pan
   rates.bottomLeftCorner(n, n) = -inverse_ * k / w_;
   rates.bottomRightCorner(n, n) = -drag_ - inverse_ * c;
   return rates;
+}
+
+namespace {
+
+constexpr int kOrder = LawBalance::kPoints;
+constexpr int kDegree = 30;       // of the series of a step
+constexpr double kRadians = 4.0;  // that the rates may turn in a step: 4^30 / 30! = 4e-15
+using Polynomials =
+    Eigen::Matrix<double, kOrder, 3>;  // in the part of a panel, -1 to 1, or of a step, 0 to 1
+
+/// Coefficients from the values at the points of Gauss's rule on -1 to 1.
+const Eigen::MatrixXd& coefficients_of_points() {
+  static const Eigen::MatrixXd inverse = [] {
+    Eigen::MatrixXd powers(kOrder, kOrder);
+    for (int g = 0; g < kOrder; ++g)
+      for (int j = 0; j < kOrder; ++j)
+        powers(g, j) = std::pow(g < 4 ? -kGaussPoints[idx(3 - g)] : kGaussPoints[idx(g - 4)], j);
+    return lu_solve(powers, Eigen::MatrixXd(Eigen::MatrixXd::Identity(kOrder, kOrder)));
+  }();
+  return inverse;
+}
+
+/// q(t) = p(a + b t), column by column.
+Polynomials shifted(Polynomials p, double a, double b) {
+  for (int low = 0; low < kOrder; ++low)  // Horner's rule, once a degree
+    for (int j = kOrder - 2; j >= low; --j) p.row(j) += a * p.row(j + 1);
+  for (int j = 1; j < kOrder; ++j) p.bottomRows(kOrder - j) *= b;
+  return p;
+}
+
+/// Of a law with varying slopes, in a step: q = M^-1 b, and the last terms of x, x' and the angle, a column each.
+struct VaryingLaw {
+  Vector q;
+  Polynomials slopes = Polynomials::Zero(), here = Polynomials::Zero();  // of the panel, of the step
+  std::array<Eigen::MatrixXd, 3> last;
+};
+
+}  // namespace
+
+/// (z, z'/w) from the start to the end of a panel in which slopes vary, that lasts so long. Transposed inside, so that
+/// products with rows of terms run over columns.
+Eigen::MatrixXd FloquetProduct::varying_turn(const LawBalance& balance, std::size_t panel,
+                                             double lasts) const {
+  const Eigen::Index n = system_.size(), rows = 2 * n;
+  std::vector<Varying> varying;
+  const Eigen::MatrixXd rates = this->rates(balance, panel, &varying);
+  const Eigen::MatrixXd lower = rates.bottomRows(n).transpose();
+  double stiff = rates.bottomLeftCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff(),
+         drag = rates.bottomRightCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff();
+  std::vector<VaryingLaw> laws;
+  for (const Varying& one : varying) {
+    VaryingLaw& law = laws.emplace_back();
+    law.q = Vector::Zero(n);
+    double reach = 0.0, angle_reach = 0.0;
+    for (const drev::Entry& a : one.term->row) {
+      law.q += a.coeff * inverse_.col(a.index);
+      reach += std::abs(a.coeff);
+    }
+    for (const drev::Entry& a : one.term->angle_row) angle_reach += std::abs(a.coeff);
+    const double size = law.q.cwiseAbs().maxCoeff();
+    stiff += size / w_ *
+             (reach * one.slopes.col(0).cwiseAbs().maxCoeff() +
+              angle_reach * one.slopes.col(2).cwiseAbs().maxCoeff());
+    drag += size * reach * one.slopes.col(1).cwiseAbs().maxCoeff();
+    law.slopes = coefficients_of_points() * one.slopes;
+    law.last.fill(Eigen::MatrixXd::Zero(rows, kOrder));
+  }
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil((std::sqrt(stiff * w_) + drag) * lasts / kRadians)));
+  const double h = lasts / steps;
+  const double sign = balance.direction();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(rows, rows), term, next(rows, rows);
+  Vector force(rows);
+  for (int s = 0; s < steps; ++s) {
+    for (VaryingLaw& law : laws)
+      law.here = shifted(law.slopes, sign * (-1.0 + 2.0 * s / steps), sign * 2.0 / steps);
+    term = sum;
+    for (int m = 0; m < kDegree; ++m) {
+      next.leftCols(n) = w_ * term.rightCols(n);
+      if (rows <= 32)
+        next.rightCols(n) = term.lazyProduct(lower);
+      else
+        next.rightCols(n).noalias() = term * lower;
+      for (std::size_t l = 0; l < laws.size(); ++l) {
+        VaryingLaw& law = laws[l];
+        const Eigen::Index newest = m % kOrder;
+        for (auto& last : law.last) last.col(newest).setZero();
+        for (const drev::Entry& a : varying[l].term->row) {
+          law.last[0].col(newest) += a.coeff * term.col(a.index);
+          law.last[1].col(newest) += w_ * a.coeff * term.col(n + a.index);
+        }
+        for (const drev::Entry& a : varying[l].term->angle_row)
+          law.last[2].col(newest) += a.coeff * term.col(a.index);
+        force.setZero();
+        for (int j = 0; j <= std::min(m, kOrder - 1); ++j)
+          for (int i = 0; i < 3; ++i)
+            if (law.here(j, i) != 0.0) force += law.here(j, i) * law.last[idx(i)].col((m - j) % kOrder);
+        next.rightCols(n).noalias() -= force * (law.q / w_).transpose();
+      }
+      term = (h / (m + 1)) * next;
+      sum += term;
+    }
+  }
+  return sum.transpose();
 }
 
 FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double speed) const {
@@ -135,20 +234,10 @@ FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double
       length += panels[p].to - panels[p].from;
     }
     i = next;
-    if (panels[first].constant) {
-      product = exponential(rates(balance, first, 0.0) * (length * time)) * product;
-      continue;
-    }
-    // Steps in which the fastest mode turns by no more than a third of a radian.
-    const int steps = std::max(1, static_cast<int>(std::ceil(3.0 * w_ * length * time)));
-    const double h = length * time / steps, root = std::sqrt(3.0);
-    for (int s = 0; s < steps; ++s) {
-      const double sign = forward ? 1.0 : -1.0;
-      const auto at = [&](double part) { return sign * (-1.0 + (2.0 * s + 1.0 + part) / steps); };
-      const Eigen::MatrixXd a = rates(balance, first, at(-1.0 / root)),
-                            b = rates(balance, first, at(1.0 / root));
-      product = exponential(0.5 * h * (a + b) - root / 12.0 * h * h * (a * b - b * a)) * product;
-    }
+    const double lasts = length * time;
+    product = (panels[first].constant ? exponential(rates(balance, first, nullptr) * lasts)
+                                      : varying_turn(balance, first, lasts)) *
+              product;
   }
   FloquetMultipliers out;
   const GeneralEigen all = general_eigen(product);

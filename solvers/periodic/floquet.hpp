@@ -4,8 +4,9 @@
 ///   M dz'' + (C + sum_j dy_j/dx' b_j b_j') dz' + (K + sum_j dy_j/dx b_j b_j') dz = 0
 ///
 /// with the slopes of the laws along the motion. P is the product of exponentials over the stretches in which
-/// they are constant, and of Magnus's exponentials of fourth order over panels in which they are not (S. Blanes,
-/// F. Casas, J. A. Oteo, J. Ros, Physics Reports 470, 2009, doi:10.1016/j.physrep.2008.11.001, eq. 249).
+/// they are constant, and of truncated series over panels in which they are not: there each slope is the polynomial
+/// through its values at the panel's points, and the series of (dz, dz') in a step follows from the equation degree by
+/// degree (Cauchy products; A. Griewank, A. Walther, Evaluating Derivatives, SIAM, 2008, chapter 13).
 ///
 /// Growth of free motion of a gear train whose meshes are always closed and whose stiffness jumps with the
 /// mesh phase: M z'' + C z' + (K + sum_j k_j(t) b_j b_j') z = 0, all k_j of a common period T, constant in
@@ -16,6 +17,8 @@
 /// Positive: parametric instability; without gaps nothing bounds it.
 /// Source: Floquet's theorem; J. A. Richards, Analysis of Periodically Time-Varying Systems, Springer, 1983.
 #include <drev/core/system.hpp>
+
+#include <vector>
 
 #include "solvers/periodic/law_balance.hpp"
 
@@ -39,7 +42,13 @@ class FloquetProduct {
   FloquetMultipliers multipliers(const LawBalance& balance, double speed) const;
 
  private:
-  Eigen::MatrixXd rates(const LawBalance& balance, std::size_t panel, double part) const;
+  /// A law or load whose slopes vary over a panel, and the slopes at its points by x, x' and the angle.
+  struct Varying {
+    const LawBalance::Term* term;
+    Eigen::Matrix<double, LawBalance::kPoints, 3> slopes;
+  };
+  Eigen::MatrixXd rates(const LawBalance& balance, std::size_t panel, std::vector<Varying>* varying) const;
+  Eigen::MatrixXd varying_turn(const LawBalance& balance, std::size_t panel, double lasts) const;
 
   const System& system_;
   double w_ = 1.0;                              // of a fast mode: z' is in units of it

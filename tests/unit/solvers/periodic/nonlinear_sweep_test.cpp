@@ -239,6 +239,30 @@ TEST_CASE("Meissner's equation: tongues are located", "[nonlinear_sweep]") {
   }
 }
 
+TEST_CASE("Mathieu's equation: multipliers of a stiffness that varies smoothly, and its tongue",
+          "[nonlinear_sweep]") {
+  struct Row {  // x'' + c x' + (1 + 0.2 cos wt) x = 0 by SciPy's DOP853, relative tolerance 3e-14
+    double damping, multiplier, low, high;
+  };
+  for (const Row& row : {Row{0.0, 1.1698740226269, 1.8988481104967, 2.0986875605265},
+                         {0.04, 1.0986547255031, 1.9067865699180, 2.0899477434205}}) {
+    const Pair pair{.damping = row.damping,
+                    .mean = 1.0,
+                    .error = 0.0,
+                    .backlash = 0.0,
+                    .stiffness = MeshStiffness::fourier(1.0, {{1.0, 0.2, 0.0}})};
+    const NonlinearSweep sweep =
+        sweep_nonlinear(pair.build(), {.speeds = {1.85, 2.0, 2.15}, .tolerance = 1e-3, .runs = false});
+    INFO("damping " << row.damping);
+    REQUIRE(motions_at(sweep, 2.0).size() == 1);
+    CHECK(motions_at(sweep, 2.0)[0].multiplier == Approx(row.multiplier).epsilon(1e-11));
+    const std::vector<SweptChange> ends = changes_of(sweep, BranchChange::period_doubling);
+    REQUIRE(ends.size() == 2);
+    CHECK(ends[0].speed == Approx(row.low).margin(1e-10));
+    CHECK(ends[1].speed == Approx(row.high).margin(1e-10));
+  }
+}
+
 TEST_CASE("Where single periods are unstable a run finds the motion of two", "[nonlinear_sweep]") {
   const Pair pair{.damping = 0.06,
                   .mean = 1.0,
