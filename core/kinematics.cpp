@@ -230,9 +230,9 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
     say(*row, "contradict each other: what else ties these nodes does not let the set turn");
   for (const WideRatioRow* row : solved.undetermined)
     say(*row,
-        "do not follow from the reference shaft: hold or ground one of them, or tie two (a planetary set "
-        "free on "
-        "all sides has two motions)");
+        "do not follow from the reference shaft: hold or ground one of them, tie two (a planetary set free "
+        "on "
+        "all sides has two motions), or say that all three turn alike (together)");
   for (int i = 0; i < nodes; ++i)
     k.ratio[idx(i)] = solved.speed[idx(k.component[idx(i)])] * walk.relative[idx(i)];
   for (const RatioRow& row : speed_ratio_constraints)

@@ -106,7 +106,9 @@ std::optional<std::string> System::why_not_varying_inertia(const std::string& me
     if (inertia != nullptr && inertia->inertia_varies())
       return element_instances()[idx(index(term.element))].name +
              " has an inertia that follows the angle (varying_inertia), which " + method +
-             " does not take; run it in steps, or with its mean inertia (varying_inertia = false)";
+             " does not take; run it in steps, not reduced and with planets on elastic meshes (gear_mesh) "
+             "where it "
+             "has any, or with its mean inertia (varying_inertia = false)";
   }
   return std::nullopt;
 }

@@ -44,7 +44,12 @@ class EngineOrderTorque final : public Element, public HarmonicLoad {
     if (!params_.twist_feedback) r.dtorque_dangle = 0.0;
     return r;
   }
-  bool depends_on_motion() const override { return params_.twist_feedback; }
+  bool depends_on_motion() const override { return params_.twist_feedback && !terms_.empty(); }
+  /// A mean alone is constant: exact propagation has nothing to project then.
+  std::optional<LoadStretch> stretch(double /*t*/, double /*angle*/, double /*direction*/) const override {
+    if (!terms_.empty()) return std::nullopt;
+    return LoadStretch{.torque = params_.mean};
+  }
   LoadOrders orders() const override { return {params_.mean, terms_}; }
 
  private:

@@ -100,25 +100,28 @@ class Drawing {
   }
 
   void add_law(const ScalarSpec& spec) {
-    std::vector<int> local;
-    for (int i = 0; i < static_cast<int>(spec.b.size()); ++i)
-      if (spec.b[i] != 0.0) local.push_back(i);
-    if (local.empty() || local.size() > 2) return add_other();
-    const bool mesh = spec.along_line_of_action && local.size() == 2;
-    Json& law = joint(mesh ? "mesh" : "spring", local);
+    const std::vector<int> local = nodes_in(spec.b);
+    const bool mesh = spec.along_line_of_action && local.size() > 1;
+    if (local.empty() || (local.size() > 2 && !mesh)) return add_star(spec.b);
+    Json& law = joint(mesh ? "mesh" : "spring", mesh ? std::vector<int>{local[0], local[1]} : local);
     law["stiffness"] = number(spec.force->closed_stiffness());
-    if (mesh) {
-      law["radii"] = {std::abs(spec.b[local[0]]), std::abs(spec.b[local[1]])};
-      law["internal"] = spec.b[local[0]] * spec.b[local[1]] < 0.0;
-    }
     if (const auto gap = spec.force->gap()) law["gap"] = gap->high - gap->low;
+    if (!mesh) return;
+    const bool internal = spec.b[local[0]] * spec.b[local[1]] < 0.0;
+    law["radii"] = {std::abs(spec.b[local[0]]), std::abs(spec.b[local[1]])};
+    law["internal"] = internal;
+    if (local.size() == 2) return;
+    // Behind the gears stands what carries them (a planet is the second of the sun's mesh, the first of the ring's), or the
+    // centre of each.
+    law["carried"] = local.size() == 3;
+    if (local.size() == 3) joint("other", {local[internal ? 0 : 1], local[2]});
+    for (std::size_t i = 2; local.size() > 3 && i < local.size(); ++i)
+      joint("other", {local[i - 2], local[i]});
   }
 
   void add_gear(const LocalRow& row) {
-    std::vector<int> local;
-    for (int i = 0; i < static_cast<int>(row.size()); ++i)
-      if (row[i] != 0.0) local.push_back(i);
-    if (local.size() != 2) return add_other();
+    const std::vector<int> local = nodes_in(row);
+    if (local.size() != 2) return add_star(row);
     joint("gear", local)["ratio"] = -row[local[0]] / row[local[1]];
   }
 
@@ -126,11 +129,26 @@ class Drawing {
   void add_friction(const FrictionSpec& spec) {
     if (spec.friction->gear_loss()) return;
     if (spec.friction->rigid()) return add_gear(spec.b);
-    std::vector<int> local;
-    for (int i = 0; i < static_cast<int>(spec.b.size()); ++i)
-      if (spec.b[i] != 0.0) local.push_back(i);
-    if (local.size() > 2) return add_other();
+    const std::vector<int> local = nodes_in(spec.b);
+    if (local.size() > 2) return add_star(spec.b);
     joint("friction", local)["one_way"] = spec.friction->one_way();
+  }
+
+  static std::vector<int> nodes_in(const LocalRow& row) {
+    std::vector<int> local;
+    for (int i = 0; i < static_cast<int>(row.size()); ++i)
+      if (row[i] != 0.0) local.push_back(i);
+    return local;
+  }
+
+  /// More than two nodes at once: each is joined with the one that weighs most, the carrier of a planetary set.
+  void add_star(const LocalRow& row) {
+    const std::vector<int> local = nodes_in(row);
+    if (local.empty()) return add_other();
+    const int centre = *std::max_element(local.begin(), local.end(),
+                                         [&](int a, int b) { return std::abs(row[a]) < std::abs(row[b]); });
+    for (const int i : local)
+      if (i != centre) joint("other", {i, centre});
   }
 
   void add_other() {

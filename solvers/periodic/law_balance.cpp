@@ -1,6 +1,7 @@
 #include "solvers/periodic/law_balance.hpp"
 
 #include <drev/core/error.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
@@ -93,8 +94,8 @@ void LawBalance::find_terms(std::vector<Finding>& findings) {
     term.x = input(term.row);
     terms_.push_back(std::move(term));
   }
-  for (const FrictionTerm& term : system_.frictions())
-    refuse(term.element, "sticks and slips, which a sweep does not take; run it in time (drev run)");
+  if (const auto why = why_not_friction(system_, "a sweep"))
+    findings.push_back({system_.name(), "", "", "", *why});
   if (const auto why = system_.why_not_varying_inertia("a sweep"))
     findings.push_back({system_.name(), "", "", "", *why});
   for (const GeneralTerm& term : system_.generals())

@@ -3,6 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/law/frequency_stiffness.hpp>
+#include <drev/core/law/friction.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
@@ -81,9 +82,7 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
         break;
       }
   }
-  for (const FrictionTerm& term : system_.frictions())
-    refuse(element_name(system_, term.element),
-           "sticks and slips, which a sweep does not take; run it in time (drev run)");
+  if (const auto why = why_not_friction(system_, "a sweep")) refuse("", *why);
   for (const GeneralTerm& term : system_.generals())
     refuse(element_name(system_, term.element),
            "is a general element, which a linear sweep does not take; "

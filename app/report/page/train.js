@@ -1,17 +1,17 @@
 // The train as a schematic, and its mode shapes.
 //
-// Parts that turn together about one axis (joined by anything but meshes and gears) lie on one line, the longest
-// chain straight, branches on rows below. Lines in mesh lie above each other, their gears touching.
+// Parts that turn together about one axis (joined by anything but gears) lie on one line, the longest chain straight, branches
+// on rows below. Lines in mesh lie above each other, their gears touching; gears on a carrier stay on its line, joined.
 
 const PITCH_LEAST = 24,
   DISC = 34,
   GEAR = 52,
   THICKEST = 7; // px; radii of the largest disc and gear
 const MOST_LABELS = 60; // on one line
+const coupling = (joint) => joint.kind === "gear" || (joint.kind === "mesh" && !joint.carried);
 
 function layout(model) {
   const count = model.nodes.length;
-  const coupling = (joint) => joint.kind === "mesh" || joint.kind === "gear";
   const pairs = model.joints.filter((joint) => joint.nodes.length === 2);
   const next = model.nodes.map(() => []);
   for (const joint of pairs)
@@ -240,7 +240,7 @@ function drawTrain(model) {
       continue;
     }
     const [x1, y1] = at(b);
-    if (joint.kind === "mesh" || joint.kind === "gear") continue;
+    if (coupling(joint)) continue;
     const title = draw("title", {}, jointText(joint));
     if (joint.kind === "shaft")
       svg.append(

@@ -212,7 +212,7 @@ RunSummary run_train(const System& system, const FrictionTrain& train, double mo
 void enter(const RunSummary& summary, FrictionVerdict& verdict) {
   verdict.changes = summary.friction_changes;
   verdict.steps = summary.steps;
-  verdict.energy_error = summary.energy.relative_error();
+  if (summary.energy.scale > 1e-9) verdict.energy_error = summary.energy.relative_error();
   if (!summary.ok()) verdict.failure = summary.reason;
 }
 

@@ -57,9 +57,9 @@ FrictionMotion integrate(const FrictionTrain& train, double step);
 
 /// What became of a train in drev beside integrate().
 struct FrictionVerdict {
-  double difference = 0.0;   ///< of angles and speeds at the end, relative to the largest of each
-  double sensitivity = 0.0;  ///< the same between two runs of drev whose speeds at the start differ by 1e-9
-  double energy_error = 0.0;
+  double difference = 0.0;    ///< of angles and speeds at the end, relative to the largest of each
+  double sensitivity = 0.0;   ///< the same between two runs of drev whose speeds at the start differ by 1e-9
+  double energy_error = 0.0;  ///< relative; 0 for a train without 1e-9 J, which friction holds at rest
   long changes = 0, events = 0, steps = 0;
   std::string failure;  ///< empty: it ran, its balance closed
   /// The motions agree to 1e-7, or as well as the train's sensitivity allows.

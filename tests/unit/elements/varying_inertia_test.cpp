@@ -5,6 +5,7 @@
 #include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/run/recorder.hpp>
@@ -237,6 +238,29 @@ TEST_CASE("Varying inertia: what it needs, and what refuses it by name") {
                          sweep_linear(system, {.speeds = {100.0, 120.0}});
                        }),
                        "varying_inertia"));
+  // A nonlinear sweep and a rigid planetary set refuse it by name and say what to take instead.
+  const auto check_refusal = [](const std::string& said, const char* method) {
+    INFO(said);
+    CHECK(test::contains(said, "engine has an inertia that follows the angle (varying_inertia), which " +
+                                   std::string(method) + " does not take; run it in steps"));
+    CHECK(test::contains(said, "or with its mean inertia (varying_inertia = false)"));
+  };
+  check_refusal(message([&] { sweep_nonlinear(system, {.speeds = {100.0, 120.0}}); }), "a sweep");
+  const auto with_planets = [](bool varying) {
+    Model m("with planets");
+    for (const char* node : {"crank", "ring", "carrier"}) m.add_node(node);
+    m.add<Inertia>("J_crank", {"crank"}, {.inertia = 0.02});
+    m.add<Inertia>("J_carrier", {"carrier"}, {.inertia = 0.3});
+    m.add<Inertia>("J_ring", {"ring"}, {.inertia = 0.1});
+    m.add<PlanetarySet>("planets", {"crank", "ring", "carrier"}, {.ratio = 2.0});
+    EngineCylinders::Params engine = engine_of({0.0});
+    engine.varying_inertia = varying;
+    m.add<EngineCylinders>("engine", {"crank"}, engine);
+    m.build();
+  };
+  check_refusal(message([&] { with_planets(true); }),
+                "a train with a rigid planetary set, or a reduced one,");
+  CHECK(message([&] { with_planets(false); }) == "");
   const PeriodicResponse periodic = solve_periodic(system, {});
   CHECK(test::contains(periodic.reason, "varying_inertia"));
   const ManyResult many = simulate_many(9, [](std::size_t) { return train(true, std::nullopt); },

@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "app/report/report_page.hpp"
 #include "tests/catch.hpp"
@@ -66,13 +68,28 @@ record = ["damper.torque_Nm", "damper.deflection_rad", "engine_1.torque_Nm"]
 
 TEST_CASE("The report draws a planetary train and its torques by expressions", "[report]") {
   const nlohmann::json data = report_of(DREV_SOURCE_DIR "/models/wind_turbine/wind_turbine.toml", "0.05");
-  int meshes = 0, sets = 0;
-  for (const nlohmann::json& joint : data["model"]["joints"]) {
-    meshes += joint["type"] == "gear mesh" ? 1 : 0;
-    sets += joint["type"] == "planetary set" ? 1 : 0;
-  }
-  CHECK(meshes >= 6);
-  CHECK(sets >= 1);
+  // Sun and ring are in mesh with each planet, which its carrier carries; of the rigid set sun and ring stand beside the carrier.
+  std::map<std::string, int> joints;
+  const auto name = [&](const nlohmann::json& node) {
+    return data["model"]["nodes"][node.get<std::size_t>()]["name"].get<std::string>();
+  };
+  for (const nlohmann::json& joint : data["model"]["joints"])
+    if (joint["type"] == "gear mesh" || joint["type"] == "planetary set") {
+      if (joint["kind"] == "mesh") CHECK(joint["carried"] == true);
+      ++joints[joint["kind"].get<std::string>() + " " + name(joint["nodes"][0]) + " " +
+               name(joint["nodes"][1])];
+    }
+  CHECK(joints == std::map<std::string, int>{{"mesh planet_1 ring_1", 1},
+                                             {"mesh planet_2 ring_1", 1},
+                                             {"mesh planet_3 ring_1", 1},
+                                             {"mesh sun_1 planet_1", 1},
+                                             {"mesh sun_1 planet_2", 1},
+                                             {"mesh sun_1 planet_3", 1},
+                                             {"other planet_1 carrier_1", 2},
+                                             {"other planet_2 carrier_1", 2},
+                                             {"other planet_3 carrier_1", 2},
+                                             {"other ring_2 carrier_2", 1},
+                                             {"other sun_2 carrier_2", 1}});
   REQUIRE(data["model"]["loads"].size() == 2);
   for (const nlohmann::json& load : data["model"]["loads"]) CHECK(load["type"] == "torque function");
   // The first mode swings rotor against generator (models/wind_turbine/README.md).
@@ -108,19 +125,22 @@ record = ["mesh.force_N", "mesh.deflection_m", "centre_1.position_m"]
     CHECK(node["turns"] == (node["name"] == "gear_1" || node["name"] == "gear_2"));
   CHECK(nodes[1]["ratio"].get<double>() == Approx(-1.0));
   CHECK(nodes[2]["ratio"] == 0.0);
-  std::set<int> joined;
+  std::set<std::pair<std::string, std::vector<int>>> links;
   int bearings = 0;
   for (const nlohmann::json& joint : data["model"]["joints"]) {
     if (joint["name"] == "mesh") {
       CHECK(joint["type"] == "lateral gear mesh");
-      for (const int node : joint["nodes"]) joined.insert(node);
+      links.emplace(joint["kind"].get<std::string>(), joint["nodes"].get<std::vector<int>>());
+      if (joint["kind"] == "mesh") CHECK(joint["carried"] == false);  // drawn as gears above each other
     } else {
       ++bearings;
       CHECK(joint["nodes"].size() == 1);
       CHECK(joint["stiffness"] == 2e8);
     }
   }
-  CHECK(joined == std::set<int>{0, 1, 2, 3});
+  // The gears are in mesh, each beside its centre.
+  CHECK(links == std::set<std::pair<std::string, std::vector<int>>>{
+                     {"mesh", {0, 1}}, {"other", {0, 2}}, {"other", {1, 3}}});
   CHECK(bearings == 2);
   // y_1 - y_2 swings on the bearings alone: sqrt(k_b/m), the mesh has no share.
   bool on_bearings = false;

@@ -116,3 +116,23 @@ TEST_CASE("A sweep takes the place of passes: products a step of the camshaft") 
   CHECK(static_cast<double>(run.solves) < 46.0 * static_cast<double>(run.steps));
   CHECK(std::abs(run.energy.relative_error()) < 1e-11);
 }
+
+TEST_CASE("A mean torque alone leaves a sweep its way: order torque and applied torque cost the same") {
+  const auto run = [](const auto& add_drag) {
+    Model m = cams(9, 40.0, 2.0);
+    add_drag(m);
+    const System system = m.build();
+    State state = State::initial(system);
+    const RunSummary summary = propagate(system, {.tolerance = 1e-10, .t_end = 0.3}, state);
+    CHECK(summary.ok());
+    return std::pair{summary.solves, state};
+  };
+  const auto [products, state] =
+      run([](Model& m) { m.add<EngineOrderTorque>("drag", {m.node_names().back()}, {.mean = -3.0}); });
+  const auto [expected_products, expected] = run([](Model& m) {
+    m.add<AppliedTorque>("drag", {m.node_names().back()}, {.table = TimeTable({0.0}, {-3.0})});
+  });
+  CHECK(products == expected_products);
+  CHECK(state.z == expected.z);
+  CHECK(state.v == expected.v);
+}

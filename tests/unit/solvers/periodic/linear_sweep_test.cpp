@@ -249,14 +249,23 @@ TEST_CASE("What a linear sweep cannot take is refused with its places, all at on
   m.add<ShaftSpring>("shaft", {"gear", "load"}, {.stiffness = 1e4});
   m.add<Inertia>("J_g", {"gear"}, {.inertia = 0.1});
   m.add<Inertia>("J_l", {"load"}, {.inertia = 0.1});
+  for (const char* node : {"drum", "case"}) {
+    m.add_node(node);
+    m.add<Inertia>("J_" + std::string(node), {node}, {.inertia = 0.1});
+  }
+  m.add<LossyGear>("worm", {"load", "drum"},
+                   {.ratio = 0.1, .efficiency_forward = 0.8, .efficiency_backward = 0.7});
+  m.add<Clutch>("clutch", {"drum", "case"}, {.torque = 5.0});
   m.add<AppliedTorque>("pulse", {"load"}, {.torque = [](double t) { return t < 0.1 ? 5.0 : 0.0; }});
   try {
     sweep_linear(m.build(), {.speeds = {50.0}, .sections = {"shaft.torque_Nm", "shat.torque_Nm"}});
     FAIL("not refused");
   } catch (const ModelError& error) {
     const std::string text = error.what();
-    CHECK(error.findings().size() == 3);
-    for (const char* part : {"mesh", "close_contacts", "pulse", "has no orders", "shat", "did you mean"})
+    CHECK(error.findings().size() == 4);  // dry friction once, however many contacts
+    for (const char* part :
+         {"mesh", "close_contacts", "worm is a lossy gear, which sticks and slips: a sweep does", "exact",
+          "pulse", "has no orders", "shat", "did you mean"})
       CHECK(text.find(part) != std::string::npos);
   }
   const System system = three_discs(20.0).build();
