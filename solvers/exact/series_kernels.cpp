@@ -114,15 +114,15 @@ struct ChainTerms {
       sum += a * b;
     }
   }
-  /// kBlocks: of lanes in a column, where that is known, so that loops over them are unrolled; 0: any number.
-  template <class L, int kBlocks>
+  /// kBlocks: of lanes in a column, where that is known, so that loops over them are unrolled; 0: any number. kPlain: no
+  /// entries are elsewhere, and C has its main diagonal alone.
+  template <class L, int kBlocks, bool kPlain>
   [[gnu::always_inline]] static void terms(const SeriesRecursion* recursion, int first, int last,
                                            double* sizes) {
     const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
     const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
     const double* c_main = r.c_main;
-    const bool whole_c = r.c_chain[1] != nullptr;
-    const bool any_far = r.k.begin[stride / kLanes] > 0;
+    const bool whole_c = !kPlain && r.c_chain[1] != nullptr;
     for (int m = first; m <= last; ++m) {
       const double factor = r.factor(m), c_factor = r.damping_factor(m);
       const double *x_0 = column(r.z, stride, m - 2), *x_1 = column(r.z, stride, m - 1);
@@ -140,7 +140,7 @@ struct ChainTerms {
         move_up(before, x, up);
         move_down(x, behind, down);
         multiply(r.k_chain, i, up, x, down, sum);
-        if (any_far) add_far(r.k, block, x_0, sum);
+        if constexpr (!kPlain) add_far(r.k, block, x_0, sum);
         if (whole_c) {
           L damping;
           rate_behind = L{};
@@ -148,11 +148,11 @@ struct ChainTerms {
           move_up(rate_before, rate, up);
           move_down(rate, rate_behind, down);
           multiply(r.c_chain, i, up, rate, down, damping);
-          if (any_far) add_far(r.c, block, x_1, damping);
+          add_far(r.c, block, x_1, damping);
           sum += c_factor * damping;
           rate_before = rate;
           rate = rate_behind;
-        } else if (c_main != nullptr) {
+        } else if (kPlain || c_main != nullptr) {
           L value;
           load(c_main + i, value);
           load(x_1 + i, rate);
@@ -167,23 +167,31 @@ struct ChainTerms {
       sizes[m - first] = largest_of(largest) + sum_of(not_finite);
     }
   }
+  template <class L, int kBlocks>
+  [[gnu::always_inline]] static void of_size(const SeriesRecursion* r, int first, int last, double* sizes) {
+    const bool plain = r->k.begin[r->stride / kLanes] == 0 && r->c_main != nullptr;
+    if (plain)
+      terms<L, kBlocks, true>(r, first, last, sizes);
+    else
+      terms<L, kBlocks, false>(r, first, last, sizes);
+  }
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* r, int first, int last, double* sizes) {
     switch (r->stride / kLanes) {
       case 1:
-        return terms<L, 1>(r, first, last, sizes);
+        return of_size<L, 1>(r, first, last, sizes);
       case 2:
-        return terms<L, 2>(r, first, last, sizes);
+        return of_size<L, 2>(r, first, last, sizes);
       case 3:
-        return terms<L, 3>(r, first, last, sizes);
+        return of_size<L, 3>(r, first, last, sizes);
       case 4:
-        return terms<L, 4>(r, first, last, sizes);
+        return of_size<L, 4>(r, first, last, sizes);
       case 5:
-        return terms<L, 5>(r, first, last, sizes);
+        return of_size<L, 5>(r, first, last, sizes);
       case 6:
-        return terms<L, 6>(r, first, last, sizes);
+        return of_size<L, 6>(r, first, last, sizes);
       default:
-        return terms<L, 0>(r, first, last, sizes);
+        return of_size<L, 0>(r, first, last, sizes);
     }
   }
 };

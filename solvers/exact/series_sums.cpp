@@ -58,12 +58,10 @@ const double* TaylorSeries::sums(double s) {
   const double* weight = at_end.data();
   if (s != 1.0) {
     part_weights_.assign(at_end.begin(), at_end.end());
-    double power = 1.0;
-    for (int k = 0; k <= degree_; ++k, power *= s) {
+    double power = s, below = 1.0;  // s^k, s^(k-1)
+    for (int k = 1; k <= degree_; ++k, below = power, power *= s) {
       double* w = part_weights_.data() + k * kAllSums;
-      for (int j = 0; j < kAllSums; ++j) w[j] *= power;
-      w[kRateSum] /= s;
-      w[kRateBeyondSum] /= s;
+      for (int j = 0; j < kAllSums; ++j) w[j] *= j == kRateSum || j == kRateBeyondSum ? below : power;
     }
     weight = part_weights_.data();
   }
@@ -108,7 +106,7 @@ void TaylorSeries::beyond_cubic(double s, double* out) {
 }
 
 double TaylorSeries::work(const double* p, int degree, double s) {
-  if (sums_at_ > 0.0 && degree <= 2) return work_of_moments(stride_, p, sums(s), s);
+  if (sums_at_ >= 0.0 && degree <= 2) return work_of_moments(stride_, p, sums(s), s);
   return series_work(stride_, energy_degree(), coefficients(0), degree, p, s);
 }
 

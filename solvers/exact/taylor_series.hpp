@@ -210,7 +210,7 @@ class TaylorSeries {
   std::vector<double> swept_;  // columns of the sweep behind two of zeros
   int swept_degree_ = 0;
   std::vector<double> step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
-  double sums_at_ = 0.0;                                          // s of step_sums_; 0: none of this step
+  double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
   std::vector<double> p_, z_, rates_, forces_, zeros_;
   // Of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
