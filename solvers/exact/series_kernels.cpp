@@ -196,6 +196,19 @@ struct ChainTerms {
   }
 };
 
+struct ScaledProduct {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, const double* b,
+                                         double* out) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L x, y;
+      load(a + i, x);
+      load(b + i, y);
+      store((factor * x) * y, out + i);
+    }
+  }
+};
+
 struct Values {
   template <class L>
   [[gnu::always_inline]] static void run(int stride, int degree, const double* z_0, double s, double* z,
@@ -432,6 +445,10 @@ void series_terms(const SeriesRecursion& recursion, int first, int last, double*
     run_widest<ChainTerms>(&recursion, first, last, sizes);
   else
     run_widest<Terms>(&recursion, first, last, sizes);
+}
+
+void scaled_product(int stride, double factor, const double* a, const double* b, double* out) {
+  run_widest<ScaledProduct>(stride, factor, a, b, out);
 }
 
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v) {

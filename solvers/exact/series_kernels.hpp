@@ -42,6 +42,9 @@ struct SeriesRecursion {
 /// each, or NaN if any is not finite, in sizes from 0 on.
 void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes);
 
+/// out_i = factor a_i b_i.
+void scaled_product(int stride, double factor, const double* a, const double* b, double* out);
+
 /// z = sum Z_k s^k and v = sum k Z_k s^(k-1) from columns Z_k at z_0 + k stride.
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v);
 

@@ -164,12 +164,14 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
 }
 
 double TaylorSeries::bound_rates() {
-  const int* outer = system_.pattern().outerIndexPtr();
-  k_norm_ = c_norm_ = 0.0;
+  const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
+  k_norm_ = c_norm_ = largest_coupling_ = 0.0;
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      k_sum += std::abs(k_[position_[idx(s)]]);
+      const double k = std::abs(k_[position_[idx(s)]]);
+      k_sum += k;
+      if (inner[s] != row) largest_coupling_ = std::max(largest_coupling_, k * mobility(row));
       c_sum += std::abs(c_[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
@@ -208,6 +210,7 @@ double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
 void TaylorSeries::scale_as(const TaylorSeries& other) {
   k_norm_ = other.k_norm_;
   c_norm_ = other.c_norm_;
+  largest_coupling_ = other.largest_coupling_;
   z_scale_ = z_step_scale_ = other.z_scale_;
   v_scale_ = v_step_scale_ = other.v_scale_;
 }
@@ -268,14 +271,11 @@ TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) co
 void TaylorSeries::scale_step() {
   if (!by_kernel()) return;
   for (int i = 0; i < n_; ++i) mobility_step_[idx(i)] = h_ * h_ * inverse_mass_[idx(i)];
+  const double* mobility = mobility_step_.data();
   for (const Diagonal& d : diagonals_) {
-    const double* k = k_.data() + d.values;
-    double* scaled = k_step_.data() + d.values;
-    for (int i = 0; i < n_; ++i) scaled[i] = -mobility_step_[idx(i)] * k[i];
-    if (!damped_ || (main_damping_ && d.offset != 0)) continue;
-    const double* c = c_.data() + d.values;
-    scaled = c_step_.data() + d.values;
-    for (int i = 0; i < n_; ++i) scaled[i] = -h_ * inverse_mass_[idx(i)] * c[i];
+    scaled_product(stride_, -1.0, mobility, k_.data() + d.values, k_step_.data() + d.values);
+    if (damped_ && !(main_damping_ && d.offset != 0))
+      scaled_product(stride_, -1.0 / h_, mobility, c_.data() + d.values, c_step_.data() + d.values);
   }
 }
 
