@@ -67,7 +67,8 @@ struct Moments {
     load(end, at_end);
     find_place(theta, terms, target, at_end, 1.0, kSettled, s);
     store(s, place);
-    L sum[kProjectionTerms] = {};
+    L sum[kProjectionTerms];
+    clear(sum);
     const L rest = 1.0 - s;
     for (int q = 0; q < kMomentNodes; q += 2) {
       const L s_0 = s + nodes[q] * rest, s_1 = s + nodes[q + 1] * rest;
@@ -133,21 +134,20 @@ struct NodesAndWeights {
 
 }  // namespace
 
-void KinkMoments::add(int row, double knot, double jump, double end, std::span<const double> theta) {
+double* KinkMoments::add(int row, double knot, double jump, double end, std::size_t terms) {
   const auto i = static_cast<std::size_t>(count_++);
-  terms_ = theta.size();
+  terms_ = terms;
   const auto room = static_cast<std::size_t>(whole_lanes(count_));
   if (row_.size() < room) {
     row_.resize(room);
     for (auto* list : {&knot_, &jump_, &end_, &place_}) list->resize(room);
     theta_.resize(room * kMostTerms);
   }
-  double* own = theta_.data() + i / kLanes * kGroup + i % kLanes;
-  for (std::size_t k = 0; k < terms_; ++k) own[k * kLanes] = theta[k];
   row_[i] = row;
   knot_[i] = knot;
   jump_[i] = jump;
   end_[i] = end;
+  return theta_.data() + i / kLanes * kGroup + i % kLanes;
 }
 
 /// The lanes behind the last kink repeat it; what they give is not used.

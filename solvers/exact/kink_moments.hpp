@@ -3,7 +3,6 @@
 /// knot, jump (theta - knot) is added. Many knots at once, in lanes; integrals by Gauss's nodes between there and the end.
 #include <drev/core/lanes.hpp>
 
-#include <span>
 #include <vector>
 
 #include "solvers/exact/legendre_projection.hpp"
@@ -14,9 +13,10 @@ class KinkMoments {
  public:
   void clear() { count_ = 0; }
   int count() const { return count_; }
-  /// theta: its coefficients, as many for each kink, at most kMostTerms; it passes `knot` once before the end of the
-  /// step, or of the part of it that is looked at, and monotonously, and stands at `end` there.
-  void add(int row, double knot, double jump, double end, std::span<const double> theta);
+  /// A kink whose theta has so many terms, as all listed with it, at most kMostTerms; theta passes `knot` once before the
+  /// end of the step, or of the part of it that is looked at, and monotonously, and stands at `end` there. Its terms are to be
+  /// written to the place returned, kLanes apart, before the next one is added.
+  double* add(int row, double knot, double jump, double end, std::size_t terms);
   /// Adds the moments of all kinks over the whole step.
   void add_to(LegendreProjection& projection);
   /// Adds W_j = int_s^e (e - s)^j/j! jump (theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
 constexpr int kMostKinks = 1000;  // in a step; what they do to each other is bounded pair by pair
+constexpr double kLittle = 0.1;   // of what is allowed, by pairs that are not looked at
 constexpr double kOfShare = 0.1;  // what a sweep of finite degree leaves out
 
 }  // namespace
@@ -54,7 +55,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
 bool KinkResponse::find_limit(double allowed, double scale) {
   limit_ = 1.0;
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
-    const Others others = error_of_others(limit_);
+    const Others others = error_of_others(limit_, allowed / scale);
     if (scale * others.error <= allowed) return true;
     limit_ = others.between;
   }
@@ -63,14 +64,17 @@ bool KinkResponse::find_limit(double allowed, double scale) {
 
 /// What kinks add to rows of later kinks ahead of these, and what these make of it, up to s = end: of a kink ahead by d in
 /// the same row pull d^3/6, one row away k/m h^2 pull d^5/120, two rows away about (rate h)^4/16 pull d^7/5040, three or more
-/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2.
-KinkResponse::Others KinkResponse::error_of_others(double end) const {
+/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2. Pairs that would
+/// add up to little of what is allowed as neighbours with the largest coupling are taken for such.
+KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) const {
   const KinkMoments& kinks = loads_.kinks();
   const std::vector<LoadSeries::KinkSize>& sizes = loads_.kink_sizes();
   const double h = series_.step(), square = h * h;
   // (2 j + 4)! of rows j apart.
   const double quarter = 0.25 * std::pow(series_.rate() * h, 2), two = quarter * quarter / 40320.0,
                more = quarter * quarter * quarter / 3628800.0;
+  const double neighbours = square * series_.largest_coupling() / 720.0 + std::max(two, more);
+  const double little = kLittle * allowed / (kinks.count() * static_cast<double>(kinks.count()));
   Others others;
   double most = 0.0;
   for (int i = 0; i < kinks.count(); ++i) {
@@ -83,6 +87,8 @@ KinkResponse::Others KinkResponse::error_of_others(double end) const {
       const int row = kinks.row(i), other = kinks.row(k);
       if (row == other)
         error /= 24.0;
+      else if (const double at_most = error * d_2 * neighbours; at_most <= little)
+        error = at_most;
       else if (const double beside = series_.coupling(row, other); beside > 0.0)
         error *= d_2 * (square * beside / 720.0 + two * d_2);
       else

@@ -47,7 +47,7 @@ class KinkResponse {
     double error = 0.0;    // of the motion by the scale
     double between = 0.0;  // s between the two kinks that make most of it
   };
-  Others error_of_others(double end) const;
+  Others error_of_others(double end, double allowed) const;
   bool find_limit(double allowed, double scale);
 
   TaylorSeries& series_;

@@ -45,8 +45,10 @@ struct LanePair {
   std::memcpy(to + kLanes / 2, &from.high, sizeof from.high);
 }
 [[gnu::always_inline]] inline void magnitude(LanePair& x) {
-  x.low = x.low < 0.0 ? -x.low : x.low;
-  x.high = x.high < 0.0 ? -x.high : x.high;
+  using Bits = std::int64_t __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
+  constexpr std::int64_t kAllButSign = std::numeric_limits<std::int64_t>::max();
+  x.low = reinterpret_cast<LanePair::Half>(reinterpret_cast<Bits>(x.low) & kAllButSign);
+  x.high = reinterpret_cast<LanePair::Half>(reinterpret_cast<Bits>(x.high) & kAllButSign);
 }
 /// most = max(most, x).
 [[gnu::always_inline]] inline void raise(Lanes& most, const Lanes& x) { most = most < x ? x : most; }
@@ -68,6 +70,11 @@ struct LanePair {
   to.high = distance == 4   ? from.low
             : distance == 2 ? __builtin_shufflevector(from.high, from.high, 2, 3, 0, 1)
                             : __builtin_shufflevector(from.high, from.high, 1, 0, 3, 2);
+}
+/// All of x zero. One by one: an array that is zeroed at once takes a slow string instruction.
+template <class L, int kCount>
+[[gnu::always_inline]] inline void clear(L (&x)[kCount]) {
+  for (int i = 0; i < kCount; ++i) x[i] = L{};
 }
 /// The sum of all lanes, and their largest.
 template <class L>

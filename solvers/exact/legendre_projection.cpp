@@ -119,11 +119,12 @@ void LegendreProjection::add_nodes(const NodeForces& forces) {
     const GaussRule& rule = gauss_rule();
     for (std::size_t j = 0; j < kProjectionTerms; ++j)
       for (std::size_t q = 0; q < GaussRule::kNodes; ++q)
-        w[j * GaussRule::kNodes + q] =
+        w[q * kProjectionTerms + j] =
             (2.0 * static_cast<double>(j) + 1.0) * rule.weight[q] * rule.legendre[j][q];
     return w;
   }();
-  weighted_sums(stride_, kProjectionTerms, GaussRule::kNodes, weights.data(), forces.data(), a_.data());
+  weighted_sums(stride_, kProjectionTerms, 0, GaussRule::kNodes, weights.data(), forces.data(), a_.data(),
+                true);
 }
 
 void LegendreProjection::difference(const LegendreProjection& other, double* out) const {

@@ -16,16 +16,18 @@ constexpr double kKinkInside = 1e-4;
 
 }  // namespace
 
-/// theta_ = the terms of the load's angle.
-void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series) {
-  theta_.assign(idx(std::max(series.degree(), 2) + 1), 0.0);
-  if (l.feedback)
-    for (int k = 1; k <= series.degree(); ++k) theta_[idx(k)] = l.coeff * series.coefficient(k, l.row);
-  for (std::size_t k = 1; k < 3; ++k) theta_[k] += l.ratio * phi_[k];
-  theta_[0] = l.angle;
+/// The terms of the load's angle, kLanes apart.
+void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series, std::size_t terms,
+                              double* theta) const {
+  const auto known = idx(series.degree()) + 1;
+  const double* z = series.coefficients(0) + l.row;
+  const double coeff = l.feedback ? l.coeff : 0.0;
+  theta[0] = l.angle;
+  for (std::size_t k = 1; k < terms; ++k) theta[k * kLanes] = k < known ? coeff * z[k * idx(stride_)] : 0.0;
+  for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
 }
 
-double LoadSeries::find_kinks(const TaylorSeries& series) {
+double LoadSeries::find_kinks(TaylorSeries& series) {
   of_kinks_.clear();
   if (loads_.empty()) return 0.0;
   find_ranges(series);
@@ -36,13 +38,12 @@ double LoadSeries::find_kinks(const TaylorSeries& series) {
   return contraction;
 }
 
-void LoadSeries::find_ranges(const TaylorSeries& series) {
+void LoadSeries::find_ranges(TaylorSeries& series) {
   ranges_.resize(idx(3 * stride_));
-  series_ranges(stride_, series.degree(), series.coefficients(0), ranges_.data(), ranges_.data() + stride_,
-                ranges_.data() + 2 * stride_);
+  series.ranges(ranges_.data(), ranges_.data() + stride_, ranges_.data() + 2 * stride_);
 }
 
-bool LoadSeries::list_sweep_kinks(const TaylorSeries& series, double end, const double* z_end) {
+bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double* z_end) {
   if (end == 1.0)
     find_ranges(series);
   else
@@ -63,6 +64,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   kink_sizes_.clear();
   kinks_inside_ = kink_push_ = 0.0;
   bool all = true;
+  const auto terms = idx(std::max(series.degree(), 2) + 1);
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   for (std::size_t i = 0; i < loads_.size(); ++i) {
     Linear& l = loads_[i];
@@ -85,9 +87,6 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
     const double end =
         l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
     double jumps = 0.0;
-    const double push =
-        (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first) * std::sqrt(series.mobility(l.row));
-    bool have_theta = false;
     for (;;) {
       const double bound = rises ? l.ahead.high : l.ahead.low;
       if (rises ? end <= bound : end >= bound) break;
@@ -104,17 +103,14 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
         all = false;
         break;
       }
-      if (!have_theta) {
-        expand_angle(l, series);
-        have_theta = true;
-      }
       kinks_inside_ = std::max(kinks_inside_, inside);
-      kinks_.add(l.row, bound, l.coeff * jump, end, theta_);
+      expand_angle(l, series, terms, kinks_.add(l.row, bound, l.coeff * jump, end, terms));
       const double size = std::abs(l.coeff * jump) * series.reach(l.row);
       kink_sizes_.push_back(
           {static_cast<int>(i), size * std::abs(first), l.feedback ? size * std::abs(l.coeff) : 0.0});
       jumps += std::abs(jump);
-      kink_push_ += push * std::abs(jump);
+      kink_push_ +=
+          (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first * jump) * std::sqrt(series.mobility(l.row));
       l.ahead = next;
       l.ahead_angle_0 = bound;
     }

@@ -295,13 +295,13 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
   return first;
 }
 
-double LoadSeries::work(const TaylorSeries& series, double s, const Vector& end) {
+double LoadSeries::work(TaylorSeries& series, double s, const Vector& end) {
   if (projected_) {
     // p_ by powers: what was projected beside what add_to() put there.
     (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());
     projected_ = false;
   }
-  double sum = series_work(stride_, series.energy_degree(), series.coefficients(0), degree_, p_.data(), s);
+  double sum = series.work(p_.data(), degree_, s);
   for (const Linear& l : loads_)
     if (l.feedback && l.stretch.angle_slope != 0.0) {
       const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));

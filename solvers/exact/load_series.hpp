@@ -60,7 +60,7 @@ class LoadSeries {
   /// For a sweep (kink_response.hpp) in place of passes: lists the kinks that loads pass up to s = end of the step, where
   /// the series stands at z_end; the loads are then on the stretches behind them. The whole step first. False: some
   /// angle may turn back, or its load has a kink in time.
-  bool list_sweep_kinks(const TaylorSeries& series, double end, const double* z_end);
+  bool list_sweep_kinks(TaylorSeries& series, double end, const double* z_end);
   KinkMoments& kinks() { return kinks_; }
   const KinkMoments& kinks() const { return kinks_; }
   /// Adds what the kinks listed change of the loads' slopes, times a factor.
@@ -105,7 +105,7 @@ class LoadSeries {
   ElementId knot_element() const { return loads_[idx(leaving_)].term->element; }
 
   /// Work of all these forces on the unknowns from 0 to s of the step, where they stand at `end` [J].
-  double work(const TaylorSeries& series, double s, const Vector& end);
+  double work(TaylorSeries& series, double s, const Vector& end);
 
  private:
   struct Place {
@@ -131,10 +131,10 @@ class LoadSeries {
     return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
   }
   double angle_term(const Place& load, const TaylorSeries& series, int k) const;
-  void expand_angle(const Linear& load, const TaylorSeries& series);
-  double find_kinks(const TaylorSeries& series);
+  void expand_angle(const Linear& load, const TaylorSeries& series, std::size_t terms, double* theta) const;
+  double find_kinks(TaylorSeries& series);
   double given_kink_work(const TaylorSeries& series, int kink, double end) const;
-  void find_ranges(const TaylorSeries& series);
+  void find_ranges(TaylorSeries& series);
   bool list_kinks(const TaylorSeries& series, double to, bool projected);
   /// The stretch behind this bound of a load's stretch, asked for once a step.
   const LoadStretch& beyond(Linear& load, double bound, bool rises) const;
@@ -169,7 +169,7 @@ class LoadSeries {
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
-  std::vector<double> theta_, power_;
+  std::vector<double> power_;
   std::vector<double> ranges_;  // by row: how far it comes, and what its terms and their slopes add up to
   std::vector<KinkSize> kink_sizes_;  // of each of kinks_
   Vector z_, v_;

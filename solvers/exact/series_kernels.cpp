@@ -24,43 +24,65 @@ constexpr auto kInverse = [] {
   return first + static_cast<std::ptrdiff_t>(k) * stride;
 }
 
+/// P_{m-2}; null: there is none.
+[[gnu::always_inline]] inline const double* right_side(const SeriesRecursion& r, int m) {
+  return m - 2 <= r.p_degree ? column(r.p, r.stride, m - 2 - r.p_first) : nullptr;
+}
+
+/// sum += mobility p.
+template <class L>
+[[gnu::always_inline]] inline void add_right_side(const double* mobility, const double* p, int i, L& sum) {
+  if (p == nullptr) return;
+  L force, w;
+  load(p + i, force);
+  load(mobility + i, w);
+  sum += w * force;
+}
+
+/// Stores a term and notes its size.
+template <class L>
+[[gnu::always_inline]] inline void finish_term(L& term, double* to, L& largest, L& not_finite) {
+  store(term, to);
+  not_finite += 0.0 * term;  // comparisons drop a NaN
+  magnitude(term);
+  raise(largest, term);
+}
+
 struct Terms {
   template <class L>
-  [[gnu::always_inline]] static void run(const SeriesRecursion* r, int first, int last, double* sizes) {
-    const int stride = r->stride;
-    const double *c_main = r->c_main, *w = r->inverse_mass;
-    const DiagonalView *k = r->k.views, *c = r->c.views;
+  [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
+                                         double* sizes) {
+    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
+    const int stride = r.stride;
+    const double* c_main = r.c_main;
+    const DiagonalView *k = r.k.views, *c = r.c.views;
     for (int m = first; m <= last; ++m) {
-      const double factor = r->factor(m), c_factor = r->damping_factor(m);
-      const double* p = m - 2 <= r->p_degree ? column(r->p, stride, m - 2 - r->p_first) : r->zeros;
-      const double *x_0 = column(r->z, stride, m - 2), *x_1 = column(r->z, stride, m - 1);
-      double* next = r->z + static_cast<std::ptrdiff_t>(m) * stride;
+      const double factor = r.factor(m), c_factor = r.damping_factor(m);
+      const double *x_0 = column(r.z, stride, m - 2), *x_1 = column(r.z, stride, m - 1);
+      double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
+      const double* p = right_side(r, m);
       L largest{}, not_finite{};
       for (int i = 0, block = 0; i < stride; i += kLanes, ++block) {
-        L sum, damping{}, a, b;
-        load(p + i, sum);
-        for (int d = r->k.begin[block]; d < r->k.begin[block + 1]; ++d) {
+        L sum{}, damping{}, a, b;
+        for (int d = r.k.begin[block]; d < r.k.begin[block + 1]; ++d) {
           load(k[d].values + i, a);
           load(x_0 + i + k[d].offset, b);
-          sum -= a * b;
+          sum += a * b;
         }
         if (c_main != nullptr) {
           load(c_main + i, a);
           load(x_1 + i, b);
           damping = a * b;
         } else if (c != nullptr) {
-          for (int d = r->c.begin[block]; d < r->c.begin[block + 1]; ++d) {
+          for (int d = r.c.begin[block]; d < r.c.begin[block + 1]; ++d) {
             load(c[d].values + i, a);
             load(x_1 + i + c[d].offset, b);
             damping += a * b;
           }
         }
-        load(w + i, a);
-        sum = (sum - c_factor * damping) * (factor * a);
-        store(sum, next + i);
-        not_finite += 0.0 * sum;  // comparisons drop a NaN
-        magnitude(sum);
-        raise(largest, sum);
+        add_right_side(r.mobility, p, i, sum);
+        sum = factor * (sum + c_factor * damping);
+        finish_term(sum, next + i, largest, not_finite);
       }
       sizes[m - first] = largest_of(largest) + sum_of(not_finite);
     }
@@ -92,77 +114,97 @@ struct ChainTerms {
       sum += a * b;
     }
   }
-  /// kBlocks: of lanes in a column, where that is known, so that loops over them are unrolled; 0: any number.
-  template <class L, int kBlocks>
-  [[gnu::always_inline]] static void terms(const SeriesRecursion* r, int first, int last, double* sizes) {
-    const int stride = kBlocks > 0 ? kBlocks * kLanes : r->stride;
-    const double *w = r->inverse_mass, *c_main = r->c_main;
-    const bool whole_c = r->c_chain[1] != nullptr;
+  /// kBlocks: of lanes in a column, where that is known, so that loops over them are unrolled; 0: any number. kPlain: no
+  /// entries are elsewhere, and C has its main diagonal alone.
+  template <class L, int kBlocks, bool kPlain>
+  [[gnu::always_inline]] static void terms(const SeriesRecursion* recursion, int first, int last,
+                                           double* sizes) {
+    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
+    const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
+    const double* c_main = r.c_main;
+    const bool whole_c = !kPlain && r.c_chain[1] != nullptr;
     for (int m = first; m <= last; ++m) {
-      const double factor = r->factor(m), c_factor = r->damping_factor(m);
-      const double* p = m - 2 <= r->p_degree ? column(r->p, stride, m - 2 - r->p_first) : r->zeros;
-      const double *x_0 = column(r->z, stride, m - 2), *x_1 = column(r->z, stride, m - 1);
-      double* next = r->z + static_cast<std::ptrdiff_t>(m) * stride;
+      const double factor = r.factor(m), c_factor = r.damping_factor(m);
+      const double *x_0 = column(r.z, stride, m - 2), *x_1 = column(r.z, stride, m - 1);
+      double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
+      const double* p = right_side(r, m);
       L largest{}, not_finite{}, before{}, x, behind{}, rate_before{}, rate, rate_behind{};
       load(x_0, x);
       load(x_1, rate);
 #pragma GCC unroll 6
       for (int i = 0, block = 0; i < stride; i += kLanes, ++block) {
         const bool more = i + kLanes < stride;
-        L up, down, sum, force;
+        L up, down, sum;
         behind = L{};
         if (more) load(x_0 + i + kLanes, behind);
         move_up(before, x, up);
         move_down(x, behind, down);
-        multiply(r->k_chain, i, up, x, down, sum);
-        add_far(r->k, block, x_0, sum);
-        load(p + i, force);
-        force -= sum;
+        multiply(r.k_chain, i, up, x, down, sum);
+        if constexpr (!kPlain) add_far(r.k, block, x_0, sum);
         if (whole_c) {
+          L damping;
           rate_behind = L{};
           if (more) load(x_1 + i + kLanes, rate_behind);
           move_up(rate_before, rate, up);
           move_down(rate, rate_behind, down);
-          multiply(r->c_chain, i, up, rate, down, sum);
-          add_far(r->c, block, x_1, sum);
-          force -= c_factor * sum;
+          multiply(r.c_chain, i, up, rate, down, damping);
+          add_far(r.c, block, x_1, damping);
+          sum += c_factor * damping;
           rate_before = rate;
           rate = rate_behind;
-        } else if (c_main != nullptr) {
+        } else if (kPlain || c_main != nullptr) {
           L value;
           load(c_main + i, value);
           load(x_1 + i, rate);
-          force -= c_factor * (value * rate);
+          sum += (c_factor * value) * rate;
         }
-        load(w + i, sum);
-        force *= factor * sum;
-        store(force, next + i);
-        not_finite += 0.0 * force;  // comparisons drop a NaN
-        magnitude(force);
-        raise(largest, force);
+        add_right_side(r.mobility, p, i, sum);
+        sum = factor * sum;
+        finish_term(sum, next + i, largest, not_finite);
         before = x;
         x = behind;
       }
       sizes[m - first] = largest_of(largest) + sum_of(not_finite);
     }
   }
+  template <class L, int kBlocks>
+  [[gnu::always_inline]] static void of_size(const SeriesRecursion* r, int first, int last, double* sizes) {
+    const bool plain = r->k.begin[r->stride / kLanes] == 0 && r->c_main != nullptr;
+    if (plain)
+      terms<L, kBlocks, true>(r, first, last, sizes);
+    else
+      terms<L, kBlocks, false>(r, first, last, sizes);
+  }
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* r, int first, int last, double* sizes) {
     switch (r->stride / kLanes) {
       case 1:
-        return terms<L, 1>(r, first, last, sizes);
+        return of_size<L, 1>(r, first, last, sizes);
       case 2:
-        return terms<L, 2>(r, first, last, sizes);
+        return of_size<L, 2>(r, first, last, sizes);
       case 3:
-        return terms<L, 3>(r, first, last, sizes);
+        return of_size<L, 3>(r, first, last, sizes);
       case 4:
-        return terms<L, 4>(r, first, last, sizes);
+        return of_size<L, 4>(r, first, last, sizes);
       case 5:
-        return terms<L, 5>(r, first, last, sizes);
+        return of_size<L, 5>(r, first, last, sizes);
       case 6:
-        return terms<L, 6>(r, first, last, sizes);
+        return of_size<L, 6>(r, first, last, sizes);
       default:
-        return terms<L, 0>(r, first, last, sizes);
+        return of_size<L, 0>(r, first, last, sizes);
+    }
+  }
+};
+
+struct ScaledProduct {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, const double* b,
+                                         double* out) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L x, y;
+      load(a + i, x);
+      load(b + i, y);
+      store((factor * x) * y, out + i);
     }
   }
 };
@@ -191,7 +233,9 @@ struct AtNodes {
                                          int count, double* z, double* v) {
     for (int i = 0; i < stride; i += kLanes)
       for (int q = 0; q < count; q += kTogether) {
-        L sum[kTogether] = {}, rate[kTogether] = {}, c;
+        L sum[kTogether], rate[kTogether], c;
+        clear(sum);
+        clear(rate);
         for (int k = degree; k >= 0; --k) {
           load(column(z_0, stride, k) + i, c);
           for (int n = 0; n < kTogether; ++n) sum[n] = sum[n] * s[q + n] + c;
@@ -226,27 +270,74 @@ struct Polynomial {
 };
 
 struct Sums {
-  static constexpr int kTogether = 4;
-  template <class L, int kCount>
-  [[gnu::always_inline]] static void add(int stride, int count, const double* weight, const double* f,
-                                         double* out) {
+  static constexpr int kTogether = 5;  // of sums, which stay in registers
+  template <class L, int kCount, bool kSizes>
+  [[gnu::always_inline]] static void some(int stride, int count, int per_column, const double* weight,
+                                          const double* f, double* out, bool add) {
     L sum[kCount], x;
-    for (int j = 0; j < kCount; ++j) load(out + j * stride, sum[j]);
-    for (int q = 0; q < count; ++q) {
-      load(column(f, stride, q), x);
-      for (int j = 0; j < kCount; ++j) sum[j] += weight[j * count + q] * x;
+    clear(sum);
+    if (add)
+      for (int j = 0; j < kCount; ++j) load(out + j * stride, sum[j]);
+    for (int q = 0; q < count; ++q, weight += per_column, f += stride) {
+      load(f, x);
+      if constexpr (kSizes) magnitude(x);
+      for (int j = 0; j < kCount; ++j) sum[j] += weight[j] * x;
     }
     for (int j = 0; j < kCount; ++j) store(sum[j], out + j * stride);
   }
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, int terms, int count, const double* weight,
-                                         const double* f, double* out) {
-    for (int i = 0; i < stride; i += kLanes) {
-      int j = 0;
-      for (; j + kTogether <= terms; j += kTogether)
-        add<L, kTogether>(stride, count, weight + j * count, f + i, out + j * stride + i);
-      for (; j < terms; ++j) add<L, 1>(stride, count, weight + j * count, f + i, out + j * stride + i);
+  template <class L, bool kSizes>
+  [[gnu::always_inline]] static void all(int stride, int first, int last, int count, int per_column,
+                                         const double* weight, const double* f, double* out, bool add) {
+    for (int j = first; j < last; j += kTogether) {
+      const double* w = weight + j;
+      double* to = out + j * stride;
+      switch (std::min(last - j, kTogether)) {
+        case 1:
+          some<L, 1, kSizes>(stride, count, per_column, w, f, to, add);
+          break;
+        case 2:
+          some<L, 2, kSizes>(stride, count, per_column, w, f, to, add);
+          break;
+        case 3:
+          some<L, 3, kSizes>(stride, count, per_column, w, f, to, add);
+          break;
+        case 4:
+          some<L, 4, kSizes>(stride, count, per_column, w, f, to, add);
+          break;
+        default:
+          some<L, kTogether, kSizes>(stride, count, per_column, w, f, to, add);
+      }
     }
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, int terms, int sizes, int count, const double* weight,
+                                         const double* f, double* out, bool add) {
+    const int together = terms + sizes;
+    for (int i = 0; i < stride; i += kLanes) {
+      all<L, false>(stride, 0, terms, count, together, weight, f + i, out + i, add);
+      all<L, true>(stride, terms, together, count, together, weight, f + i, out + i, add);
+    }
+  }
+};
+
+struct MomentWork {
+  template <class L>
+  [[gnu::always_inline]] static double run(int stride, const double* p, const double* b, double s) {
+    const double first = 0.5 * s, second = s * s / 6.0;
+    L total{};
+    for (int i = 0; i < stride; i += kLanes) {
+      L b_0, b_1, b_2, x;
+      load(b + i, b_0);
+      load(b + stride + i, b_1);
+      load(b + 2 * stride + i, b_2);
+      load(p + i, x);
+      total += x * b_0;
+      load(p + stride + i, x);
+      total += x * (first * (b_0 + b_1));
+      load(p + 2 * stride + i, x);
+      total += x * (second * (2.0 * b_0 + 3.0 * b_1 + b_2));
+    }
+    return sum_of(total);
   }
 };
 
@@ -272,48 +363,6 @@ struct Squares {
   }
 };
 
-struct Ranges {
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, int degree, const double* z_0, double* end, double* size,
-                                         double* bend) {
-    for (int i = 0; i < stride; i += kLanes) {
-      L sum{}, sizes{}, bends{}, x;
-      for (int k = 1; k <= degree; ++k) {
-        load(column(z_0, stride, k) + i, x);
-        sum += x;
-        magnitude(x);
-        sizes += x;
-        if (k > 1) bends += static_cast<double>(k) * x;
-      }
-      store(sum, end + i);
-      store(sizes, size + i);
-      store(bends, bend + i);
-    }
-  }
-};
-
-struct BeyondCubic {
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, int degree, const double* z_0, double s, double* z,
-                                         double* v) {
-    double weight[kMostTerms];
-    double power = s * s * s * s;
-    for (int k = 4; k <= degree; ++k, power *= s)
-      weight[k] = k * (k - 1.0) * (k - 2.0) * (k - 3.0) / 384.0 * power;
-    for (int i = 0; i < stride; i += kLanes) {
-      L z_sum{}, v_sum{}, x;
-      for (int k = 4; k <= degree; ++k) {
-        load(column(z_0, stride, k) + i, x);
-        magnitude(x);
-        z_sum += weight[k] * x;
-        v_sum += ((k - 4.0) * weight[k]) * x;
-      }
-      store(z_sum, z + i);
-      store((1.0 / s) * v_sum, v + i);
-    }
-  }
-};
-
 struct Work {
   /// So many degrees of P at once: sums that do not wait for each other.
   static constexpr int kTogether = 4;
@@ -330,7 +379,8 @@ struct Work {
       for (int m = 1; m <= degree; ++m)
         for (int q = 0; q < kTogether; ++q) parts[m * kTogether + q] = m * weight[k + q + m];
       for (int i = 0; i < stride; i += kLanes) {
-        L sum[kTogether] = {}, x;
+        L sum[kTogether], x;
+        clear(sum);
         for (int m = 1; m <= degree; ++m) {
           load(column(z_0, stride, m) + i, x);
           for (int q = 0; q < kTogether; ++q) sum[q] += parts[m * kTogether + q] * x;
@@ -360,7 +410,8 @@ struct Product {
     for (int i = 0; i < stride; i += kLanes) {
       L block{};
       for (int j = 0; j < degree; j += kTogether) {
-        L row[kTogether] = {}, x;
+        L row[kTogether], x;
+        clear(row);
         const int together = std::min(kTogether, degree - j);
         // C is symmetric: each pair once.
         for (int k = 0; k < j; ++k) {
@@ -396,6 +447,10 @@ void series_terms(const SeriesRecursion& recursion, int first, int last, double*
     run_widest<Terms>(&recursion, first, last, sizes);
 }
 
+void scaled_product(int stride, double factor, const double* a, const double* b, double* out) {
+  run_widest<ScaledProduct>(stride, factor, a, b, out);
+}
+
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v) {
   run_widest<Values>(stride, degree, z_0, s, z, v);
 }
@@ -409,21 +464,18 @@ void polynomial_values(int count, int terms, const double* c, const double* x, d
   run_widest<Polynomial>(count, terms, c, x, value, slope);
 }
 
-void weighted_sums(int stride, int terms, int count, const double* weight, const double* f, double* out) {
-  run_widest<Sums>(stride, terms, count, weight, f, out);
+void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const double* f,
+                   double* out, bool add) {
+  run_widest<Sums>(stride, terms, sizes, count, weight, f, out, add);
+}
+
+double work_of_moments(int stride, const double* p, const double* b, double s) {
+  return run_widest<MomentWork>(stride, p, b, s);
 }
 
 double weighted_squares(int stride, int terms, const double* factor, const double* c, const double* x,
                         int y_terms, const double* y) {
   return run_widest<Squares>(stride, terms, factor, c, x, y_terms, y);
-}
-
-void series_ranges(int stride, int degree, const double* z_0, double* end, double* size, double* bend) {
-  run_widest<Ranges>(stride, degree, z_0, end, size, bend);
-}
-
-void series_beyond_cubic(int stride, int degree, const double* z_0, double s, double* z, double* v) {
-  run_widest<BeyondCubic>(stride, degree, z_0, s, z, v);
 }
 
 double series_work(int stride, int degree, const double* z_0, int p_degree, const double* p, double s) {

@@ -112,10 +112,9 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
 }
 
 const double* StepExpansion::beyond_cubic(double s) {
-  const int n = series.size(), stride = series.stride();
-  beyond_cubic_.resize(idx(2 * stride));
+  const int n = series.size();
+  beyond_cubic_.resize(idx(2 * n));
   series.beyond_cubic(s, beyond_cubic_.data());
-  std::copy_n(beyond_cubic_.begin() + stride, n, beyond_cubic_.begin() + n);
   if (sweeps_ && kinks.any()) {
     const double per_time = 1.0 / series.step();
     for (int i = 0; i < n; ++i) {

@@ -97,9 +97,10 @@ void TaylorSeries::find_storage() {
   z_.assign(idx(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
   p_.assign(idx(kProjectionTerms * stride_), 0.0);
   zeros_.assign(idx(stride_), 0.0);
-  sums_.assign(idx(2 * stride_), 0.0);
-  k_ = k_base_;
-  c_ = c_base_;
+  values_.assign(idx(2 * stride_), 0.0);
+  k_ = k_step_ = k_base_;
+  c_ = c_step_ = c_base_;
+  mobility_step_.assign(idx(stride_), 0.0);
   if (diagonals_.empty()) return;
   find_views(true);
   chain_ = main_ >= 0 && static_cast<int>(k_views_.size()) <= stride_ / kLanes;
@@ -120,8 +121,8 @@ void TaylorSeries::find_views(bool far) {
         for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
           any |= p.innerIndexPtr()[s] - row == d.offset;
       if (!any) continue;
-      k_views_.push_back({d.offset, k_.data() + d.values});
-      c_views_.push_back({d.offset, c_.data() + d.values});
+      k_views_.push_back({d.offset, k_step_.data() + d.values});
+      c_views_.push_back({d.offset, c_step_.data() + d.values});
     }
     block_begin_.push_back(static_cast<int>(k_views_.size()));
   }
@@ -163,12 +164,14 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
 }
 
 double TaylorSeries::bound_rates() {
-  const int* outer = system_.pattern().outerIndexPtr();
-  k_norm_ = c_norm_ = 0.0;
+  const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
+  k_norm_ = c_norm_ = largest_coupling_ = 0.0;
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      k_sum += std::abs(k_[position_[idx(s)]]);
+      const double k = std::abs(k_[position_[idx(s)]]);
+      k_sum += k;
+      if (inner[s] != row) largest_coupling_ = std::max(largest_coupling_, k * mobility(row));
       c_sum += std::abs(c_[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
@@ -207,6 +210,7 @@ double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
 void TaylorSeries::scale_as(const TaylorSeries& other) {
   k_norm_ = other.k_norm_;
   c_norm_ = other.c_norm_;
+  largest_coupling_ = other.largest_coupling_;
   z_scale_ = z_step_scale_ = other.z_scale_;
   v_scale_ = v_step_scale_ = other.v_scale_;
 }
@@ -263,31 +267,41 @@ TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) co
   return chain;
 }
 
-SeriesRecursion TaylorSeries::recursion(double h) {
+/// The matrices that stand now, for the recursion over a step of h_.
+void TaylorSeries::scale_step() {
+  if (!by_kernel()) return;
+  for (int i = 0; i < n_; ++i) mobility_step_[idx(i)] = h_ * h_ * inverse_mass_[idx(i)];
+  const double* mobility = mobility_step_.data();
+  for (const Diagonal& d : diagonals_) {
+    scaled_product(stride_, -1.0, mobility, k_.data() + d.values, k_step_.data() + d.values);
+    if (damped_ && !(main_damping_ && d.offset != 0))
+      scaled_product(stride_, -1.0 / h_, mobility, c_.data() + d.values, c_step_.data() + d.values);
+  }
+}
+
+SeriesRecursion TaylorSeries::recursion() {
   const bool whole = damped_ && !main_damping_;
   return {.stride = stride_,
           .k = {block_begin_.data(), k_views_.data()},
           .c = {block_begin_.data(), whole ? c_views_.data() : nullptr},
-          .c_main = damped_ && main_damping_ ? c_.data() + diagonals_[idx(main_)].values : nullptr,
-          .inverse_mass = inverse_mass_.data(),
+          .c_main = damped_ && main_damping_ ? c_step_.data() + diagonals_[idx(main_)].values : nullptr,
+          .mobility = mobility_step_.data(),
           .p = p_.data(),
           .p_first = 0,
           .p_degree = right_degree_,
-          .zeros = zeros_.data(),
           .z = z_.data() + idx(pad_),
-          .h = h,
-          .k_chain = chain_ ? chain_of(k_) : Chain{},
-          .c_chain = chain_ && whole ? chain_of(c_) : Chain{}};
+          .k_chain = chain_ ? chain_of(k_step_) : Chain{},
+          .c_chain = chain_ && whole ? chain_of(c_step_) : Chain{}};
 }
 
-void TaylorSeries::next_terms(int first, int last, double h) {
+void TaylorSeries::next_terms(int first, int last) {
   if (by_diagonals()) {
     double largest[kMaxDegree];
-    series_terms(recursion(h), first, last, largest);
+    series_terms(recursion(), first, last, largest);
     for (int k = first; k <= last; ++k) sizes_[idx(k)] = {largest[k - first], 0.0};
     return;
   }
-  for (int k = first; k <= last; ++k) sizes_[idx(k)] = next_term(k, h);
+  for (int k = first; k <= last; ++k) sizes_[idx(k)] = next_term(k);
 }
 
 /// One term without the kernel: where the mass has to be solved for, or no diagonals are kept.
@@ -296,14 +310,15 @@ void TaylorSeries::product_term(const SeriesRecursion& r, int k) {
   std::copy_n(p, n_, solve_in_.data());
   subtract_product(k_, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
   if (damped_)
-    subtract_product(c_, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k), solve_in_.data());
+    subtract_product(c_, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k) / h_,
+                     solve_in_.data());
   solve_mass(solve_in_, solve_out_);
   double* next = r.z + idx(k * stride_);
-  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * r.factor(k);
+  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * (h_ * h_ * r.factor(k));
 }
 
-TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
-  SeriesRecursion one = recursion(h);
+TaylorSeries::Norm TaylorSeries::next_term(int k) {
+  SeriesRecursion one = recursion();
   if (row_slopes_.size() > 0) {
     add_row_forces(k - 2 <= right_degree_ ? right_side(k - 2) : zeros_.data(), coefficients(k - 2));
     one.p = with_rows_.data();
@@ -311,18 +326,19 @@ TaylorSeries::Norm TaylorSeries::next_term(int k, double h) {
   }
   double* next = one.z + idx(k * stride_);
   double largest = 0.0;
-  const bool by_kernel = !diagonals_.empty() && diagonal_mass_;
-  if (by_kernel)
+  if (by_kernel())
     series_terms(one, k, k, &largest);
   else
     product_term(one, k);
-  const bool more = add_term_forces(k, one.factor(k), next);
+  const bool more = add_term_forces(k, h_ * h_ * one.factor(k), next);
   rows_of(next);
-  return by_kernel && kinds_.empty() && !more ? Norm{largest, 0.0} : norm(next);
+  return by_kernel() && kinds_.empty() && !more ? Norm{largest, 0.0} : norm(next);
 }
 
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
+  sums_at_ = -1.0;
+  scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
@@ -333,13 +349,14 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   z_scale = z_scale_;
   v_scale = v_scale_;
   const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
+  const std::size_t kinds = kinds_.empty() ? 1 : 2;
   // How far a term is above what is allowed.
   const auto excess = [&](int k) {
     double largest = 0.0;
-    for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t i = 0; i < kinds; ++i)
       if (sizes_[idx(k)][i] > 0.0)
-        largest = std::max({largest, sizes_[idx(k)][i] / (tolerance * z_scale[i]),
-                            k * sizes_[idx(k)][i] / (h * tolerance * v_scale[i])});
+        largest = std::max(largest,
+                           sizes_[idx(k)][i] / tolerance * std::max(1.0 / z_scale[i], k / (h * v_scale[i])));
     return largest;
   };
   int known_degree = right_degree_;
@@ -350,11 +367,13 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       products = true;
     }
   double last = 0.0;
-  int known = 1;  // the last term there is
+  // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
+  int known = 1;
+  const int likely = by_diagonals() ? degree_ - 1 : 0;
   for (int k = 2; k <= kMaxDegree; ++k) {
     if (k > known) {
-      known = std::min(std::max(k, known_degree + 2), kMaxDegree);
-      next_terms(k, known, h);
+      known = std::min(std::max({k, known_degree + 2, likely}), kMaxDegree);
+      next_terms(k, known);
     }
     const Norm& size = sizes_[idx(k)];
     for (std::size_t i = 0; i < 2; ++i) {
@@ -416,22 +435,6 @@ double TaylorSeries::dissipated(double s) {
   for (int j = 1; j <= degree; ++j)
     subtract_product(c_base_, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
   return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
-}
-
-void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
-  double* sums = sums_.data();
-  series_values(stride_, degree_, coefficients(0), s, sums, sums + stride_);
-  z.resize(n_);
-  v.resize(n_);
-  for (int i = 0; i < n_; ++i) {
-    z[i] = sums[i];
-    v[i] = sums[stride_ + i] / h_;
-  }
-}
-
-void TaylorSeries::beyond_cubic(double s, double* out) const {
-  series_beyond_cubic(stride_, degree_, coefficients(0), s, out, out + stride_);
-  for (int i = 0; i < stride_; ++i) out[stride_ + i] /= h_;
 }
 
 void TaylorSeries::at_nodes(double* z, double* v) const {

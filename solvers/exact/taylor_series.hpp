@@ -117,9 +117,13 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
-  /// Of each row, and of its rate, how far it lies at most from the cubic through its values and rates at 0 and s
-  /// (cubic_peak.hpp); out: stride() of either.
-  void beyond_cubic(double s, double* out) const;
+  /// Of each row over the step: how far it comes, and what its terms and, from the second on, their slopes by s add up to.
+  void ranges(double* end, double* size, double* slope);
+  /// Of each unknown, and of its rate, how far it lies at most from the cubic through its values and rates at 0 and s
+  /// (cubic_peak.hpp); out: size() of either.
+  void beyond_cubic(double s, double* out);
+  /// int_0^s (sum P_k u^k) . z' du with columns P_k at p + k stride(), k <= degree.
+  double work(const double* p, int degree, double s);
   /// z, and v where it is not null, at the nodes of Gauss's rule: rows of node q at q stride().
   void at_nodes(double* z, double* v) const;
   /// The degree up to which terms count in energies.
@@ -143,6 +147,8 @@ class TaylorSeries {
   }
   /// |k| between two unknowns over the first one's mass [1/s^2].
   double coupling(int row, int other) const;
+  /// The largest of them, as bound_rates() saw them.
+  double largest_coupling() const { return largest_coupling_; }
   /// Whether some third one is coupled with both.
   bool share_neighbour(int row, int other) const;
   /// The same of the unknown that a force on a row moves most.
@@ -164,12 +170,15 @@ class TaylorSeries {
            std::none_of(term_forces_.begin(), term_forces_.end(),
                         [](const TermForces* forces) { return forces->active(); });
   }
+  /// Whether terms come from the kernel, with forces added to them.
+  bool by_kernel() const { return !diagonals_.empty() && diagonal_mass_; }
   using Chain = std::array<const double*, 3>;
   Chain chain_of(const std::vector<double>& values) const;
-  SeriesRecursion recursion(double h);
+  void scale_step();
+  SeriesRecursion recursion();
   void product_term(const SeriesRecursion& recursion, int k);
-  void next_terms(int first, int last, double h);
-  Norm next_term(int k, double h);
+  void next_terms(int first, int last);
+  Norm next_term(int k);
   void find_rows();
   /// Sets the loaded rows of a column from its unknowns.
   void rows_of(double* column) const {
@@ -179,6 +188,7 @@ class TaylorSeries {
           system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
   }
   void add_row_forces(const double* p, const double* x_0);
+  const double* sums(double s);
   bool add_term_forces(int k, double factor, double* term) const;
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
@@ -187,26 +197,27 @@ class TaylorSeries {
   std::vector<TermForces*> term_forces_;
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
-  std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_
-  std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
-  int main_ = -1;                                // which diagonal is the main one
-  std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
+  std::vector<double> k_step_, c_step_, mobility_step_;  // SeriesRecursion's k, c and mobility
+  std::vector<std::size_t> position_;                    // of a slot of the pattern in k_, c_
+  std::vector<Diagonal> diagonals_;                      // padded to stride_; empty: rows of the pattern
+  int main_ = -1;                                        // which diagonal is the main one
+  std::vector<DiagonalView> k_views_, c_views_;          // of each block of lanes
   std::vector<int> block_begin_;
   bool chain_ = false;  // nearly all of them are the main one and its neighbours
   bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
-  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
+  double k_norm_ = 0.0, c_norm_ = 0.0, largest_coupling_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;     // of M^-1, largest row sum, where M is not diagonal
   std::vector<double> swept_;  // columns of the sweep behind two of zeros
   int swept_degree_ = 0;
-  std::vector<double> weights_;  // of terms in Legendre coefficients of the rates up to here
-  double weights_at_ = 0.0;
+  std::vector<double> step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
+  double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
   std::vector<double> p_, z_, rates_, forces_, zeros_;
   // Of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
   std::vector<double> with_rows_;
-  mutable std::vector<double> sums_;
+  mutable std::vector<double> values_;
   Vector solve_in_, solve_out_;
   std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
   std::vector<int> kinds_;                    // of the unknowns, if the system has both
