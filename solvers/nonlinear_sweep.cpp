@@ -21,7 +21,8 @@ namespace {
 constexpr double kUnbounded =
     30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kFewestHarmonics = 24;
-constexpr int kMostRows = 1100;       // of Newton's matrix: 0.3 s a step
+constexpr int kMostRows = 1100;       // of Newton's matrix with more harmonics: 0.3 s a step
+constexpr int kMostLaws = 50;         // each of 49 rows with the fewest harmonics: 3 s a step
 constexpr int kProbe = 192;           // harmonics of the linear motion that the first number is read from
 constexpr double kTail = 1e-5;        // of the linear motion
 constexpr double kSameSpeed = 1e-12;  // relative
@@ -112,10 +113,10 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
     check.fail("laws", "none", "",
                "must be at least one that is no straight line; sweep_linear() is for "
                "linear models");
-  if (const int rows = balance.inputs() * (2 * kFewestHarmonics + 1); rows > kMostRows)
+  if (balance.inputs() > kMostLaws)
     check.fail("laws", std::to_string(balance.inputs()), "",
                "and loads that follow the twist of their node are too many, at most " +
-                   std::to_string(kMostRows / (2 * kFewestHarmonics + 1)) +
+                   std::to_string(kMostLaws) +
                    "; loads over the nominal angle (twist_feedback = false) do not count, closed contacts "
                    "(drev sweep --contact closed) neither");
   if (!findings.empty()) throw ModelError(std::move(findings));

@@ -270,13 +270,35 @@ bool LawBalance::speed_slope(const Vector& x, double speed, Vector& r_w) {
   return residual(x, speed, low);
 }
 
+/// E_n of each term's offset e, n = 0..H, by sums over equal parts of the cycle: a start needs no more.
+Eigen::MatrixXcd LawBalance::offset_lines() const {
+  Eigen::MatrixXcd lines = Eigen::MatrixXcd::Zero(harmonics_ + 1, static_cast<Eigen::Index>(terms_.size()));
+  const int parts = 4 * (harmonics_ + 1);
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    if (terms_[t].law == nullptr || terms_[t].law->phase_node < 0) continue;
+    for (int i = 0; i < parts; ++i) {
+      const double psi = kTwoPi * i / parts, e = offset(terms_[t], psi);
+      for (int n = 0; n <= harmonics_; ++n)
+        lines(n, static_cast<Eigen::Index>(t)) += std::polar((n == 0 ? 1.0 : 2.0) / parts * e, -n * psi);
+    }
+  }
+  return lines;
+}
+
 bool LawBalance::linear_start(double speed, Vector& x) {
   if (!set_speed(speed)) return false;
   const Eigen::Index block = 2 * harmonics_ + 1;
   x = Vector::Zero(size());
   const double w = direction_ * speed / turns_;
+  const Eigen::MatrixXcd offsets = offset_lines();
   for (int n = 0; n <= harmonics_; ++n) {
     Eigen::VectorXcd here = known_[idx(n)];
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      if (terms_[t].law == nullptr) continue;
+      const auto at = static_cast<Eigen::Index>(t);
+      here += Complex(terms_[t].stiffness, n * w * terms_[t].law->force->closed_damping()) * offsets(n, at) *
+              compliance_[idx(n)].col(at);
+    }
     if (n > 0) {
       Eigen::MatrixXcd matrix = Eigen::MatrixXcd::Identity(inputs(), inputs());
       for (std::size_t t = 0; t < terms_.size(); ++t) {

@@ -113,6 +113,7 @@ class LawBalance {
 
  private:
   double offset(const Term& term, double psi) const;
+  Eigen::MatrixXcd offset_lines() const;
   void find_terms(std::vector<Finding>& findings);
   bool set_speed(double speed);
   ScalarResponse respond(const Term& term, double x, double rate, double angle, double speed,

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -263,6 +264,44 @@ TEST_CASE("Mathieu's equation: multipliers of a stiffness that varies smoothly, 
   }
 }
 
+TEST_CASE("A train of 24 meshes: each is the closed form while its contact holds; of 51 it is refused",
+          "[nonlinear_sweep]") {
+  // x'' + c x' + k x = mean + error w^2 cos wt, each of a wheel of its own on one pinion.
+  const auto train = [](int meshes) {
+    Model m("wheels");
+    m.add_node("pinion");
+    m.constant_speed("pinion", 1.0);
+    for (int i = 0; i < meshes; ++i) {
+      const std::string number = std::to_string(i), wheel = "wheel_" + number;
+      m.add_node(wheel);
+      m.add<Inertia>("J_" + number, {wheel}, {.inertia = 1.0});
+      m.add<GearMesh>("mesh_" + number, {"pinion", wheel}, Pair{.stiffness = 1.0 + 0.1 * i}.mesh());
+      m.add<EngineOrderTorque>("torque_" + number, {wheel}, {.mean = 0.1, .twist_feedback = false});
+    }
+    return m.build();
+  };
+  const NonlinearSweep sweep =
+      sweep_nonlinear(train(24), {.speeds = {0.40, 0.401}, .tolerance = 1e-3, .runs = false});
+  const std::vector<SweptMotion> found = motions_at(sweep, 0.40);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].stable);
+  REQUIRE(sweep.sections.size() == 24);
+  for (int i = 0; i < 24; ++i) {
+    const double w = 0.40;
+    const std::complex<double> stiffness(1.0 + 0.1 * i - w * w, 0.1 * w);
+    CHECK(0.5 * (found[0].twist_maximum[i] - found[0].twist_minimum[i]) ==
+          Approx(0.05 * w * w / std::abs(stiffness)).epsilon(1e-9));
+  }
+  try {
+    sweep_nonlinear(train(51), {.speeds = {0.40, 0.401}});
+    FAIL("no error");
+  } catch (const ModelError& error) {
+    const std::string what = error.what();
+    CHECK(what.find("laws = 51") != std::string::npos);
+    CHECK(what.find("at most 50") != std::string::npos);
+  }
+}
+
 TEST_CASE("Where single periods are unstable a run finds the motion of two", "[nonlinear_sweep]") {
   const Pair pair{.damping = 0.06,
                   .mean = 1.0,
@@ -370,7 +409,7 @@ TEST_CASE("What a sweep of contacts comes to at each speed: the worst of its sta
     }
     INFO(sweep.speeds[i]);
     CHECK(stable == (sweep.speeds[i] > 0.708 && sweep.speeds[i] < 0.828 ? 2 : 1));
-    CHECK(mesh.half_range()[at] == expected);
+    CHECK(mesh.half_range()[at] == Approx(expected).epsilon(1e-14));
     CHECK(mesh.mean[at] == Approx(0.1).margin(1e-3));
   }
   // Between 0.60 and 0.72 the upper branch begins, at its fold, above both of them.
