@@ -4,10 +4,10 @@
 #include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "solvers/at_speed.hpp"
 #include "solvers/cycle_run.hpp"
@@ -18,19 +18,17 @@ namespace drev {
 
 namespace {
 
-constexpr double kUnbounded =
-    30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kFewestHarmonics = 24;
-constexpr int kMostRows = 1100;       // of Newton's matrix with more harmonics: 0.3 s a step
-constexpr int kMostLaws = 50;         // each of 49 rows with the fewest harmonics: 3 s a step
-constexpr int kProbe = 192;           // harmonics of the linear motion that the first number is read from
-constexpr double kTail = 1e-5;        // of the linear motion
+constexpr int kMostRows = 1100;  // of Newton's matrix with more harmonics: 0.3 s a step
+constexpr int kMostLaws = 50;    // each of 49 rows with the fewest harmonics: 3 s a step
+constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
+constexpr double kTail = 1e-5;   // of the linear motion
+constexpr double kTraced =
+    1e-2;  // error of motions by the harmonics that curves are traced with, at the first
+constexpr double kTrusted = 0.05;     // error of a motion from which a curve is traced
 constexpr double kSameSpeed = 1e-12;  // relative
 constexpr double kPerturbation = 1e-3;
 constexpr int kMostBranches = 12;
-constexpr int kBatches = 20;
-constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
-constexpr int kRunSamples = 64;     // a cycle
 constexpr double kSameFold = 1e-7;  // of the speed: a fold with more harmonics
 constexpr int kDefaultOrders = 12;
 constexpr double kBalanced = 1e-6;  // N m left over that a run may have
@@ -59,6 +57,8 @@ class Sweeper {
   BranchTracer tracer(int cycles);
   bool tell(double part) const { return !options_.progress || options_.progress(part); }
   void trace(int cycles, double speed, const Vector& x);
+  std::optional<Vector> widened(LawBalance& balance, double speed, const Vector& x) const;
+  bool holds(int cycles, double speed, Vector& x);
   bool start_at(double speed);
   bool known(double speed, const Vector& x);
   void collect(std::size_t number);
@@ -197,11 +197,45 @@ bool Sweeper::known(double speed, const Vector& x) {
   return false;
 }
 
+/// The motion with twice the harmonics, which the balance then has; none: it is not found.
+std::optional<Vector> Sweeper::widened(LawBalance& balance, double speed, const Vector& x) const {
+  const int before = balance.harmonics();
+  Vector wide = x;
+  if (balance.double_harmonics(speed, wide)) return wide;
+  balance.set_harmonics(2 * before);
+  wide = balance.resized(x, before, 2 * before);
+  BranchTracer tracer(balance, nullptr, {.low = low_, .high = high_});
+  if (balance.size() > kMostRows || !tracer.solve(speed, wide)) return std::nullopt;
+  return wide;
+}
+
+/// Whether a motion is one of the train, not of its few harmonics: it is the same with twice as many. The first of a number
+/// of cycles gives their curves as many as it needs.
+bool Sweeper::holds(int cycles, double speed, Vector& x) {
+  Family& of = family(cycles);
+  LawBalance& balance = *of.balance;
+  const bool first =
+      std::none_of(traced_.begin(), traced_.end(), [&](const Traced& one) { return one.cycles == cycles; });
+  MotionSections::Figures coarse, fine;
+  double error = NAN;
+  while (sections_->find(balance, x, speed, of.lines, coarse)) {
+    const auto wide = widened(balance, speed, x);
+    error = wide && sections_->find(balance, *wide, speed, of.lines, fine) ? largest_difference(coarse, fine)
+                                                                           : NAN;
+    if (!first || !(error > kTraced) || balance.size() > kMostRows) break;
+    of.harmonics *= 2;
+    x = *wide;
+  }
+  balance.set_harmonics(of.harmonics);
+  return error <= kTrusted;
+}
+
 /// A curve from the motion with closed contacts, where there is one that is not known.
 bool Sweeper::start_at(double speed) {
   Vector x;
   BranchTracer tracer = this->tracer(1);
   if (!family(1).balance->linear_start(speed, x) || !tracer.solve(speed, x)) return false;
+  if (!holds(1, speed, x)) return false;
   if (!known(speed, x)) trace(1, speed, x);
   return true;
 }
@@ -240,22 +274,16 @@ SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
   if (!sections_->find(balance, x, point.speed, of.lines, coarse)) return motion;
   BranchTracer tracer(balance, stability_.get(), {.low = low_, .high = high_});
   while (true) {
-    const int before = balance.harmonics();
-    Vector wide = x;
-    if (!balance.double_harmonics(point.speed, wide)) {
-      balance.set_harmonics(2 * before);
-      wide = balance.resized(x, before, 2 * before);
-      if (2 * balance.size() > 2 * kMostRows || !tracer.solve(point.speed, wide)) break;
-    }
-    if (!sections_->find(balance, wide, point.speed, of.lines, fine)) break;
-    const BranchPoint judged = tracer.judged(point.speed, wide);
+    const auto wide = widened(balance, point.speed, x);
+    if (!wide || !sections_->find(balance, *wide, point.speed, of.lines, fine)) break;
+    const BranchPoint judged = tracer.judged(point.speed, *wide);
     static_cast<MotionFigures&>(motion) = fine;
     motion.error = largest_difference(coarse, fine);
     motion.harmonics = judged.harmonics;
     motion.multiplier = judged.multiplier;
     motion.stable = judged.stable;
     if (motion.error <= options_.tolerance || 2 * balance.size() > kMostRows) break;
-    x = wide;
+    x = *wide;
     if (!tracer.solve(point.speed, x) || !sections_->find(balance, x, point.speed, of.lines, coarse)) break;
   }
   balance.set_harmonics(of.harmonics);
@@ -351,7 +379,6 @@ bool Sweeper::run_at(double speed) {
     }
   }
   const double period = sweep_.turns * kTwoPi / speed;
-  const auto count = static_cast<Eigen::Index>(sections_->sections().size());
   try {
     CycleRun run(system, period, std::move(state));
     run.advance(options_.run_cycles / 2);
@@ -365,7 +392,7 @@ bool Sweeper::run_at(double speed) {
       LawBalance& balance = *of.balance;
       const int samples = 4 * of.harmonics / cycles;
       std::vector<Vector> motion;
-      run.sample(cycles, samples, [&](const State& at, int) { motion.push_back(at.z); });
+      run.sample(cycles, samples, false, [&](const State& at, int) { motion.push_back(at.z); });
       // The run begins where phi is a whole number of cycles.
       Vector x = Vector::Zero(balance.size());
       const auto all = static_cast<int>(motion.size());
@@ -382,49 +409,16 @@ bool Sweeper::run_at(double speed) {
         }
       }
       BranchTracer tracer = this->tracer(cycles);
-      if (tracer.solve(speed, x)) {
+      if (tracer.solve(speed, x) && holds(cycles, speed, x)) {
         const std::size_t before = traced_.size();
         trace(cycles, speed, x);
         if (traced_.size() > before && stable_at(speed)) return true;
       }
     }
-    const std::vector<SectionRows>& rows = sections_->sections();
-    std::vector<Channel> channels;
-    for (const SectionRows& row : rows) channels.push_back(find_channel(system, row.name));
-    result.cycles = options_.run_cycles / 2;
-    result.mean = result.mean_error = result.deviation = Vector::Zero(count);
-    result.lowest = Vector::Constant(count, INFINITY);
-    result.highest = Vector::Constant(count, -INFINITY);
-    Eigen::MatrixXd batches = Eigen::MatrixXd::Zero(count, kBatches);
-    const int all = result.cycles * kRunSamples, batch = std::max(1, all / kBatches);
-    Vector squares = Vector::Zero(count), values(count);
-    std::array<Vector, 3> sizes;  // largest in the first batch, the one in the middle and the last
-    sizes.fill(Vector::Zero(count));
-    Assembler assembler(system);
-    run.sample(result.cycles, kRunSamples, [&](const State& at, int i) {
-      assembler.set_time(at.t);
-      for (Eigen::Index c = 0; c < count; ++c)
-        values[c] = channels[static_cast<std::size_t>(c)].evaluate(assembler, at);
-      result.mean += values / all;
-      squares += values.cwiseAbs2() / all;
-      batches.col(std::min(i / batch, kBatches - 1)) += values;
-      for (int part = 0; part < 3; ++part)
-        if (i / batch == part * (kBatches - 1) / 2)
-          sizes[idx(part)] = sizes[idx(part)].cwiseMax(values.cwiseAbs());
-      result.lowest = result.lowest.cwiseMin(values);
-      result.highest = result.highest.cwiseMax(values);
-    });
-    for (Eigen::Index c = 0; c < count; ++c)
-      if (sizes[0][c] > 0.0 && sizes[1][c] > kUnbounded * sizes[0][c] &&
-          !(sizes[2][c] <= kUnbounded * sizes[1][c]))
-        result.reason = "the motion grows without bound, a thousandfold in less than " +
-                        std::to_string(result.cycles) + " cycles";
-    result.deviation = (squares - result.mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-    for (int b = 0; b < kBatches; ++b) {
-      const int size = b + 1 < kBatches ? batch : all - batch * (kBatches - 1);
-      result.mean_error += (batches.col(b) / size - result.mean).cwiseAbs2();
-    }
-    result.mean_error = kStudent * (result.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
+    result.repeats = cycles;
+    std::vector<std::string> sections;
+    for (const SectionRows& row : sections_->sections()) sections.push_back(row.name);
+    find_statistics(run, system, sections, options_.run_cycles / 2, result);
   } catch (const SolverError& error) {
     result.reason = error.what();
   }

@@ -82,7 +82,10 @@ struct SweptChange {
 struct SweptRun {
   double speed = 0.0;  ///< rad/s
   int cycles = 0;
-  std::string reason;       ///< why there is none; empty: there is
+  std::string reason;  ///< why there is none; empty: there is
+  /// Cycles after which the run repeats, to 1e-6 of itself: a stable motion that harmonic balance did not find with its
+  /// harmonics. 0: it does not within 12 cycles, or there is no run.
+  int repeats = 0;
   Vector mean, mean_error;  ///< half of the 95 % interval, by batch means
   Vector deviation, lowest, highest;
 };

@@ -17,6 +17,7 @@ namespace {
 constexpr int kFigureDigits = 6;
 constexpr int kCurveDigits = 4;     // of a speed between those asked for: a step along the curve
 constexpr double kLeftOver = 1e-9;  // N m that is worth a word
+constexpr double kTrusted = 0.05;   // error of a motion whose stability is its own
 
 std::string rpm_text(double speed) { return short_digits(to_rpm(speed), 8); }
 
@@ -113,7 +114,7 @@ std::string runs_table(const NonlinearSweep& sweep) {
   if (sweep.runs.empty()) return {};
   std::string text;
   std::vector<std::vector<std::string>> rows{
-      {"run at [rpm]", "cycles", "section", "mean", "+-", "deviation", "lowest", "highest"}};
+      {"run at [rpm]", "cycles", "repeats after", "section", "mean", "+-", "deviation", "lowest", "highest"}};
   for (const SweptRun& run : sweep.runs) {
     if (!run.reason.empty()) {
       text += wrap("No statistics at " + rpm_text(run.speed) + " rpm: " + run.reason + ".", 0);
@@ -121,15 +122,16 @@ std::string runs_table(const NonlinearSweep& sweep) {
     }
     for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
       const auto at = static_cast<Eigen::Index>(c);
-      rows.push_back({rpm_text(run.speed), std::to_string(run.cycles), sweep.sections[c].name,
+      rows.push_back({rpm_text(run.speed), std::to_string(run.cycles),
+                      run.repeats > 0 ? std::to_string(run.repeats) : "-", sweep.sections[c].name,
                       digits(run.mean[at], kFigureDigits), digits(run.mean_error[at], 2),
                       digits(run.deviation[at], kFigureDigits), digits(run.lowest[at], kFigureDigits),
                       digits(run.highest[at], kFigureDigits)});
     }
   }
   if (rows.size() > 1)
-    text += "No periodic motion that was found is stable at these speeds; what a run does:\n" +
-            columns_text(rows);
+    text +=
+        "Harmonic balance found no stable motion at these speeds; what a run does:\n" + columns_text(rows);
   return text;
 }
 
@@ -206,10 +208,11 @@ std::string table_cell(double value) { return std::isfinite(value) ? to_text(val
 std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
   std::vector<std::string> notes;
   double error = 0.0;
-  bool judged = true;
+  bool judged = true, unknown = false;
   for (const SweptBranch& branch : sweep.branches)
     for (const SweptMotion& motion : branch.motions) {
-      if (motion.asked) error = std::max(error, motion.error);
+      if (motion.asked && std::isfinite(motion.error)) error = std::max(error, motion.error);
+      unknown = unknown || (motion.asked && !std::isfinite(motion.error));
       judged = judged && motion.judged;
     }
   if (!sweep.branches.empty())
@@ -218,7 +221,16 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
                     (error > options.tolerance
                          ? ", more than the " + short_digits(options.tolerance, 2) + " asked for"
                          : std::string()) +
-                    ".");
+                    (unknown ? "; of some it is unknown" : "") + "." +
+                    (error > kTrusted || unknown
+                         ? " So few harmonics hold neither their stability nor changes of it; what "
+                           "a run repeats is what the train does."
+                         : ""));
+  if (std::any_of(sweep.runs.begin(), sweep.runs.end(), [](const SweptRun& run) { return run.repeats > 0; }))
+    notes.push_back(
+        "Where a run repeats, its figures are those of a stable periodic motion that takes more harmonics "
+        "than "
+        "were tried.");
   if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
@@ -226,7 +238,7 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
   if (!sweep.unsolved.empty()) {
     std::vector<std::string> speeds;
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
-    notes.push_back("No periodic motion was found at " + join(speeds) + " rpm.");
+    notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
   }
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
     if (const double left = largest_left_over(sweep, f); left > kLeftOver)
@@ -248,10 +260,12 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
           std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
           rpm_text(sweep.speeds.back()) + " rpm\n\n";
-  text += branches_table(sweep) + "\n" + largest_table(sweep) + "\n" + changes_table(sweep);
+  if (!sweep.branches.empty())
+    text += branches_table(sweep) + "\n" + largest_table(sweep) + "\n" + changes_table(sweep) + "\n";
   for (const std::string& part :
        {runs_table(sweep), notes_text(options, sweep), wrap(model.model_case.note, 0)})
-    if (!part.empty() && part != "\n") text += "\n" + part;
+    if (!part.empty() && part != "\n") text += part + "\n";
+  text.pop_back();
   return text;
 }
 
@@ -278,6 +292,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
   for (const SweptRun& run : sweep.runs)
     runs.push_back({{"speed_rpm", number(to_rpm(run.speed))},
                     {"cycles", run.cycles},
+                    {"repeats_after", run.repeats > 0 ? Json(run.repeats) : Json()},
                     {"reason", text_or_null(run.reason)},
                     {"mean", over_sections(run.mean)},
                     {"mean_error", over_sections(run.mean_error)},

@@ -93,11 +93,12 @@ function showFigures() {
   section.append(
     make("h3", {}, "Where no motion that was found is stable: what a run does"),
     table(
-      ["speed [rpm]", "cycles", "section", "mean", "± (95 %)", "deviation", "lowest", "highest"],
+      ["speed [rpm]", "cycles", "repeats after", "section", "mean", "± (95 %)", "deviation", "lowest", "highest"],
       runs.flatMap((run) =>
         result.sections.map((s, c) => [
           sig(run.speed_rpm, 6),
           run.cycles,
+          run.repeats_after ?? "–",
           s.name,
           ...[run.mean, run.mean_error, run.deviation, run.lowest, run.highest].map((values) => sig(values[c], 5)),
         ]),

@@ -48,6 +48,30 @@ TEST_CASE("The page on sweeps shows what the commands print", "[sweep]") {
   CHECK(commands == 3);
 }
 
+TEST_CASE("A train whose rattle takes more harmonics than there are: no curve is made up, its run is told",
+          "[sweep][once]") {
+  const auto printed = drev_command(
+      {"sweep", DREV_SOURCE_DIR "/models/tutorial/train.toml", "--speeds", "1450,1480", "--json"});
+  REQUIRE(printed.exit_code == 0);
+  const Json json = Json::parse(printed.out);
+  for (const Json& branch : json.at("branches"))
+    for (const Json& error : branch.at("error")) CHECK((error.is_null() || error.get<double>() < 0.05));
+  CHECK(json.at("changes").empty());
+  REQUIRE(json.at("runs").size() == 2);
+  const double ratio = 83.0 / 21.0 * 77.0 / 19.0;
+  for (const Json& run : json["runs"]) {
+    CHECK(run.at("repeats_after") == 1);
+    REQUIRE(json.at("sections")[1].at("name") == "coupling.torque_Nm");
+    // What the motor gives is what the compressor takes, over the cycle.
+    CHECK(run.at("mean")[1].get<double>() * ratio ==
+          Approx(run.at("mean")[0].get<double>())
+              .margin(run.at("mean_error")[0].get<double>() + ratio * run.at("mean_error")[1].get<double>()));
+    CHECK(run.at("mean")[0].get<double>() ==
+          Approx(-600.0).epsilon(1e-3));  // of the gas, less what the twist changes
+    CHECK(run.at("mean_error")[0].get<double>() < 0.1);
+  }
+}
+
 TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
   const drev::test::TemporaryFolder folder;
   const std::string out = (folder / "out").string();

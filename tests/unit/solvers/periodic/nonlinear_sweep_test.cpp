@@ -332,6 +332,7 @@ TEST_CASE("Where nothing periodic is stable a run's statistics are given", "[non
   const SweptRun& run = sweep.runs.front();
   CHECK(run.reason.empty());
   CHECK(run.cycles == 200);
+  CHECK(run.repeats == 0);
   CHECK(std::abs(run.mean[0] - 0.1) <= 2.0 * run.mean_error[0]);
   CHECK(std::abs(run.mean[1] - 0.3926) <= 2.0 * run.mean_error[1] + 0.0039);
   CHECK(run.mean_error[1] < 0.2);
