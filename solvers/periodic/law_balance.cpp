@@ -279,7 +279,7 @@ Eigen::MatrixXcd LawBalance::offset_lines() const {
     for (int i = 0; i < parts; ++i) {
       const double psi = kTwoPi * i / parts, e = offset(terms_[t], psi);
       for (int n = 0; n <= harmonics_; ++n)
-        lines(n, static_cast<Eigen::Index>(t)) += std::polar((n == 0 ? 1.0 : 2.0) / parts * e, -n * psi);
+        lines(n, static_cast<Eigen::Index>(t)) += e * std::polar((n == 0 ? 1.0 : 2.0) / parts, -n * psi);
     }
   }
   return lines;
