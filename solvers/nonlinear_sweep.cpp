@@ -25,7 +25,6 @@ constexpr int kProbe = 192;      // harmonics of the linear motion that the firs
 constexpr double kTail = 1e-5;   // of the linear motion
 constexpr double kTraced =
     1e-2;  // error of motions by the harmonics that curves are traced with, at the first
-constexpr double kTrusted = 0.05;     // error of a motion from which a curve is traced
 constexpr double kSameSpeed = 1e-12;  // relative
 constexpr double kPerturbation = 1e-3;
 constexpr int kMostBranches = 12;
@@ -227,7 +226,7 @@ bool Sweeper::holds(int cycles, double speed, Vector& x) {
     x = *wide;
   }
   balance.set_harmonics(of.harmonics);
-  return error <= kTrusted;
+  return error <= NonlinearSweep::kTrusted;
 }
 
 /// A curve from the motion with closed contacts, where there is one that is not known.

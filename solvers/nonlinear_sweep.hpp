@@ -91,6 +91,8 @@ struct SweptRun {
 };
 
 struct NonlinearSweep {
+  static constexpr double kTrusted =
+      0.05;  ///< error of a motion above which its stability is not the train's
   std::vector<double> speeds, orders;
   double turns = 0.0;
   struct Section {

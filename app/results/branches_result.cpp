@@ -17,7 +17,6 @@ namespace {
 constexpr int kFigureDigits = 6;
 constexpr int kCurveDigits = 4;     // of a speed between those asked for: a step along the curve
 constexpr double kLeftOver = 1e-9;  // N m that is worth a word
-constexpr double kTrusted = 0.05;   // error of a motion whose stability is its own
 
 std::string rpm_text(double speed) { return short_digits(to_rpm(speed), 8); }
 
@@ -222,15 +221,13 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
                          ? ", more than the " + short_digits(options.tolerance, 2) + " asked for"
                          : std::string()) +
                     (unknown ? "; of some it is unknown" : "") + "." +
-                    (error > kTrusted || unknown
-                         ? " So few harmonics hold neither their stability nor changes of it; what "
-                           "a run repeats is what the train does."
+                    (error > NonlinearSweep::kTrusted || unknown
+                         ? " So few harmonics tell neither their stability nor where it changes."
                          : ""));
   if (std::any_of(sweep.runs.begin(), sweep.runs.end(), [](const SweptRun& run) { return run.repeats > 0; }))
     notes.push_back(
-        "Where a run repeats, its figures are those of a stable periodic motion that takes more harmonics "
-        "than "
-        "were tried.");
+        "Where a run repeats, its figures are those of a stable periodic motion that takes more "
+        "harmonics than were tried.");
   if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
