@@ -10,7 +10,7 @@ namespace drev {
 namespace {
 
 constexpr std::size_t kOfCell = CurveCells::kTerms;  // n
-constexpr double kOverlap = 1.3;                     // reach over half the width
+constexpr double kOverlap = 1.8;                     // reach over half the width
 constexpr double kCellTail = 1e-14;                  // of the largest coefficient
 constexpr std::size_t kFewest = 8, kMost = 1024;
 

@@ -2,7 +2,7 @@
 /// CurveCells: the smooth curves S and G of a KnottedLoad as polynomials of the angle, each about the middle of a cell.
 ///
 /// Cells are so narrow that the last two of 16 Chebyshev coefficients are below 1e-14 of the largest, or 1024 a
-/// revolution at most; they reach a little further than half their width, so that a step's angles rarely leave one.
+/// revolution at most; they reach nearly twice as far as half their width, so that a step's angles rarely leave one.
 #include <drev/core/law/knotted_load.hpp>
 
 #include <array>

@@ -375,7 +375,7 @@ class ExactRun final : public StepMotion {
     for (;;) {
       const StepExpansion::Attempt made = expansion_.attempt(now_, laws_, h, limits(h));
       const double got = made.h;
-      if (made.to_knot) {
+      if (made.again) {
         h = got;
         continue;
       }

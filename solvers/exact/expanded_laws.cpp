@@ -173,7 +173,7 @@ void ExpandedLaws::add_term(Law& law, const TaylorSeries& series, int m) const {
   law.theta[idx(m)] = theta;
 }
 
-void ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double* term) {
+double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double* term) {
   const int m = k - 2;
   for (Law& law : laws_) {
     if (!law.active) continue;
@@ -191,6 +191,7 @@ void ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double*
     y += rate / h_;
     for (const Entry& e : law.gain) term[e.index] -= e.coeff * y * factor;
   }
+  return std::numeric_limits<double>::infinity();
 }
 
 void ExpandedLaws::expand(const TaylorSeries& series) {

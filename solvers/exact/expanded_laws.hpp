@@ -42,7 +42,7 @@ class ExpandedLaws final : public TermForces {
   void add_to(TaylorSeries& series, const LawSeries& pieces, const LoadSeries& known,
               const LawOffsets& offsets, const EvaluatedState& start, double h);
   /// Adds the forces' part to term k of the series, factor = h^2/(k (k - 1)).
-  void add(const TaylorSeries& series, int k, double factor, double* term) override;
+  double add(const TaylorSeries& series, int k, double factor, double* term) override;
   bool active() const override { return active_; }
   int known_degree() const override { return known_degree_; }
 

@@ -353,7 +353,7 @@ void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, doubl
   }
 }
 
-void FrictionSeries::add(const TaylorSeries& series, int k, double factor, double* term) {
+double FrictionSeries::add(const TaylorSeries& series, int k, double factor, double* term) {
   const auto d = idx(k - 2);
   const auto apply = [&](const Contact& c, double torque) {
     for (const Entry& e : c.gain) term[e.index] -= factor * e.coeff * torque;
@@ -383,7 +383,8 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
       if (on_line(contacts_[i])) add_gear(series, i, k, factor, term);
     if (d == 0) factor_series();
   }
-  if (stuck_.empty()) return;
+  constexpr double kWholeTerm = std::numeric_limits<double>::infinity();
+  if (stuck_.empty()) return kWholeTerm;
   const auto m = static_cast<Eigen::Index>(stuck_.size());
   Vector rest(m);
   for (Eigen::Index j = 0; j < m; ++j) {
@@ -409,6 +410,7 @@ void FrictionSeries::add(const TaylorSeries& series, int k, double factor, doubl
     hold_by(c, loss.unit_tie * torque[j]);
     if (loss.unit_loss != 0.0) hold_by(loss, loss.unit_loss * torque[j]);
   }
+  return kWholeTerm;
 }
 
 void FrictionSeries::hold(const Assembler& assembler, Vector& v) const {

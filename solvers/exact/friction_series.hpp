@@ -70,7 +70,7 @@ class FrictionSeries final : public TermForces {
   void add_to(TaylorSeries& series, const LoadSeries& known, double t, double h);
   int known_degree() const override { return known_degree_; }
   /// Adds the contacts' part to term k of the series, factor = h^2/(k (k - 1)).
-  void add(const TaylorSeries& series, int k, double factor, double* term) override;
+  double add(const TaylorSeries& series, int k, double factor, double* term) override;
   /// After the series was expanded from a state: slip speeds, and bounds. What the series' forces differ from those
   /// evaluated there (their projection) counts as rounding of bounds that stand at zero.
   void expand(const TaylorSeries& series, const State& from);

@@ -8,7 +8,7 @@
 namespace drev {
 
 namespace {
-constexpr double kCell = 0.7, kReach = 0.9;  // times the highest order
+constexpr double kCell = 1.1, kReach = 2.2;  // times the highest order
 constexpr int kMostTurns = 8, kMostCells = 8192;
 constexpr double kTwoPiRest = 2.4492935982947064e-16;  // 2 pi less its double
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 /// HarmonicCells: a sum of harmonics as polynomials of its angle, each about the middle of a cell.
 ///
-/// With o the highest order, a cell reaches |theta - centre| <= 0.7/o; its Taylor polynomial of 16 terms is off by
-/// at most 0.7^16/16! = 2e-16 of the sum of the amplitudes, and by 1e-14 as far as 0.9/o. Cells are made when an
+/// With o the highest order, a cell is left at |theta - centre| = 1.1/o; its Taylor polynomial of 24 terms is off by
+/// at most 2.2^24/24! = 3e-16 of the sum of the amplitudes as far as 2.2/o. Cells are made when an
 /// angle first enters them and kept where the orders have a common period of at most 8 revolutions.
 #include <drev/core/law/harmonic_load.hpp>
 
@@ -13,7 +13,7 @@ namespace drev {
 
 class HarmonicCells {
  public:
-  static constexpr int kTerms = 16;
+  static constexpr int kTerms = 24;
   struct Cell {
     double centre = 0.0;                    ///< rad, of the period's first turn
     std::array<double, kTerms> terms = {};  ///< of (theta - centre)^k

@@ -54,16 +54,28 @@ template <class L>
   }
 }
 
-/// Moments int_s^1 jump (theta - knot) L_j du of kLanes kinks, behind the s at which theta = knot, by Gauss's rule with
-/// kMomentNodes nodes between s and 1: exact where theta is of degree 11 there.
+/// x becomes its polynomial, whose terms from the first power on are at `force`.
+template <class L>
+[[gnu::always_inline]] inline void take_force(const double* force, std::size_t powers, L& x) {
+  L value, term;
+  load(force + (powers - 1) * kLanes, value);
+  for (std::size_t q = powers - 1; q-- > 0;) {
+    load(force + q * kLanes, term);
+    value = value * x + term;
+  }
+  x = value * x;
+}
+
+/// Moments int_s^1 f(theta - knot) L_j du of kLanes kinks, behind the s at which theta = knot, by Gauss's rule with
+/// kMomentNodes nodes between s and 1: exact where f is of degree 11 in s there.
 struct Moments {
   template <class L>
   [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
-                                         const double* jump, const double* end, const double* nodes,
-                                         const double* weights, double* place, double* moments) {
-    L target, delta, at_end, s;
+                                         const double* force, std::size_t powers, const double* end,
+                                         const double* nodes, const double* weights, double* place,
+                                         double* moments) {
+    L target, at_end, s;
     load(knot, target);
-    load(jump, delta);
     load(end, at_end);
     find_place(theta, terms, target, at_end, 1.0, kSettled, s);
     store(s, place);
@@ -76,7 +88,9 @@ struct Moments {
       angles(theta, terms, s_0, s_1, f_0, f_1);
       for (int node = 0; node < 2; ++node) {
         const L u = 2.0 * (node == 0 ? s_0 : s_1) - 1.0;
-        L below = weights[q + node] * ((node == 0 ? f_0 : f_1) - target), now = u * below;
+        L f = (node == 0 ? f_0 : f_1) - target;
+        take_force(force, powers, f);
+        L below = weights[q + node] * f, now = u * below;
         sum[0] += below;
         sum[1] += now;
         for (int j = 1; j < kProjectionDegree; ++j) {
@@ -88,22 +102,21 @@ struct Moments {
       }
     }
     for (int j = 0; j < kProjectionTerms; ++j) {
-      sum[j] *= (2.0 * j + 1.0) * (delta * rest);
+      sum[j] *= (2.0 * j + 1.0) * rest;
       store(sum[j], moments + j * kLanes);
     }
   }
 };
 
-/// Moments int_s^e (e - s)^j/j! jump (theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes.
+/// Moments int_s^e (e - s)^j/j! f(theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes.
 struct SweepMoments {
   template <class L>
   [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
-                                         const double* jump, const double* end, double s_end,
-                                         const double* nodes, const double* weights, int degree,
+                                         const double* force, std::size_t powers, const double* end,
+                                         double s_end, const double* nodes, const double* weights, int degree,
                                          double* place, double* moments) {
-    L target, delta, at_end, s;
+    L target, at_end, s;
     load(knot, target);
-    load(jump, delta);
     load(end, at_end);
     find_place(theta, terms, target, at_end, s_end, kSweepSettled, s);
     store(s, place);
@@ -111,9 +124,13 @@ struct SweepMoments {
     L f[kSweepNodes];
     for (int q = 0; q < kSweepNodes; q += 2) {
       angles(theta, terms, s + nodes[q] * rest, s + nodes[q + 1] * rest, f[q], f[q + 1]);
-      for (int node = q; node < q + 2; ++node) f[node] = weights[node] * (f[node] - target);
+      for (int node = q; node < q + 2; ++node) {
+        f[node] = f[node] - target;
+        take_force(force, powers, f[node]);
+        f[node] = weights[node] * f[node];
+      }
     }
-    L power = delta * rest;  // jump rest^(j+1)/j!
+    L power = rest;  // rest^(j+1)/j!
     for (int j = 0;; ++j) {
       L sum = f[0] + f[1];
       for (int q = 2; q < kSweepNodes; ++q) sum += f[q];
@@ -134,28 +151,49 @@ struct NodesAndWeights {
 
 }  // namespace
 
-double* KinkMoments::add(int row, double knot, double jump, double end, std::size_t terms) {
+double* KinkMoments::add(int row, double knot, std::span<const double> force, double end, std::size_t terms) {
   const auto i = static_cast<std::size_t>(count_++);
   terms_ = terms;
+  powers_ = std::max(powers_, force.size());
   const auto room = static_cast<std::size_t>(whole_lanes(count_));
   if (row_.size() < room) {
     row_.resize(room);
-    for (auto* list : {&knot_, &jump_, &end_, &place_}) list->resize(room);
+    for (auto* list : {&knot_, &end_, &place_}) list->resize(room);
     theta_.resize(room * kMostTerms);
+    force_.resize(room * kMostPowers);
   }
   row_[i] = row;
   knot_[i] = knot;
-  jump_[i] = jump;
   end_[i] = end;
+  double* own = force_.data() + i / kLanes * kForce + i % kLanes;
+  for (std::size_t q = 0; q < kMostPowers; ++q) own[q * kLanes] = q < force.size() ? force[q] : 0.0;
   return theta_.data() + i / kLanes * kGroup + i % kLanes;
+}
+
+KinkMoments::Force KinkMoments::force(int i, double behind) const {
+  const double* terms = force_.data() + idx_of(i) / kLanes * kForce + lane_of(i);
+  Force f;
+  for (std::size_t q = powers_; q-- > 0;) {
+    const double term = terms[q * kLanes];
+    f.slope = f.slope * behind + static_cast<double>(q + 1) * term;
+    f.value = f.value * behind + term;
+    f.integral = f.integral * behind + term / static_cast<double>(q + 2);
+  }
+  f.value *= behind;
+  f.integral *= behind * behind;
+  return f;
 }
 
 /// The lanes behind the last kink repeat it; what they give is not used.
 void KinkMoments::fill_lanes() {
   for (auto lane = static_cast<std::size_t>(count_); lane % kLanes != 0; ++lane) {
-    for (auto* list : {&knot_, &jump_, &end_}) (*list)[lane] = (*list)[lane - 1];
-    double* own = theta_.data() + lane / kLanes * kGroup + lane % kLanes;
-    for (std::size_t k = 0; k < terms_; ++k) own[k * kLanes] = own[k * kLanes - 1];
+    for (auto* list : {&knot_, &end_}) (*list)[lane] = (*list)[lane - 1];
+    const auto repeat = [&](std::vector<double>& list, std::size_t group, std::size_t rows) {
+      double* own = list.data() + lane / kLanes * group + lane % kLanes;
+      for (std::size_t k = 0; k < rows; ++k) own[k * kLanes] = own[k * kLanes - 1];
+    };
+    repeat(theta_, kGroup, terms_);
+    repeat(force_, kForce, powers_);
   }
 }
 
@@ -168,7 +206,7 @@ void KinkMoments::add_to(LegendreProjection& projection) {
     const auto at = static_cast<std::size_t>(first);
     run_widest<Moments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
                         static_cast<const double*>(knot_.data() + at),
-                        static_cast<const double*>(jump_.data() + at),
+                        static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
                         static_cast<const double*>(end_.data() + at), rule.nodes.data(), rule.weights.data(),
                         place_.data() + at, moments_.data());
     const int lanes = std::min(kLanes, count_ - first);
@@ -191,7 +229,7 @@ void KinkMoments::add_to_sweep(double end, int degree, int stride, double* colum
     double* moments = sweep_moments_.data() + at * terms;
     run_widest<SweepMoments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
                              static_cast<const double*>(knot_.data() + at),
-                             static_cast<const double*>(jump_.data() + at),
+                             static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
                              static_cast<const double*>(end_.data() + at), end, rule.nodes.data(),
                              rule.weights.data(), degree, place_.data() + at, moments);
     const int lanes = std::min(kLanes, count_ - first);

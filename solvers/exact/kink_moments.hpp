@@ -1,8 +1,11 @@
 #pragma once
-/// KinkMoments: kinks of forces that are linear in an angle theta(s) between knots. Behind the s at which theta passes the
-/// knot, jump (theta - knot) is added. Many knots at once, in lanes; integrals by Gauss's nodes between there and the end.
+/// KinkMoments: kinks of forces that are polynomials of an angle theta(s) between knots. Behind the s at which theta passes the
+/// knot, a polynomial f(theta - knot) without constant is added: jump (theta - knot) where they are straight. Many knots at
+/// once, in lanes; integrals by Gauss's nodes between there and the end.
 #include <drev/core/lanes.hpp>
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "solvers/exact/legendre_projection.hpp"
@@ -11,22 +14,33 @@ namespace drev {
 
 class KinkMoments {
  public:
-  void clear() { count_ = 0; }
+  static constexpr std::size_t kMostPowers = 18;
+  void clear() {
+    count_ = 0;
+    powers_ = 1;
+  }
   int count() const { return count_; }
   /// A kink whose theta has so many terms, as all listed with it, at most kMostTerms; theta passes `knot` once before the
   /// end of the step, or of the part of it that is looked at, and monotonously, and stands at `end` there. Its terms are to be
   /// written to the place returned, kLanes apart, before the next one is added.
-  double* add(int row, double knot, double jump, double end, std::size_t terms);
+  /// force: the terms of f from the first power on, at most kMostPowers.
+  double* add(int row, double knot, std::span<const double> force, double end, std::size_t terms);
   /// Adds the moments of all kinks over the whole step.
   void add_to(LegendreProjection& projection);
-  /// Adds W_j = int_s^e (e - s)^j/j! jump (theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.
+  /// Adds W_j = int_s^e (e - s)^j/j! f(theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.
   void add_to_sweep(double end, int degree, int stride, double* columns);
   /// After either: the s at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
   int row(int i) const { return row_[static_cast<std::size_t>(i)]; }
   double knot(int i) const { return knot_[static_cast<std::size_t>(i)]; }
   double end(int i) const { return end_[static_cast<std::size_t>(i)]; }
-  double jump(int i) const { return jump_[static_cast<std::size_t>(i)]; }
+  /// Of the slope at the knot.
+  double jump(int i) const { return force_[static_cast<std::size_t>(i) / kLanes * kForce + lane_of(i)]; }
+  /// f, its slope, and its integral from the knot on, at an angle of kink i behind its knot.
+  struct Force {
+    double value = 0.0, slope = 0.0, integral = 0.0;
+  };
+  Force force(int i, double behind) const;
   /// After add_to_sweep(): W_j of kink i alone.
   double moment(int i, int j) const {
     const auto at = static_cast<std::size_t>(i);
@@ -35,13 +49,15 @@ class KinkMoments {
 
  private:
   static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
+  static std::size_t lane_of(int i) { return static_cast<std::size_t>(i) % kLanes; }
   void fill_lanes();
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
+  static constexpr std::size_t kForce = kMostPowers * kLanes;
   int count_ = 0, degree_ = 0;
-  std::size_t terms_ = 0;
+  std::size_t terms_ = 0, powers_ = 1;  // of the angles; of the forces
   std::vector<int> row_;
-  std::vector<double> knot_, jump_, end_, place_;
-  std::vector<double> theta_;  // by group of lanes, degree, lane
+  std::vector<double> knot_, end_, place_;
+  std::vector<double> theta_, force_;  // by group of lanes, degree, lane
   std::vector<double> moments_, sweep_moments_;
 };
 

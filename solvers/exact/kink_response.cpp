@@ -8,14 +8,15 @@ namespace drev {
 namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
-constexpr int kMostKinks = 1000;  // in a step; what they do to each other is bounded pair by pair
-constexpr double kLittle = 0.1;   // of what is allowed, by pairs that are not looked at
-constexpr double kOfShare = 0.1;  // what a sweep of finite degree leaves out
+constexpr int kMostKinks = 1000;    // in a step; what they do to each other is bounded pair by pair
+constexpr double kLittle = 0.1;     // of what is allowed, by pairs that are not looked at
+constexpr double kOfShare = 0.1;    // what a sweep of finite degree leaves out
+constexpr double kShortened = 0.9;  // of the part behind a kink over which slopes change little enough
 
 }  // namespace
 
 void KinkResponse::undo() {
-  if (slopes_changed_) loads_.add_kink_slopes(series_, -1.0);
+  if (slopes_changed_) loads_.return_slopes(series_);
   slopes_changed_ = false;
   found_ = false;
 }
@@ -41,7 +42,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
     rest *= growth / (++degree + 2.0);
   if (rest > kOfShare * share) return false;
-  loads_.add_kink_slopes(series_, 1.0);
+  loads_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int stride = series_.stride();
   moments_.assign(idx((degree + 1) * stride), 0.0);
@@ -54,12 +55,42 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
 /// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
 bool KinkResponse::find_limit(double allowed, double scale) {
   limit_ = 1.0;
+  const double most = allowed / scale;
+  const bool slopes = loads_.expanded().active();
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
-    const Others others = error_of_others(limit_, allowed / scale);
-    if (scale * others.error <= allowed) return true;
+    const Others bends = slopes ? error_of_slopes(limit_) : Others{};
+    if (bends.error > 0.5 * most) {
+      const double behind = limit_ - bends.between;
+      limit_ = bends.between + behind * kShortened * std::pow(0.5 * most / bends.error, 0.2);
+      continue;
+    }
+    const Others others = error_of_others(limit_, most);
+    if (others.error + bends.error <= most) return true;
     limit_ = others.between;
   }
   return false;
+}
+
+/// What slopes of smooth loads that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
+/// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, and of one by speed d^5/60. between: the s of
+/// the kink that makes most of it.
+KinkResponse::Others KinkResponse::error_of_slopes(double end) const {
+  const KinkMoments& kinks = loads_.kinks();
+  const double h = series_.step();
+  const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
+  Others sum;
+  double most = -1.0;
+  for (int i = 0; i < kinks.count(); ++i) {
+    const double d = std::max(0.0, end - kinks.place(i)), fifth = d * d * d * d * d;
+    const double error = loads_.kink_sizes()[idx(i)].pull * fifth *
+                         (h * h * change.by_angle * d / 360.0 + h * change.by_speed / 60.0);
+    sum.error += error;
+    if (error > most) {
+      most = error;
+      sum.between = kinks.place(i);
+    }
+  }
+  return sum;
 }
 
 /// What kinks add to rows of later kinks ahead of these, and what these make of it, up to s = end: of a kink ahead by d in

@@ -56,94 +56,37 @@ struct SmoothLoads::Samples {
 };
 
 double SmoothLoads::beyond_tangent(const Place& l, const Samples& at, std::size_t q) const {
-  return at.torque[q] - l.torque - l.slope * at.turn[q] - l.speed_slope * (at.rate[q] / h_ - l.speed);
+  return at.torque[q] - l.torque - l.slope * at.turn[q];
 }
 
-void SmoothLoads::move_knotted(Place& l, const Assembler& assembler, const Vector& z, const Vector& v) {
-  const MotionPoint& nominal = assembler.nominal();
-  const double nominal_speed = l.ratio * nominal.rate;
-  l.rate = l.feedback ? l.coeff * along(l.row, v) : 0.0;
-  l.speed = nominal_speed + l.rate;
-  l.speed_slope = 0.0;
-  const double speed = l.speed;
-  l.pieced =
-      l.curves && (!l.knots->piece_follows_speed() || (nominal_speed != 0.0 && nominal.acceleration == 0.0));
-  // Nearer to a knot than rounding it is on the piece ahead.
+/// Nearer to a knot than rounding it is on the piece ahead.
+void SmoothLoads::find_piece(Place& l, double nominal_speed) const {
   const double near = 1e-12 * std::max(1.0, std::abs(l.angle));
-  if (!(l.angle > l.piece.low + near && l.angle < l.piece.high - near) || nominal_speed != l.piece_speed) {
-    l.piece = l.knots->piece(l.angle, speed, nominal_speed);
-    l.about = l.angle;
-    l.piece_speed = nominal_speed;
-  }
-  if (!l.pieced) {
-    const LoadResponse r = assembler.load(*l.term, z, v);
-    l.torque = r.torque;
-    l.slope = l.feedback ? r.dtorque_dangle : 0.0;
-    return;
-  }
-  const CurveCells::Values c = CurveCells::values(l.curves->at(l.angle));
-  const Cubic p = cubic_at(l.piece, l.angle - l.about);
-  l.torque = p.value * c.factor + c.by_speed * speed * speed;
-  l.slope = 0.0;
-  if (!l.feedback) return;
-  l.slope = p.slope * c.factor + p.value * c.factor_slope + c.by_speed_slope * speed * speed;
-  if (l.row < system_.size()) l.speed_slope = 2.0 * c.by_speed * speed;
+  if (l.angle > l.piece.low + near && l.angle < l.piece.high - near && nominal_speed == l.piece_speed) return;
+  l.piece = l.knots->piece(l.angle, l.speed, nominal_speed);
+  l.about = l.angle;
+  l.piece_speed = nominal_speed;
 }
 
-/// Torque and slopes at the places s, where turn and rate are known; the piece holds for all of them.
-void SmoothLoads::sample(const Place& l, const CubicPiece& piece, double about, const double* s,
-                         Samples& at) const {
-  if (!l.pieced) {
-    for (std::size_t q = 0; q < kNodes; ++q) {
-      const double nominal_turn = l.ratio * (phi_[1] + phi_[2] * s[q]) * s[q];
-      const LoadResponse r =
-          l.term->load->evaluate({.t = t_ + h_ * s[q],
-                                  .nominal_angle = l.ratio * nominal_ + nominal_turn,
-                                  .deviation = l.deviation + (at.turn[q] - nominal_turn),
-                                  .speed = at.rate[q] / h_,
-                                  .nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s[q]) / h_});
-      at.torque[q] = r.torque;
-      at.slope[q] = r.dtorque_dangle;
-      at.speed_slope[q] = r.dtorque_dspeed;
-    }
-    return;
-  }
-  const double middle = at.turn[kNodes / 2];
-  const CurveCells::Place place = l.curves->at(l.angle + middle);
-  std::array<double, kRoom> distance{}, factor, factor_slope, by_speed, by_speed_slope;
-  double farthest = 0.0;
+/// Torque and slopes at the places s, where turn and rate are known.
+void SmoothLoads::sample(const Place& l, const double* s, Samples& at) const {
   for (std::size_t q = 0; q < kNodes; ++q) {
-    distance[q] = place.distance + (at.turn[q] - middle);
-    farthest = std::max(farthest, std::abs(distance[q]));
-  }
-  if (farthest <= l.curves->reach()) {
-    polynomial_values(kRoom, CurveCells::kTerms, place.cell->factor.data(), distance.data(), factor.data(),
-                      factor_slope.data());
-    polynomial_values(kRoom, CurveCells::kTerms, place.cell->by_speed.data(), distance.data(),
-                      by_speed.data(), by_speed_slope.data());
-  } else {
-    for (std::size_t q = 0; q < kNodes; ++q) {
-      const CurveCells::Values c = CurveCells::values(l.curves->at(l.angle + at.turn[q]));
-      factor[q] = c.factor;
-      factor_slope[q] = c.factor_slope;
-      by_speed[q] = c.by_speed;
-      by_speed_slope[q] = c.by_speed_slope;
-    }
-  }
-  const double from_about = l.angle - about, per_time = 1.0 / h_;
-  for (std::size_t q = 0; q < kNodes; ++q) {
-    const Cubic p = cubic_at(piece, from_about + at.turn[q]);
-    const double speed = at.rate[q] * per_time, square = speed * speed;
-    at.torque[q] = p.value * factor[q] + by_speed[q] * square;
-    at.slope[q] = p.slope * factor[q] + p.value * factor_slope[q] + by_speed_slope[q] * square;
-    at.speed_slope[q] = 2.0 * by_speed[q] * speed;
+    const double nominal_turn = l.ratio * (phi_[1] + phi_[2] * s[q]) * s[q];
+    const LoadResponse r =
+        l.term->load->evaluate({.t = t_ + h_ * s[q],
+                                .nominal_angle = l.ratio * nominal_ + nominal_turn,
+                                .deviation = l.deviation + (at.turn[q] - nominal_turn),
+                                .speed = at.rate[q] / h_,
+                                .nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s[q]) / h_});
+    at.torque[q] = r.torque;
+    at.slope[q] = r.dtorque_dangle;
+    at.speed_slope[q] = r.dtorque_dspeed;
   }
 }
 
 /// Adds the Legendre coefficients of what the load differs from its tangent over from <= s <= to. Returns how much of a
 /// change of the path comes back.
-double SmoothLoads::add_interval(Place& l, const CubicPiece& piece, double about, double from, double to,
-                                 LegendreProjection& kinks) const {
+double SmoothLoads::add_interval(Place& l, double from, double to, LegendreProjection& kinks) const {
   const GaussRule& rule = gauss_rule();
   std::array<double, kRoom> s{};
   const double length = to - from;
@@ -151,7 +94,7 @@ double SmoothLoads::add_interval(Place& l, const CubicPiece& piece, double about
   Samples at;
   polynomial_values(kRoom, static_cast<int>(turn_.size()), turn_.data(), s.data(), at.turn.data(),
                     at.rate.data());
-  sample(l, piece, about, s.data(), at);
+  sample(l, s.data(), at);
   double slope = 0.0, speed_slope = 0.0;
   std::array<double, kProjectionTerms> sum{};
   for (std::size_t q = 0; q < kNodes; ++q) {
@@ -166,7 +109,7 @@ double SmoothLoads::add_interval(Place& l, const CubicPiece& piece, double about
       sum[idx(j + 1)] += now;
     }
     slope = std::max(slope, std::abs(at.slope[q] - l.slope));
-    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q] - l.speed_slope));
+    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q]));
   }
   for (int j = 0; j < kProjectionTerms; ++j)
     kinks.coefficient(j, l.row) += (2.0 * j + 1.0) * length * l.coeff * sum[idx(j)];
@@ -182,13 +125,13 @@ double SmoothLoads::pass_knots(Place& l, const TaylorSeries& series, double end,
     const double bound = (rises ? piece.high : piece.low) - l.angle;
     const bool last = rises ? end <= bound : end >= bound;
     const double to = last ? 1.0 : place_of(turn_, bound, from, start, end);
-    gain = std::max(gain, add_interval(l, piece, about, from, to, kinks));
+    gain = std::max(gain, add_interval(l, from, to, kinks));
     if (last) break;
     l.kinked = true;
     places_.push_back(to);
     const CubicPiece next = l.knots->piece(l.angle + bound, end, l.piece_speed);
     const Cubic before = cubic_at(piece, l.angle + bound - about);
-    const double factor = l.curves ? CurveCells::values(l.curves->at(l.angle + bound)).factor : 1.0;
+    const double factor = l.knots->curves(l.angle + bound).factor;
     const double jump = std::abs((next.terms[0] - before.value) * factor);
     const double size = jump + std::abs((next.terms[1] - before.slope) * factor * end);
     if (l.feedback) gain = std::max(gain, 0.5 * h_ * h_ * jump / std::abs(end));
@@ -250,12 +193,12 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
     l.monotone = false;
     return differ_called(l, forces);
   }
-  sample(l, l.piece, l.about, rule.s.data(), at);
+  sample(l, rule.s.data(), at);
   double slope = 0.0, speed_slope = 0.0;
   for (std::size_t q = 0; q < kNodes; ++q) {
     forces.at(q, l.row) += l.coeff * beyond_tangent(l, at, q);
     slope = std::max(slope, std::abs(at.slope[q] - l.slope));
-    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q] - l.speed_slope));
+    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q]));
   }
   return l.feedback ? 0.5 * h_ * h_ * slope + h_ * speed_slope : 0.0;
 }

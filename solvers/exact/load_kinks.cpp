@@ -17,7 +17,7 @@ constexpr double kKinkInside = 1e-4;
 }  // namespace
 
 /// The terms of the load's angle, kLanes apart.
-void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series, std::size_t terms,
+void LoadSeries::expand_angle(const PlacedLoad& l, const TaylorSeries& series, std::size_t terms,
                               double* theta) const {
   const auto known = idx(series.degree()) + 1;
   const double* z = series.coefficients(0) + l.row;
@@ -29,12 +29,13 @@ void LoadSeries::expand_angle(const Linear& l, const TaylorSeries& series, std::
 
 double LoadSeries::find_kinks(TaylorSeries& series) {
   of_kinks_.clear();
-  if (loads_.empty()) return 0.0;
+  if (loads_.empty() && !expanded_.knotted()) return 0.0;
   find_ranges(series);
   list_kinks(series, 1.0, true);
   kinks_.add_to(of_kinks_);
   double contraction = 0.0;
-  for (const Linear& l : loads_) contraction = std::max(contraction, l.contraction);
+  for_knotted(
+      [&](const PlacedLoad& l, double, double) { contraction = std::max(contraction, l.contraction); });
   return contraction;
 }
 
@@ -52,9 +53,66 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
   // The work of a load whose angle follows no motion is known where its row is not moved by another kink before.
   for (int i = 0; i < kinks_.count(); ++i)
     for (int k = 0; k < kinks_.count(); ++k)
-      if (i != k && kinks_.row(i) == kinks_.row(k) && !loads_[idx(kink_sizes_[idx(i)].load)].feedback)
-        return false;
+      if (i != k && kinks_.row(i) == kinks_.row(k) && !kink_sizes_[idx(i)].load->feedback) return false;
   return true;
+}
+
+/// Lists the kinks that a load passes up to s = to, on a piece from low to high at the start. next(bound, rises, turn): the
+/// piece behind a bound, and what the load differs there over a turn behind it.
+template <class Next>
+bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const TaylorSeries& series, double to,
+                               bool projected, const Next& next) {
+  const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
+  const auto terms = idx(std::max(series.degree(), 2) + 1);
+  l.watched = false;
+  l.contraction = 0.0;
+  const auto row = idx(l.row);
+  const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
+  // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
+  const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
+  if (l.angle + reach < high && l.angle - reach > low) return true;
+  const double first = angle_term(l, series, 1);
+  if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
+    l.watched = true;
+    return false;
+  }
+  const bool rises = first > 0.0;
+  const double end =
+      l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+  double steepest = 0.0;
+  for (;;) {
+    const double bound = rises ? high : low;
+    if (rises ? end <= bound : end >= bound) break;
+    const double turn = std::abs(end - bound);
+    const std::optional<Behind> behind = next(bound, rises, turn);
+    // Of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
+    double chord = 0.0, slope = 0.0, power = 1.0;
+    if (behind)
+      for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {
+        chord += std::abs(behind->force[q]) * power;
+        slope += static_cast<double>(q + 1) * std::abs(behind->force[q]) * power;
+      }
+    const double inside =
+        projected ? kKinkInside * std::abs(l.coeff * chord * first) * relative_move(series, l.row) : 0.0;
+    if (!behind || !(rises ? behind->high > bound : behind->low < bound) || inside > kMostInside) {
+      l.watched = true;
+      break;
+    }
+    kinks_inside_ = std::max(kinks_inside_, inside);
+    force_.assign(behind->force.begin(), behind->force.end());
+    for (double& term : force_) term *= l.coeff;
+    expand_angle(l, series, terms, kinks_.add(l.row, bound, force_, end, terms));
+    const double size = std::abs(l.coeff) * series.reach(l.row);
+    kink_sizes_.push_back(
+        {&l, size * chord * std::abs(first), l.feedback ? size * slope * std::abs(l.coeff) : 0.0});
+    steepest += slope;
+    kink_push_ +=
+        (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first) * slope * std::sqrt(series.mobility(l.row));
+    low = behind->low;
+    high = behind->high;
+  }
+  if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * steepest * series.mobility(l.row);
+  return !l.watched;
 }
 
 /// Lists the kinks that loads pass up to s = to in kinks_; ranges_ holds how far the unknowns come. projected: a kink
@@ -64,71 +122,53 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   kink_sizes_.clear();
   kinks_inside_ = kink_push_ = 0.0;
   bool all = true;
-  const auto terms = idx(std::max(series.degree(), 2) + 1);
-  const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
-  for (std::size_t i = 0; i < loads_.size(); ++i) {
-    Linear& l = loads_[i];
-    l.watched = false;
-    l.contraction = 0.0;
+  for (Linear& l : loads_) {
     l.ahead = l.stretch;
     l.ahead_angle_0 = l.angle_0;
-    const auto row = idx(l.row);
-    const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
-    // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
-    const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
-    if (l.angle + reach < l.stretch.high && l.angle - reach > l.stretch.low) continue;
-    const double first = angle_term(l, series, 1);
-    if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
-      l.watched = true;
-      all = false;
-      continue;
-    }
-    const bool rises = first > 0.0;
-    const double end =
-        l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
-    double jumps = 0.0;
-    for (;;) {
-      const double bound = rises ? l.ahead.high : l.ahead.low;
-      if (rises ? end <= bound : end >= bound) break;
+    bool first = true;
+    double jump = 0.0;
+    const auto next = [&](double bound, bool rises, double) -> std::optional<Behind> {
       // The first one is the same in each pass.
-      const LoadStretch next =
-          jumps == 0.0 ? beyond(l, bound, rises)
-                       : l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
-      const bool moves = rises ? next.high > bound : next.low < bound;
-      const double jump = next.angle_slope - l.ahead.angle_slope;
-      const double inside =
-          projected ? kKinkInside * std::abs(l.coeff * jump * first) * relative_move(series, l.row) : 0.0;
-      if (!moves || next.time_slope != l.ahead.time_slope || inside > kMostInside) {
-        l.watched = true;
-        all = false;
-        break;
-      }
-      kinks_inside_ = std::max(kinks_inside_, inside);
-      expand_angle(l, series, terms, kinks_.add(l.row, bound, l.coeff * jump, end, terms));
-      const double size = std::abs(l.coeff * jump) * series.reach(l.row);
-      kink_sizes_.push_back(
-          {static_cast<int>(i), size * std::abs(first), l.feedback ? size * std::abs(l.coeff) : 0.0});
-      jumps += std::abs(jump);
-      kink_push_ +=
-          (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first * jump) * std::sqrt(series.mobility(l.row));
-      l.ahead = next;
+      const LoadStretch behind =
+          first ? beyond(l, bound, rises)
+                : l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+      first = false;
+      if (behind.time_slope != l.ahead.time_slope) return std::nullopt;
+      jump = behind.angle_slope - l.ahead.angle_slope;
+      l.ahead = behind;
       l.ahead_angle_0 = bound;
-    }
-    if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * jumps * series.mobility(l.row);
+      return Behind{behind.low, behind.high, {&jump, 1}};
+    };
+    all &= list_kinks_of(l, l.stretch.low, l.stretch.high, series, to, projected, next);
+  }
+  if (!expanded_.knotted()) return all;
+  for (ExpandedLoads::Load& l : expanded_.loads()) {
+    if (!l.acts || l.knots == nullptr) continue;
+    CubicPiece piece = l.piece;
+    double about = l.about;
+    const auto next = [&](double bound, bool rises, double turn) -> std::optional<Behind> {
+      const CubicPiece behind = l.knots->piece(bound, rises ? 1.0 : -1.0, l.piece_speed);
+      const auto force = expanded_.behind_knot(l, piece, about, bound, behind, turn);
+      piece = behind;
+      about = bound;
+      if (!force) return std::nullopt;
+      return Behind{behind.low, behind.high, *force};
+    };
+    all &= list_kinks_of(l, l.piece.low, l.piece.high, series, to, projected, next);
   }
   return all;
 }
 
 void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
   for (int i = 0; i < kinks_.count(); ++i) {
-    const Linear& l = loads_[idx(kink_sizes_[idx(i)].load)];
+    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
     if (l.feedback) series.add_row_stiffness(l.row, -factor * l.coeff * kinks_.jump(i));
   }
 }
 
 /// The same of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.
 double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double end) const {
-  const Linear& l = loads_[idx(kink_sizes_[idx(kink)].load)];
+  const PlacedLoad& l = *kink_sizes_[idx(kink)].load;
   const GaussRule& rule = gauss_rule();
   const double place = kinks_.place(kink), length = end - place, turn = l.angle - kinks_.knot(kink);
   double sum = 0.0;
@@ -136,17 +176,19 @@ double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double 
     const double s = place + length * rule.s[q];
     double rate = 0.0;
     for (int k = series.degree(); k > 0; --k) rate = rate * s + k * series.coefficient(k, l.row);
-    sum += rule.weight[q] * length * (turn + l.ratio * s * (phi_[1] + s * phi_[2])) * rate;
+    sum += rule.weight[q] * length * kinks_.force(kink, turn + l.ratio * s * (phi_[1] + s * phi_[2])).value *
+           rate;
   }
-  sum += (kinks_.end(kink) - kinks_.knot(kink)) * series.swept(0)[l.row] -
-         l.ratio * ((phi_[1] + 2.0 * end * phi_[2]) * series.swept(1)[l.row] -
-                    2.0 * phi_[2] * series.swept(2)[l.row]);
-  return kinks_.jump(kink) * sum;
+  const KinkMoments::Force at_end = kinks_.force(kink, kinks_.end(kink) - kinks_.knot(kink));
+  return sum + at_end.value * series.swept(0)[l.row] -
+         at_end.slope * l.ratio *
+             ((phi_[1] + 2.0 * end * phi_[2]) * series.swept(1)[l.row] -
+              2.0 * phi_[2] * series.swept(2)[l.row]);
 }
 
 double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
   const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
-  double sum = 0.0;
+  double sum = expanded_.swept_work(series, s);
   // int P y' of what acts along the series: by parts.
   for (int i = 0; i < series.size(); ++i) {
     const double p_1 = p_[idx(stride_ + i)], p_2 = p_[idx(2 * stride_ + i)];
@@ -154,17 +196,17 @@ double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
         (p_[idx(i)] + s * (p_1 + s * p_2)) * y[i] - p_1 * y_sum[i] - 2.0 * p_2 * (s * y_sum[i] - y_sum_2[i]);
   }
   for (int i = 0; i < kinks_.count(); ++i) {
-    const Linear& l = loads_[idx(kink_sizes_[idx(i)].load)];
+    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
     const double beyond = kinks_.end(i) - kinks_.knot(i);
     if (!l.feedback) {
       sum += given_kink_work(series, i, s);
       continue;
     }
-    // jump (theta - knot) along theta, less along the nominal motion.
-    const double turned = beyond + l.coeff * y[l.row];
-    const double along = kinks_.moment(i, 0) + kinks_.jump(i) * l.coeff * y_sum[l.row];
-    const double along_2 = kinks_.moment(i, 1) + kinks_.jump(i) * l.coeff * y_sum_2[l.row];
-    sum += 0.5 * kinks_.jump(i) / l.coeff * turned * turned -
+    // f(theta - knot) along theta, less along the nominal motion.
+    const KinkMoments::Force at_end = kinks_.force(i, beyond + l.coeff * y[l.row]);
+    const double along = kinks_.moment(i, 0) + at_end.slope * l.coeff * y_sum[l.row];
+    const double along_2 = kinks_.moment(i, 1) + at_end.slope * l.coeff * y_sum_2[l.row];
+    sum += at_end.integral / l.coeff -
            l.ratio / l.coeff * ((phi_[1] + 2.0 * s * phi_[2]) * along - 2.0 * phi_[2] * along_2);
   }
   return sum;

@@ -29,9 +29,10 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 
 }  // namespace
 
-LoadSeries::LoadSeries(const System& system)
+LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
     : system_(system),
       assembler_(system),
+      expanded_(system),
       smooth_(system),
       stride_(TaylorSeries::stride(system)),
       p_(idx(kProjectionTerms * stride_)),
@@ -49,11 +50,13 @@ LoadSeries::LoadSeries(const System& system)
       if (term.load->stretch(0.0, 0.0, 1.0)) on_prescribed_.push_back(&term);
       continue;
     }
-    if (term.load->stretch(0.0, 0.0, 1.0))
-      loads_.push_back(
-          {{&term, system.place(map), map.coeff, system.ratio(term.node), term.load->depends_on_motion()}});
-    else
-      smooth_.add(term);
+    if (term.load->stretch(0.0, 0.0, 1.0)) {
+      loads_.emplace_back(system, term);
+      continue;
+    }
+    const bool expanded = ExpandedLoads::takes(system, term);
+    if (expanded) expanded_.add(term, series);
+    if (!expanded || !ExpandedLoads::holds(term, false)) smooth_.add(term, expanded);
   }
 }
 
@@ -61,11 +64,8 @@ void LoadSeries::move(double t, const Vector& z, const Vector& v) {
   t_ = t;
   assembler_.set_time(t);
   const MotionPoint& nominal = assembler_.nominal();
-  for (Linear& l : loads_) {
-    l.deviation = l.feedback ? l.coeff * along(l.row, z) : 0.0;
-    l.angle = l.ratio * nominal.value + l.deviation;
-    l.speed = l.ratio * nominal.rate + (l.feedback ? l.coeff * along(l.row, v) : 0.0);
-  }
+  for (Linear& l : loads_) l.move(system_, nominal, z, v);
+  expanded_.move(assembler_, z, v);
   smooth_.move(assembler_, z, v);
 }
 
@@ -84,6 +84,7 @@ void LoadSeries::locate_as(const LoadSeries& other) {
   t_ = other.t_;
   assembler_.set_time(t_);
   loads_ = other.loads_;
+  expanded_.move_as(other.expanded_);
   smooth_.move_as(other.smooth_);
 }
 
@@ -103,7 +104,12 @@ void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole)
   }
 }
 
-void LoadSeries::pass_knot() { look_up(loads_[idx(leaving_)], leaving_direction_); }
+void LoadSeries::pass_knot() {
+  for (Linear& l : loads_)
+    if (&l == leaving_) look_up(l, leaving_direction_);
+  for (ExpandedLoads::Load& l : expanded_.loads())
+    if (&l == leaving_) expanded_.look_up(l, leaving_direction_);
+}
 
 void LoadSeries::add_to(TaylorSeries& series, double h) {
   const int n = system_.size();
@@ -153,9 +159,10 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
     series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
   }
   smooth_.add_slopes(series);
+  expanded_.add_to(series, h, phi_);
 }
 
-double LoadSeries::angle_term(const Place& l, const TaylorSeries& series, int k) const {
+double LoadSeries::angle_term(const PlacedLoad& l, const TaylorSeries& series, int k) const {
   const double nominal = k < 3 ? l.ratio * phi_[idx(k)] : 0.0;
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
@@ -224,9 +231,10 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   laws.for_rows(note_rest);
   if (kinked()) {
     // A kink is projected along a path that lacks the rest itself.
-    for (const Linear& l : loads_)
+    for_knotted([&](const PlacedLoad& l, double, double) {
       if (l.contraction > 0.0)
         pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
+    });
     smooth_.for_kinked([&](int row, double contraction, double strongest, bool must) {
       const double rest = rest_of(of_kinks_, row, kTail);
       pass.residual = std::max(pass.residual, kKinkRest * contraction * rest);
@@ -242,7 +250,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     const double moves = size * relative_move(series, row), force = largest_force_[idx(row)];
     pass.change = std::max(pass.change, held && force > 0.0 ? std::min(moves, size / force) : moves);
   };
-  for (const Linear& l : loads_) note_change(l.row);
+  for_knotted([&](const PlacedLoad& l, double, double) { note_change(l.row); });
   smooth_.for_rows([&](int row, bool) { note_change(row); });
   laws.for_rows([&](int row, bool) { note_change(row); });
   if (pass.change == 0.0) return pass;
@@ -265,14 +273,13 @@ void LoadSeries::shorten(double r) {
 }
 
 std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double end) {
-  leaving_ = -1;
+  leaving_ = nullptr;
   std::optional<double> first;
   const auto degree = static_cast<std::size_t>(series.degree());
-  for (std::size_t i = 0; i < loads_.size(); ++i) {
-    const Linear& l = loads_[i];
-    if (!l.watched) continue;
+  for_knotted([&](const PlacedLoad& l, double low, double high) {
+    if (!l.watched) return;
     for (const double side : {1.0, -1.0}) {
-      const double bound = side > 0.0 ? l.stretch.high : l.stretch.low;
+      const double bound = side > 0.0 ? high : low;
       if (std::isinf(bound)) continue;
       std::vector<double>& g = power_;
       g.assign(1, std::max(0.0, side * (bound - l.angle)));
@@ -288,10 +295,10 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
       if (!s) continue;
       first = s;
       end = *s;
-      leaving_ = static_cast<int>(i);
+      leaving_ = &l;
       leaving_direction_ = side;
     }
-  }
+  });
   return first;
 }
 
@@ -301,13 +308,13 @@ double LoadSeries::work(TaylorSeries& series, double s, const Vector& end) {
     (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());
     projected_ = false;
   }
-  double sum = series.work(p_.data(), degree_, s);
+  double sum = series.work(p_.data(), degree_, s) + expanded_.work(series, s);
   for (const Linear& l : loads_)
     if (l.feedback && l.stretch.angle_slope != 0.0) {
-      const double turn = l.coeff * (along(l.row, end) - series.coefficient(0, l.row));
+      const double turn = l.coeff * (l.along(system_, end) - series.coefficient(0, l.row));
       sum += 0.5 * l.stretch.angle_slope * turn * turn;
     }
-  return sum + smooth_.slope_work(series, s, end);
+  return sum + smooth_.slope_work(series, end);
 }
 
 }  // namespace drev

@@ -3,12 +3,13 @@
 /// TaylorSeries.
 ///
 /// A load in its stretch is linear in t and theta: its constant goes to the right side, its slope
-/// against the deviation to the stiffness's diagonal. Knots that theta(s) passes in the step add kinks,
-/// and loads without stretches (functions, engine orders) what they differ from their tangent: both are
-/// projected on polynomials (legendre_projection.hpp) along the path that the series gives, and the series is
-/// expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
+/// against the deviation to the stiffness's diagonal. Smooth loads that state themselves are series (expanded_loads.hpp).
+/// Knots that theta(s) passes in the step add kinks, and loads that can only be called what they differ from their
+/// tangent: both are projected on polynomials (legendre_projection.hpp) along the path that the series gives, and the series
+/// is expanded anew until the path settles. Motions are polynomials of degree 2 between their breakpoints.
 #include <optional>
 
+#include "solvers/exact/expanded_loads.hpp"
 #include "solvers/exact/kink_moments.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
@@ -19,7 +20,11 @@ namespace drev {
 
 class LoadSeries {
  public:
-  explicit LoadSeries(const System& system);
+  LoadSeries(const System& system, TaylorSeries& series);
+  LoadSeries(const LoadSeries&) = delete;
+  /// Loads that are series themselves.
+  ExpandedLoads& expanded() { return expanded_; }
+  const ExpandedLoads& expanded() const { return expanded_; }
 
   /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start
   /// and after breakpoints.
@@ -34,7 +39,11 @@ class LoadSeries {
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
   /// False: no load can differ from what add_to() adds.
-  bool projects() const { return !loads_.empty() || !smooth_.empty(); }
+  bool projects() const { return !loads_.empty() || !smooth_.empty() || expanded_.knotted(); }
+  /// The part of the step for which the loads' polynomials hold, <= 1; and whether, along the series, some angle came
+  /// further than was reckoned with: then the step is to be expanded anew.
+  double part_held() const { return expanded_.part_held(); }
+  bool came_further(const TaylorSeries& series) { return expanded_.came_further(series); }
 
   /// One pass of the fixed-point iteration between the forces' projection and the path that they lead to.
   /// Relative to the largest deflection and speed [-].
@@ -63,12 +72,19 @@ class LoadSeries {
   bool list_sweep_kinks(TaylorSeries& series, double end, const double* z_end);
   KinkMoments& kinks() { return kinks_; }
   const KinkMoments& kinks() const { return kinks_; }
-  /// Adds what the kinks listed change of the loads' slopes, times a factor.
-  void add_kink_slopes(TaylorSeries& series, double factor) const;
+  /// Puts the loads' slopes at s, behind the kinks listed, in place of those at the step's start; and those back.
+  void use_slopes(TaylorSeries& series, double s) {
+    add_kink_slopes(series, 1.0);
+    expanded_.use_slopes(series, s);
+  }
+  void return_slopes(TaylorSeries& series) {
+    expanded_.return_slopes(series);
+    add_kink_slopes(series, -1.0);
+  }
   /// Of each: |d/ds| of the acceleration that sets in [1/s^2], and of what a motion of its row turns, the acceleration that
   /// comes back [1/s^2].
   struct KinkSize {
-    int load;
+    const PlacedLoad* load;
     double pull, gain;
   };
   const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
@@ -77,8 +93,8 @@ class LoadSeries {
   double kink_push() const { return kink_push_; }
   /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
   double kink_work(const TaylorSeries& series, double s) const;
-  /// Some load has straight stretches, and all that do not are none.
-  bool tables_alone() const { return !loads_.empty() && smooth_.empty(); }
+  /// Kinks are all that bends loads beyond the series.
+  bool kinks_alone() const { return (!loads_.empty() || expanded_.knotted()) && smooth_.empty(); }
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
@@ -102,40 +118,46 @@ class LoadSeries {
   std::optional<double> first_knot(const TaylorSeries& series, double end);
   /// After first_knot() and advance() to it: that load goes on to the next stretch.
   void pass_knot();
-  ElementId knot_element() const { return loads_[idx(leaving_)].term->element; }
+  ElementId knot_element() const { return leaving_->term->element; }
 
   /// Work of all these forces on the unknowns from 0 to s of the step, where they stand at `end` [J].
   double work(TaylorSeries& series, double s, const Vector& end);
 
  private:
-  struct Place {
-    const LoadTerm* term;
-    int row;  // of the series
-    double coeff, ratio;
-    bool feedback;
-  };
-  struct Linear : Place {
+  void add_kink_slopes(TaylorSeries& series, double factor) const;
+  struct Linear : PlacedLoad {
+    using PlacedLoad::PlacedLoad;
     LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;                   // where `stretch` gives its torque
-    double ahead_angle_0 = 0.0;                        // the same of `ahead`
-    double angle = 0.0, deviation = 0.0, speed = 0.0;  // at the step's start
-    double contraction = 0.0;                          // by its kinks in this step: Pass::contraction
-    bool watched = false;                              // its angle may turn back in this step
-    LoadStretch next = {};                             // behind this bound, at this time
+    double t_0 = 0.0, angle_0 = 0.0;  // where `stretch` gives its torque
+    double ahead_angle_0 = 0.0;       // the same of `ahead`
+    LoadStretch next = {};            // behind this bound, at this time
     double next_bound = 0.0, next_t = 0.0;
     int next_direction = 0;  // 0: none is known
   };
   void move(double t, const Vector& z, const Vector& v);
   void look_up(Linear& load, double direction);
-  double along(int row, const Vector& z) const {
-    return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
-  }
-  double angle_term(const Place& load, const TaylorSeries& series, int k) const;
-  void expand_angle(const Linear& load, const TaylorSeries& series, std::size_t terms, double* theta) const;
+  double angle_term(const PlacedLoad& load, const TaylorSeries& series, int k) const;
+  void expand_angle(const PlacedLoad& load, const TaylorSeries& series, std::size_t terms,
+                    double* theta) const;
   double find_kinks(TaylorSeries& series);
   double given_kink_work(const TaylorSeries& series, int kink, double end) const;
   void find_ranges(TaylorSeries& series);
   bool list_kinks(const TaylorSeries& series, double to, bool projected);
+  /// A piece behind a knot, and what the load differs there (KinkMoments::add).
+  struct Behind {
+    double low, high;
+    std::span<const double> force;
+  };
+  template <class Next>
+  bool list_kinks_of(PlacedLoad& load, double low, double high, const TaylorSeries& series, double to,
+                     bool projected, const Next& next);
+  /// Calls with every load that says knots, and the bounds that hold for it.
+  template <class Each>
+  void for_knotted(const Each& each) {
+    for (Linear& l : loads_) each(l, l.stretch.low, l.stretch.high);
+    for (ExpandedLoads::Load& l : expanded_.loads())
+      if (l.acts && l.knots != nullptr) each(l, l.piece.low, l.piece.high);
+  }
   /// The stretch behind this bound of a load's stretch, asked for once a step.
   const LoadStretch& beyond(Linear& load, double bound, bool rises) const;
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
@@ -149,6 +171,7 @@ class LoadSeries {
   const System& system_;
   Assembler assembler_;
   std::vector<Linear> loads_;
+  ExpandedLoads expanded_;
   SmoothLoads smooth_;
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
@@ -169,12 +192,12 @@ class LoadSeries {
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
-  std::vector<double> power_;
+  std::vector<double> power_, force_;
   std::vector<double> ranges_;  // by row: how far it comes, and what its terms and their slopes add up to
   std::vector<KinkSize> kink_sizes_;  // of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
-  int leaving_ = -1;
+  const PlacedLoad* leaving_ = nullptr;
   double leaving_direction_ = 0.0;
 };
 

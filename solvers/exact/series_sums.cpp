@@ -132,11 +132,17 @@ double TaylorSeries::loss(double s, bool swept_too) {
     weighted_sums(stride_, kLossTerms, 0, kLossTerms, weight, swept(kLossTerms - 1), of_y);
   }
   const int y_terms = swept_too ? kLossTerms : 0;
-  if (main_damping_)
-    return weighted_squares(stride_, kLossTerms, factor.data(), c_.data() + diagonals_[idx(main_)].values,
-                            of_z, y_terms, of_y) /
-           h_;
   double sum = 0.0;
+  for (const Entry& load : load_damping_)
+    for (int k = 0; k < kLossTerms; ++k) {
+      const auto at = idx(k * stride_ + load.index);
+      const double x = of_z[at] + (k < y_terms ? of_y[at] : 0.0);
+      sum -= factor[idx(k)] * load.coeff * x * x;
+    }
+  if (main_damping_)
+    return (sum + weighted_squares(stride_, kLossTerms, factor.data(),
+                                   c_.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
+           h_;
   with_rows_.resize(idx(2 * pad_ + stride_));  // the product reads beside the column
   double* x = with_rows_.data() + pad_;
   for (int k = 0; k < kLossTerms; ++k) {

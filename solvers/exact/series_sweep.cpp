@@ -7,8 +7,9 @@
 namespace drev {
 
 bool TaylorSeries::sweeps() const {
-  return row_slopes_.size() == 0 && std::none_of(term_forces_.begin(), term_forces_.end(),
-                                                 [](const TermForces* forces) { return forces->active(); });
+  return row_slopes_.size() == 0 &&
+         std::none_of(term_forces_.begin(), term_forces_.end(),
+                      [](const TermForces* forces) { return forces->active() && !forces->sweeps(); });
 }
 
 void TaylorSeries::sweep(const double* moments, int degree) {

@@ -1,23 +1,21 @@
 #pragma once
-/// SmoothLoads: loads without straight stretches (functions, engine orders), for LoadSeries.
+/// SmoothLoads: loads without straight stretches that can only be called (functions), for LoadSeries.
 ///
 /// Over a step such a load acts by its tangent at the start, torque + slope (theta - theta_0), whose slope goes to
 /// the stiffness; what it differs from that along the path is taken at Gauss's nodes and projected
-/// (legendre_projection.hpp). A load that follows no motion is taken there once a step. One that says its harmonics
-/// is a polynomial of the angle in cells (harmonic_cells.hpp), so that its cost does not grow with their number.
+/// (legendre_projection.hpp). A load that follows no motion is taken there once a step.
 ///
 /// A load that says its knots (KnottedLoad: an engine's gas pressure) passes them inside the step: the path between two
 /// of them has Gauss's nodes of its own, and what the load differs from its tangent is projected apart from the smooth
-/// loads, as kinks of tables are. A knot that leaves too much of the motion inside the step ends it.
+/// loads, as kinks of tables are. A knot that leaves too much of the motion inside the step ends it. Here are those
+/// that ExpandedLoads does not hold for: of another period, or whose curves follow a speed that changes.
 #include <drev/core/assembler.hpp>
+#include <drev/core/law/knotted_load.hpp>
 
-#include <memory>
 #include <vector>
 
-#include "core/law/curve_cells.hpp"
-#include "solvers/exact/harmonic_cells.hpp"
 #include "solvers/exact/legendre_projection.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/exact/tangent_load.hpp"
 
 namespace drev {
 
@@ -26,8 +24,9 @@ class SmoothLoads {
   explicit SmoothLoads(const System& system)
       : system_(system), stride_(TaylorSeries::stride(system)), forces_(stride_), known_(stride_) {}
 
-  /// A load that states no stretch; row: of the series.
-  void add(const LoadTerm& term);
+  /// A load that states no stretch. expanded: it acts here only where ExpandedLoads does not hold for it.
+  void add(const LoadTerm& term, bool expanded) { all_.push_back({&term, expanded}); }
+  /// Under the nominal motion at hand.
   bool empty() const { return loads_.empty(); }
 
   /// Tangents at a state, where the assembler stands.
@@ -58,53 +57,45 @@ class SmoothLoads {
   /// the load is a sum of harmonics.
   template <class Judge>
   void for_rows(const Judge& judge) const {
-    for (const Place& l : loads_) judge(l.row, l.cells >= 0 || (l.knots != nullptr && l.monotone));
+    for (const Place& l : loads_) judge(l.row, l.knots != nullptr && l.monotone);
   }
-  /// Work of the tangents' slopes on the unknowns from 0 to s of the step, where they stand at `end` [J].
-  double slope_work(const TaylorSeries& series, double s, const Vector& end) const;
+  /// Work of the tangents' slopes on the unknowns over a part of the step, at whose end they stand [J].
+  double slope_work(const TaylorSeries& series, const Vector& end) const;
 
  private:
-  struct Place {
-    const LoadTerm* term;
-    int row;
-    double coeff, ratio;
-    bool feedback;
-    int cells = -1;  // of cells_
+  struct Place : TangentLoad {
+    using TangentLoad::TangentLoad;
     const KnottedLoad* knots = nullptr;
-    std::shared_ptr<const CurveCells> curves = {};  // of knots; none: it is called
     // Of knots: the piece at the step's start, about an angle, at a nominal speed; none yet.
     CubicPiece piece = {.low = std::numeric_limits<double>::infinity()};
     double about = 0.0, piece_speed = 0.0;
-    bool pieced = false;                                             // piece and curves say the load
-    bool kinked = false, unfinished = false, monotone = true;        // in this pass
-    double contraction = 0.0, strongest = 1.0;                       // of the knots passed
-    double torque = 0.0, slope = 0.0, angle = 0.0, deviation = 0.0;  // at the step's start
-    double speed = 0.0, rate = 0.0, speed_slope = 0.0;               // of knots: w, its part of the deviation
+    bool kinked = false, unfinished = false, monotone = true;  // in this pass
+    double strongest = 1.0;                                    // of the knots passed
   };
-  double along(int row, const Vector& z) const {
-    return row < system_.size() ? z[row] : system_.rows().row(row - system_.size()).dot(z);
-  }
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
-  void move_knotted(Place& load, const Assembler& assembler, const Vector& z, const Vector& v);
+  void find_loads(const MotionPoint& nominal);
+  void find_piece(Place& load, double nominal_speed) const;
   double differ_knotted(Place& load, const TaylorSeries& series, NodeForces& forces,
                         LegendreProjection& kinks);
   double pass_knots(Place& load, const TaylorSeries& series, double end, LegendreProjection& kinks);
-  void sample(const Place& load, const CubicPiece& piece, double about, const double* s, Samples& at) const;
-  double add_interval(Place& load, const CubicPiece& piece, double about, double from, double to,
-                      LegendreProjection& kinks) const;
-  double differ_cells(const Place& load, NodeForces& forces);
+  void sample(const Place& load, const double* s, Samples& at) const;
+  double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;
   double differ_called(const Place& load, NodeForces& forces) const;
 
   const System& system_;
   int stride_;
-  std::vector<Place> loads_;
-  std::vector<HarmonicCells> cells_;
-  bool calls_ = false;               // some load is called, or may follow the speed
-  std::vector<double> places_;       // of the knots passed
-  std::vector<double> turn_;         // terms of a load's angle over the step, less that at its start
-  NodeForces forces_, known_;        // differences, and those of loads that follow no motion
-  std::vector<double> path_, rate_;  // by node, then row
+  struct Added {
+    const LoadTerm* term;
+    bool expanded;
+  };
+  std::vector<Added> all_;
+  std::vector<Place> loads_;               // which act
+  bool found_ = false, constant_ = false;  // loads_, at constant nominal speed
+  std::vector<double> places_;             // of the knots passed
+  std::vector<double> turn_;               // terms of a load's angle over the step, less that at its start
+  NodeForces forces_, known_;              // differences, and those of loads that follow no motion
+  std::vector<double> path_, rate_;        // by node, then row
   std::array<double, 3> phi_{};
   double t_ = 0.0, h_ = 0.0, nominal_ = 0.0;
 };

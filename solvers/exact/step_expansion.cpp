@@ -30,14 +30,16 @@ constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 /// The step without passes: only kinks of tables change its forces. False: it wants passes.
 bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h,
-                                  const Limits& limits, double& got) {
+                                  const Limits& limits, Attempt& made) {
   sweeps_ = expanded_ = false;
   share_ = limits.share;
-  if (refused_ || !known.tables_alone() || !smooth.empty() || !expanded.empty() || !friction.empty() ||
+  if (refused_ || !known.kinks_alone() || !smooth.empty() || !expanded.empty() || !friction.empty() ||
       !series.sweeps() || !offsets.none() || !laws.lossless())
     return false;
-  got = series.expand(from.state.z, from.state.v, h, limits.share);
-  if (got < h) return true;
+  made.h = series.expand(from.state.z, from.state.v, h, limits.share);
+  if (made.h < h) return true;
+  made.again = known.came_further(series);
+  if (made.again) return true;
   kinks.reset();
   if (kinks.find(1.0, nullptr, limits.share)) return sweeps_ = true;
   kinks.undo();
@@ -73,10 +75,11 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   expanded.add_to(series, laws, known, offsets, from, h);
   if (rest > share && h > limits.shortest)
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
+  if (known.part_held() < 1.0) return {h * known.part_held(), true};
   // Loads and smooth laws can be stiffer than what bounded the largest step.
   const double steepest = 1.5 * kFastestTimesStep / series.rate();
   if (h > steepest) return {steepest};
-  if (double got = 0.0; attempt_sweep(from, laws, h, limits, got)) return {got};
+  if (Attempt made; attempt_sweep(from, laws, h, limits, made)) return made;
   bool settled = false;
   const bool projects = known.projects() || !smooth.empty();
   // Each pass needs to be no better than the next one takes up of it.
@@ -90,7 +93,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     // A sweep that was given up leaves the first one.
     const double got =
         pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
-    if (expanded.turns_back(series)) return {h, true};
+    if (expanded.turns_back(series) || (got == h && known.came_further(series))) return {h, true};
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
@@ -180,7 +183,7 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   friction.locate_as(other.friction);
   expanded.locate_as(other.expanded);
   const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
-  if (made.to_knot || made.h != h) return false;
+  if (made.again || made.h != h) return false;
   friction.expand(series, from.state);
   return true;
 }

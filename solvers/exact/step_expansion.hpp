@@ -24,12 +24,13 @@ class StepExpansion {
  public:
   explicit StepExpansion(const System& system)
       : series(system),
-        known(system),
+        known(system, series),
         offsets(system),
         smooth(system),
         expanded(system),
         friction(system),
         kinks(series, known) {
+    if (!known.expanded().loads().empty()) series.act_through(&known.expanded());
     if (!expanded.empty()) series.act_through(&expanded);
     if (!friction.empty()) series.act_through(&friction);  // which counts on all others
   }
@@ -41,10 +42,10 @@ class StepExpansion {
     double shortest = 0.0;   ///< s: in shorter steps what is left is an undeclared discontinuity, or rounding
   };
   /// What became of an attempt: the step that the series holds for, <= h [s]; 0 if its terms overflow; or,
-  /// where to_knot, the step to try next, as just behind the knot of a law.
+  /// where again, the step to try next: one to just behind the knot of a law, or the same with what was learnt.
   struct Attempt {
     double h = 0.0;
-    bool to_knot = false;
+    bool again = false;
   };
   /// Expands from `from`, where known was located, over h [s].
   Attempt attempt(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits);
@@ -81,7 +82,9 @@ class StepExpansion {
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
   /// A step that the series does not hold for can be shortened to what it does.
-  bool shortens() const { return !known.projects() && smooth.empty() && expanded.empty(); }
+  bool shortens() const {
+    return !known.projects() && !known.expanded().active() && smooth.empty() && expanded.empty();
+  }
   /// Of all that acts, from 0 to s; end: what was evaluated at s.
   LawWork work(const LawSeries& laws, double s, const EvaluatedState& end);
   /// Of a step that is swept: its first change, and the s where it ends. None: passes have to tell. t: time at its start;
@@ -102,7 +105,7 @@ class StepExpansion {
 
  private:
   bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
-                     double& got);
+                     Attempt& made);
 
   std::vector<double> beyond_cubic_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;

@@ -134,6 +134,7 @@ void TaylorSeries::reset() {
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
+  load_damping_.clear();
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
   row_slopes_.setZero();
   right_degree_ = 2;
@@ -249,11 +250,13 @@ void TaylorSeries::add_row_forces(const double* p, const double* x_0) {
 }
 
 /// False: none of them acts.
-bool TaylorSeries::add_term_forces(int k, double factor, double* term) const {
+bool TaylorSeries::add_term_forces(int k, double factor, double* term) {
   bool any = false;
+  added_[idx(k)] = {};
   for (TermForces* forces : term_forces_) {
     if (!forces->active()) continue;
-    forces->add(*this, k, factor, term);
+    const double most = forces->add(*this, k, factor, term);
+    for (double& added : added_[idx(k)]) added = std::max(added, most);
     any = true;
   }
   return any;
@@ -350,14 +353,19 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   v_scale = v_scale_;
   const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
   const std::size_t kinds = kinds_.empty() ? 1 : 2;
-  // How far a term is above what is allowed.
-  const auto excess = [&](int k) {
+  // How far a term is above what is allowed, and what was added to it above what is then.
+  const auto excess_of = [&](const Norm& size, int k) {
     double largest = 0.0;
     for (std::size_t i = 0; i < kinds; ++i)
-      if (sizes_[idx(k)][i] > 0.0)
-        largest = std::max(largest,
-                           sizes_[idx(k)][i] / tolerance * std::max(1.0 / z_scale[i], k / (h * v_scale[i])));
+      if (size[i] > 0.0)
+        largest = std::max(largest, size[i] / tolerance * std::max(1.0 / z_scale[i], k / (h * v_scale[i])));
     return largest;
+  };
+  const auto excess = [&](int k) { return excess_of(sizes_[idx(k)], k); };
+  const auto added_excess = [&](int k) {
+    Norm size;
+    for (std::size_t i = 0; i < 2; ++i) size[i] = std::min(added_[idx(k)][i], sizes_[idx(k)][i]);
+    return excess_of(size, k) / kLastOfProducts;
   };
   int known_degree = right_degree_;
   bool products = false;  // of series: their tails are not bounded by the norms of K and C alone
@@ -392,13 +400,14 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     const bool is_small = first <= 1.0 && second <= 1.0;
     if (is_small && !products) return h_;
     // Terms of products fall like a geometric series, whose rest is a multiple of the last ones.
-    if (is_small && last <= kLastOfProducts && before <= kLastOfProducts) return h_;
+    if (is_small && added_excess(k) <= 1.0 && added_excess(k - 1) <= 1.0) return h_;
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
-  const double most = products ? kLastOfProducts : 1.0;
-  for (const int k : {kMaxDegree - 1, kMaxDegree})
-    if (excess(k) > most) r = std::min(r, std::pow(excess(k) / most, -1.0 / (k - 1)));
+  for (const int k : {kMaxDegree - 1, kMaxDegree}) {
+    const double most = std::max(excess(k), products ? added_excess(k) : 0.0);
+    if (most > 1.0) r = std::min(r, std::pow(most, -1.0 / (k - 1)));
+  }
   r *= kShortenSeries;
   double power = 1.0;
   for (int k = 0; k <= degree_; ++k, power *= r)

@@ -34,10 +34,13 @@ class TermForces {
  public:
   /// False: they add nothing to this step.
   virtual bool active() const { return true; }
+  /// A sweep (TaylorSeries::sweep) may leave them out: their tangents are in stiffness and damping.
+  virtual bool sweeps() const { return false; }
   /// Up to this power of s they may have terms of their own.
   virtual int known_degree() const { return 0; }
-  /// Adds what they make of term k: M^-1 f_{k-2} times factor = h^2/(k (k - 1)).
-  virtual void add(const TaylorSeries& series, int k, double factor, double* term) = 0;
+  /// Adds what they make of term k: M^-1 f_{k-2} times factor = h^2/(k (k - 1)). Returns the largest of what they added,
+  /// or infinity for as much as the whole term: what tells how far their own series is from its end.
+  virtual double add(const TaylorSeries& series, int k, double factor, double* term) = 0;
 
  protected:
   ~TermForces() = default;
@@ -61,10 +64,17 @@ class TaylorSeries {
       row_slopes_[row - n_] += value;
   }
   void add_damping(int slot, double value);
-  /// The same on the diagonal of an unknown's row.
-  void add_row_damping(int row, double value) {
+  /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
+  void add_load_damping(int row, double value) {
     c_[position_[idx(system_.diagonal_slots()[idx(row)])]] += value;
     damped_ = true;
+    load_damping_.push_back({row, value});
+  }
+  /// Takes back what was added last.
+  void take_load_damping() {
+    c_[position_[idx(system_.diagonal_slots()[idx(load_damping_.back().index)])]] -=
+        load_damping_.back().coeff;
+    load_damping_.pop_back();
   }
   /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
@@ -189,7 +199,7 @@ class TaylorSeries {
   }
   void add_row_forces(const double* p, const double* x_0);
   const double* sums(double s);
-  bool add_term_forces(int k, double factor, double* term) const;
+  bool add_term_forces(int k, double factor, double* term);
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
 
@@ -212,6 +222,7 @@ class TaylorSeries {
   std::vector<double> swept_;  // columns of the sweep behind two of zeros
   int swept_degree_ = 0;
   std::vector<double> step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
+  std::vector<Entry> load_damping_;                               // by row, within c_
   double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
   std::vector<double> p_, z_, rates_, forces_, zeros_;
   // Of the system's loaded rows.
@@ -219,8 +230,9 @@ class TaylorSeries {
   std::vector<double> with_rows_;
   mutable std::vector<double> values_;
   Vector solve_in_, solve_out_;
-  std::array<Norm, kMaxDegree + 1> sizes_{};  // of the terms, from 2 on
-  std::vector<int> kinds_;                    // of the unknowns, if the system has both
+  // Of the terms, from 2 on; and of what forces that act on every term added to them.
+  std::array<Norm, kMaxDegree + 1> sizes_{}, added_{};
+  std::vector<int> kinds_;  // of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
   double h_ = 0.0, energy_part_ = 0.0;

@@ -1,7 +1,7 @@
 // Exact propagation of what is not linear in pieces: torques that are functions, of time and of speed, mesh
 // stiffness by phase, transmission error, damping that grows with penetration. Against closed forms and
 // against Runge-Kutta, which knows nothing of pieces, knots or projections.
-// Covers solvers/exact/projected_laws.hpp through propagate().
+// Covers solvers/exact/projected_laws.hpp, smooth_loads.hpp and tangent_load.hpp through propagate().
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>

@@ -48,7 +48,8 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
     std::vector<double> places;
     for (int i = 0; i < 20; ++i) {
       places.push_back(i == 0 ? 0.0 : i == 19 ? 1.0 : 0.03 + 0.05 * i);
-      double* terms = kinks.add(i, value(theta, places.back()), 500.0 + i, value(theta, 1.0), theta.size());
+      const double jump = 500.0 + i;
+      double* terms = kinks.add(i, value(theta, places.back()), {&jump, 1}, value(theta, 1.0), theta.size());
       for (std::size_t k = 0; k < theta.size(); ++k) terms[k * kLanes] = theta[k];
     }
     kinks.add_to(projection);
