@@ -78,6 +78,7 @@ void ExpandedLaws::locate_as(const ExpandedLaws& other) {
 void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const LoadSeries& known,
                           const LawOffsets& offsets, const EvaluatedState& start, double h) {
   active_ = false;
+  sweeps_ = true;
   known_degree_ = 0;
   h_ = h;
   t_ = start.state.t;
@@ -86,9 +87,12 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     const ScalarTerm& term = *law.term;
     const ScalarInput& in = start.inputs[idx(law.index)];
     const LawPiece& p = term.force->pieces()[idx(pieces.piece(law.index))];
-    law.active = p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0;
+    const bool linear = is_linear(term, p);
+    law.active = !linear && (p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0);
     active_ = active_ || law.active;
-    law.works = law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0;
+    law.works = !linear && (law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0);
+    sweeps_ =
+        sweeps_ && law.scaled == nullptr && (linear || term.u.empty() || !system_.any_prescribed_moves());
     law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
     law.k = p.k;
     law.g = p.product;
@@ -201,6 +205,68 @@ void ExpandedLaws::expand(const TaylorSeries& series) {
     if (!law.varies) continue;
     for (int m = 1; m <= series.degree(); ++m) add_scale(law, m);
   }
+}
+
+void ExpandedLaws::add_slopes(TaylorSeries& series, const Law& law, double factor) {
+  std::size_t slot = 0;
+  for (const Entry& row : law.term->z)
+    for (const Entry& column : law.term->z) {
+      const double b = factor * row.coeff * column.coeff;
+      series.add_stiffness(law.term->slots[slot], law.slope * b);
+      series.add_damping(law.term->slots[slot++], law.by_speed * b);
+    }
+}
+
+void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
+  changes_.clear();
+  for (Law& law : laws_) {
+    if (!law.active) continue;
+    add_term(law, series, series.degree());
+    const std::span<const double> x = std::span(law.x).first(idx(series.degree() + 1));
+    law.slope = law.k + law.g * polynomial_slope(x, s) / h_;
+    law.by_speed = law.c + law.g * polynomial_value(x, s);
+    add_slopes(series, law, 1.0);
+    double b = 0.0, moved = 0.0, bend = 0.0, turn = 0.0;
+    for (const Entry& e : law.term->z) b = std::max(b, std::abs(e.coeff));
+    for (const Entry& e : law.gain) moved = std::max(moved, std::abs(e.coeff));
+    for (std::size_t k = 1; k < x.size(); ++k) {
+      turn += std::abs(x[k]);
+      bend += static_cast<double>(k * (k - 1)) * std::abs(x[k]);
+    }
+    changes_.push_back(
+        {law.term, b * moved * std::abs(law.g) * bend / h_, b * moved * std::abs(law.g) * turn});
+  }
+}
+
+void ExpandedLaws::return_slopes(TaylorSeries& series) {
+  for (const Law& law : laws_)
+    if (law.active) add_slopes(series, law, -1.0);
+}
+
+double ExpandedLaws::swept_loss(const TaylorSeries& series, double s) const {
+  double sum = 0.0;
+  for (const Law& law : laws_) {
+    if (!law.active) continue;
+    double y = 0.0, rate = 0.0, y_sum = 0.0, y_sum_2 = 0.0;
+    for (const Entry& e : law.term->z) {
+      y += e.coeff * series.swept(0)[e.index];
+      rate += e.coeff * series.swept(-1)[e.index];
+      y_sum += e.coeff * series.swept(1)[e.index];
+      y_sum_2 += e.coeff * series.swept(2)[e.index];
+    }
+    const std::span<const double> x = std::span(law.x).first(idx(series.degree() + 1));
+    double value = 0.0, x_1 = 0.0, x_2 = 0.0;
+    for (std::size_t k = x.size(); k-- > 0;) {
+      x_2 = x_2 * s + 2.0 * x_1;
+      x_1 = x_1 * s + value;
+      value = value * s + x[k];
+    }
+    // int (c + g (x + y)) (x' + y')^2 less that without y, by parts; y as a cube in the last term, which is of its square.
+    const double q = law.c + law.g * value;
+    sum += 2.0 * q * x_1 * y - (law.g * x_1 * x_1 + 2.0 * q * x_2) * y_sum +
+           6.0 * law.g * x_1 * x_2 * y_sum_2 + 0.6 * q * y * rate;
+  }
+  return sum / h_;
 }
 
 bool ExpandedLaws::turns_back(const TaylorSeries& series) {

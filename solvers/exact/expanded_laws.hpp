@@ -33,6 +33,10 @@ class ExpandedLaws final : public TermForces {
   /// The law is one of these: it states pieces, and what scales them, without jumps (beside a jump rounding of the angle
   /// may tell the wrong side), and a method for linear pieces does not do.
   static bool takes(const ScalarTerm& term);
+  /// A piece that is the same linear law at any angle: LawSeries adds it.
+  static bool is_linear(const ScalarTerm& term, const LawPiece& piece) {
+    return term.phase_node < 0 && piece.product == 0.0;
+  }
 
   bool empty() const { return laws_.empty(); }
   /// Takes over which way the angles went.
@@ -44,6 +48,19 @@ class ExpandedLaws final : public TermForces {
   /// Adds the forces' part to term k of the series, factor = h^2/(k (k - 1)).
   double add(const TaylorSeries& series, int k, double factor, double* term) override;
   bool active() const override { return active_; }
+  /// None follows an angle, and nothing known acts on one that holds.
+  bool sweeps() const override { return sweeps_; }
+  /// Puts the slopes at s of the step where a sweep to there reads them; and takes them away.
+  void use_slopes(TaylorSeries& series, double s);
+  void return_slopes(TaylorSeries& series);
+  /// Of how much these slopes change over the step, in accelerations of a row of theirs: by angle [1/s^2] and by speed [1/s].
+  struct SlopeChange {
+    const ScalarTerm* term;
+    double by_angle, by_speed;
+  };
+  const std::vector<SlopeChange>& slope_changes() const { return changes_; }
+  /// What a motion that a sweep adds up to s changes of the losses [J].
+  double swept_loss(const TaylorSeries& series, double s) const;
   int known_degree() const override { return known_degree_; }
 
   /// An angle at rest on a knot goes the other way than was assumed: expand anew.
@@ -69,6 +86,7 @@ class ExpandedLaws final : public TermForces {
     const AngleScaledForce* scaled = nullptr;                     // null: r = 1
     std::vector<Entry> phase_row;                                 // its phase node's deviation
     std::vector<Entry> gain;                                      // M^-1 b over unknowns
+    double slope = 0.0, by_speed = 0.0;                           // use_slopes()
     double direction = 1.0;                                       // in which the angle went last
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
@@ -81,6 +99,7 @@ class ExpandedLaws final : public TermForces {
     std::vector<double> x, theta, r;
     std::vector<double> cosine, sine;  // of each order, by degree: cos and sin of order theta
   };
+  static void add_slopes(TaylorSeries& series, const Law& law, double factor);
   void start_scale(Law& law) const;
   void add_term(Law& law, const TaylorSeries& series, int m) const;
   static void add_scale(Law& law, int m);
@@ -88,7 +107,8 @@ class ExpandedLaws final : public TermForces {
   const System& system_;
   Assembler assembler_;
   std::vector<Law> laws_;
-  bool active_ = false;
+  std::vector<SlopeChange> changes_;
+  bool active_ = false, sweeps_ = false;
   int known_degree_ = 0;
   double t_ = 0.0, h_ = 0.0, knot_clearance_ = 0.0;
 };

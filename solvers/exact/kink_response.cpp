@@ -16,9 +16,16 @@ constexpr double kShortened = 0.9;  // of the part behind a kink over which slop
 }  // namespace
 
 void KinkResponse::undo() {
-  if (slopes_changed_) loads_.return_slopes(series_);
-  slopes_changed_ = false;
+  return_slopes();
   found_ = false;
+}
+
+void KinkResponse::return_slopes() {
+  if (slopes_changed_) {
+    laws_.return_slopes(series_);
+    loads_.return_slopes(series_);
+  }
+  slopes_changed_ = false;
 }
 
 bool KinkResponse::find(double end, const double* z_end, double share) {
@@ -43,6 +50,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
     rest *= growth / (++degree + 2.0);
   if (rest > kOfShare * share) return false;
   loads_.use_slopes(series_, end);
+  laws_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int stride = series_.stride();
   moments_.assign(idx((degree + 1) * stride), 0.0);
@@ -56,7 +64,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
 bool KinkResponse::find_limit(double allowed, double scale) {
   limit_ = 1.0;
   const double most = allowed / scale;
-  const bool slopes = loads_.expanded().active();
+  const bool slopes = loads_.expanded().active() || laws_.active();
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
     const Others bends = slopes ? error_of_slopes(limit_) : Others{};
     if (bends.error > 0.5 * most) {
@@ -71,7 +79,19 @@ bool KinkResponse::find_limit(double allowed, double scale) {
   return false;
 }
 
-/// What slopes of smooth loads that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
+/// Of the motion of a row that a force on it sets in, what the deflection of a law moves in d of the step: all of it where the
+/// law acts on the row; else k/m h^2 d^2/20 one row away, about (rate h)^4/16 d^4/840 further off (error_of_others()).
+double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
+  const double h = series_.step(), quarter = 0.25 * std::pow(series_.rate() * h, 2);
+  double coupling = 0.0;
+  for (const Entry& e : law.z) {
+    if (e.index == row) return 1.0;
+    coupling = std::max(coupling, series_.coupling(row, e.index));
+  }
+  return std::min(1.0, h * h * coupling * d * d / 20.0 + quarter * quarter * std::pow(d, 4) / 840.0);
+}
+
+/// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
 /// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, and of one by speed d^5/60. between: the s of
 /// the kink that makes most of it.
 KinkResponse::Others KinkResponse::error_of_slopes(double end) const {
@@ -82,8 +102,14 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end) const {
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {
     const double d = std::max(0.0, end - kinks.place(i)), fifth = d * d * d * d * d;
-    const double error = loads_.kink_sizes()[idx(i)].pull * fifth *
-                         (h * h * change.by_angle * d / 360.0 + h * change.by_speed / 60.0);
+    double by_angle = change.by_angle, by_speed = change.by_speed;
+    for (const ExpandedLaws::SlopeChange& law : laws_.slope_changes()) {
+      const double near = nearness(kinks.row(i), *law.term, d);
+      by_angle = std::max(by_angle, near * law.by_angle);
+      by_speed = std::max(by_speed, near * law.by_speed);
+    }
+    const double error =
+        loads_.kink_sizes()[idx(i)].pull * fifth * (h * h * by_angle * d / 360.0 + h * by_speed / 60.0);
     sum.error += error;
     if (error > most) {
       most = error;

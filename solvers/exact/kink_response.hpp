@@ -10,6 +10,7 @@
 /// that an error of place counts squared.
 #include <vector>
 
+#include "solvers/exact/expanded_laws.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/taylor_series.hpp"
 
@@ -17,7 +18,8 @@ namespace drev {
 
 class KinkResponse {
  public:
-  KinkResponse(TaylorSeries& series, LoadSeries& loads) : series_(series), loads_(loads) {}
+  KinkResponse(TaylorSeries& series, LoadSeries& loads, ExpandedLaws& laws)
+      : series_(series), loads_(loads), laws_(laws) {}
   KinkResponse(const KinkResponse&) = delete;
 
   /// A new step: nothing is found, and no slope changed.
@@ -39,20 +41,26 @@ class KinkResponse {
   double limit() const { return limit_; }
   /// Work of loads beyond what they do along the series [J].
   double work() const { return any() ? loads_.kink_work(series_, end_) : 0.0; }
-  /// Loss in all dampers [J].
-  double dissipated() { return series_.loss(end_, any()); }
+  /// Loss in all dampers, and what the response changes of that in laws [J].
+  double dissipated() {
+    return_slopes();
+    return series_.loss(end_, any()) + (any() ? laws_.swept_loss(series_, end_) : 0.0);
+  }
 
  private:
+  void return_slopes();
   struct Others {
     double error = 0.0;    // of the motion by the scale
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed) const;
   Others error_of_slopes(double end) const;
+  double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double allowed, double scale);
 
   TaylorSeries& series_;
   LoadSeries& loads_;
+  ExpandedLaws& laws_;
   bool found_ = false, slopes_changed_ = false;
   double end_ = 0.0, limit_ = 1.0;
   std::vector<double> moments_;

@@ -6,6 +6,7 @@
 
 #include "solvers/contact/pieces.hpp"
 #include "solvers/contact/roots.hpp"
+#include "solvers/exact/expanded_laws.hpp"
 
 namespace drev {
 
@@ -57,6 +58,10 @@ LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scala
     Law& law = laws_[j];
     const std::span<const LawPiece> own = linear_pieces(term);
     law.pieces = own.empty() ? bounds_alone(*term.force) : std::vector<LawPiece>(own.begin(), own.end());
+    if (own.empty() && ExpandedLaws::takes(term))
+      for (std::size_t i = 0; i < law.pieces.size(); ++i)
+        if (const LawPiece& piece = term.force->pieces()[i]; ExpandedLaws::is_linear(term, piece))
+          law.pieces[i] = piece;
     if (!term.force->varies() || term.phase_node < 0) continue;
     for (const LawPiece& p : law.pieces)
       for (const LawBound& b : p.bounds) law.scaled |= b.b_v != 0.0;

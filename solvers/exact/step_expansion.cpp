@@ -33,8 +33,8 @@ bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& l
                                   const Limits& limits, Attempt& made) {
   sweeps_ = expanded_ = false;
   share_ = limits.share;
-  if (refused_ || !known.kinks_alone() || !smooth.empty() || !expanded.empty() || !friction.empty() ||
-      !series.sweeps() || !offsets.none() || !laws.lossless())
+  if (refused_ || !known.kinks_alone() || !smooth.empty() || (!expanded.empty() && !expanded.sweeps()) ||
+      !friction.empty() || !series.sweeps() || !offsets.none() || !laws.lossless())
     return false;
   made.h = series.expand(from.state.z, from.state.v, h, limits.share);
   if (made.h < h) return true;

@@ -29,7 +29,7 @@ class StepExpansion {
         smooth(system),
         expanded(system),
         friction(system),
-        kinks(series, known) {
+        kinks(series, known, expanded) {
     if (!known.expanded().loads().empty()) series.act_through(&known.expanded());
     if (!expanded.empty()) series.act_through(&expanded);
     if (!friction.empty()) series.act_through(&friction);  // which counts on all others
