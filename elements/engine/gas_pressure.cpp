@@ -7,7 +7,8 @@ namespace drev {
 
 namespace {
 
-constexpr double kJump = 1e-9;  // of the period: over which a curve that does not close jumps
+constexpr double kJump = 1e-9;            // of the period: over which a curve that does not close jumps
+constexpr double kAtmosphere = 101325.0;  // Pa
 
 PeriodicCurve make_curve(std::vector<double> angle, std::vector<double> value, double period,
                          Interpolation interpolation) {
@@ -173,6 +174,13 @@ void GasPressure::check(ParameterCheck& check) const {
   if (!p.peak_speed.empty() && !p.speed.empty())
     check.fail("peak_pressure", "given", "", "must not be there beside curves over the speed");
   check.all_finite("pressure.pressure", p.pressure, "Pa");
+  for (const double pressure : p.pressure)
+    if (pressure < -kAtmosphere) {
+      check.fail(
+          "pressure.pressure", to_text(pressure), "Pa",
+          "must be >= -101325, the atmosphere: pressures are absolute, or above that of the crankcase");
+      break;
+    }
   check.finite("firing_tdc", p.firing_tdc, "rad");
   check.finite("load", p.at_load, "");
   check.non_negative("reference_pressure", p.reference_pressure, "Pa");

@@ -134,7 +134,7 @@ void Lockstep::start(double t, bool first) {
     assemblers_[idx(lane)].set_time(t);
     if (!first || !alive(lane)) continue;
     RunSummary& s = results_[idx(lane)].summary;
-    check_start(s, *systems_[idx(lane)], point.state);
+    check_start(s, assemblers_[idx(lane)], point);
     if (!s.ok()) finish_lane(lane, t);
   }
 }

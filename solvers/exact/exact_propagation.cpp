@@ -74,7 +74,7 @@ class ExactRun final : public StepMotion {
                                  [](const Observer* o) { return o->watches_loads(); });
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
-    check_start(summary_, system_, now_.state);
+    check_start(summary_, assembler_, now_);
     const Stops stops(system_, options_.t_end, 0.0, {}, &controls_);
     while (running() && now_.state.t < options_.t_end) run_to(next_stop(stops));
     summary_.t_end = now_.state.t;

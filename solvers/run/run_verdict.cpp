@@ -60,13 +60,18 @@ std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState&
   const System& system = assembler.system();
   EvaluatedState before;
   before.state = from.state;
-  assembler.external(before.state.z, before.state.v, before.p);
-  for (int k = 0; k < system.size(); ++k)
-    if (!std::isfinite(before.p[k])) return "the load on " + system.unknown_name(k);
+  const auto name_of = [&](ElementId element) {
+    return system.element_instances()[idx(index(element))].name;
+  };
+  for (const LoadTerm& load : system.loads()) {
+    const LoadResponse r = assembler.load(load, before.state.z, before.state.v);
+    if (!std::isfinite(r.torque)) return "the load of " + name_of(load.element);
+    if (!std::isfinite(r.dtorque_dangle) || !std::isfinite(r.dtorque_dspeed))
+      return "the slope of the load of " + name_of(load.element);
+  }
   evaluate_laws(assembler, before);
   for (std::size_t j = 0; j < before.responses.size(); ++j)
-    if (!std::isfinite(before.responses[j].y))
-      return "the force of " + system.element_instances()[idx(index(system.scalars()[j].element))].name;
+    if (!std::isfinite(before.responses[j].y)) return "the force of " + name_of(system.scalars()[j].element);
   for (int k = 0; k < system.size(); ++k)
     if (!std::isfinite(to.state.z[k]) || !std::isfinite(to.state.v[k]))
       return "the motion of " + system.unknown_name(k);
@@ -80,9 +85,11 @@ void end_not_finite(RunSummary& summary, const Assembler& assembler, const Evalu
           what.empty() ? kTooLarge : what + " is not finite");
 }
 
-void check_start(RunSummary& summary, const System& system, const State& state) {
-  if (!state.a.allFinite())
-    end_run(summary, system.name(), state.t, RunStatus::not_finite, "the initial acceleration is not finite");
+void check_start(RunSummary& summary, const Assembler& assembler, const EvaluatedState& start) {
+  if (start.state.a.allFinite()) return;
+  const std::string what = what_is_not_finite(assembler, start, start);
+  end_run(summary, assembler.system().name(), start.state.t, RunStatus::not_finite,
+          (what.empty() ? "the initial acceleration" : what) + " is not finite");
 }
 
 void end_growing_run(RunSummary& summary, const std::string& system, double t, double growth_limit) {

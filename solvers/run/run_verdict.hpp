@@ -22,15 +22,15 @@ void end_run(RunSummary& summary, const std::string& system, double t, RunStatus
 /// Ends a run that its caller stopped.
 void end_interrupted(RunSummary& summary, const std::string& system, double t);
 
-/// What is not finite in a step from -> to: a load or a law's force at the motion before the step and the
+/// What is not finite in a step from -> to: a load, its slope or a law's force at the motion before the step and the
 /// assembler's time, else the motion of an unknown at the step's end, each by its name; empty: none of these.
 std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
                                const EvaluatedState& to);
 /// Ends a run at from's time with the first of these, or with the energy, as not finite.
 void end_not_finite(RunSummary& summary, const Assembler& assembler, const EvaluatedState& from,
                     const EvaluatedState& to);
-/// Ends a run whose first point has an acceleration that is not finite.
-void check_start(RunSummary& summary, const System& system, const State& state);
+/// Ends a run whose first point has an acceleration that is not finite, and says what of it; at the assembler's time.
+void check_start(RunSummary& summary, const Assembler& assembler, const EvaluatedState& start);
 
 /// Whether the energy from nothing is more than the limit [-] times what was put in. Two steps in succession of
 /// which that is true are unstable: one alone may be a load that sets in on parts at rest, which an explicit

@@ -69,7 +69,7 @@ class Run final : public StepMotion {
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(equation_.assembler(), *now_);
     if (control_) control_->look_at(now_->state);
-    check_start(summary_, system_, now_->state);
+    check_start(summary_, equation_.assembler(), *now_);
     // Controlled steps pass what observers ask for, and are interpolated there.
     const Stops stops(system_, options_.t_end,
                       kSameStop * (options_.step > 0.0 ? options_.step : kLargestStep * duration()),

@@ -180,4 +180,9 @@ TEST_CASE("Engine cylinders: bad input is named, all at once") {
        {"rod", "must be longer than 0.6 stroke", "strokes", "must be 2 or 4", "misfiring_cylinder", "1 to 4",
         "oscillating_mass", "tangential_pressure", "as many as the angles"})
     CHECK(test::contains(text, part));
+  EngineCylinders::Params vacuum = engine_of(smooth_gas());
+  vacuum.gas.pressure[3] = -1.2e5;
+  CHECK(test::contains(test::findings(EngineCylinders(vacuum)), "must be >= -101325"));
+  vacuum.gas.pressure[3] = -0.3e5;  // above that of the crankcase: an intake's
+  CHECK_FALSE(test::contains(test::findings(EngineCylinders(vacuum)), "pressure"));
 }
