@@ -8,15 +8,16 @@
 /// form, in which the twist hardly mattered (S. L. Sunde, NTNU, 2015, program TimeStepping.m), and
 /// a load of time alone. The phase places a cylinder in the firing order: the table is entered
 /// `phase` ahead. The curve is straight between the table's points, or a periodic cubic spline
-/// through them (periodic_curve.hpp). Exact propagation takes straight stretches exactly, a spline
-/// by projection.
+/// through them (periodic_curve.hpp), whose pieces it says as a KnottedLoad. Exact propagation takes both
+/// as they are.
 #include <drev/core/element.hpp>
+#include <drev/core/law/knotted_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/elements/periodic_curve.hpp>
 
 namespace drev {
 
-class CamTorque final : public Element, public Load {
+class CamTorque final : public Element, public Load, public KnottedLoad {
  public:
   struct Params {
     PeriodicTable angle_table = {};  ///< rad -> N m; period 2 pi (4 pi for a crank's four strokes)
@@ -48,6 +49,16 @@ class CamTorque final : public Element, public Load {
     if (params_.interpolation == Interpolation::cubic) return std::nullopt;
     return curve_.points().as_load(params_.phase);
   }
+  CubicPiece piece(double angle, double direction, double /*nominal_speed*/) const override {
+    CubicPiece found = curve_.piece(angle + params_.phase, direction);
+    found.low -= params_.phase;
+    found.high -= params_.phase;
+    return found;
+  }
+  bool piece_follows_speed() const override { return false; }
+  Curves curves(double /*angle*/) const override { return {.factor = 1.0}; }
+  /// None where it is straight: it is a table then.
+  int turns() const override { return params_.interpolation == Interpolation::cubic ? 1 : 0; }
 
  private:
   static PeriodicTable scaled(const Params& p) {

@@ -62,7 +62,8 @@ System engine_with_camshaft(unsigned seed) {
   m.add<CamTorque>(
       "pump", {"camshaft"},
       {.angle_table = PeriodicTable({0.0, 0.2, 0.45, 0.5, 0.9}, {0.0, -20.0, 25.0, 4.0, 0.0}, kTwoPi / 4.0),
-       .twist_feedback = true});
+       .twist_feedback = true,
+       .interpolation = seed % 4 < 2 ? Interpolation::linear : Interpolation::cubic});
   m.set_reference("flywheel", constant_speed(between(120.0, 250.0)));
   return m.build();
 }
