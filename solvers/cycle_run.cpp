@@ -26,8 +26,9 @@ namespace {
 constexpr double kUnbounded =
     30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kBatches = 20;
-constexpr double kStudent = 2.093;      // 97.5 % quantile of Student's t with 19 degrees of freedom
-constexpr double kRunTolerance = 1e-9;  // of a cycle by exact propagation
+constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
+constexpr double kTwoPoints = 0.57735026918962576;  // Gauss's rule of two points
+constexpr double kRunTolerance = 1e-9;              // of a cycle by exact propagation
 
 /// Mean, mean square and extremes of channels over a part of a run.
 struct CycleFigures {
@@ -54,7 +55,8 @@ struct FigureSum {
 
 class FigureObserver final : public Observer {
  public:
-  explicit FigureObserver(std::vector<Channel> channels) : peaks_(std::move(channels)) {}
+  /// fine: 8 of Gauss's points in a step, for figures of one motion; else 2, for those that statistics are of.
+  FigureObserver(const std::vector<Channel>& channels, bool fine) : peaks_(channels), fine_(fine) {}
 
   void look_through(StepMotion& motion) override {
     motion_ = &motion;
@@ -71,9 +73,13 @@ class FigureObserver final : public Observer {
   }
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
     const double half = 0.5 * (to.state.t - from.state.t), middle = 0.5 * (to.state.t + from.state.t);
-    for (std::size_t g = 0; half > 0.0 && g < kGaussPoints.size(); ++g)
-      for (const double side : {-1.0, 1.0})
-        add(motion_->at(middle + side * half * kGaussPoints[g]), half * kGaussWeights[g]);
+    const auto add_pair = [&](double place, double weight) {
+      for (const double side : {-half, half}) add(motion_->at(middle + side * place), half * weight);
+    };
+    if (half > 0.0 && fine_)
+      for (std::size_t g = 0; g < kGaussPoints.size(); ++g) add_pair(kGaussPoints[g], kGaussWeights[g]);
+    else if (half > 0.0)
+      add_pair(kTwoPoints, 1.0);
     lasted_ += 2.0 * half;
     peaks_.step(assembler, from, to);
   }
@@ -103,6 +109,7 @@ class FigureObserver final : public Observer {
   }
 
   Peaks peaks_;
+  bool fine_;
   StepMotion* motion_ = nullptr;
   Vector sum_, squares_;
   double lasted_ = 0.0;
@@ -114,7 +121,7 @@ class CycleRun {
       : system_(system),
         options_(options),
         exact_(!why_not_exact(system)),
-        watch_(find_channels(system, options.channels)),
+        channels_(find_channels(system, options.channels)),
         state_(std::move(start)) {
     state_.t = 0.0;
   }
@@ -122,7 +129,7 @@ class CycleRun {
 
  private:
   void run_to(double t, const std::vector<Observer*>& observers);
-  bool cycle(FigureSum* figures);
+  bool cycle(FigureObserver* watch, FigureSum* figures);
   bool settle();
   void of_repetitions(const CycleDecay::Repetition& found);
   void of_statistics(const std::vector<CycleFigures>& cycles);
@@ -131,7 +138,7 @@ class CycleRun {
   const System& system_;
   const CycleRunOptions& options_;
   bool exact_;
-  FigureObserver watch_;
+  std::vector<Channel> channels_;
   State state_;
   long cycles_ = 0;
   CycleDecay decay_;
@@ -147,17 +154,17 @@ void CycleRun::run_to(double t, const std::vector<Observer*>& observers) {
   if (run.status != RunStatus::success) throw SolverError(run.reason);
 }
 
-/// One cycle more, whose figures are added where they are wanted. False: ended.
-bool CycleRun::cycle(FigureSum* figures) {
+/// One cycle more, whose figures are added where it is watched. False: ended.
+bool CycleRun::cycle(FigureObserver* watch, FigureSum* figures) {
   if (options_.go_on && !options_.go_on()) {
     result_.ended = true;
     return false;
   }
   std::vector<Observer*> observers;
-  if (figures != nullptr) observers.push_back(&watch_);
+  if (watch != nullptr) observers.push_back(watch);
   run_to(options_.period * static_cast<double>(++cycles_), observers);
   decay_.add(state_.z, state_.v);
-  if (figures != nullptr) figures->add(watch_.figures());
+  if (watch != nullptr) figures->add(watch->figures());
   return true;
 }
 
@@ -175,9 +182,10 @@ CycleRunResult CycleRun::run() {
 bool CycleRun::settle() {
   const int half = options_.cycles / 2;
   std::vector<CycleFigures> watched;
+  FigureObserver watch(channels_, false);
   for (int c = 0; c < 2 * half; ++c) {
     FigureSum one;
-    if (!cycle(c < half ? nullptr : &one)) return false;
+    if (!cycle(c < half ? nullptr : &watch, &one)) return false;
     if (c >= half) watched.push_back(one.all);
     if (const auto found = decay_.repeats()) {
       of_repetitions(*found);
@@ -191,10 +199,11 @@ bool CycleRun::settle() {
 void CycleRun::of_repetitions(const CycleDecay::Repetition& found) {
   SweptRun& run = result_.run;
   run.repeats = run.cycles = found.cycles;
+  FigureObserver watch(channels_, true);
   const auto repetition = [&](CycleFigures& figures) {
     FigureSum sum;
     for (int c = 0; c < found.cycles; ++c)
-      if (!cycle(&sum)) return false;
+      if (!cycle(&watch, &sum)) return false;
     figures = sum.all;
     return true;
   };

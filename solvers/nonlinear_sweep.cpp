@@ -17,8 +17,6 @@ constexpr int kMostRows = 1100;  // of Newton's matrix with more harmonics: 0.3 
 constexpr int kMostLaws = 50;    // each of 49 rows with the fewest harmonics: 3 s a step
 constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
 constexpr double kTail = 1e-5;   // of the linear motion
-constexpr double kTraced =
-    1e-2;  // error of motions by the harmonics that curves are traced with, at the first
 constexpr int kMostBranches = 12;
 constexpr double kSameFold = 1e-7;  // of the speed: a fold with more harmonics
 constexpr int kDefaultOrders = 12;

@@ -11,8 +11,6 @@ namespace {
 
 constexpr double kPerturbation = 1e-3;
 constexpr double kBalanced = 1e-6;  // N m left over that a run may have
-constexpr double kRunTail =
-    1e-5;  // of a law's input that a run settled on, beyond the harmonics that start Newton
 constexpr double kRepresented =
     0.3;  // of a section's largest value: the few harmonics' distance from the run
 
@@ -34,18 +32,6 @@ Vector harmonics_of(const std::vector<Vector>& motion, const LawBalance& balance
     }
   }
   return x;
-}
-
-/// The fewest harmonics beyond which X has no more than kRunTail of its swing.
-int needed_harmonics(const Vector& x, int inputs, int harmonics) {
-  const Eigen::Index block = 2 * harmonics + 1;
-  int needed = 1;
-  for (int i = 0; i < inputs; ++i) {
-    const auto swing = x.segment(i * block + 1, block - 1);
-    while (needed < harmonics && swing.tail(2 * (harmonics - needed)).norm() > kRunTail * swing.norm())
-      ++needed;
-  }
-  return needed;
 }
 
 }  // namespace
@@ -76,38 +62,45 @@ bool Sweeper::stable_at(double speed) const {
   return false;
 }
 
-/// Whether the harmonics of a run have its extremes, so that Newton has a start.
-bool Sweeper::represents(LawBalance& balance, const Vector& x, const std::vector<int>& lines,
-                         const SweptRun& run) {
+/// How far the extremes of a run's harmonics are from the run's own, beside each section's largest value.
+double Sweeper::away_from(const SweptRun& run, LawBalance& balance, const Vector& x,
+                          const std::vector<int>& lines) const {
   MotionSections::Figures figures;
-  if (!sections_->find(balance, x, run.speed, lines, figures)) return false;
+  if (!sections_->find(balance, x, run.speed, lines, figures)) return INFINITY;
+  double most = 0.0;
   for (Eigen::Index c = 0; c < run.highest.size(); ++c) {
-    const double most = std::max(run.highest[c], -run.lowest[c]);
-    if (std::max(std::abs(figures.maximum[c] - run.highest[c]),
-                 std::abs(figures.minimum[c] - run.lowest[c])) > kRepresented * most)
-      return false;
+    const double size = std::max(run.highest[c], -run.lowest[c]);
+    for (const double off : {figures.maximum[c] - run.highest[c], figures.minimum[c] - run.lowest[c]})
+      if (off != 0.0) most = std::max(most, std::abs(off) / size);
   }
-  return true;
+  return most;
 }
 
-/// A curve from the motion that a run settled on, by its own harmonics, as many as it needs. True: it is new, and stable here.
-bool Sweeper::start_from(double speed, const CycleRunResult& result) {
+/// A curve from the motion that a run settled on, by its own harmonics, as many as it needs. True: it is new, and stable
+/// there.
+bool Sweeper::start_from(const CycleRunResult& result) {
+  const double speed = result.run.speed;
   const int cycles = result.run.repeats;
   if (cycles == 0) return false;
   SweepFamily& of = family(cycles);
   LawBalance& balance = *of.balance;
   const int most = most_harmonics(balance), before = of.harmonics;
-  const Vector all = harmonics_of(result.motion, balance, most);
-  if (first_of(cycles))
-    of.harmonics = std::clamp(needed_harmonics(all, balance.inputs(), most), before, most);
-  balance.set_harmonics(of.harmonics);
-  Vector x = balance.resized(all, most, of.harmonics);
+  const bool first = first_of(cycles);
+  const Vector all = harmonics_of(result.motion, balance, std::max(most, before));
+  Vector x;
+  double away = INFINITY;
+  while (true) {
+    balance.set_harmonics(of.harmonics);
+    x = balance.resized(all, std::max(most, before), of.harmonics);
+    away = away_from(result.run, balance, x, of.lines);
+    if (!first || away <= kTraced || of.harmonics >= most) break;
+    of.harmonics = std::min(2 * of.harmonics, most);
+  }
   const std::size_t curves = traced_.size();
-  if (represents(balance, x, of.lines, result.run) && tracer(cycles).solve(speed, x) &&
-      holds(cycles, speed, x))
+  if (away <= kRepresented && tracer(cycles).solve(speed, x) && holds(cycles, speed, x))
     trace(cycles, speed, x, true);
   if (traced_.size() > curves) return stable_at(speed);
-  if (first_of(cycles)) of.harmonics = before;
+  if (first) of.harmonics = before;
   return false;
 }
 
@@ -141,7 +134,7 @@ void Sweeper::fill_with_runs() {
     bool new_curve = false;
     for (std::size_t i = 0; i < round; ++i) {
       if (stable_at(left[i])) continue;
-      if (start_from(left[i], (*found)[i]))
+      if (start_from((*found)[i]))
         new_curve = true;
       else
         sweep_.runs.push_back((*found)[i].run);

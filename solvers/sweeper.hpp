@@ -34,6 +34,7 @@ class Sweeper {
 
  private:
   static constexpr double kSameSpeed = 1e-12;  // relative
+  static constexpr double kTraced = 1e-2;      // error of the first motion that a curve is traced from
 
   SweepFamily& family(int cycles);
   BranchTracer tracer(int cycles);
@@ -50,8 +51,9 @@ class Sweeper {
   bool stable_at(double speed) const;
   bool any_at(double speed) const;
   void fill_with_runs();
-  bool start_from(double speed, const CycleRunResult& result);
-  bool represents(LawBalance& balance, const Vector& x, const std::vector<int>& lines, const SweptRun& run);
+  bool start_from(const CycleRunResult& result);
+  double away_from(const SweptRun& run, LawBalance& balance, const Vector& x,
+                   const std::vector<int>& lines) const;
   int most_harmonics(const LawBalance& balance) const;
   bool first_of(int cycles) const;
   void find_jumps();
