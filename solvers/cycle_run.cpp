@@ -53,10 +53,12 @@ struct FigureSum {
   }
 };
 
+/// Mean and mean square of each run that it is shown, extremes of all of them.
 class FigureObserver final : public Observer {
  public:
-  /// fine: 8 of Gauss's points in a step, for figures of one motion; else 2, for those that statistics are of.
-  FigureObserver(const std::vector<Channel>& channels, bool fine) : peaks_(channels), fine_(fine) {}
+  /// fine: 8 of Gauss's points in a step, and extremes located, for figures of one motion; else 2, and extremes of them and
+  /// the ends of steps, for statistics.
+  FigureObserver(const std::vector<Channel>& channels, bool fine) : peaks_(channels, fine), fine_(fine) {}
 
   void look_through(StepMotion& motion) override {
     motion_ = &motion;
@@ -65,7 +67,13 @@ class FigureObserver final : public Observer {
   void start(const Assembler& assembler, const EvaluatedState& point) override {
     sum_ = squares_ = Vector::Zero(static_cast<Eigen::Index>(peaks_.channels().size()));
     lasted_ = 0.0;
-    peaks_.start(assembler, point);
+    if (lowest_.size() == sum_.size()) {
+      peaks_.restart(assembler, point);
+    } else {
+      peaks_.start(assembler, point);
+      lowest_ = Vector::Constant(sum_.size(), INFINITY);
+      highest_ = -lowest_;
+    }
   }
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
                     const double* beyond_cubic) override {
@@ -90,10 +98,11 @@ class FigureObserver final : public Observer {
   bool watches_loads() const override { return peaks_.watches_loads(); }
 
   CycleFigures figures() const {
-    CycleFigures found{sum_ / lasted_, squares_ / lasted_, Vector(sum_.size()), Vector(sum_.size())};
+    CycleFigures found{sum_ / lasted_, squares_ / lasted_, lowest_, highest_};
     for (Eigen::Index c = 0; c < sum_.size(); ++c) {
-      found.lowest[c] = peaks_.peaks()[static_cast<std::size_t>(c)].min;
-      found.highest[c] = peaks_.peaks()[static_cast<std::size_t>(c)].max;
+      const Peak& peak = peaks_.peaks()[static_cast<std::size_t>(c)];
+      found.lowest[c] = std::min(lowest_[c], peak.min);
+      found.highest[c] = std::max(highest_[c], peak.max);
     }
     return found;
   }
@@ -105,13 +114,15 @@ class FigureObserver final : public Observer {
           peaks_.channels()[static_cast<std::size_t>(c)].evaluate(point.assembler, point.at.state);
       sum_[c] += weight * y;
       squares_[c] += weight * y * y;
+      lowest_[c] = std::min(lowest_[c], y);
+      highest_[c] = std::max(highest_[c], y);
     }
   }
 
   Peaks peaks_;
   bool fine_;
   StepMotion* motion_ = nullptr;
-  Vector sum_, squares_;
+  Vector sum_, squares_, lowest_, highest_;
   double lasted_ = 0.0;
 };
 
@@ -199,8 +210,8 @@ bool CycleRun::settle() {
 void CycleRun::of_repetitions(const CycleDecay::Repetition& found) {
   SweptRun& run = result_.run;
   run.repeats = run.cycles = found.cycles;
-  FigureObserver watch(channels_, true);
   const auto repetition = [&](CycleFigures& figures) {
+    FigureObserver watch(channels_, true);
     FigureSum sum;
     for (int c = 0; c < found.cycles; ++c)
       if (!cycle(&watch, &sum)) return false;
@@ -257,7 +268,7 @@ void CycleRun::of_statistics(const std::vector<CycleFigures>& cycles) {
   run.mean_error = Vector::Zero(run.mean.size());
   for (const FigureSum& batch : batches) run.mean_error += (batch.all.mean - run.mean).cwiseAbs2();
   run.mean_error = kStudent * (run.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
-  // Largest values in the first batch, the one in the middle and the last.
+  // Largest values up to the end of the first batch, the one in the middle and the last.
   std::array<Vector, 3> sizes;
   for (std::size_t part = 0; part < 3; ++part) sizes[part] = batches[part * (kBatches - 1) / 2].all.largest();
   for (Eigen::Index c = 0; c < run.mean.size(); ++c)

@@ -6,7 +6,8 @@
 /// the one before: what they change by, and will by the ratio at which cycles come closer, is their error. A run that
 /// does not repeat in the first half of its cycles has the figures of the second, in which it may repeat still.
 ///
-/// Means are integrals over the steps (Gauss's rule on the motion inside each), extremes are located (Peaks).
+/// Means are integrals over the steps (Gauss's rule on the motion inside each); extremes are located (Peaks), but those of
+/// statistics are of the ends of steps and two points inside each.
 #include <drev/core/channel.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>

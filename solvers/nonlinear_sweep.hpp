@@ -98,7 +98,7 @@ struct SweptRun {
   double error = std::numeric_limits<double>::quiet_NaN();
   /// Of a run that repeats, its mean's own change, as error; else half of the 95 % interval, by batch means.
   Vector mean, mean_error;
-  Vector deviation, lowest, highest;  ///< extremes are located
+  Vector deviation, lowest, highest;  ///< extremes of a run that repeats are located
 };
 
 struct NonlinearSweep {
