@@ -40,6 +40,7 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   check.non_negative("turns", options.turns, "");
   check.within("tolerance", options.tolerance, 1e-12, 0.1, "");
   check.within("run_cycles", options.run_cycles, 40, 1e6, "");
+  check.non_negative("threads", options.threads, "");
   if (system.size() == 0)
     findings.push_back({system.name(), "", "", "", "every node is prescribed: nothing vibrates"});
   if (!system.reference())

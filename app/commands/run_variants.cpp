@@ -28,8 +28,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kMostThreads = 1024;
-
 /// Options that a table has no use for, and why.
 constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--accuracy", "is for single runs, whose figures it finds with their errors"},
