@@ -60,6 +60,9 @@ const std::vector<CommandEntry>& commands() {
             {"--rainflow", "CHANNEL,...",
              "Counts load cycles (ASTM E1049) of channels; sections with an S-N line are counted anyway",
              commas},
+            {"--orders-of", "NODE",
+             "Of a run from rest without nominal speed: node whose turns orders are of; default: where the "
+             "strongest torque with orders acts"},
             {"--energy", "",
              "Work, heat and largest stored energy of each element over the span of the figures", none},
             {"--every", "SECONDS",
