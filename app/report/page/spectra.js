@@ -232,8 +232,9 @@ function showOrders(section, run) {
     make(
       "p",
       { class: "note" },
-      `Amplitude of each order, in windows of ${integer(up.turns)} turns of ${up.shaft ?? "the reference shaft"} (Hann window ` +
-        `over the ${up.shaft === null ? "" : "actual "}angle), at the mean speed of the window. Dotted: criticals passed, contacts closed.`,
+      `Amplitude of each order, in windows of ${integer(up.turns)} turns of ${up.shaft ?? "the reference shaft"} ` +
+        `(Hann window over the ${up.shaft === null ? "" : "actual "}angle), at the mean speed of the window. ` +
+        "Dotted: criticals passed, contacts closed.",
     ),
     toolbar(group),
   );
