@@ -2,12 +2,22 @@
 
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/law_force.hpp>
+#include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+
+#include "solvers/at_speed.hpp"
+#include "solvers/cycle_decay.hpp"
+#include "solvers/periodic/order_content.hpp"
+#include "solvers/run/for_all.hpp"
 
 namespace drev {
 
@@ -16,97 +26,295 @@ namespace {
 constexpr double kUnbounded =
     30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kBatches = 20;
-constexpr double kStudent = 2.093;               // 97.5 % quantile of Student's t with 19 degrees of freedom
-constexpr int kRunSamples = 64;                  // a cycle
-constexpr double kGolden = 0.61803398874989485;  // whose multiples fill the unit interval evenly
+constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
+constexpr double kTwoPoints = 0.57735026918962576;  // Gauss's rule of two points
+constexpr double kRunTolerance = 1e-9;              // of a cycle by exact propagation
 
-}  // namespace
+/// Mean, mean square and extremes of channels over a part of a run.
+struct CycleFigures {
+  Vector mean, square, lowest, highest;
+  Vector largest() const { return highest.cwiseMax(-lowest); }
+  Vector deviation() const { return (square - mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt(); }
+};
 
-CycleRun::CycleRun(const System& system, double period, State start)
-    : system_(system), period_(period), exact_(!why_not_exact(system)), state_(std::move(start)) {
-  state_.t = 0.0;
-}
+/// The mean of figures of parts that last equally long.
+struct FigureSum {
+  CycleFigures all;
+  int count = 0;
+  void add(const CycleFigures& part) {
+    if (count++ == 0) {
+      all = part;
+      return;
+    }
+    all.mean += (part.mean - all.mean) / count;
+    all.square += (part.square - all.square) / count;
+    all.lowest = all.lowest.cwiseMin(part.lowest);
+    all.highest = all.highest.cwiseMax(part.highest);
+  }
+};
 
-void CycleRun::run_to(double t) {
-  const Method method = exact_ ? Method{kExact, 0.0, tolerance_} : Method{"sdirk4", period_ / 20.0, 1e-8};
+/// Mean and mean square of each run that it is shown, extremes of all of them.
+class FigureObserver final : public Observer {
+ public:
+  /// fine: 8 of Gauss's points in a step, and extremes located, for figures of one motion; else 2, and extremes of them and
+  /// the ends of steps, for statistics.
+  FigureObserver(const std::vector<Channel>& channels, bool fine) : peaks_(channels, fine), fine_(fine) {}
+
+  void look_through(StepMotion& motion) override {
+    motion_ = &motion;
+    peaks_.look_through(motion);
+  }
+  void start(const Assembler& assembler, const EvaluatedState& point) override {
+    sum_ = squares_ = Vector::Zero(static_cast<Eigen::Index>(peaks_.channels().size()));
+    lasted_ = 0.0;
+    if (lowest_.size() == sum_.size()) {
+      peaks_.restart(assembler, point);
+    } else {
+      peaks_.start(assembler, point);
+      lowest_ = Vector::Constant(sum_.size(), INFINITY);
+      highest_ = -lowest_;
+    }
+  }
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override {
+    return peaks_.looks_inside(from, to, beyond_cubic);
+  }
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
+    const double half = 0.5 * (to.state.t - from.state.t), middle = 0.5 * (to.state.t + from.state.t);
+    const auto add_pair = [&](double place, double weight) {
+      for (const double side : {-half, half}) add(motion_->at(middle + side * place), half * weight);
+    };
+    if (half > 0.0 && fine_)
+      for (std::size_t g = 0; g < kGaussPoints.size(); ++g) add_pair(kGaussPoints[g], kGaussWeights[g]);
+    else if (half > 0.0)
+      add_pair(kTwoPoints, 1.0);
+    lasted_ += 2.0 * half;
+    peaks_.step(assembler, from, to);
+  }
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    peaks_.restart(assembler, point);
+  }
+  bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
+  bool watches_loads() const override { return peaks_.watches_loads(); }
+
+  CycleFigures figures() const {
+    CycleFigures found{sum_ / lasted_, squares_ / lasted_, lowest_, highest_};
+    for (Eigen::Index c = 0; c < sum_.size(); ++c) {
+      const Peak& peak = peaks_.peaks()[static_cast<std::size_t>(c)];
+      found.lowest[c] = std::min(lowest_[c], peak.min);
+      found.highest[c] = std::max(highest_[c], peak.max);
+    }
+    return found;
+  }
+
+ private:
+  void add(const StepMotion::Point& point, double weight) {
+    for (Eigen::Index c = 0; c < sum_.size(); ++c) {
+      const double y =
+          peaks_.channels()[static_cast<std::size_t>(c)].evaluate(point.assembler, point.at.state);
+      sum_[c] += weight * y;
+      squares_[c] += weight * y * y;
+      lowest_[c] = std::min(lowest_[c], y);
+      highest_[c] = std::max(highest_[c], y);
+    }
+  }
+
+  Peaks peaks_;
+  bool fine_;
+  StepMotion* motion_ = nullptr;
+  Vector sum_, squares_, lowest_, highest_;
+  double lasted_ = 0.0;
+};
+
+class CycleRun {
+ public:
+  CycleRun(const System& system, State start, const CycleRunOptions& options)
+      : system_(system),
+        options_(options),
+        exact_(!why_not_exact(system)),
+        channels_(find_channels(system, options.channels)),
+        state_(std::move(start)) {
+    state_.t = 0.0;
+  }
+  CycleRunResult run();
+
+ private:
+  void run_to(double t, const std::vector<Observer*>& observers);
+  bool cycle(FigureObserver* watch, FigureSum* figures);
+  bool settle();
+  void of_repetitions(const CycleDecay::Repetition& found);
+  void of_statistics(const std::vector<CycleFigures>& cycles);
+  void sample(int cycles);
+
+  const System& system_;
+  const CycleRunOptions& options_;
+  bool exact_;
+  std::vector<Channel> channels_;
+  State state_;
+  long cycles_ = 0;
+  CycleDecay decay_;
+  CycleRunResult result_;
+};
+
+void CycleRun::run_to(double t, const std::vector<Observer*>& observers) {
+  const Method method =
+      exact_ ? Method{kExact, 0.0, kRunTolerance} : Method{"sdirk4", options_.period / 20.0, 1e-8};
   // A run in which the damping is not in the energy's books is judged by the motion alone.
-  const RunSummary run =
-      run_method(system_, method, {.t_start = state_.t, .t_end = t, .energy_tolerance = 1e6}, state_);
+  const RunSummary run = run_method(
+      system_, method, {.t_start = state_.t, .t_end = t, .energy_tolerance = 1e6}, state_, observers);
   if (run.status != RunStatus::success) throw SolverError(run.reason);
 }
 
-void CycleRun::advance(int cycles) {
-  for (int c = 0; c < cycles; ++c) {
-    run_to(period_ * static_cast<double>(++cycles_));
-    Vector end(state_.z.size() + state_.v.size());
-    end << state_.z, state_.v;
-    z_size_ = std::max(0.9 * z_size_, state_.z.cwiseAbs().maxCoeff());
-    v_size_ = std::max(0.9 * v_size_, state_.v.cwiseAbs().maxCoeff());
-    ends_.insert(ends_.begin(), std::move(end));
-    if (ends_.size() > 2 * static_cast<std::size_t>(kMostCycles) + 1) ends_.pop_back();
+/// One cycle more, whose figures are added where it is watched. False: ended.
+bool CycleRun::cycle(FigureObserver* watch, FigureSum* figures) {
+  if (options_.go_on && !options_.go_on()) {
+    result_.ended = true;
+    return false;
   }
+  std::vector<Observer*> observers;
+  if (watch != nullptr) observers.push_back(watch);
+  run_to(options_.period * static_cast<double>(++cycles_), observers);
+  decay_.add(state_.z, state_.v);
+  if (watch != nullptr) figures->add(watch->figures());
+  return true;
 }
 
-int CycleRun::repeats() const {
-  const Eigen::Index n = state_.z.size();
-  const auto same = [&](const Vector& a, const Vector& b) {
-    return (a - b).head(n).cwiseAbs().maxCoeff() <= kRepeats * z_size_ &&
-           (a - b).tail(n).cwiseAbs().maxCoeff() <= kRepeats * std::max(v_size_, 1e-300);
+CycleRunResult CycleRun::run() {
+  try {
+    if (!settle()) result_ = {.run = {}, .motion = {}, .ended = true};
+  } catch (const SolverError& error) {
+    result_ = {};
+    result_.run.reason = error.what();
+  }
+  return std::move(result_);
+}
+
+/// False: ended.
+bool CycleRun::settle() {
+  const int half = options_.cycles / 2;
+  std::vector<CycleFigures> watched;
+  FigureObserver watch(channels_, false);
+  for (int c = 0; c < 2 * half; ++c) {
+    FigureSum one;
+    if (!cycle(c < half ? nullptr : &watch, &one)) return false;
+    if (c >= half) watched.push_back(one.all);
+    if (const auto found = decay_.repeats()) {
+      of_repetitions(*found);
+      return !result_.ended;
+    }
+  }
+  of_statistics(watched);
+  return true;
+}
+
+void CycleRun::of_repetitions(const CycleDecay::Repetition& found) {
+  SweptRun& run = result_.run;
+  run.repeats = run.cycles = found.cycles;
+  const auto repetition = [&](CycleFigures& figures) {
+    FigureObserver watch(channels_, true);
+    FigureSum sum;
+    for (int c = 0; c < found.cycles; ++c)
+      if (!cycle(&watch, &sum)) return false;
+    figures = sum.all;
+    return true;
   };
-  for (std::size_t k = 1; k <= static_cast<std::size_t>(kMostCycles) && 2 * k < ends_.size(); ++k)
-    if (same(ends_[0], ends_[k]) && same(ends_[k], ends_[2 * k])) return static_cast<int>(k);
-  return 0;
-}
-
-void CycleRun::sample(int cycles, int count, bool shifted, const std::function<void(const State&, int)>& at) {
-  for (int i = 0; i < cycles * count; ++i) {
-    const double cycle = i / count, shift = shifted ? std::fmod(kGolden * cycle, 1.0) : 0.0;
-    const double t = period_ * (static_cast<double>(cycles_) + cycle + (i % count + shift) / count);
-    if (t > state_.t) run_to(t);
-    at(state_, i);
+  CycleFigures before, now;
+  if (!repetition(before)) return;
+  while (true) {
+    if (!repetition(now)) return;
+    const Vector of_mean = (now.mean - before.mean).cwiseAbs();
+    const Vector change = of_mean.cwiseMax((now.deviation() - before.deviation()).cwiseAbs())
+                              .cwiseMax((now.lowest - before.lowest).cwiseAbs())
+                              .cwiseMax((now.highest - before.highest).cwiseAbs());
+    run.mean_error = of_mean.unaryExpr([&](double of) { return found.left(of); });
+    run.error = 0.0;
+    for (Eigen::Index c = 0; c < change.size(); ++c)
+      if (const double largest = now.largest()[c]; largest > 0.0)
+        run.error = std::max(run.error, found.left(change[c]) / largest);
+    if (run.error <= options_.tolerance || cycles_ >= options_.cycles) break;
+    before = now;
   }
-  cycles_ += cycles;
-  run_to(period_ * static_cast<double>(cycles_));
+  run.mean = now.mean;
+  run.deviation = now.deviation();
+  run.lowest = now.lowest;
+  run.highest = now.highest;
+  sample(found.cycles);
 }
 
-void find_statistics(CycleRun& run, const System& system, const std::vector<std::string>& names, int cycles,
-                     SweptRun& result) {
-  const auto count = static_cast<Eigen::Index>(names.size());
-  const std::vector<Channel> channels = find_channels(system, names);
-  result.cycles = cycles;
-  result.mean = result.mean_error = result.deviation = Vector::Zero(count);
-  result.lowest = Vector::Constant(count, INFINITY);
-  result.highest = Vector::Constant(count, -INFINITY);
-  Eigen::MatrixXd batches = Eigen::MatrixXd::Zero(count, kBatches);
-  const int all = cycles * kRunSamples, batch = std::max(1, all / kBatches);
-  Vector squares = Vector::Zero(count), values(count);
-  std::array<Vector, 3> sizes;  // largest in the first batch, the one in the middle and the last
-  sizes.fill(Vector::Zero(count));
-  Assembler assembler(system);
-  run.sample(cycles, kRunSamples, true, [&](const State& at, int i) {
-    assembler.set_time(at.t);
-    for (Eigen::Index c = 0; c < count; ++c)
-      values[c] = channels[static_cast<std::size_t>(c)].evaluate(assembler, at);
-    result.mean += values / all;
-    squares += values.cwiseAbs2() / all;
-    batches.col(std::min(i / batch, kBatches - 1)) += values;
-    for (int part = 0; part < 3; ++part)
-      if (i / batch == part * (kBatches - 1) / 2)
-        sizes[idx(part)] = sizes[idx(part)].cwiseMax(values.cwiseAbs());
-    result.lowest = result.lowest.cwiseMin(values);
-    result.highest = result.highest.cwiseMax(values);
-  });
-  for (Eigen::Index c = 0; c < count; ++c)
+void CycleRun::sample(int cycles) {
+  const int count = (options_.samples + cycles - 1) / cycles;
+  for (int i = 0; i < cycles * count; ++i) {
+    const double t = options_.period * (static_cast<double>(cycles_) + static_cast<double>(i) / count);
+    if (t > state_.t) run_to(t, {});
+    result_.motion.push_back(state_.z);
+  }
+}
+
+/// Statistics of cycles that do not repeat, and why there are none of a motion that grows.
+void CycleRun::of_statistics(const std::vector<CycleFigures>& cycles) {
+  SweptRun& run = result_.run;
+  const auto all = static_cast<int>(cycles.size());
+  FigureSum sum;
+  std::vector<FigureSum> batches(kBatches);
+  for (int c = 0; c < all; ++c) {
+    sum.add(cycles[static_cast<std::size_t>(c)]);
+    batches[static_cast<std::size_t>(c * kBatches / all)].add(cycles[static_cast<std::size_t>(c)]);
+  }
+  run.cycles = all;
+  run.mean = sum.all.mean;
+  run.deviation = sum.all.deviation();
+  run.lowest = sum.all.lowest;
+  run.highest = sum.all.highest;
+  run.mean_error = Vector::Zero(run.mean.size());
+  for (const FigureSum& batch : batches) run.mean_error += (batch.all.mean - run.mean).cwiseAbs2();
+  run.mean_error = kStudent * (run.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
+  // Largest values up to the end of the first batch, the one in the middle and the last.
+  std::array<Vector, 3> sizes;
+  for (std::size_t part = 0; part < 3; ++part) sizes[part] = batches[part * (kBatches - 1) / 2].all.largest();
+  for (Eigen::Index c = 0; c < run.mean.size(); ++c)
     if (sizes[0][c] > 0.0 && sizes[1][c] > kUnbounded * sizes[0][c] &&
         !(sizes[2][c] <= kUnbounded * sizes[1][c]))
-      result.reason =
-          "the motion grows without bound, a thousandfold in less than " + std::to_string(cycles) + " cycles";
-  result.deviation = (squares - result.mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  for (int b = 0; b < kBatches; ++b) {
-    const int size = b + 1 < kBatches ? batch : all - batch * (kBatches - 1);
-    result.mean_error += (batches.col(b) / size - result.mean).cwiseAbs2();
-  }
-  result.mean_error = kStudent * (result.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
+      run.reason =
+          "the motion grows without bound, a thousandfold in less than " + std::to_string(all) + " cycles";
+}
+
+}  // namespace
+
+CycleRunResult run_cycles(const System& system, State start, const CycleRunOptions& options) {
+  return CycleRun(system, std::move(start), options).run();
+}
+
+std::optional<std::vector<CycleRunResult>> run_at_speeds(const System& system,
+                                                         const std::vector<RunStart>& starts, double turns,
+                                                         const CycleRunOptions& options, int threads,
+                                                         const std::function<bool(double)>& progress) {
+  std::vector<CycleRunResult> results(starts.size());
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> stop{false};
+  for_all(starts.size(), threads, [&](std::size_t i, std::size_t thread) {
+    const double speed = results[i].run.speed = starts[i].speed;
+    results[i].run.reason = starts[i].why_not;
+    if (!starts[i].why_not.empty()) return;
+    const System here = at_speed(system, reference_direction(system) * speed);
+    State state = State::initial(here);
+    if (starts[i].z.size() > 0) {
+      state.z = starts[i].z;
+      state.v = starts[i].v;
+    }
+    CycleRunOptions of = options;
+    of.period = turns * kTwoPi / speed;
+    // Progress and interrupts are the affair of the thread that called.
+    of.go_on = [&] {
+      if (thread == 0 && !stop && progress)
+        stop = !progress(static_cast<double>(done) / static_cast<double>(starts.size()));
+      return !stop;
+    };
+    results[i] = run_cycles(here, std::move(state), of);
+    results[i].run.speed = speed;
+    ++done;
+  });
+  if (stop) return std::nullopt;
+  return results;
 }
 
 }  // namespace drev

@@ -1,47 +1,57 @@
 #pragma once
 /// A run in time over whole cycles, to find what a train does where no periodic motion that is known is stable.
 /// Internal to sweep_nonlinear().
+///
+/// It ends as soon as its motion repeats (cycle_decay.hpp). Figures are then of whole repetitions, each compared with
+/// the one before: what they change by, and will by the ratio at which cycles come closer, is their error. A run that
+/// does not repeat in the first half of its cycles has the figures of the second, in which it may repeat still.
+///
+/// Means are integrals over the steps (Gauss's rule on the motion inside each); extremes are located (Peaks), but those of
+/// statistics are of the ends of steps and two points inside each.
 #include <drev/core/channel.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace drev {
 
-class CycleRun {
- public:
-  /// system: at its speed. period: of a cycle [s].
-  CycleRun(const System& system, double period, State start);
-
-  /// Runs `cycles` more. Throws SolverError where the run fails.
-  void advance(int cycles);
-  /// In how many cycles, of the last ones, the motion repeats to kRepeats of itself; 0: not within kMostCycles.
-  int repeats() const;
-  /// Runs `cycles` more, and calls at each of `count` even times of a cycle: its start among them, or, where they are
-  /// shifted, others in each cycle, so that a motion that repeats is seen all over.
-  void sample(int cycles, int count, bool shifted, const std::function<void(const State&, int)>& at);
-  const State& state() const { return state_; }
-
-  static constexpr double kRepeats = 1e-6;
-  static constexpr int kMostCycles = 12;
-
- private:
-  void run_to(double t);
-
-  const System& system_;
-  double period_, tolerance_ = 1e-9;
-  bool exact_;
-  State state_;
-  long cycles_ = 0;
-  std::vector<Vector> ends_;  // (z, v) at the end of the last cycles, the last one first
-  double z_size_ = 0.0, v_size_ = 0.0;
+struct CycleRunOptions {
+  double period = 0.0;     ///< of a cycle [s]
+  int cycles = 0;          ///< at most, before what is watched of a motion that repeats; >= 40
+  double tolerance = 0.0;  ///< of the figures of a motion that repeats, beside each channel's largest value
+  std::vector<std::string> channels = {};  ///< whose figures are found
+  int samples = 0;                         ///< of a motion that repeats
+  std::function<bool()> go_on = {};        ///< asked before each cycle; false: end
 };
 
-/// Figures of the channels over `cycles` more cycles of a run, and why there are none of a motion that grows.
-void find_statistics(CycleRun& run, const System& system, const std::vector<std::string>& channels,
-                     int cycles, SweptRun& result);
+struct CycleRunResult {
+  SweptRun run;  ///< without its speed
+  /// Unknowns of a motion that repeats at `samples` even times (or some more, a whole number a cycle), the first where
+  /// a cycle begins.
+  std::vector<Vector> motion;
+  bool ended = false;  ///< by go_on: there is nothing
+};
+
+/// Where a run begins.
+struct RunStart {
+  double speed = 0.0;        ///< of the reference shaft, > 0 [rad/s]
+  Vector z, v;               ///< empty: the model's initial conditions
+  std::string why_not = {};  ///< not empty: there is no run, for this reason
+};
+
+/// system: at its speed; the cycle begins at the state given. A run that fails has its reason.
+CycleRunResult run_cycles(const System& system, State start, const CycleRunOptions& options);
+
+/// A run from each start, side by side on threads (0: one for each processor), each the same whatever their number;
+/// options: without period and go_on; turns: of the reference shaft in a cycle. progress: asked by this thread, false ends
+/// all; there is nothing then.
+std::optional<std::vector<CycleRunResult>> run_at_speeds(const System& system,
+                                                         const std::vector<RunStart>& starts, double turns,
+                                                         const CycleRunOptions& options, int threads,
+                                                         const std::function<bool(double)>& progress);
 
 }  // namespace drev

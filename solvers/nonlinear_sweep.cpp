@@ -5,14 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <optional>
 
-#include "solvers/at_speed.hpp"
-#include "solvers/cycle_run.hpp"
-#include "solvers/periodic/branch_tracer.hpp"
-#include "solvers/periodic/motion_sections.hpp"
+#include "solvers/sweeper.hpp"
 
 namespace drev {
 
@@ -23,62 +17,13 @@ constexpr int kMostRows = 1100;  // of Newton's matrix with more harmonics: 0.3 
 constexpr int kMostLaws = 50;    // each of 49 rows with the fewest harmonics: 3 s a step
 constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
 constexpr double kTail = 1e-5;   // of the linear motion
-constexpr double kTraced =
-    1e-2;  // error of motions by the harmonics that curves are traced with, at the first
-constexpr double kSameSpeed = 1e-12;  // relative
-constexpr double kPerturbation = 1e-3;
 constexpr int kMostBranches = 12;
 constexpr double kSameFold = 1e-7;  // of the speed: a fold with more harmonics
 constexpr int kDefaultOrders = 12;
-constexpr double kBalanced = 1e-6;  // N m left over that a run may have
 
 using Kind = BranchEvent::Kind;
 
-/// Motions of one number of cycles.
-struct Family {
-  std::unique_ptr<LawBalance> balance;
-  int harmonics = 0;
-  std::vector<int> lines;  // harmonics of the orders asked for; beyond all: none
-};
-
-struct Traced {
-  int cycles = 1;
-  Branch branch;
-};
-
-class Sweeper {
- public:
-  Sweeper(const System& system, const NonlinearSweepOptions& options);
-  NonlinearSweep run();
-
- private:
-  Family& family(int cycles);
-  BranchTracer tracer(int cycles);
-  bool tell(double part) const { return !options_.progress || options_.progress(part); }
-  void trace(int cycles, double speed, const Vector& x);
-  std::optional<Vector> widened(LawBalance& balance, double speed, const Vector& x) const;
-  bool holds(int cycles, double speed, Vector& x);
-  bool start_at(double speed);
-  bool known(double speed, const Vector& x);
-  void collect(std::size_t number);
-  SweptMotion motion_of(int cycles, const BranchPoint& point) const;
-  SweptMotion asked_for(int cycles, const BranchPoint& point);
-  const SweptMotion* nearest(double speed) const;
-  bool stable_at(double speed) const;
-  bool any_at(double speed) const;
-  void fill_with_runs();
-  bool run_at(double speed);
-  void find_jumps();
-
-  const System& system_;
-  NonlinearSweepOptions options_;
-  double low_ = 0.0, high_ = 0.0;
-  std::unique_ptr<MotionSections> sections_;
-  std::unique_ptr<FloquetProduct> stability_;
-  mutable std::map<int, Family> families_;
-  std::vector<Traced> traced_;
-  NonlinearSweep sweep_;
-};
+}  // namespace
 
 Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
     : system_(system), options_(options) {
@@ -95,6 +40,7 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   check.non_negative("turns", options.turns, "");
   check.within("tolerance", options.tolerance, 1e-12, 0.1, "");
   check.within("run_cycles", options.run_cycles, 40, 1e6, "");
+  check.non_negative("threads", options.threads, "");
   if (system.size() == 0)
     findings.push_back({system.name(), "", "", "", "every node is prescribed: nothing vibrates"});
   if (!system.reference())
@@ -131,13 +77,23 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   if (system.size() <= FloquetProduct::kMostUnknowns) stability_ = std::make_unique<FloquetProduct>(system);
 }
 
-Family& Sweeper::family(int cycles) {
+/// Of curves: with twice as many Newton's matrix has its most rows.
+int Sweeper::most_harmonics(const LawBalance& balance) const {
+  return std::max(kFewestHarmonics, kMostRows / (4 * balance.inputs()));
+}
+
+bool Sweeper::first_of(int cycles) const {
+  return std::none_of(traced_.begin(), traced_.end(),
+                      [&](const TracedBranch& one) { return one.cycles == cycles; });
+}
+
+SweepFamily& Sweeper::family(int cycles) {
   const auto found = families_.find(cycles);
   if (found != families_.end()) {
     found->second.balance->set_harmonics(found->second.harmonics);
     return found->second;
   }
-  Family& made = families_[cycles];
+  SweepFamily& made = families_[cycles];
   std::vector<Finding> none;
   made.balance = std::make_unique<LawBalance>(system_, cycles * sweep_.turns, options_.balance, none);
   for (const double order : sweep_.orders) {
@@ -146,7 +102,7 @@ Family& Sweeper::family(int cycles) {
     made.lines.push_back(whole ? static_cast<int>(std::round(line)) : 1 << 30);
   }
   // As many harmonics as the linear motion has, and as many again, for the kinks.
-  const int most = std::max(kFewestHarmonics, kMostRows / (4 * made.balance->inputs()));
+  const int most = most_harmonics(*made.balance);
   int needed = kFewestHarmonics;
   if (cycles == 1) {
     const int probe = std::min(kProbe, most);
@@ -163,7 +119,7 @@ Family& Sweeper::family(int cycles) {
   } else {
     needed = cycles * family(1).harmonics;
   }
-  Family& again = families_[cycles];
+  SweepFamily& again = families_[cycles];
   again.harmonics = std::min(needed, most);
   again.balance->set_harmonics(again.harmonics);
   return again;
@@ -175,15 +131,15 @@ BranchTracer Sweeper::tracer(int cycles) {
           {.low = low_, .high = high_, .cycles = cycles, .most_rows = kMostRows}};
 }
 
-void Sweeper::trace(int cycles, double speed, const Vector& x) {
+void Sweeper::trace(int cycles, double speed, const Vector& x, bool from_run) {
   if (traced_.size() >= static_cast<std::size_t>(kMostBranches)) return;
-  traced_.push_back({cycles, tracer(cycles).trace(speed, x)});
+  traced_.push_back({cycles, tracer(cycles).trace(speed, x), from_run ? speed : 0.0});
   collect(traced_.size() - 1);
 }
 
 /// Whether a curve of single cycles passes the motion.
 bool Sweeper::known(double speed, const Vector& x) {
-  for (const Traced& one : traced_) {
+  for (const TracedBranch& one : traced_) {
     if (one.cycles != 1) continue;
     BranchTracer tracer = this->tracer(1);
     for (std::size_t i = 0; i + 1 < one.branch.points.size(); ++i) {
@@ -211,10 +167,9 @@ std::optional<Vector> Sweeper::widened(LawBalance& balance, double speed, const 
 /// Whether a motion is one of the train, not of its few harmonics: it is the same with twice as many. The first of a number
 /// of cycles gives their curves as many as it needs.
 bool Sweeper::holds(int cycles, double speed, Vector& x) {
-  Family& of = family(cycles);
+  SweepFamily& of = family(cycles);
   LawBalance& balance = *of.balance;
-  const bool first =
-      std::none_of(traced_.begin(), traced_.end(), [&](const Traced& one) { return one.cycles == cycles; });
+  const bool first = first_of(cycles);
   MotionSections::Figures coarse, fine;
   double error = NAN;
   while (sections_->find(balance, x, speed, of.lines, coarse)) {
@@ -240,7 +195,7 @@ bool Sweeper::start_at(double speed) {
 }
 
 SweptMotion Sweeper::motion_of(int cycles, const BranchPoint& point) const {
-  Family& of = families_.at(cycles);
+  SweepFamily& of = families_.at(cycles);
   of.balance->set_harmonics(point.harmonics);
   MotionSections::Figures figures;
   SweptMotion motion;
@@ -263,7 +218,7 @@ SweptMotion Sweeper::motion_of(int cycles, const BranchPoint& point) const {
 
 /// The motion with twice as many harmonics until its error is small enough.
 SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
-  Family& of = family(cycles);
+  SweepFamily& of = family(cycles);
   LawBalance& balance = *of.balance;
   SweptMotion motion = motion_of(cycles, point);
   motion.asked = true;
@@ -290,10 +245,11 @@ SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
 }
 
 void Sweeper::collect(std::size_t number) {
-  const Traced& traced = traced_[number];
+  const TracedBranch& traced = traced_[number];
   SweptBranch branch;
   branch.turns = traced.cycles * sweep_.turns;
   branch.whole = traced.branch.whole;
+  branch.run_speed = traced.run_speed;
   BranchTracer tracer = this->tracer(traced.cycles);
   const auto& points = traced.branch.points;
   const int harmonics = family(traced.cycles).harmonics;
@@ -333,103 +289,6 @@ void Sweeper::collect(std::size_t number) {
         {kind, place, event.speed, event.error, motion_of(traced.cycles, event.point), {}});
   }
   sweep_.branches.push_back(std::move(branch));
-}
-
-const SweptMotion* Sweeper::nearest(double speed) const {
-  const SweptMotion* best = nullptr;
-  for (const SweptBranch& branch : sweep_.branches)
-    for (const SweptMotion& motion : branch.motions)
-      if (motion.z.size() > 0 &&
-          (best == nullptr || std::abs(motion.speed - speed) < std::abs(best->speed - speed)))
-        best = &motion;
-  return best;
-}
-
-bool Sweeper::any_at(double speed) const {
-  for (const SweptBranch& branch : sweep_.branches)
-    for (const SweptMotion& motion : branch.motions)
-      if (motion.asked && std::abs(motion.speed - speed) <= kSameSpeed * speed) return true;
-  return false;
-}
-
-bool Sweeper::stable_at(double speed) const {
-  for (const SweptBranch& branch : sweep_.branches)
-    for (const SweptMotion& motion : branch.motions)
-      if (motion.asked && std::abs(motion.speed - speed) <= kSameSpeed * speed &&
-          (motion.stable || !motion.judged))
-        return true;
-  return false;
-}
-
-/// A run at a speed. True: it settled on a motion whose curve was new.
-bool Sweeper::run_at(double speed) {
-  SweptRun result;
-  result.speed = speed;
-  const System system = at_speed(system_, reference_direction(system_) * speed);
-  const SweptMotion* near = nearest(speed);
-  State state = State::initial(system);
-  if (near != nullptr) {
-    state.z = (1.0 + kPerturbation) * near->z;
-    state.v = (1.0 + kPerturbation) * near->v;
-    if (near->left_over.size() > 0 && near->left_over.cwiseAbs().maxCoeff() > kBalanced) {
-      result.reason = "the mean torque does not balance: the train would run away";
-      sweep_.runs.push_back(std::move(result));
-      return false;
-    }
-  }
-  const double period = sweep_.turns * kTwoPi / speed;
-  try {
-    CycleRun run(system, period, std::move(state));
-    run.advance(options_.run_cycles / 2);
-    int cycles = run.repeats();
-    if (cycles == 0) {
-      run.advance(options_.run_cycles / 2);
-      cycles = run.repeats();
-    }
-    if (cycles > 0) {
-      Family& of = family(cycles);
-      LawBalance& balance = *of.balance;
-      const int samples = 4 * of.harmonics / cycles;
-      std::vector<Vector> motion;
-      run.sample(cycles, samples, false, [&](const State& at, int) { motion.push_back(at.z); });
-      // The run begins where phi is a whole number of cycles.
-      Vector x = Vector::Zero(balance.size());
-      const auto all = static_cast<int>(motion.size());
-      const Eigen::Index block = 2 * of.harmonics + 1;
-      for (int s = 0; s < all; ++s) {
-        const double psi = balance.direction() * kTwoPi * s / all;
-        const Vector inputs = balance.inputs_of(motion[static_cast<std::size_t>(s)]);
-        for (int i = 0; i < balance.inputs(); ++i) {
-          x[i * block] += inputs[i] / all;
-          for (int n = 1; n <= of.harmonics; ++n) {
-            x[i * block + 2 * n - 1] += 2.0 / all * inputs[i] * std::cos(n * psi);
-            x[i * block + 2 * n] -= 2.0 / all * inputs[i] * std::sin(n * psi);
-          }
-        }
-      }
-      BranchTracer tracer = this->tracer(cycles);
-      if (tracer.solve(speed, x) && holds(cycles, speed, x)) {
-        const std::size_t before = traced_.size();
-        trace(cycles, speed, x);
-        if (traced_.size() > before && stable_at(speed)) return true;
-      }
-    }
-    result.repeats = cycles;
-    std::vector<std::string> sections;
-    for (const SectionRows& row : sections_->sections()) sections.push_back(row.name);
-    find_statistics(run, system, sections, options_.run_cycles / 2, result);
-  } catch (const SolverError& error) {
-    result.reason = error.what();
-  }
-  sweep_.runs.push_back(std::move(result));
-  return false;
-}
-
-void Sweeper::fill_with_runs() {
-  for (std::size_t i = 0; i < options_.speeds.size(); ++i) {
-    if (!tell(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(options_.speeds.size()))) return;
-    if (!stable_at(options_.speeds[i])) run_at(options_.speeds[i]);
-  }
 }
 
 void Sweeper::find_jumps() {
@@ -477,8 +336,6 @@ NonlinearSweep Sweeper::run() {
   find_jumps();
   return std::move(sweep_);
 }
-
-}  // namespace
 
 NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options) {
   refuse_controllers(system, "a sweep of speeds");

@@ -7,8 +7,8 @@
 /// arc, through folds (branch_tracer.hpp); stability by the Floquet multipliers of each motion (floquet.hpp). The
 /// curves start at the motion with closed contacts, from the last speed, the first and those between that no
 /// curve has reached. Where no motion that was found is stable, a run in time from the nearest shows what the train does:
-/// a motion of several cycles, which then gets a curve of its own, or none that repeats, whose statistics are
-/// given.
+/// a motion that repeats after one or several cycles, whose harmonics then start a curve of its own, where they are
+/// enough (else its figures are given), or none that repeats, whose statistics are given.
 ///
 /// What is not sought: curves that neither closed contacts nor a run leads to. Motions between whole numbers of
 /// cycles do not repeat; they are described by statistics.
@@ -24,6 +24,7 @@
 
 #include <complex>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct NonlinearSweepOptions {
   double turns = 0.0;       ///< of the reference shaft in a cycle; 0: the fewest in which everything repeats
   double tolerance = 1e-5;  ///< of the error at the speeds asked for; 1e-12 to 0.1; missed: the error says so
   bool runs = true;         ///< runs in time where nothing stable was found
-  int run_cycles = 400;     ///< of a run, half of it for statistics; >= 40
+  int run_cycles = 400;     ///< of a run at most, half of it for statistics; >= 40
+  int threads = 0;          ///< of the runs, >= 0; 0: one for each processor. The result is the same with any
   std::function<bool(double part)> progress = {};  ///< false: stop
 };
 
@@ -58,6 +60,9 @@ struct SweptBranch {
   double turns = 0.0;                ///< of the reference shaft in the motion's cycle
   std::vector<SweptMotion> motions;  ///< along the arc
   bool whole = false;                ///< followed to both ends of the speeds, or closed in itself
+  /// Of the run in time whose motion, by its harmonics, the curve was found from [rad/s]; 0: of none, it was found from
+  /// closed contacts.
+  double run_speed = 0.0;
 };
 
 enum class BranchChange {
@@ -78,16 +83,22 @@ struct SweptChange {
   Vector jumps_to;
 };
 
-/// A run in time where no motion that was found is stable. Vectors over the sections, over the last half.
+/// A run in time where no motion that was found is stable. Vectors over the sections: of the motion that it repeats, or
+/// else of the last half of its cycles.
 struct SweptRun {
   double speed = 0.0;  ///< rad/s
-  int cycles = 0;
+  int cycles = 0;      ///< that the figures are of
   std::string reason;  ///< why there is none; empty: there is
-  /// Cycles after which the run repeats, to 1e-6 of itself: a stable motion that harmonic balance did not find with its
-  /// harmonics. 0: it does not within 12 cycles, or there is no run.
+  /// Cycles after which the run repeats, to 1e-6 of itself, with what the decay of the distance between cycles leaves to
+  /// come: a stable motion that harmonic balance did not find with its harmonics. 0: it does not within 12 cycles,
+  /// or there is no run.
   int repeats = 0;
-  Vector mean, mean_error;  ///< half of the 95 % interval, by batch means
-  Vector deviation, lowest, highest;
+  /// Of a run that repeats, beside each section's largest value: largest change of mean, deviation, lowest and highest
+  /// value from the repetition before, and what the decay leaves of it. NaN: it does not repeat.
+  double error = std::numeric_limits<double>::quiet_NaN();
+  /// Of a run that repeats, its mean's own change, as error; else half of the 95 % interval, by batch means.
+  Vector mean, mean_error;
+  Vector deviation, lowest, highest;  ///< extremes of a run that repeats are located
 };
 
 struct NonlinearSweep {

@@ -19,6 +19,8 @@ double read_plain(const char* option, const std::string& text, Range range, std:
 /// A part of one, as 0.01 or 1%. also: what else the option may be, such as "off, or ".
 double read_part(const char* option, const std::string& text, Range range, const std::string& also,
                  std::vector<Finding>& findings);
+/// Of --jobs.
+inline constexpr int kMostThreads = 1024;
 /// A whole number from 1 to `most`, which may be unknown. what: behind the range in the message, such as
 /// ", the model's elastic modes".
 int read_count(const char* option, const std::string& text, std::optional<int> most, const std::string& what,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
@@ -39,6 +40,7 @@ void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
     const NonlinearSweepOptions options = nonlinear_options(line, c.request, findings);
     if (!findings.empty()) throw ModelError(std::move(findings));
     sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
+    end_if_interrupted();
     for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
   }
   std::sort(missing.begin(), missing.end());

@@ -24,6 +24,8 @@ const std::vector<CommandEntry>& commands() {
                                  "repeats in; default: found"};
   static const OptionEntry motion_tolerance{
       "--tolerance", "T", "Of a model with contacts: relative error of a motion; default: 1e-5"};
+  static const OptionEntry run_threads{
+      "--jobs", "N", "Of a model with contacts: so many runs in time at once; default: one a processor"};
   static const OptionEntry sweep_report{"--report", "FILE",
                                         "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, "
                                         "criticals, Campbell diagram; of contacts: "
@@ -58,6 +60,9 @@ const std::vector<CommandEntry>& commands() {
             {"--rainflow", "CHANNEL,...",
              "Counts load cycles (ASTM E1049) of channels; sections with an S-N line are counted anyway",
              commas},
+            {"--orders-of", "NODE",
+             "Of a run from rest without nominal speed: node whose turns orders are of; default: where the "
+             "strongest torque with orders acts"},
             {"--energy", "",
              "Work, heat and largest stored energy of each element over the span of the figures", none},
             {"--every", "SECONDS",
@@ -110,6 +115,7 @@ const std::vector<CommandEntry>& commands() {
                    {"--absolute-sum", "", "Sums of the orders' amplitudes without their phases, too", none},
                    cycle,
                    motion_tolerance,
+                   run_threads,
                    {"--out", "DIR",
                     "Creates DIR with sweep.csv (of contacts: branches.csv), orders.csv, criticals.csv "
                     "(changes.csv) and summary.json; or FILE.h5 with the same tables"},
@@ -140,6 +146,7 @@ const std::vector<CommandEntry>& commands() {
                     "Where the mean torque that is left over is taken up; default: nowhere"},
                    cycle,
                    motion_tolerance,
+                   run_threads,
                    {"--out", "DIR", "Creates DIR with class.json"},
                    {"--report", "FILE", "Writes FILE.html, or FILE.pdf: the calculation as it is handed in"},
                    run,

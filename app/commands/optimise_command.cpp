@@ -20,7 +20,6 @@ namespace drev::app {
 namespace {
 
 constexpr std::size_t kTold = 10;  // of the best variants
-constexpr int kMostOptimumThreads = 1024;
 
 struct OptimumRequest {
   VariantStudy study;
@@ -50,7 +49,7 @@ OptimumRequest request_optimum(const CommandLine& line) {
   count("--variants", static_cast<int>(OptimumOptions::kMostVariants), options.variants);
   count("--seed", 1000000000, options.seed);
   options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  count("--jobs", kMostOptimumThreads, options.threads);
+  count("--jobs", kMostThreads, options.threads);
   std::vector<Finding> of_words;  // study_of() says them
   double combinations = 1.0;
   for (const Varied& v :

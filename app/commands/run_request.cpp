@@ -16,6 +16,7 @@
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/report/report_file.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -50,6 +51,19 @@ void check_channels(const ModelRequest& model, const CommandLine& line, bool all
       }
     }
   }
+}
+
+/// A node that can turn without a nominal speed.
+void check_orders_of(const ModelRequest& model, const CommandLine& line, std::vector<Finding>& findings) {
+  const auto node = line.option("--orders-of");
+  if (!node) return;
+  const std::vector<std::string>& names = model.system.node_names();
+  if (std::find(names.begin(), names.end(), *node) == names.end())
+    findings.push_back({kCommandLine, "--orders-of", *node, "", "is none of the nodes"});
+  else if (model.system.reference_speed() != 0.0 ||
+           speed_range(model.system, model.model_case.duration).fastest > 0.0)
+    findings.push_back({kCommandLine, "--orders-of", *node, "",
+                        "is for models in which nothing turns nominally; orders are of the reference shaft"});
 }
 
 /// The tolerance of exact propagation, or of controlled steps.
@@ -250,6 +264,7 @@ RunRequest request_run(const CommandLine& given) {
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);
   check_outputs(line, model ? model->model_case.files : std::vector<std::string>{}, findings);
   if (model) check_channels(*model, line, parameters_right, findings);
+  if (model) check_orders_of(*model, line, findings);
   blame_file(line, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   const std::vector<std::string> formats = line.list("--format").value_or(std::vector<std::string>{});
@@ -274,7 +289,8 @@ RunRequest request_run(const CommandLine& given) {
           line.option("--events"),
           line.keeps_history,
           line.list("--rainflow").value_or(std::vector<std::string>{}),
-          line.options.contains("--energy")};
+          line.options.contains("--energy"),
+          line.option("--orders-of").value_or("")};
 }
 
 }  // namespace drev::app

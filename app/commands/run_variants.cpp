@@ -28,8 +28,6 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kMostThreads = 1024;
-
 /// Options that a table has no use for, and why.
 constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--accuracy", "is for single runs, whose figures it finds with their errors"},
@@ -39,6 +37,7 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--reduce", "is for single runs"},
     {"--events", "is for one run"},
     {"--rainflow", "is for single runs"},
+    {"--orders-of", "is for single runs"},
     {"--every", "is for single runs, which have a history"},
     {"--format", "is for single runs, which have a history"}};
 

@@ -107,8 +107,6 @@ std::string words_of(const CommandLine& line) {
   return words;
 }
 
-namespace {}  // namespace
-
 NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequest& request,
                                         std::vector<Finding>& findings) {
   NonlinearSweepOptions options;
@@ -120,6 +118,8 @@ NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequ
     options.turns = read_plain("--cycle", *turns, {1e-6, 1000.0}, findings);
   if (const auto tolerance = line.option("--tolerance"))
     options.tolerance = read_plain("--tolerance", *tolerance, {1e-12, 0.1}, findings);
+  if (const auto jobs = line.option("--jobs"))
+    options.threads = read_count("--jobs", *jobs, kMostThreads, "", findings);
   const auto shown = std::make_shared<Progress>();
   options.progress = [shown](double part) {
     shown->update(part);
@@ -130,7 +130,7 @@ NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequ
 
 void refuse_nonlinear_options(const CommandLine& line) {
   std::vector<Finding> findings;
-  for (const char* option : {"--cycle", "--tolerance"})
+  for (const char* option : {"--cycle", "--tolerance", "--jobs"})
     if (line.option(option))
       findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
   if (!findings.empty()) throw ModelError(std::move(findings));
@@ -153,6 +153,7 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
+  end_if_interrupted();
   const Json object = line.json || out ? branches_object(request.model, options, sweep) : Json();
   if (out)
     write_tables(*out,

@@ -14,7 +14,7 @@ namespace drev::app {
 /// ModelError with everything wrong.
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written);
 
-/// Of a model with laws that are no straight lines: --cycle and --tolerance besides; what is wrong goes to findings. Shows
+/// Of a model with laws that are no straight lines: --cycle, --tolerance and --jobs besides; what is wrong goes to findings. Shows
 /// how far it is, and ends at Ctrl-C.
 NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequest& request,
                                         std::vector<Finding>& findings);

@@ -92,15 +92,22 @@ Json waterfall_object(const OrderTracks& tracks) {
   return {{"orders", tracks.orders}, {"speed_rpm", std::move(speeds)}, {"channels", std::move(channels)}};
 }
 
-/// The nominal speed over the time, for histories over the speed.
-Json speeds_object(const System& system, double end) {
+/// The nominal speed over the time, for histories over the speed; where nothing turns nominally that of the windows in
+/// which orders are tracked.
+Json speeds_object(const System& system, const OrderTracks& tracks, double end) {
   constexpr int kPoints = 512;
   Json times = Json::array(), speeds = Json::array();
-  for (int i = 0; i <= kPoints; ++i) {
-    times.push_back(end * i / kPoints);
-    speeds.push_back(to_rpm(std::abs(system.reference()->at(end * i / kPoints).rate)));
-  }
-  return {{"time_s", std::move(times)}, {"speed_rpm", std::move(speeds)}};
+  const auto add = [&](double time, double speed) {
+    times.push_back(time);
+    speeds.push_back(to_rpm(speed));
+  };
+  if (tracks.shaft.empty())
+    for (int i = 0; i <= kPoints; ++i)
+      add(end * i / kPoints, std::abs(system.reference()->at(end * i / kPoints).rate));
+  else
+    for (std::size_t w = 0; w < tracks.time.size(); ++w) add(tracks.time[w], tracks.speed[w]);
+  return {
+      {"shaft", text_or_null(tracks.shaft)}, {"time_s", std::move(times)}, {"speed_rpm", std::move(speeds)}};
 }
 
 }  // namespace
@@ -138,7 +145,8 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   highest = std::max(highest, kAboveSpeed * m.system.reference_speed() / kTwoPi);
   data["history"] = history_object(history);
   data["waterfall"] = result.run_up ? waterfall_object(result.run_up->waterfall) : Json();
-  data["speeds"] = result.run_up ? speeds_object(m.system, result.summary.t_end) : Json();
+  data["speeds"] =
+      result.run_up ? speeds_object(m.system, result.run_up->orders, result.summary.t_end) : Json();
   // A run-up has its orders over the speed instead (result.run_up).
   data["spectra"] = result.run_up
                         ? Json()

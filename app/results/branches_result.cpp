@@ -189,6 +189,7 @@ Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
   }
   return {{"cycle_deg", number(360.0 * branch.turns)},
           {"whole", branch.whole},
+          {"run_rpm", branch.run_speed > 0.0 ? number(to_rpm(branch.run_speed)) : Json()},
           {"speed_rpm", along(branch, [](const SweptMotion& m) { return number(to_rpm(m.speed)); })},
           {"asked", along(branch, [](const SweptMotion& m) { return Json(m.asked); })},
           {"stable", along(branch, [](const SweptMotion& m) { return m.judged ? Json(m.stable) : Json(); })},
@@ -224,10 +225,19 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
                     (error > NonlinearSweep::kTrusted || unknown
                          ? " So few harmonics tell neither their stability nor where it changes."
                          : ""));
-  if (std::any_of(sweep.runs.begin(), sweep.runs.end(), [](const SweptRun& run) { return run.repeats > 0; }))
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    if (sweep.branches[b].run_speed > 0.0)
+      notes.push_back("Curve " + std::to_string(b + 1) + " starts from the motion that a run at " +
+                      rpm_text(sweep.branches[b].run_speed) + " rpm settled on.");
+  double of_runs = -1.0;
+  for (const SweptRun& run : sweep.runs)
+    if (run.repeats > 0) of_runs = std::max(of_runs, run.error);
+  if (of_runs >= 0.0)
     notes.push_back(
         "Where a run repeats, its figures are those of a stable periodic motion that takes more "
-        "harmonics than were tried.");
+        "harmonics than were tried; from one repetition to the next they change by " +
+        digits(of_runs, 1) +
+        " of their section's largest value at most, with what the decay leaves to come.");
   if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
@@ -290,6 +300,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
     runs.push_back({{"speed_rpm", number(to_rpm(run.speed))},
                     {"cycles", run.cycles},
                     {"repeats_after", run.repeats > 0 ? Json(run.repeats) : Json()},
+                    {"error", number(run.error)},
                     {"reason", text_or_null(run.reason)},
                     {"mean", over_sections(run.mean)},
                     {"mean_error", over_sections(run.mean_error)},

@@ -195,6 +195,7 @@ Json run_up_object(const SpeedsPassed& up) {
   return {{"slowest_rpm", number(to_rpm(up.range.slowest))},
           {"fastest_rpm", number(to_rpm(up.range.fastest))},
           {"criticals", std::move(criticals)},
+          {"shaft", text_or_null(up.orders.shaft)},
           {"turns", up.turns},
           {"window", "hann"},
           {"bandwidth_orders", OrderTracking::kBandwidth / up.turns},

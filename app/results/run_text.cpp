@@ -98,6 +98,7 @@ std::string run_up_rows(const SpeedsPassed& up) {
   if (up.range.slowest < std::min(up.range.first, up.range.last) ||
       up.range.fastest > std::max(up.range.first, up.range.last))
     text += ", between " + speed_text(up.range.slowest) + " and " + speed_text(up.range.fastest);
+  if (!up.orders.shaft.empty()) text += ", actual mean speeds of " + up.orders.shaft;
   text = labelled("Run-up", text);
   std::vector<std::string> criticals;
   for (const Crossing& c : up.criticals)

@@ -24,6 +24,27 @@ constexpr int kChiefModes = 4;
 constexpr std::size_t kOrdersOfMode = 3, kLeastOrders = 3;
 constexpr double kSlower = 0.5, kFaster = 1.6;
 
+double range_of(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+/// A load's torque over two turns of its node at a speed [rad/s]; empty: it has no orders.
+std::vector<double> two_turns(const LoadTerm& term, double speed) {
+  std::vector<double> torque(kLoadSamples + 1);
+  for (int i = 0; i <= kLoadSamples; ++i) {
+    const double angle = 2.0 * kTwoPi * i / kLoadSamples;
+    torque[static_cast<std::size_t>(i)] =
+        term.load->evaluate({.nominal_angle = angle, .speed = speed, .nominal_speed = speed}).torque;
+  }
+  const double range = range_of(torque);
+  // Neither a constant nor what does not repeat within two turns has orders.
+  if (!std::isfinite(range) || !(range > 0.0) ||
+      std::abs(torque.front() - torque.back()) > kAmplitudeRounding * range)
+    return {};
+  return torque;
+}
+
 /// Phase sum of the loads for every mode, at one order.
 using Excitation = std::vector<std::complex<double>>;
 
@@ -40,20 +61,9 @@ class Orders {
   void add(const LoadTerm& term) {
     const double ratio = system_.ratio(term.node);
     if (ratio == 0.0) return;
-    std::vector<double> torque(kLoadSamples + 1);
-    for (int i = 0; i <= kLoadSamples; ++i) {
-      const double angle = 2.0 * kTwoPi * i / kLoadSamples;
-      torque[static_cast<std::size_t>(i)] =
-          term.load
-              ->evaluate({.nominal_angle = angle, .speed = ratio * rate_, .nominal_speed = ratio * rate_})
-              .torque;
-    }
-    const auto [low, high] = std::minmax_element(torque.begin(), torque.end());
-    const double range = *high - *low;
-    // Neither a constant nor what does not repeat within two turns has orders.
-    if (!std::isfinite(range) || !(range > 0.0) ||
-        std::abs(torque.front() - torque.back()) > kAmplitudeRounding * range)
-      return;
+    const std::vector<double> torque = two_turns(term, ratio * rate_);
+    if (torque.empty()) return;
+    const double range = range_of(torque);
     const Spectrum lines = spectrum(torque, 1.0);
     for (std::size_t k = 1; k <= kHighestLine; ++k) {
       if (lines.amplitude[k] < 1e-4 * range) continue;
@@ -86,6 +96,18 @@ std::vector<Crossing> find_crossings(const System& system, const ModeSet& modes,
     }
   std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) { return a.answer > b.answer; });
   return all;
+}
+
+std::string driven_node(const System& system) {
+  double largest = 0.0;
+  std::string node;
+  for (const LoadTerm& term : system.loads()) {
+    const std::vector<double> torque = two_turns(term, 0.0);
+    if (torque.empty() || !(range_of(torque) > (1.0 + kAmplitudeRounding) * largest)) continue;
+    largest = range_of(torque);
+    node = system.node_names()[static_cast<std::size_t>(term.node)];
+  }
+  return node;
 }
 
 SpeedRange speed_range(const System& system, double duration) {

@@ -12,6 +12,7 @@
 #include <drev/core/system.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
+#include <string>
 #include <vector>
 
 namespace drev::app {
@@ -26,6 +27,10 @@ struct Crossing {
 
 /// Of all orders and modes, the most excited first. rate: speed that loads are evaluated at [rad/s].
 std::vector<Crossing> find_crossings(const System& system, const ModeSet& modes, double rate);
+
+/// The node on which the torque acts whose range over two turns of its node is the largest, the first of equal ones; empty:
+/// none has orders.
+std::string driven_node(const System& system);
 
 /// Of the reference shaft over the run [rad/s], without sign; zeros where none turns.
 struct SpeedRange {

@@ -327,9 +327,11 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   std::optional<Peaks> whole;  // where the figures are of a part of the run
   if (result.span.from > 0.0) observers.insert(observers.begin(), &whole.emplace(torques));
   std::optional<RunUpWatch> run_up;
-  if (speed_range(full, duration).changes()) {
+  const OrderShaft shaft = order_shaft(model_case.model, full, request.orders_of, duration);
+  if (speed_range(full, duration).changes() || shaft.turned) {
     run_up.emplace(full, result.modes ? &*result.modes : nullptr, system, duration, tracked_channels(request),
-                   plan.method.tolerance > 0.0, request.out || request.report || request.keeps_history);
+                   plan.method.tolerance > 0.0, request.out || request.report || request.keeps_history,
+                   shaft);
     for (Observer* observer : run_up->observers()) observers.insert(observers.begin(), observer);
   }
   observers.insert(observers.begin(), &figures);

@@ -32,6 +32,7 @@ struct RunRequest {
   bool keeps_history = false;              ///< what runs it keeps the recorded channels, without a file
   std::vector<std::string> rainflow = {};  ///< channels counted beside the sections with an S-N line
   bool energy = false;                     ///< work, heat and stored energy of each element, too
+  std::string orders_of = {};  ///< node whose turns orders are of where nothing turns nominally; empty: found
 };
 
 }  // namespace drev::app

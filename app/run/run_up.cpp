@@ -11,32 +11,59 @@ namespace {
 constexpr double kTurnsOfWindow = 4.0;
 constexpr double kUsualOrders = 12.0;
 constexpr std::size_t kMostCriticals = 40;
+constexpr double kTurning = 1.0;  // rad/s, at which loads are looked at where no speed is known
 }  // namespace
 
+OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration) {
+  if (speed_range(system, duration).fastest > 0.0 || system.floating_parts(Contact::closed).empty())
+    return {};
+  OrderShaft shaft{named.empty() ? driven_node(system) : named, {}};
+  if (shaft.node.empty()) return shaft;
+  if (system.reference()) {
+    shaft.turned = system;
+  } else {
+    Model turning = model;
+    turning.set_reference(shaft.node, constant_speed(kTurning));
+    shaft.turned = turning.build();
+  }
+  return shaft;
+}
+
 RunUpWatch::RunUpWatch(const System& full, const ModeSet* modes, const System& system, double duration,
-                       const std::vector<std::string>& channels, bool inside, bool waterfall) {
-  const SpeedRange range = found_.range = speed_range(full, duration);
+                       const std::vector<std::string>& channels, bool inside, bool waterfall,
+                       const OrderShaft& shaft) {
+  const bool actual = shaft.turned.has_value();
+  const System& turning = actual ? *shaft.turned : full;
+  SpeedRange range = found_.range = speed_range(full, duration);
+  if (actual) range = {0.0, HUGE_VAL, kTurning, kTurning};  // not known yet
   std::vector<double> orders;
   if (modes != nullptr) {
-    const std::vector<Crossing> all = find_crossings(full, *modes, range.first);
-    orders = chief_orders(all, range);
+    crossings_ = find_crossings(turning, *modes, range.first);
+    if (const double ratio = actual ? std::abs(turning.ratio(turning.node(shaft.node))) : 1.0; ratio != 1.0)
+      for (Crossing& c : crossings_) {
+        c.order /= ratio;
+        c.speed *= ratio;
+      }
+    orders = chief_orders(crossings_, range);
     found_.frequency_Hz = modes->frequency_Hz;
-    for (const Crossing& c : all)
-      if (c.speed >= range.slowest && c.speed <= range.fastest && found_.criticals.size() < kMostCriticals)
-        found_.criticals.push_back(c);
   }
-  const auto& phi = full.reference()->at;
-  const double turns = std::abs(phi(duration).value - phi(0.0).value) / kTwoPi;
-  found_.turns = kTurnsOfWindow * std::max(1.0, std::ceil(2.0 * turns / (kTurnsOfWindow * kMostWindows)));
+  found_.turns = kTurnsOfWindow;
+  if (!actual) {
+    const auto& phi = full.reference()->at;
+    const double turns = std::abs(phi(duration).value - phi(0.0).value) / kTwoPi;
+    found_.turns *= std::max(1.0, std::ceil(2.0 * turns / (kTurnsOfWindow * kMostWindows)));
+  }
   if (waterfall) {
     const double highest = std::max(kUsualOrders, orders.empty() ? 0.0 : 1.25 * orders.back());
     double spacing = 0.5 * OrderTracking::kResolution / found_.turns;
     while (highest > kMostLines * spacing) spacing *= 2.0;
     std::vector<double> lines;
     for (int i = 1; i * spacing <= highest; ++i) lines.push_back(i * spacing);
-    waterfall_ = std::make_unique<OrderTracking>(system, channels, std::move(lines), found_.turns, inside);
+    waterfall_ =
+        std::make_unique<OrderTracking>(system, channels, std::move(lines), found_.turns, inside, shaft.node);
   }
-  tracking_ = std::make_unique<OrderTracking>(system, channels, std::move(orders), found_.turns, inside);
+  tracking_ =
+      std::make_unique<OrderTracking>(system, channels, std::move(orders), found_.turns, inside, shaft.node);
 }
 
 std::vector<Observer*> RunUpWatch::observers() {
@@ -45,10 +72,21 @@ std::vector<Observer*> RunUpWatch::observers() {
   return all;
 }
 
-SpeedsPassed RunUpWatch::result() const {
+std::optional<SpeedsPassed> RunUpWatch::result() const {
   SpeedsPassed result = found_;
   result.orders = tracking_->tracks();
   if (waterfall_) result.waterfall = waterfall_->tracks();
+  if (!result.orders.shaft.empty()) {
+    const std::vector<double>& speeds = result.orders.speed;
+    if (speeds.size() < 2) return std::nullopt;
+    const double first = result.orders.first_speed;
+    result.range = {std::min(first, *std::min_element(speeds.begin(), speeds.end())),
+                    std::max(first, *std::max_element(speeds.begin(), speeds.end())), first, speeds.back()};
+  }
+  for (const Crossing& c : crossings_)
+    if (c.speed >= result.range.slowest && c.speed <= result.range.fastest &&
+        result.criticals.size() < kMostCriticals)
+      result.criticals.push_back(c);
   return result;
 }
 

@@ -1,8 +1,13 @@
 #pragma once
-/// What a run whose nominal speed changes passes: the criticals of its speeds, and the orders over them.
+/// What a run whose speed changes passes: the criticals of its speeds, and the orders over them.
+///
+/// Speeds are the nominal ones, where the nominal speed changes. Where nothing turns nominally (a start from rest, whose
+/// speed its torques make) orders are of the actual angle of a node, and speeds the actual mean speed of each window.
+#include <drev/core/model.hpp>
 #include <drev/solvers/periodic/order_tracking.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +15,17 @@
 
 namespace drev::app {
 
+/// Whose actual angle the orders of a run are of.
+struct OrderShaft {
+  std::string node;              ///< empty: of none, its nominal speed changes or does not
+  std::optional<System> turned;  ///< the model that turns nominally with it, for ratios and orders
+};
+/// Where nothing turns nominally and a part can: the node named, or, that empty, the one that is driven (driven_node(): the
+/// orders of its torque are counted by its own turns).
+OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration);
+
 struct SpeedsPassed {
-  SpeedRange range;
+  SpeedRange range;  ///< of an actual angle: of the start and the windows
   /// Resonances of orders of the loads with modes (contacts closed) between the slowest and the fastest speed,
   /// the most excited first.
   std::vector<Crossing> criticals;
@@ -31,12 +45,16 @@ class RunUpWatch {
  public:
   /// full: the model; modes: of it, null: not found, and there are no criticals. system: what is run of it.
   /// inside: points inside steps may be asked for. waterfall: whether it is wanted.
+  /// shaft: of order_shaft().
   RunUpWatch(const System& full, const ModeSet* modes, const System& system, double duration,
-             const std::vector<std::string>& channels, bool inside, bool waterfall);
+             const std::vector<std::string>& channels, bool inside, bool waterfall,
+             const OrderShaft& shaft = {});
   std::vector<Observer*> observers();
-  SpeedsPassed result() const;
+  /// None: an actual angle that did not turn through two windows.
+  std::optional<SpeedsPassed> result() const;
 
  private:
+  std::vector<Crossing> crossings_;
   SpeedsPassed found_;
   std::unique_ptr<OrderTracking> tracking_, waterfall_;  // the second: null where it is not wanted
 };

@@ -11,11 +11,18 @@ namespace drev {
 namespace {
 constexpr double kPointsOfPeriod = 16.0;  // of the highest order
 constexpr double kSameTime = 1e-6;        // of an interval
+constexpr double kGrowth = 0.1;           // of an interval from point to point at most, and of the first
 }  // namespace
 
 OrderTracking::OrderTracking(const System& system, const std::vector<std::string>& channels,
-                             std::vector<double> orders, double turns, bool own_times)
-    : channels_(find_channels(system, channels)), width_(turns * kTwoPi), own_times_(own_times) {
+                             std::vector<double> orders, double turns, bool own_times,
+                             const std::string& shaft)
+    : channels_(find_channels(system, channels)),
+      width_(turns * kTwoPi),
+      spacing_(0.5 * width_),
+      own_times_(own_times),
+      node_(shaft.empty() ? -1 : system.node(shaft)) {
+  tracks_.shaft = shaft;
   tracks_.orders = std::move(orders);
   for (const Channel& channel : channels_) {
     tracks_.channels.push_back(channel.name());
@@ -42,38 +49,74 @@ void OrderTracking::look(const Assembler& assembler, const EvaluatedState& point
     turns_[k] = wave = wave * rotation;
     before = tracks_.orders[k];
   }
-  const double speed = std::abs(assembler.nominal().rate);
-  interval_ = speed > 0.0 && highest_ > 0.0 ? kTwoPi / (kPointsOfPeriod * highest_ * speed) : 0.0;
+  const auto [angle, rate] = turning(assembler, point);
+  const double speed = std::abs(rate), last = interval_;
   time_ = point.state.t;
-  angle_ = assembler.nominal().value;
+  angle_ = angle;
+  interval_ = speed > 0.0 && highest_ > 0.0 ? kTwoPi / (kPointsOfPeriod * highest_ * speed) : 0.0;
+  // At rest, or where an oscillation stops it for a moment, the speed tells little of the next points.
+  if (time_ > first_time_ && (interval_ > 0.0 || last > 0.0)) {
+    const double longest = last > 0.0 ? (1.0 + kGrowth) * last : kGrowth * (time_ - first_time_);
+    interval_ = interval_ > 0.0 ? std::min(interval_, longest) : longest;
+  }
+}
+
+std::pair<double, double> OrderTracking::turning(const Assembler& assembler,
+                                                 const EvaluatedState& point) const {
+  const MotionPoint& phi = assembler.nominal();
+  if (node_ < 0) return {phi.value, phi.rate};
+  const double ratio = assembler.system().ratio(node_);
+  const MotionPoint own = assembler.node_motion(node_, point.state);
+  return {ratio * phi.value + own.value, ratio * phi.rate + own.rate};
+}
+
+/// Whether the sense of the actual angle is known; begins where it has become so.
+bool OrderTracking::has_begun(double angle) {
+  if (sense_ != 0.0) return true;
+  if (std::abs(angle - first_angle_) < kBegun * kTwoPi) return false;
+  sense_ = angle > first_angle_ ? 1.0 : -1.0;
+  return false;
 }
 
 void OrderTracking::open(double begin) {
+  next_ = begin + spacing_;
   windows_.push_back({.begin = begin, .sums = std::vector<Complex>(channels_.size() * turns_.size())});
 }
 
 void OrderTracking::start(const Assembler& assembler, const EvaluatedState& point) {
-  const MotionPoint& phi = assembler.nominal();
-  turned_ = phi.rate < 0.0 ? -phi.value : phi.value;
+  const auto [angle, rate] = turning(assembler, point);
+  sense_ = rate < 0.0 ? -1.0 : rate > 0.0 || node_ < 0 ? 1.0 : 0.0;
+  turned_ = sense_ * angle;
+  tracks_.first_speed = std::abs(rate);
+  first_angle_ = angle;
+  first_time_ = point.state.t;
+  interval_ = 0.0;
   windows_.clear();
   look(assembler, point);
-  open(turned_);
+  if (sense_ != 0.0) open(turned_);
 }
 
 void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*from*/,
                          const EvaluatedState& to) {
   // Points that others asked for would make the spacing uneven, and the trapezoidal rule far worse.
   if (own_times_ && interval_ > 0.0 && to.state.t < next_stop(0.0) - kSameTime * interval_) return;
-  const double before = turned_, t_before = time_;
-  turned_ += std::abs(assembler.nominal().value - angle_);
+  const double before = turned_, t_before = time_, angle = turning(assembler, to).first;
+  if (!has_begun(angle)) {
+    turned_ = sense_ * angle;
+    look(assembler, to);
+    if (sense_ != 0.0) open(turned_);
+    return;
+  }
+  // Of a nominal angle the sense at the start need not be known.
+  turned_ += node_ < 0 ? std::abs(angle - angle_) : sense_ * (angle - angle_);
   std::swap(values_, last_values_);
   std::swap(turns_, last_turns_);
   values_.resize(channels_.size());
   turns_.resize(tracks_.orders.size());
   look(assembler, to);
   const double dphi = turned_ - before, dt = time_ - t_before;
-  if (!(dphi > 0.0)) return;
-  while (turned_ >= windows_.back().begin + 0.5 * width_) open(windows_.back().begin + 0.5 * width_);
+  if (dphi == 0.0 && dt == 0.0) return;
+  while (turned_ >= next_) open(next_);
   for (Window& window : windows_) {
     const auto weight = [&](double turned) {
       const double s = (turned - window.begin) / width_;
@@ -90,7 +133,7 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
         window.sums[place++] += f0 * last_turns_[k] + f1 * turns_[k];
     }
   }
-  while (turned_ >= windows_.front().begin + width_) {
+  while (!windows_.empty() && turned_ >= windows_.front().begin + width_) {
     close(windows_.front());
     windows_.erase(windows_.begin());
   }
@@ -106,6 +149,21 @@ void OrderTracking::close(const Window& window) {
       tracks_.amplitude[c][k].push_back(2.0 * std::abs(window.sums[place]) / window.weights);
       tracks_.phase[c][k].push_back(std::arg(window.sums[place]));
     }
+  if (tracks_.time.size() > kMostWindows) thin();
+}
+
+/// Every second window, of too many.
+void OrderTracking::thin() {
+  spacing_ *= 2.0;
+  const auto halve = [](std::vector<double>& values) {
+    for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+    values.resize((values.size() + 1) / 2);
+  };
+  halve(tracks_.time);
+  halve(tracks_.speed);
+  for (auto* of : {&tracks_.amplitude, &tracks_.phase})
+    for (auto& channel : *of)
+      for (auto& order : channel) halve(order);
 }
 
 double OrderTracking::next_stop(double /*t*/) const {

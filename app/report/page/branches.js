@@ -44,7 +44,7 @@ function showFigures() {
         "(maximum − minimum)/2 over the cycle. Stable and unstable by Floquet multipliers.",
     ),
     table(
-      ["curve", "turns a cycle", "motions", "stable", "speeds [rpm]", "followed to its ends"],
+      ["curve", "turns a cycle", "motions", "stable", "speeds [rpm]", "followed to its ends", "starts from"],
       result.branches.map((curve, b) => [
         b + 1,
         sig(curve.cycle_deg / 360),
@@ -52,6 +52,7 @@ function showFigures() {
         curve.stable.filter((s) => s).length,
         `${sig(Math.min(...curve.speed_rpm), 6)} to ${sig(Math.max(...curve.speed_rpm), 6)}`,
         curve.whole ? "yes" : "no",
+        curve.run_rpm === null ? "closed contacts" : `a run at ${sig(curve.run_rpm, 6)} rpm`,
       ]),
     ),
     ...page.notes.map((note) => make("p", { class: "note" }, note)),
@@ -93,7 +94,7 @@ function showFigures() {
   section.append(
     make("h3", {}, "Where no motion that was found is stable: what a run does"),
     table(
-      ["speed [rpm]", "cycles", "repeats after", "section", "mean", "± (95 %)", "deviation", "lowest", "highest"],
+      ["speed [rpm]", "cycles", "repeats after", "section", "mean", "±", "deviation", "lowest", "highest"],
       runs.flatMap((run) =>
         result.sections.map((s, c) => [
           sig(run.speed_rpm, 6),

@@ -232,8 +232,9 @@ function showOrders(section, run) {
     make(
       "p",
       { class: "note" },
-      `Amplitude of each order, in windows of ${integer(up.turns)} turns of the reference shaft (Hann window ` +
-        "over the angle), at the mean speed of the window. Dotted: criticals passed, contacts closed.",
+      `Amplitude of each order, in windows of ${integer(up.turns)} turns of ${up.shaft ?? "the reference shaft"} ` +
+        `(Hann window over the ${up.shaft === null ? "" : "actual "}angle), at the mean speed of the window. ` +
+        "Dotted: criticals passed, contacts closed.",
     ),
     toolbar(group),
   );
@@ -250,7 +251,7 @@ function showOrders(section, run) {
       group,
       title: `Orders of ${channel.name}`,
       xName: "rpm",
-      xLabel: "speed of the reference shaft [rpm]",
+      xLabel: `speed of ${up.shaft ?? "the reference shaft"} [rpm]`,
       labels: up.orders.map((order) => `order ${orderText(order)}`),
       colors: () => up.orders.map((_, i) => tint(i)),
       series: (_, i) => ({ strokePattern: DASHES[Math.floor(i / 5) % DASHES.length] }),

@@ -60,7 +60,7 @@ function timeChart(parent, channel) {
   return chart;
 }
 
-/// Of a run-up: the speed at which the reference shaft turns nominally, in place of the time, along the axis of all
+/// Of a run-up: the speed at which the reference shaft turns nominally, or a shaft actually, in place of the time, along the axis of all
 /// charts over time. Where the speed rises and falls again it stands there twice.
 const rising = runs.every(
   (run) => run.speeds && JSON.stringify(run.speeds) === JSON.stringify(runs[0].speeds),
@@ -101,7 +101,7 @@ function axisChoice() {
         drawAll();
         for (const chart of histories.charts)
           chart.graph?.updateOptions({
-            xlabel: asMarkup(speed ? "speed of the reference shaft [rpm]" : "time [s]"),
+            xlabel: asMarkup(speed ? `speed of ${rising.shaft ?? "the reference shaft"} [rpm]` : "time [s]"),
             axes: {
               x: speed
                 ? { ticker: speedTicks, valueFormatter: (t) => `${sig(speedAt(t), 5)} rpm, ${sig(t, 7)} s` }

@@ -208,6 +208,41 @@ TEST_CASE("A run-up lists the criticals that it passes and tracks the orders ove
 }
 
 TEST_CASE(
+    "A start from rest without nominal speed has its orders by the turns of the driven node, or of one "
+    "named") {
+  const std::string model =
+      "format = 1\n[nodes]\nrotor = {}\ndisc = {}\n[elements]\n"
+      "J_1 = { type = \"inertia\", node = \"rotor\", inertia_kg_m2 = 1 }\n"
+      "J_2 = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 0.05 }\n"
+      "shaft = { type = \"shaft_spring\", nodes = [\"rotor\", \"disc\"], stiffness_Nm_per_rad = 150, "
+      "damping_Nms_per_rad = 0.15 }\nload = { type = \"engine_order_torque\", node = \"rotor\", mean_Nm = 5, "
+      "harmonics = { order = [2], amplitude_Nm = [3] } }\n[run]\nduration_s = 10\n"
+      "record = [\"shaft.torque_Nm\"]\n";
+  const Ran run = run_of(model);
+  REQUIRE(run.exit_code == 0);
+  const Json& up = run.json["run_up"];
+  REQUIRE(up.is_object());
+  CHECK(up["shaft"] == "rotor");
+  CHECK(up["turns"] == 4.0);
+  REQUIRE(up["orders"] == Json::array({2.0}));
+  // Half of the natural frequency sqrt(k/J_1 + k/J_2); the mean torque alone gives 5/1.05 rad/s^2.
+  const double critical = std::sqrt(150.0 * 21.0) / 2.0 * 30.0 / kSettledPi;
+  REQUIRE(up["criticals"].size() == 1);
+  CHECK(up["criticals"][0]["speed_rpm"].get<double>() == Approx(critical).epsilon(1e-6));
+  const auto speed = up["speed_rpm"].get<std::vector<double>>(),
+             time = up["time_s"].get<std::vector<double>>();
+  REQUIRE(speed.size() > 10);
+  for (std::size_t i = 0; i < speed.size(); ++i)
+    CHECK(speed[i] == Approx(5.0 / 1.05 * time[i] * 30.0 / kSettledPi).epsilon(0.05).margin(10.0));
+  CHECK(up["fastest_rpm"].get<double>() == Approx(speed.back()).epsilon(1e-12));
+  CHECK(up["slowest_rpm"] == 0.0);
+  CHECK(contains(run.text, "actual mean speeds of rotor"));
+  CHECK(run_of(model, {"--orders-of", "disc"}).json["run_up"]["shaft"] == "disc");
+  const Ran wrong = run_of(model, {"--orders-of", "dics"});
+  CHECK(wrong.exit_code != 0);
+}
+
+TEST_CASE(
     "A static torque is stated where turning slowly would give it, and the amplification says against what") {
   // A cam on a shaft; the shaft's other end on a grid at constant speed, stiffly or by something soft.
   const auto cam = [](const char* stiffness, const char* more) {

@@ -1,7 +1,7 @@
 // Sweeps of nonlinear models: branches, folds, stability, tongues, runs, free trains. Expected values come from
 // programs that put closed-form pieces together (shooting, saltation), to 1e-10.
 // Covers solvers/periodic/law_balance.hpp, mean_equilibrium.hpp, motion_sections.hpp, section_rows.hpp,
-// branch_tracer.hpp, floquet.hpp, motion_figures.hpp and solvers/cycle_run.hpp through sweep_nonlinear(), and
+// branch_tracer.hpp, floquet.hpp and motion_figures.hpp through sweep_nonlinear(), and
 // solvers/at_speed.hpp, worst_motions.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>

@@ -7,7 +7,9 @@
 #include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <memory>
 
 #include "tests/catch.hpp"
@@ -174,4 +176,87 @@ TEST_CASE(
     CHECK(tracks.amplitude[0][0][0] == Approx(tracked[i].first).epsilon(1e-5));
     CHECK(to_deg(tracks.phase[0][0][0]) == Approx(tracked[i].second).margin(1e-3));
   }
+}
+
+TEST_CASE("From rest without nominal speed orders are of the actual angle, beside a separate computation") {
+  // J_1 theta'' = M + A cos(2 theta + p) + k x + c x', J_2 (theta + x)'' = -k x - c x': a rotor that a constant torque
+  // speeds up, with a torque over its actual angle, and a disc on its shaft; 4th-order Runge-Kutta, by hand.
+  const double inertia_1 = 1.0, inertia_2 = 0.05, k = 150.0, c = 0.15, amplitude = 3.0, phase = 0.4;
+  for (const double mean : {5.0, -5.0}) {
+    Model m("from rest");
+    m.add_node("rotor");
+    m.add_node("disc");
+    m.add<Inertia>("J_1", {"rotor"}, {.inertia = inertia_1});
+    m.add<Inertia>("J_2", {"disc"}, {.inertia = inertia_2});
+    m.add<ShaftSpring>("shaft", {"rotor", "disc"}, {.stiffness = k, .damping = c});
+    m.add<EngineOrderTorque>("torque", {"rotor"}, {.harmonics = {{2.0, amplitude, phase}}, .mean = mean});
+    const System system = m.build();
+    OrderTracking tracking(system, {"shaft.torque_Nm"}, {1.0, 2.0}, 4.0, false, "rotor"),
+        own_points(system, {"shaft.torque_Nm"}, {1.0, 2.0}, 4.0, true, "rotor");
+    REQUIRE(run_method(system, {.step = 1e-4}, {.t_end = 10.0}, {&tracking}).ok());
+    REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-10}, {.t_end = 10.0}, {&own_points}).ok());
+
+    using State4 = std::array<double, 4>;  // theta, x, their rates
+    const auto rates = [&](const State4& s) {
+      const double spring = k * s[1] + c * s[3];
+      const double a_1 = (mean + amplitude * std::cos(2.0 * s[0] + phase) + spring) / inertia_1;
+      return State4{s[2], s[3], a_1, -spring / inertia_2 - a_1};
+    };
+    const double h = 1e-4;
+    std::vector<double> angle, torque, time;
+    State4 s{};
+    for (int i = 0; i <= 100000; ++i) {
+      angle.push_back(s[0]);
+      torque.push_back(k * s[1] + c * s[3]);
+      time.push_back(i * h);
+      const auto at = [&](const State4& r, double part) {
+        State4 moved = s;
+        for (std::size_t j = 0; j < 4; ++j) moved[j] += part * h * r[j];
+        return moved;
+      };
+      const State4 r1 = rates(s), r2 = rates(at(r1, 0.5)), r3 = rates(at(r2, 0.5)), r4 = rates(at(r3, 1.0));
+      for (std::size_t j = 0; j < 4; ++j) s[j] += h / 6.0 * (r1[j] + 2.0 * r2[j] + 2.0 * r3[j] + r4[j]);
+    }
+    const double sense = mean > 0.0 ? 1.0 : -1.0;
+    // The same window, which begins at a point of the run.
+    const auto check = [&](const OrderTracks& tracks, double first, double within) {
+      REQUIRE(tracks.time.size() > 10);
+      CHECK(tracks.shaft == "rotor");
+      CHECK(std::is_sorted(tracks.speed.begin(), tracks.speed.end()));
+      const double width = 4.0 * kTwoPi;
+      for (std::size_t w = 0; w < tracks.time.size(); ++w) {
+        const double begin = first + 0.5 * width * static_cast<double>(w);
+        std::complex<double> sums[2] = {};
+        double weights = 0.0, lasts = 0.0;
+        for (std::size_t i = 0; i + 1 < angle.size(); ++i) {
+          const double phi = 0.5 * sense * (angle[i] + angle[i + 1]), part = (phi - begin) / width;
+          if (part <= 0.0 || part >= 1.0) continue;
+          const double weight = std::pow(std::sin(0.5 * kTwoPi * part), 2);
+          const double dphi = sense * (angle[i + 1] - angle[i]);
+          weights += weight * dphi;
+          lasts += weight * (time[i + 1] - time[i]);
+          for (int o = 0; o < 2; ++o)
+            sums[o] += 0.5 * (torque[i] + torque[i + 1]) * weight * dphi * std::polar(1.0, -(o + 1.0) * phi);
+        }
+        INFO("window " << w << ", sense " << sense);
+        CHECK(tracks.speed[w] == Approx(weights / lasts).epsilon(within));
+        for (std::size_t o = 0; o < 2; ++o) {
+          const std::complex<double> found = std::polar(tracks.amplitude[0][o][w], tracks.phase[0][o][w]);
+          CHECK(std::abs(found - 2.0 * sums[o] / weights) < within);
+        }
+      }
+    };
+    // The first window begins at the first point beyond a tenth of a turn.
+    const auto begun =
+        std::find_if(angle.begin(), angle.end(), [](double a) { return std::abs(a) >= 0.1 * kTwoPi; });
+    check(tracking.tracks(), std::abs(*begun), 2e-3);
+    REQUIRE(own_points.tracks().time.size() == tracking.tracks().time.size());
+    // With points of its own the begin is another; orders change little over so short a way.
+    for (std::size_t w = 1; w < own_points.tracks().time.size(); ++w)
+      CHECK(own_points.tracks().speed[w] == Approx(tracking.tracks().speed[w]).epsilon(0.05));
+  }
+  Model m("none");
+  m.add_node("rotor");
+  m.add<Inertia>("J", {"rotor"}, {.inertia = 1.0});
+  CHECK_THROWS(OrderTracking(m.build(), {"rotor.angle_rad"}, {1.0}, 4.0, false, "stator"));
 }
