@@ -5,6 +5,7 @@
 ///
 /// y_closed: the mesh without backlash. The same force as the mesh with its gap for as long as that flank
 /// carries and no damper is limited.
+#include <drev/core/element.hpp>
 #include <drev/elements/gear_mesh.hpp>
 
 #include <memory>

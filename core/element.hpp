@@ -1,12 +1,10 @@
 #pragma once
-/// One entry of the catalogue. An element is immutable, does not know its place in the model, and sees
-/// no global matrix: describe() states its terms in its own node order, once.
-#include <drev/core/error.hpp>
-#include <drev/core/ids.hpp>
+/// What an element (element_interface.hpp) adds to the equation of motion. An element of one's own includes this header,
+/// and so do the sources of the catalogue, but not its headers: they do without terms, which are dear to compile.
+#include <drev/core/element_interface.hpp>
 
 #include <Eigen/Core>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace drev {
@@ -69,10 +67,7 @@ struct FrictionSpec {
 
 /// What an element adds to the equation of motion. The matrices come zeroed, n x n over its nodes.
 struct Terms {
-  explicit Terms(int nodes)
-      : mass(Eigen::MatrixXd::Zero(nodes, nodes)),
-        damping(Eigen::MatrixXd::Zero(nodes, nodes)),
-        stiffness(Eigen::MatrixXd::Zero(nodes, nodes)) {}
+  explicit Terms(int nodes);
 
   Eigen::MatrixXd mass, damping, stiffness;  ///< constant, symmetric
   bool rayleigh = false;                     ///< mass and stiffness take part in C = a M + b K
@@ -93,46 +88,8 @@ struct Terms {
   double rayleigh_b = 0.0;  ///< s
 };
 
-class Element {
- public:
-  virtual ~Element() = default;
-  Element() = default;
-  Element(const Element&) = delete;
-  Element& operator=(const Element&) = delete;
-
-  virtual std::string_view type() const = 0;  ///< as the catalogue calls it, e.g. "shaft spring"
-  virtual int min_nodes() const = 0;          ///< named nodes it needs
-  virtual int max_nodes() const { return min_nodes(); }
-  /// Kinds of the nodes that it brings along, in their order. Asked when the element enters the model, before
-  /// check().
-  virtual std::vector<NodeKind> internal_nodes() const { return {}; }
-  /// True for an element between rotational and translational nodes, named or internal (a rack); else build()
-  /// refuses it. A law over nodes of both kinds is a force [N] of a deflection [m].
-  virtual bool mixes_kinds() const { return false; }
-  /// Reports every parameter out of range. Called by Model::build(); describe() only if none is.
-  virtual void check(ParameterCheck& check) const = 0;
-  /// Adds its terms; nodes = named nodes given + internal nodes.
-  virtual void describe(int nodes, Terms& terms) const = 0;
-
-  /// An element of very many nodes may state its terms in parts, each over few of them, so that memory and time
-  /// grow with their number and not with its square. 0: it has no parts, and describe() says all. Otherwise the
-  /// parts say together what describe() says.
-  virtual int part_count() const { return 0; }
-  /// The nodes of a part, in the numbering of describe().
-  virtual std::vector<int> part_nodes(int /*part*/) const { return {}; }
-  /// Adds the terms of a part, over its own nodes.
-  virtual void describe_part(int /*part*/, Terms& /*terms*/) const {}
-};
-
 /// Shared by the elements with two ends or one end and ground: (-1, 1) or (1). The relative motion is
 /// end b minus end a; to ground it is the node's own.
-inline LocalRow relative_motion(int nodes) {
-  LocalRow b(nodes);
-  if (nodes == 1)
-    b << 1.0;
-  else
-    b << -1.0, 1.0;
-  return b;
-}
+LocalRow relative_motion(int nodes);
 
 }  // namespace drev

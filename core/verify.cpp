@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/core/general_force.hpp>
 #include <drev/core/verify.hpp>
 

@@ -25,7 +25,7 @@
 ///                 speed_ratio_constraints: K n = 0, b^T n = 0
 ///   descriptions  sizes, node numbers, ascending kinks, closed slopes finite and >= 0
 /// Random numbers come from a fixed seed: the same element gives the same report anywhere.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 
 #include <string>
 #include <vector>

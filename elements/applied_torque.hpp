@@ -7,7 +7,7 @@
 ///
 /// A function, with the times at which it jumps or kinks as breakpoints (at a jump it must give the
 /// value after it); or a TimeTable, which knows its own; or harmonics, sum A cos(2 pi f t + phase).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/harmonic.hpp>
@@ -31,17 +31,8 @@ class AppliedTorque final : public Element, public Load {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "applied torque"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    const int given =
-        int(bool(params_.torque)) + int(params_.table.has_value()) + int(!params_.harmonics.empty());
-    if (given != 1)
-      check.fail("torque", given == 0 ? "nothing" : "several", "",
-                 "exactly one of torque, table and harmonics must be given");
-    check.all_finite("breakpoints", params_.breakpoints, "s");
-    if (params_.table) params_.table->check(check, "table", "N m");
-    check_harmonics(check, "harmonics", params_.harmonics, "N m", false, "frequency", "Hz");
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     if (params_.table) return {.torque = params_.table->at(in.t).value};

@@ -10,7 +10,7 @@
 /// `phase` ahead. The curve is straight between the table's points, or a periodic cubic spline
 /// through them (periodic_curve.hpp), whose pieces it says as a KnottedLoad. Exact propagation takes both
 /// as they are.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/knotted_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/elements/periodic_curve.hpp>
@@ -32,12 +32,8 @@ class CamTorque final : public Element, public Load, public KnottedLoad {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "cam torque"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    curve_.check(check, "angle_table", "rad", "N m");
-    check.finite("phase", params_.phase, "rad");
-    check.finite("scale", params_.scale, "");
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     const double twist = params_.twist_feedback ? in.deviation : 0.0;

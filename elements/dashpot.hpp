@@ -6,7 +6,7 @@
 /// Ties no nominal speeds to each other: a dashpot whose ends differ in nominal speed (a bearing's
 /// drag) loads them with its mean torque too. The output is the part that follows from the
 /// deviations, c (q_b' - q_a'). Between translational nodes: N s/m.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -22,15 +22,8 @@ class Dashpot final : public Element {
   std::string_view type() const override { return "dashpot"; }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }
-  void check(ParameterCheck& check) const override {
-    check.non_negative("damping", params_.damping, "N m s/rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    const LocalRow b = relative_motion(nodes);
-    terms.damping = params_.damping * b * b.transpose();
-    terms.outputs.push_back(
-        {.suffix = "", .stiffness = LocalRow::Zero(nodes), .damping = params_.damping * b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

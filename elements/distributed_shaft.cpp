@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/distributed_shaft.hpp>
 

@@ -14,7 +14,7 @@
 ///
 /// Source: M. I. Friswell, J. E. T. Penny, S. D. Garvey, A. W. Lees, Dynamics of Rotating Machines,
 /// Cambridge University Press, 2010, chapter 9.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 #include <drev/elements/segment_count.hpp>
 

@@ -6,7 +6,7 @@
 /// on the RIGHT side: positive drives the node forward. theta is the node's actual angle (nominal
 /// + deviation); twist_feedback = false takes the nominal one. Orders are per revolution of the
 /// node; a four-stroke engine has half orders.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/harmonic_load.hpp>
 #include <drev/elements/harmonic.hpp>
 
@@ -32,11 +32,8 @@ class EngineOrderTorque final : public Element, public HarmonicLoad {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "engine order torque"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.finite("mean", params_.mean, "N m");
-    check_harmonics(check, "harmonics", params_.harmonics, "N m", false);
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     const double twist = params_.twist_feedback ? in.deviation : 0.0;

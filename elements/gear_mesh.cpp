@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/involute.hpp>
@@ -139,6 +140,32 @@ ScalarResponse GearMesh::evaluate(const ScalarInput& in) const {
 Offset GearMesh::offset(double nominal_angle) const {
   const CurvePoint e = params_.transmission_error.at(phase(nominal_angle));
   return {e.value, e.slope * teeth_per_radian_};
+}
+
+void LateralGearMesh::check(ParameterCheck& check) const { mesh_.check(check); }
+
+void LateralGearMesh::describe(int nodes, Terms& terms) const {
+  Terms pair(2);
+  mesh_.describe(2, pair);
+  for (ScalarSpec& scalar : pair.scalars) {
+    const LocalRow gears = scalar.b;
+    scalar.b = LocalRow::Zero(nodes);
+    scalar.b.head(2) = gears;
+    scalar.b[2] = 1.0;
+    scalar.b[3] = gears[1] < 0.0 ? -1.0 : 1.0;
+    terms.scalars.push_back(scalar);
+  }
+  for (SpeedRatioConstraint& tie : pair.speed_ratio_constraints) {
+    const LocalRow gears = tie.b;
+    tie.b = LocalRow::Zero(nodes);
+    tie.b.head(2) = gears;
+    terms.speed_ratio_constraints.push_back(tie);
+  }
+  for (const Eigen::Index centre : {2, 3}) {  // no nominal motion, and no stiffness by that
+    LocalRow alone = LocalRow::Zero(nodes);
+    alone[centre] = 1.0;
+    terms.speed_ratio_constraints.push_back({.b = alone, .ratio_only = true});
+  }
 }
 
 }  // namespace drev

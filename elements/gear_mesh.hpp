@@ -34,7 +34,7 @@
 ///
 /// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
 /// equations 4.2 to 4.5, with the signs of one common axis sense.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/elements/backlash_law.hpp>
 #include <drev/elements/mesh_stiffness.hpp>
@@ -127,30 +127,8 @@ class LateralGearMesh final : public Element {
   std::string_view type() const override { return "lateral gear mesh"; }
   int min_nodes() const override { return 4; }
   bool mixes_kinds() const override { return true; }
-  void check(ParameterCheck& check) const override { mesh_.check(check); }
-  void describe(int nodes, Terms& terms) const override {
-    Terms pair(2);
-    mesh_.describe(2, pair);
-    for (ScalarSpec& scalar : pair.scalars) {
-      const LocalRow gears = scalar.b;
-      scalar.b = LocalRow::Zero(nodes);
-      scalar.b.head(2) = gears;
-      scalar.b[2] = 1.0;
-      scalar.b[3] = gears[1] < 0.0 ? -1.0 : 1.0;
-      terms.scalars.push_back(scalar);
-    }
-    for (SpeedRatioConstraint& tie : pair.speed_ratio_constraints) {
-      const LocalRow gears = tie.b;
-      tie.b = LocalRow::Zero(nodes);
-      tie.b.head(2) = gears;
-      terms.speed_ratio_constraints.push_back(tie);
-    }
-    for (const Eigen::Index centre : {2, 3}) {  // no nominal motion, and no stiffness by that
-      LocalRow alone = LocalRow::Zero(nodes);
-      alone[centre] = 1.0;
-      terms.speed_ratio_constraints.push_back({.b = alone, .ratio_only = true});
-    }
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   GearMesh mesh_;

@@ -6,7 +6,7 @@
 /// The node and whatever is tied to it cannot turn nominally; build() refuses a reference motion
 /// there. Takes no part in Rayleigh damping, which is over inertias and shafts: a support has its
 /// own damping. On a translational node: N/m, N s/m.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -22,18 +22,8 @@ class GroundSpring final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "ground spring"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.positive("stiffness", params_.stiffness, "N m/rad");
-    check.non_negative("damping", params_.damping, "N m s/rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    const LocalRow b = relative_motion(nodes);
-    terms.stiffness(0, 0) = params_.stiffness;
-    terms.damping(0, 0) = params_.damping;
-    terms.speed_ratio_constraints.push_back({.b = b});
-    terms.outputs.push_back(
-        {.suffix = "", .stiffness = params_.stiffness * b, .damping = params_.damping * b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

@@ -6,7 +6,7 @@
 /// The ratio is signed: an external pair of z_1 and z_2 teeth has -z_1/z_2. Powers are equal:
 /// tau_1 + ratio tau_2 = 0 for the torques on the two shafts. The constraint is eliminated, not
 /// penalised.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -21,15 +21,8 @@ class IdealGear final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "ideal gear"; }
   int min_nodes() const override { return 2; }
-  void check(ParameterCheck& check) const override {
-    check.finite("ratio", params_.ratio, "");
-    if (params_.ratio == 0.0) check.fail("ratio", "0", "", "must not be 0");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    LocalRow b(nodes);
-    b << params_.ratio, -1.0;
-    terms.constraints.push_back(b);
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

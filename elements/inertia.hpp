@@ -5,7 +5,7 @@
 ///
 /// On a translational node the same element is a mass m [kg].
 /// Takes part in Rayleigh damping (C = a M + b K).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -20,11 +20,8 @@ class Inertia final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "inertia"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override { check.positive("inertia", params_.inertia, "kg m^2"); }
-  void describe(int /*nodes*/, Terms& terms) const override {
-    terms.mass(0, 0) = params_.inertia;
-    terms.rayleigh = true;
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
  private:
   Params params_;

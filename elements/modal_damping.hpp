@@ -9,7 +9,7 @@
 /// is built there; couplings with a loss factor count by their chain.
 /// Source: R. W. Clough, J. Penzien, Dynamics of Structures, 2nd ed., McGraw-Hill, 1993, section 12-5 (damping matrix
 /// of modal damping ratios).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 #include <algorithm>
@@ -37,19 +37,8 @@ class ModalDamping final : public Element {
   std::string_view type() const override { return "modal damping"; }
   int min_nodes() const override { return static_cast<int>(damping_.rows()); }
   bool mixes_kinds() const override { return true; }
-  void check(ParameterCheck& check) const override {
-    const Params& p = params_;
-    if (std::isnan(p.ratio) == p.ratios.empty())
-      check.fail("ratio", p.ratios.empty() ? "nothing" : "both", "",
-                 "exactly one of ratio and ratios (by_mode) must be given");
-    if (!std::isnan(p.ratio)) check.within("ratio", p.ratio, 0.0, 1.0, "");
-    for (const double xi : p.ratios) check.within("ratios", xi, 0.0, 1.0, "");
-    if (damping_.size() == 0)
-      check.fail("damping", "none", "", "follows from the whole train: use add_modal_damping()");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    if (damping_.rows() == nodes) terms.deviation_damping = damping_;
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

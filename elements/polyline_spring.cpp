@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/elements/polyline_spring.hpp>
 
 #include <string>

@@ -10,7 +10,7 @@
 /// segment is zero (a one-sided stop). Each segment is a piece; all else follows from the pieces
 /// (PiecewiseLaw): on a point the segment below it holds, but closed_stiffness() takes the one above. Units:
 /// rad and N m between rotational nodes, m and N between translational ones.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/piecewise_law.hpp>
 
 #include <vector>

@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
 
 namespace drev {
@@ -44,6 +45,16 @@ RayleighDamping::Params RayleighDamping::stiffness_proportional(double omega, do
   check_mode(check, "", omega, xi);
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {.beta_stiffness = 2.0 * xi / omega};
+}
+
+void RayleighDamping::check(ParameterCheck& check) const {
+  check.non_negative("alpha_mass", params_.alpha_mass, "1/s");
+  check.non_negative("beta_stiffness", params_.beta_stiffness, "s");
+}
+
+void RayleighDamping::describe(int /*nodes*/, Terms& terms) const {
+  terms.rayleigh_a = params_.alpha_mass;
+  terms.rayleigh_b = params_.beta_stiffness;
 }
 
 }  // namespace drev

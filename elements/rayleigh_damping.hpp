@@ -9,7 +9,7 @@
 ///
 /// Source: S. L. Sunde, Mechanical analysis of camshaft system on a marine engine, NTNU, 2015,
 /// equations 3.7 to 3.9.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 
 namespace drev {
 
@@ -34,14 +34,8 @@ class RayleighDamping final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "Rayleigh damping"; }
   int min_nodes() const override { return 0; }
-  void check(ParameterCheck& check) const override {
-    check.non_negative("alpha_mass", params_.alpha_mass, "1/s");
-    check.non_negative("beta_stiffness", params_.beta_stiffness, "s");
-  }
-  void describe(int /*nodes*/, Terms& terms) const override {
-    terms.rayleigh_a = params_.alpha_mass;
-    terms.rayleigh_b = params_.beta_stiffness;
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
  private:
   Params params_;

@@ -1,5 +1,7 @@
 #include "elements/segment_chain.hpp"
 
+#include <drev/core/element.hpp>
+
 namespace drev {
 
 std::vector<int> chain_nodes(int segment, int segments) {

@@ -4,7 +4,7 @@
 ///   K = k [1 -1; -1 1];   M = J/2 [1 0; 0 1] lumped, J/6 [2 1; 1 2] consistent, J/12 [5 1; 1 5] averaged
 ///
 /// Nodes: a, b, then the internal ones from a to b.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/segment_count.hpp>
 
 namespace drev {

@@ -7,7 +7,7 @@
 /// the sign of the twist. Both ends have the same nominal speed. The stiffness takes part in
 /// Rayleigh damping; the shaft's own damping c adds to that. Between translational nodes: N/m and
 /// N s/m.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -23,19 +23,8 @@ class ShaftSpring final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "shaft spring"; }
   int min_nodes() const override { return 2; }
-  void check(ParameterCheck& check) const override {
-    check.positive("stiffness", params_.stiffness, "N m/rad");
-    check.non_negative("damping", params_.damping, "N m s/rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    const LocalRow b = relative_motion(nodes);
-    terms.stiffness = params_.stiffness * b * b.transpose();
-    terms.damping = params_.damping * b * b.transpose();
-    terms.rayleigh = true;
-    terms.speed_ratio_constraints.push_back({.b = b});
-    terms.outputs.push_back(
-        {.suffix = "", .stiffness = params_.stiffness * b, .damping = params_.damping * b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

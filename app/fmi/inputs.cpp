@@ -1,5 +1,6 @@
 #include "app/fmi/inputs.hpp"
 
+#include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
 
 namespace drev::app {
@@ -126,5 +127,7 @@ Model with_inputs(const Model& model, const std::vector<InputNode>& inputs) {
   }
   return all;
 }
+
+void InputTorque::describe(int /*nodes*/, Terms& terms) const { terms.loads.push_back({0, this}); }
 
 }  // namespace drev::app

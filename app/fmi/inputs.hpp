@@ -1,6 +1,6 @@
 #pragma once
 /// What an FMU's importer drives a model by: torques on nodes, and speeds of nodes whose motion is prescribed.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/model.hpp>
 
@@ -26,7 +26,7 @@ class InputTorque final : public Element, public Load {
   std::string_view type() const override { return "input torque"; }
   int min_nodes() const override { return 1; }
   void check(ParameterCheck& /*check*/) const override {}
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void describe(int nodes, Terms& terms) const override;
   LoadResponse evaluate(const LoadInput& in) const override { return {.torque = signal_->at(in.t)}; }
   bool depends_on_motion() const override { return false; }
   std::optional<LoadStretch> stretch(double t, double /*angle*/, double /*direction*/) const override {

@@ -8,7 +8,7 @@
 ///     f.number({"cubic_Nm_per_rad3", Dimension::none}, p.k3);
 ///   });
 #include <drev/app/model_file/fields.hpp>
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 
 #include <memory>
 #include <span>

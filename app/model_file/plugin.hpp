@@ -8,6 +8,7 @@
 /// It is compiled against drev's headers and linked to none of its libraries (CMake target drev::plugin):
 /// what it calls is in the program that loads it, so that there is one table of elements.
 #include <drev/app/model_file/element_table.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/version.hpp>
 #include <drev/headers_stamp.hpp>
 

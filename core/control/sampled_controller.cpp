@@ -1,5 +1,6 @@
 #include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/control/signal.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
 
 namespace drev {

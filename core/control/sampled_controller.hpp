@@ -12,7 +12,7 @@
 /// One run at a time: what the controller holds belongs to the run that opened it. Methods that know no run (modes,
 /// sweeps, periodic and static solutions) refuse a system that has one.
 #include <drev/core/control/controllers.hpp>
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 
 #include <atomic>

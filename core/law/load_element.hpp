@@ -19,8 +19,7 @@
 /// `void check(ParameterCheck&) const`; `std::vector<double> breakpoints() const`, times [s] at which it jumps or kinks;
 /// `static constexpr bool follows_motion = false` where it follows t alone.
 #include <drev/core/element.hpp>
-#include <drev/core/law/dual.hpp>
-#include <drev/core/load.hpp>
+#include <drev/core/law/load_response.hpp>
 
 #include <concepts>
 #include <string_view>
@@ -33,13 +32,6 @@ template <class L>
 concept TorqueFormula = requires(const L& law, double t, const Dual& d) {
   { law.torque(t, d, d) } -> std::convertible_to<Dual>;
 };
-
-/// Torque and both slopes of a formula f(angle, speed) over dual numbers, at the node's actual angle and speed.
-template <class F>
-LoadResponse response_of(const LoadInput& in, const F& f) {
-  const Dual r = f(Dual(in.nominal_angle + in.deviation, 1.0, 0.0), Dual(in.speed, 0.0, 1.0));
-  return {.torque = r.value, .dtorque_dangle = r.by_x, .dtorque_dspeed = r.by_x_dot};
-}
 
 template <TorqueFormula L>
 class LoadElement final : public Element, public Load {

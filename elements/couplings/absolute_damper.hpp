@@ -5,7 +5,7 @@
 ///
 /// What calculations by orders call absolute damping: the engine's damping at each crank throw, a bearing, whose mean
 /// torque is part of the load. The nominal motion loses nothing by it; a Dashpot on one node brakes that too.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 namespace drev {
@@ -20,16 +20,8 @@ class AbsoluteDamper final : public Element {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "absolute damper"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.non_negative("damping", params_.damping, "N m s/rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    terms.deviation_damping = Eigen::MatrixXd::Zero(nodes, nodes);
-    terms.deviation_damping(0, 0) = params_.damping;
-    LocalRow b = LocalRow::Zero(nodes), none = b;
-    b[0] = params_.damping;
-    terms.outputs.push_back({.suffix = "", .stiffness = none, .damping = b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

@@ -9,7 +9,7 @@
 /// exact propagation locates its changes. Both ends have one nominal speed while in contact. Between translational
 /// nodes: m, N.
 /// Source: Modelica Standard Library, Mechanics.Rotational.Components.ElastoBacklash (`limited`).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/backlash_law.hpp>
 
 namespace drev {
@@ -29,18 +29,8 @@ class DeadBandCoupling final : public Element, public PiecewiseForce {
   std::string_view type() const override { return "dead-band coupling"; }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }
-  void check(ParameterCheck& check) const override {
-    check.positive("stiffness", params_.stiffness, "N m/rad");
-    check.non_negative("gap", params_.gap, "rad");
-    check.non_negative("damping", params_.damping, "N m s/rad");
-    if (!std::isnan(params_.reference_penetration))
-      check.positive("reference_penetration", params_.reference_penetration, "rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    terms.scalars.push_back({.b = relative_motion(nodes), .force = this});
-    terms.speed_ratio_constraints.push_back(
-        {.b = relative_motion(nodes), .only_in_contact = params_.gap > 0.0});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   static bool usable(const Params& p) {

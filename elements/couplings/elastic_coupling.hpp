@@ -27,17 +27,8 @@ class ElasticCoupling final : public Element {
   std::vector<NodeKind> internal_nodes() const override {
     return std::vector<NodeKind>(spring_.branches().size(), NodeKind::rotational);
   }
-  void check(ParameterCheck& check) const override {
-    spring_.check(check);
-    check.non_negative("damping", params_.damping, "N m s/rad");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    LocalRow b = LocalRow::Zero(nodes);
-    b[0] = -1.0;
-    b[1] = 1.0;
-    spring_.describe(b, 2, params_.damping, terms);
-    terms.speed_ratio_constraints.push_back({.b = b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

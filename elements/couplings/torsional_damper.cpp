@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/elements/couplings/torsional_damper.hpp>
 
 namespace drev {

@@ -27,10 +27,11 @@
 /// Below the band the stiffness falls to k_0, which carries the mean torque in time; sweeps take k_0 for the mean too.
 /// Source: H. Oberst's loss factor as in D. I. G. Jones, Handbook of Viscoelastic Vibration Damping, Wiley, 2001;
 /// mini-oscillators: P. C. Hughes, D. J. McTavish, J. Vib. Acoust. 115 (1993) 103.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/elements/not_given.hpp>
 
+#include <Eigen/Core>
 #include <complex>
 #include <vector>
 
@@ -86,7 +87,7 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
   void check(ParameterCheck& check) const;
   /// Adds the chain along b, whose branches' points are the local nodes from `first` on, and what the frequency domain
   /// adds. damping: viscous, beside it [N m s/rad].
-  void describe(const LocalRow& b, int first, double damping, Terms& terms) const;
+  void describe(const Eigen::VectorXd& b, int first, double damping, Terms& terms) const;
 
  private:
   bool usable() const;

@@ -30,9 +30,9 @@
 /// centre). Mean gas torque of a cylinder = pmi V_h/(4 pi), four strokes.
 /// Source: E. J. Nestorides, A Handbook on Torsional Vibration, Cambridge, 1958, chapter 4; IACS UR M53 (half range
 /// by synthesis, misfire).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/knotted_load.hpp>
-#include <drev/core/law/load_element.hpp>
+#include <drev/core/law/load_response.hpp>
 #include <drev/core/law/speed_scaled_load.hpp>
 #include <drev/core/law/varying_inertia.hpp>
 #include <drev/elements/engine/crank_slider.hpp>

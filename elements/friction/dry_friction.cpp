@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/elements/friction/dry_friction.hpp>
 
 #include <cmath>
@@ -60,6 +61,10 @@ void DryFriction::check(ParameterCheck& check) const {
   p.engagement->check(check, "engagement", "");
   for (const double g : p.engagement->values())
     if (g < 0.0) check.fail("engagement", to_text(g), "", "must be >= 0");
+}
+
+void DryFriction::describe(int nodes, Terms& terms) const {
+  terms.frictions.push_back({.b = relative_motion(nodes), .friction = this});
 }
 
 }  // namespace drev

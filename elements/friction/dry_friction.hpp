@@ -12,7 +12,7 @@
 ///
 /// Only exact propagation takes it, with sticking located (solvers/exact/friction_series.hpp); modes see it sliding.
 /// Source: Modelica Standard Library, Rotational.Components.Clutch, Brake, BearingFriction (mue_pos, cgeo, peak).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/elements/not_given.hpp>
 #include <drev/elements/time_curve.hpp>
@@ -42,9 +42,7 @@ class DryFriction : public Element, public Friction {
 
   const Params& params() const { return params_; }
   void check(ParameterCheck& check) const override;
-  void describe(int nodes, Terms& terms) const override {
-    terms.frictions.push_back({.b = relative_motion(nodes), .friction = this});
-  }
+  void describe(int nodes, Terms& terms) const override;
 
   const std::vector<double>& slip_speeds() const override { return speeds_; }
   const std::vector<double>& sliding_torques() const override { return torques_; }

@@ -11,7 +11,7 @@
 /// Only exact propagation takes it; modes see it overrunning.
 /// Source: Modelica Standard Library, Rotational.Components.OneWayClutch; F. Pfeiffer, Ch. Glocker, Multibody Dynamics
 /// with Unilateral Contacts, Wiley, 1996.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/friction.hpp>
 
 #include <vector>
@@ -27,10 +27,8 @@ class Freewheel final : public Element, public Friction {
   std::string_view type() const override { return "freewheel"; }
   int min_nodes() const override { return 1; }
   int max_nodes() const override { return 2; }
-  void check(ParameterCheck& /*check*/) const override {}
-  void describe(int nodes, Terms& terms) const override {
-    terms.frictions.push_back({.b = relative_motion(nodes), .friction = this});
-  }
+  void check(ParameterCheck& /*check*/) const override;
+  void describe(int nodes, Terms& terms) const override;
 
   const std::vector<double>& slip_speeds() const override { return zero_; }
   const std::vector<double>& sliding_torques() const override { return zero_; }

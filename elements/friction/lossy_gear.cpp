@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/elements/friction/lossy_gear.hpp>
 
 #include <cmath>

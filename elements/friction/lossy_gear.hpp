@@ -22,7 +22,7 @@
 /// Source: Modelica Standard Library, Rotational.Components.LossyGear (its ratio is 1/ratio; lossTable columns |w_a|,
 /// eta_mf1, eta_mf2, tau_bf1, tau_bf2); C. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of
 /// gearboxes and of planetary gearboxes, Proc. 2nd Int. Modelica Conference, 2002.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/law/friction.hpp>
 #include <drev/elements/not_given.hpp>
 

@@ -11,7 +11,7 @@
 /// and planets of their own: GearMesh with a carrier as its third node.
 /// Limits: a given motion of one of the nodes is refused; lockstep leaves such models to runs one by one; the train's
 /// matrices are kept dense (some thousand nodes at most).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
 #include <cmath>
@@ -35,30 +35,8 @@ class PlanetarySet final : public Element {
   }
   std::string_view type() const override { return "planetary set"; }
   int min_nodes() const override { return 3; }
-  void check(ParameterCheck& check) const override {
-    const Params& p = params_;
-    const bool teeth = p.teeth_sun != 0 || p.teeth_ring != 0;
-    if (teeth && (p.teeth_sun <= 0 || p.teeth_ring <= 0))
-      check.fail("teeth_sun", std::to_string(p.teeth_sun) + ", teeth_ring " + std::to_string(p.teeth_ring),
-                 "", "must both be > 0");
-    if (teeth && !std::isnan(p.ratio))
-      check.fail("ratio", to_text(p.ratio), "", "must not be there beside teeth; give one of them");
-    if (!teeth) check.positive("ratio", p.ratio, "");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    LocalRow b = LocalRow::Zero(nodes);
-    b[0] = -1.0;
-    b[1] = -ratio();
-    b[2] = 1.0 + ratio();
-    terms.constraints.push_back(b);
-    if (!params_.together) return;
-    for (const Eigen::Index other : {1, 2}) {
-      LocalRow alike = LocalRow::Zero(nodes);
-      alike[0] = 1.0;
-      alike[other] = -1.0;
-      terms.speed_ratio_constraints.push_back({.b = alike, .ratio_only = true});
-    }
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
  private:
   Params params_;

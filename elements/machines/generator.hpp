@@ -12,7 +12,7 @@
 /// which a speed governor acts. Inertia is an Inertia beside it.
 /// Source: W. Nuernberg, R. Hanitsch, Die Pruefung elektrischer Maschinen, 6th ed., Springer, 1987 (form of the
 /// short-circuit torque); numbers are the maker's.
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/not_given.hpp>
@@ -38,32 +38,8 @@ class Generator final : public Element, public Load {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "generator"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    const Params& p = params_;
-    check.finite("torque", p.torque, "N m");
-    check.non_negative("synchronous_stiffness", p.synchronous_stiffness, "N m/rad");
-    check.non_negative("synchronous_damping", p.synchronous_damping, "N m s/rad");
-    check.finite("fault_torque", p.fault_torque, "N m");
-    check.finite("fault_torque_double", p.fault_torque_double, "N m");
-    check.positive("grid_frequency", p.grid_frequency, "Hz");
-    if (faults()) check.non_negative("fault_time", p.fault_time, "s");
-    if (!std::isnan(p.fault_decay)) check.positive("fault_decay", p.fault_decay, "s");
-    if (!faults() && (p.fault_torque != 0.0 || p.fault_torque_double != 0.0))
-      check.fail("fault_time", "NaN", "s", "must be given with the torque of a short circuit");
-  }
-  void describe(int nodes, Terms& terms) const override {
-    LocalRow b = LocalRow::Zero(nodes);
-    b[0] = 1.0;
-    terms.loads.push_back({0, this, "gap"});
-    if (params_.synchronous_stiffness == 0.0 && params_.synchronous_damping == 0.0) return;
-    terms.stiffness(0, 0) = params_.synchronous_stiffness;
-    terms.deviation_damping = params_.synchronous_damping * b * b.transpose();
-    if (params_.synchronous_stiffness > 0.0)
-      terms.speed_ratio_constraints.push_back({.b = b, .holds_deviation = true});
-    terms.outputs.push_back({.suffix = "synchronous",
-                             .stiffness = params_.synchronous_stiffness * b,
-                             .damping = params_.synchronous_damping * b});
-  }
+  void check(ParameterCheck& check) const override;
+  void describe(int nodes, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     LoadResponse r{.torque = -params_.torque};

@@ -10,8 +10,8 @@
 /// acts where the node turns nominally. Inertia, entrained water included, is an Inertia beside it.
 /// Source: quadratic law (propeller at constant advance ratio); S. Archer, Torsional vibration damping coefficients for
 /// marine propellers, Engineering 1955 (by its title).
-#include <drev/core/element.hpp>
-#include <drev/core/law/load_element.hpp>
+#include <drev/core/element_interface.hpp>
+#include <drev/core/law/load_response.hpp>
 #include <drev/elements/harmonic.hpp>
 #include <drev/elements/not_given.hpp>
 
@@ -33,13 +33,8 @@ class Propeller final : public Element, public Load {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "propeller"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    check.positive("rated_torque", params_.rated_torque, "N m");
-    check.positive("rated_speed", params_.rated_speed, "rad/s");
-    check.non_negative("damping_factor", params_.damping_factor, "");
-    check_harmonics(check, "harmonics", params_.harmonics, "", false);
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     const Params& p = params_;

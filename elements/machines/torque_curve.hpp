@@ -6,7 +6,7 @@
 /// w: actual speed of the node, with its sign; constant before the first and behind the last point. g: the gate by
 /// speed (curve.hpp), 1 where none is given: a starter that lets go, a brake that holds up to a speed. About the nominal
 /// speed it damps with -dtau/dw (a falling motor curve damps, a rising one drives vibration).
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/elements/curve.hpp>
 
@@ -28,19 +28,8 @@ class TorqueCurve final : public Element, public Load {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "torque curve"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    const Params& p = params_;
-    if (p.speeds.size() < 2 || p.torques.size() != p.speeds.size())
-      check.fail(
-          "curve",
-          std::to_string(p.speeds.size()) + " speeds, " + std::to_string(p.torques.size()) + " torques", "",
-          "must be as many of each, at least 2");
-    check.increasing("curve.speed", p.speeds, "rad/s");
-    check.all_finite("curve.torque", p.torques, "N m");
-    check.finite("scale", p.scale, "");
-    p.gate.check(check);
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     const CurvePoint gate = params_.gate.at(in.speed), tau = ungated(in.speed);

@@ -9,8 +9,8 @@
 /// kinks or jumps over the time, breakpoints say so; kinks over angle and speed (abs, min, max) cost steps.
 ///
 /// g: the gate by speed (curve.hpp), 1 where none is given.
-#include <drev/core/element.hpp>
-#include <drev/core/law/load_element.hpp>
+#include <drev/core/element_interface.hpp>
+#include <drev/core/law/load_response.hpp>
 #include <drev/elements/curve.hpp>
 #include <drev/elements/formula.hpp>
 
@@ -40,15 +40,8 @@ class TorqueFunction final : public Element, public Load {
   const Params& params() const { return params_; }
   std::string_view type() const override { return "torque function"; }
   int min_nodes() const override { return 1; }
-  void check(ParameterCheck& check) const override {
-    const Params& p = params_;
-    if (bool(p.torque) == p.formula.has_value())
-      check.fail("torque", p.torque ? "both" : "nothing", "",
-                 "exactly one of torque and formula must be given");
-    check.all_finite("breakpoints", p.breakpoints, "s");
-    p.gate.check(check);
-  }
-  void describe(int /*nodes*/, Terms& terms) const override { terms.loads.push_back({0, this}); }
+  void check(ParameterCheck& check) const override;
+  void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
     return response_of(in, [&](const Dual& angle, const Dual& speed) {

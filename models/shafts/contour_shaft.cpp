@@ -1,3 +1,4 @@
+#include <drev/core/element.hpp>
 #include <drev/models/shafts/contour_shaft.hpp>
 
 #include "elements/segment_chain.hpp"

@@ -7,7 +7,7 @@
 /// Averaged mass J/12 [5 1; 1 5] unless told otherwise. Torque is that of a positive twist, end b minus end a;
 /// outputs "1".."n" count the segments from a to b. Nodes: a (left end), b, then the n - 1 internal ones from a to b.
 /// Takes part in Rayleigh damping. A contour that cannot be is reported by check().
-#include <drev/core/element.hpp>
+#include <drev/core/element_interface.hpp>
 #include <drev/models/shafts/shaft_contour.hpp>
 
 #include <memory>

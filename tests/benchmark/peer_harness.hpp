@@ -7,6 +7,7 @@
 /// just these times. check_reference() holds that run against RK5 in extended precision.
 /// Time: processor time over 5 s simulated, set-up included, nothing observed.
 #include <drev/core/assembler.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/camshaft/build_camshaft.hpp>

@@ -7,6 +7,7 @@
 /// - PI governor with an actuator's lag: roots of the cubic;
 /// - planetary set with translating bodies: J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316, tables 1 and 2; its
 ///   purely torsional limit.
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>

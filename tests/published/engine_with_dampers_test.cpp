@@ -1,6 +1,7 @@
 /// The six-cylinder diesel with each cylinder misfiring, without a damper and with each kind of one on its free end: the sweep
 /// over orders and a settled run in time agree, and the power put in is the heat.
 #include <drev/core/channel.hpp>
+#include <drev/core/element.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
 

@@ -5,6 +5,7 @@
 /// - marine shafting, five-cylinder two-stroke engine: natural frequencies printed by a public program for it;
 /// - steam turbine with double reduction: E. J. Gunter, W. J. Chen, Dynamics of Rotors and Foundations (DyRoBeS),
 ///   2001, example 8.1, after openTorsion's example (commit 88ab789, MIT).
+#include <drev/core/element.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>

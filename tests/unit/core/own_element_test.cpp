@@ -1,4 +1,5 @@
 // Elements of one's own that describe themselves wrongly are findings, never a crash.
+#include <drev/core/element.hpp>
 #include <drev/core/general_force.hpp>
 #include <drev/elements/catalogue.hpp>
 

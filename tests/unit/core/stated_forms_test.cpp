@@ -1,6 +1,7 @@
 // What loads, laws and elements say besides their call (harmonics, knots and curves, curves scaled by the speed,
 // frequencies, the formula of a scale, parts) is compared with it by check_element(): each is right once, and is found
 // where it is spoilt. Covers core/law/agreement.hpp.
+#include <drev/core/element.hpp>
 #include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/core/law/harmonic_load.hpp>
 #include <drev/core/law/knotted_load.hpp>

@@ -1,5 +1,6 @@
 #pragma once
 /// Shared by the tests of the catalogue.
+#include <drev/core/element.hpp>
 #include <drev/core/verify.hpp>
 
 #include <string>

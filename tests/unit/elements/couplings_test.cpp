@@ -1,4 +1,5 @@
 // ElasticCoupling, TorsionalDamper, AbsoluteDamper: terms, signs, data-sheet values, bad input.
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/couplings/absolute_damper.hpp>
 #include <drev/elements/couplings/elastic_coupling.hpp>

@@ -1,4 +1,5 @@
 // EngineCylinders: kinematics, tangents, firing orders, misfire, bad input.
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/engine/engine_cylinders.hpp>
 

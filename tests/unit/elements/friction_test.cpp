@@ -1,4 +1,5 @@
 // Clutch, Brake, CoulombJoint, BearingFriction, Freewheel: parameters, tables, bad input.
+#include <drev/core/element.hpp>
 #include <drev/elements/friction/bearing_friction.hpp>
 #include <drev/elements/friction/brake.hpp>
 #include <drev/elements/friction/clutch.hpp>

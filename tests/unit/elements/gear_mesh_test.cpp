@@ -1,6 +1,7 @@
 // Gear mesh, its varying stiffness, its transmission error, involute geometry.
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>

@@ -1,4 +1,5 @@
 // Inertias, shafts, dashpots, ground springs, ideal gears, Rayleigh damping.
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 

@@ -1,4 +1,5 @@
 // Propeller, TorqueCurve, Generator, SpeedGovernor, PlanetarySet: tangents, signs, bad input.
+#include <drev/core/element.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
 #include <drev/elements/machines/generator.hpp>

@@ -2,6 +2,7 @@
 // stiffness by phase, transmission error, damping that grows with penetration. Against closed forms and
 // against Runge-Kutta, which knows nothing of pieces, knots or projections.
 // Covers solvers/exact/projected_laws.hpp, smooth_loads.hpp and tangent_load.hpp through propagate().
+#include <drev/core/element.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>

@@ -2,6 +2,7 @@
 // called; a run, by steps or with knots inside the steps of exact propagation, is that of the same load without them.
 // Covers core/law/knotted_load.hpp, core/table_loads.hpp, core/law/curve_cells.hpp.
 #include <drev/core/assembler.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/law/knotted_load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/couplings/absolute_damper.hpp>

@@ -1,6 +1,7 @@
 /// Modes against closed forms: free and held chains, repeated frequencies, bad scaling, contact
 /// states.
 #include <drev/core/assembler.hpp>
+#include <drev/core/element.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gear_mesh.hpp>
