@@ -76,6 +76,8 @@ with open("turning.toml", "w") as file:
 with open("turning.toml") as file, open("run_up.toml", "w") as copied:
     copied.write(file.read().replace("nominal_speed_rpm = 900",
                                      "hold = true, run_up = { speed_0_rpm = 300, speed_1_rpm = 1500, time_1_s = 3 }"))
+with open("turning.toml") as file, open("from_rest.toml", "w") as copied:  # nothing turns nominally
+    copied.write(file.read().replace("nominal_speed_rpm = 900", "").replace('settle = "auto"\n', ""))
 with open("turning.toml") as file, open("many_segments.toml", "w") as copied:
     copied.write(file.read().replace('stiffness_Nm_per_rad = 9000, damping_Nms_per_rad = 20',
                                      'shear_modulus_GPa = 80, segments = 450, density_kg_per_m3 = 7850, '
@@ -141,6 +143,7 @@ results = {
     "reduced": printed("run", "long.toml", "--reduce", "5%"),
     "turning": printed("run", "turning.toml"),
     "run_up": printed("run", "run_up.toml"),
+    "from rest": printed("run", "from_rest.toml"),
     "friction": printed("run", models + "/vehicle_clutch/vehicle_clutch.toml"),
     "file": printed("run", "trains/at_rest.toml"),
     "modes": printed("modes", "camshaft"),
