@@ -12,6 +12,7 @@
 #include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -26,7 +27,7 @@ class ModalDamping final : public Element {
         {};  ///< of elastic modes 1, 2, ..., the last for all further ones [-], 0 to 1
   };
   /// damping: C over the element's nodes [N m s/rad].
-  ModalDamping(Params params, Eigen::MatrixXd damping = {})
+  explicit ModalDamping(Params params, Eigen::MatrixXd damping = {})
       : params_(std::move(params)), damping_(std::move(damping)) {}
 
   const Params& params() const { return params_; }

@@ -21,6 +21,7 @@
 #include <drev/core/element_interface.hpp>
 #include <drev/elements/not_given.hpp>
 
+#include <Eigen/Core>
 #include <cmath>
 
 namespace drev {

@@ -11,9 +11,9 @@ namespace {
 constexpr double kOfKnotForce = 1e-17;  // of what a load differs behind a knot: terms that are left out
 constexpr double kJumpsBy = 1e-9;       // of the torque at a knot
 
-using Cubic = std::array<double, 4>;
+using CubicTerms = std::array<double, 4>;
 /// The terms about a place further on.
-Cubic cubic_further(Cubic c, double by) {
+CubicTerms terms_further(CubicTerms c, double by) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 3; k-- > i;) c[k] += by * c[k + 1];
   return c;
@@ -24,8 +24,8 @@ Cubic cubic_further(Cubic c, double by) {
 std::optional<std::span<const double>> ExpandedLoads::behind_knot(const Load& l, const CubicPiece& piece,
                                                                   double about, double knot,
                                                                   const CubicPiece& next, double turn) {
-  const Cubic before = cubic_further(piece.terms, knot - about);
-  Cubic d;
+  const CubicTerms before = terms_further(piece.terms, knot - about);
+  CubicTerms d;
   for (std::size_t i = 0; i < d.size(); ++i) d[i] = next.terms[i] - before[i];
   const CurveCells::Place at = l.curves->at(knot);
   if (std::abs(d[0]) > kJumpsBy * (std::abs(before[0]) + std::abs(next.terms[0])) ||

@@ -3,6 +3,7 @@
 #include <drev/solvers/periodic/order_tracking.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +28,8 @@ OrderTracking::OrderTracking(const System& system, const std::vector<std::string
   for (const Channel& channel : channels_) {
     tracks_.channels.push_back(channel.name());
     tracks_.units.push_back(channel.unit());
+    const bool grows = node_ >= 0 && (channel.unit() == "rad" || channel.unit() == "rad/s");
+    trend_of_.push_back(grows ? static_cast<int>(trends_++) : -1);
   }
   for (const double order : tracks_.orders) highest_ = std::max(highest_, order);
   for (auto* values : {&tracks_.amplitude, &tracks_.phase})
@@ -80,7 +83,11 @@ bool OrderTracking::has_begun(double angle) {
 
 void OrderTracking::open(double begin) {
   next_ = begin + spacing_;
-  windows_.push_back({.begin = begin, .sums = std::vector<Complex>(channels_.size() * turns_.size())});
+  windows_.push_back({.begin = begin,
+                      .sums = std::vector<Complex>(channels_.size() * turns_.size()),
+                      .t_0 = time_,
+                      .trends = std::vector<std::array<double, 3>>(trends_),
+                      .waves = std::vector<std::array<Complex, 3>>(trends_ > 0 ? turns_.size() : 0)});
 }
 
 void OrderTracking::start(const Assembler& assembler, const EvaluatedState& point) {
@@ -132,11 +139,47 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
       for (std::size_t k = 0; k < turns_.size(); ++k)
         window.sums[place++] += f0 * last_turns_[k] + f1 * turns_[k];
     }
+    if (trends_ > 0) add_trends(window, w0, w1, t_before, dphi);
   }
   while (!windows_.empty() && turned_ >= windows_.front().begin + width_) {
     close(windows_.front());
     windows_.erase(windows_.begin());
   }
+}
+
+void OrderTracking::add_trends(Window& window, double w0, double w1, double t_before, double dphi) {
+  double f0 = 0.5 * w0 * dphi, f1 = 0.5 * w1 * dphi;
+  const double t_0 = t_before - window.t_0, t_1 = time_ - window.t_0;
+  for (std::size_t power = 0; power < window.moments.size(); ++power, f0 *= t_0, f1 *= t_1) {
+    window.moments[power] += f0 + f1;
+    if (power > 2) continue;
+    for (std::size_t c = 0; c < channels_.size(); ++c)
+      if (trend_of_[c] >= 0)
+        window.trends[static_cast<std::size_t>(trend_of_[c])][power] +=
+            f0 * last_values_[c] + f1 * values_[c];
+    for (std::size_t k = 0; k < turns_.size(); ++k)
+      window.waves[k][power] += f0 * last_turns_[k] + f1 * turns_[k];
+  }
+}
+
+/// Least squares of a parabola and one order: A exp(i p) from sum = int w y exp(-i o phi) dphi.
+OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::size_t trend, std::size_t order,
+                                                   Complex sum) const {
+  Eigen::Matrix3d m;
+  Eigen::Vector3d y;
+  Eigen::Matrix<double, 3, 2> v;  // of the cosine and the sine
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    for (int j = 0; j < 3; ++j) m(i, j) = window.moments[at + static_cast<std::size_t>(j)];
+    y[i] = window.trends[trend][at];
+    v(i, 0) = window.waves[order][at].real();
+    v(i, 1) = -window.waves[order][at].imag();
+  }
+  const Eigen::Matrix<double, 3, 2> parts = m.ldlt().solve(v);
+  const Eigen::Matrix2d normal = 0.5 * window.weights * Eigen::Matrix2d::Identity() - v.transpose() * parts;
+  const Eigen::Vector2d right = Eigen::Vector2d(sum.real(), -sum.imag()) - parts.transpose() * y;
+  const Eigen::Vector2d wave = normal.ldlt().solve(right);
+  return {wave[0], -wave[1]};
 }
 
 void OrderTracking::close(const Window& window) {
@@ -146,8 +189,11 @@ void OrderTracking::close(const Window& window) {
   std::size_t place = 0;
   for (std::size_t c = 0; c < channels_.size(); ++c)
     for (std::size_t k = 0; k < turns_.size(); ++k, ++place) {
-      tracks_.amplitude[c][k].push_back(2.0 * std::abs(window.sums[place]) / window.weights);
-      tracks_.phase[c][k].push_back(std::arg(window.sums[place]));
+      const Complex wave = trend_of_[c] < 0 ? 2.0 * window.sums[place] / window.weights
+                                            : beside_trend(window, static_cast<std::size_t>(trend_of_[c]), k,
+                                                           window.sums[place]);
+      tracks_.amplitude[c][k].push_back(std::abs(wave));
+      tracks_.phase[c][k].push_back(std::arg(wave));
     }
   if (tracks_.time.size() > kMostWindows) thin();
 }

@@ -6,12 +6,15 @@
 ///
 /// y is about A_o cos(o phi + p_o) there; phi is counted in the sense in which the shaft turns at the start; of an
 /// actual angle that starts at rest in the sense in which it has turned kBegun turns, where the first window begins. Where a
-/// shaft rocks back its way counts against itself: the integrals are those over the angle.
-/// over windows of W, each beginning half of one after the last (Hann's window in the angle). An order that the
+/// shaft rocks back its way counts against itself: the integrals are those over the angle. Windows of W, each beginning half of one after the last (Hann's window in the angle). An order that the
 /// channel holds with a constant amplitude comes out exactly; another order o' leaks nothing where (o - o') W /
 /// (2 pi) is a whole number of at least 2. A resonance that swings freely is none of the orders, and is left
 /// out as far as it differs from them. Bandwidth (equivalent noise bandwidth of the window): 1.5 / turns orders;
 /// orders are told apart from 2 / turns on (kBandwidth, kResolution). An amplitude that changes inside a window comes out as its mean there.
+///
+/// Where the angle is an actual one, angles and speeds of nodes grow with it, and would leak into every order. Of these
+/// the order is what a parabola of the time beside it leaves, a_0 + a_1 t + a_2 t^2 + A_o cos(o phi + p_o), by least squares
+/// with the window's weights: the vibration about the mean motion.
 ///
 /// Source: K. R. Fyfe, E. D. S. Munck, Analysis of computed order tracking, Mechanical Systems and Signal
 /// Processing 11(2), 1997, doi:10.1006/mssp.1996.0056. Deviation: the angle is known, so that nothing is
@@ -20,6 +23,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/observer.hpp>
 
+#include <array>
 #include <complex>
 #include <string>
 #include <utility>
@@ -63,7 +67,14 @@ class OrderTracking final : public Observer {
     double begin = 0.0;                              ///< rad turned
     double weights = 0.0, time = 0.0, moment = 0.0;  ///< int w dphi, int w dt, int w t dt
     std::vector<Complex> sums;                       ///< of each channel and order
+    // int w t^k dphi; of each channel that grows int w t^k y dphi, and of each order int w t^k exp(-i o phi) dphi; t since t_0.
+    double t_0 = 0.0;
+    std::array<double, 5> moments{};
+    std::vector<std::array<double, 3>> trends;
+    std::vector<std::array<Complex, 3>> waves;
   };
+  void add_trends(Window& window, double w0, double w1, double t_before, double dphi);
+  Complex beside_trend(const Window& window, std::size_t trend, std::size_t order, Complex sum) const;
   void open(double begin);
   void close(const Window& window);
   void thin();
@@ -73,6 +84,8 @@ class OrderTracking final : public Observer {
   bool has_begun(double angle);
 
   std::vector<Channel> channels_;
+  std::vector<int> trend_of_;  // of each channel, its place in Window::trends; -1: it does not grow
+  std::size_t trends_ = 0;
   double width_, spacing_, highest_ = 0.0;
   bool own_times_;
   int node_ = -1;       // whose actual angle; -1: nominal

@@ -260,3 +260,42 @@ TEST_CASE("From rest without nominal speed orders are of the actual angle, besid
   m.add<Inertia>("J", {"rotor"}, {.inertia = 1.0});
   CHECK_THROWS(OrderTracking(m.build(), {"rotor.angle_rad"}, {1.0}, 4.0, false, "stator"));
 }
+
+TEST_CASE("Orders of a rotor's own angle and speed from rest are its vibration about the mean motion") {
+  // J theta'' = M + A cos(2 theta + p): w^2 = 2 M theta/J but for the vibration, whose angle is -A cos(2 theta + p)/(4 J w^2)
+  // and whose speed is -A cos(2 theta + p + pi/2)/(2 J w), relative to A/(J w^2) = 0.01.
+  const double mean = 5.0, amplitude = 3.0, phase = 0.4;
+  Model m("one rotor");
+  m.add_node("rotor");
+  m.add<Inertia>("J", {"rotor"}, {.inertia = 1.0});
+  m.add<EngineOrderTorque>("torque", {"rotor"}, {.harmonics = {{2.0, amplitude, phase}}, .mean = mean});
+  const System system = m.build();
+  OrderTracking tracking(system, {"rotor.angle_rad", "rotor.speed_rad_per_s"}, {0.5, 1.0, 2.0, 3.0}, 4.0,
+                         true, "rotor");
+  REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-10}, {.t_end = 12.0}, {&tracking}).ok());
+  const OrderTracks& tracks = tracking.tracks();
+  REQUIRE(tracks.time.size() > 20);
+  const double width = 4.0 * kTwoPi;
+  int looked_at = 0;
+  for (std::size_t w = 0; w < tracks.time.size(); ++w) {
+    if (tracks.speed[w] < 20.0) continue;
+    ++looked_at;
+    const double begin = 0.1 * kTwoPi + 0.5 * width * static_cast<double>(w);
+    double angle = 0.0, speed = 0.0, weights = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      const double part = (i + 0.5) / 1000.0, phi = begin + part * width;
+      const double weight = std::pow(std::sin(0.5 * kTwoPi * part), 2), omega = std::sqrt(2.0 * mean * phi);
+      angle += weight * amplitude / (4.0 * omega * omega);
+      speed += weight * amplitude / (2.0 * omega);
+      weights += weight;
+    }
+    INFO("window " << w << " at " << tracks.speed[w] << " rad/s");
+    const auto found = [&](std::size_t c, std::size_t k) {
+      return std::polar(tracks.amplitude[c][k][w], tracks.phase[c][k][w]);
+    };
+    CHECK(std::abs(found(0, 2) + std::polar(angle / weights, phase)) < 0.02 * angle / weights);
+    CHECK(std::abs(found(1, 2) + std::polar(speed / weights, phase + 0.5 * kPi)) < 0.02 * speed / weights);
+    for (const std::size_t other : {0, 1, 3}) CHECK(tracks.amplitude[0][other][w] < 0.05 * angle / weights);
+  }
+  CHECK(looked_at > 10);
+}
