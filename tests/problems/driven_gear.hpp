@@ -18,6 +18,7 @@ struct DrivenGear {
   std::vector<Harmonic> harmonics = {};  ///< of w, amplitude [N m]
   double mesh_phase = 0.0;               ///< mesh periods
   double x = 0.0, v = 0.0;               ///< at the start
+  TransmissionError transmission_error = {};
 
   System build() const {
     Model m("driven gear");
@@ -33,6 +34,7 @@ struct DrivenGear {
                      .normal_backlash = 2.0 * half_gap,
                      .damping = damping,
                      .damping_law = MeshDamping::always,
+                     .transmission_error = transmission_error,
                      .mesh_phase = mesh_phase});
     m.add<EngineOrderTorque>("torque", {"wheel"},
                              {.harmonics = harmonics, .mean = mean, .twist_feedback = false});

@@ -15,6 +15,7 @@
 #include "solvers/cycle_decay.hpp"
 #include "solvers/cycle_run.hpp"
 #include "tests/catch.hpp"
+#include "tests/problems/driven_gear.hpp"
 
 using namespace drev;
 
@@ -22,23 +23,11 @@ namespace {
 
 /// x'' + c x' + dz(x) = mean + error w^2 cos w t, half gap 1, x = wheel - error cos w t.
 System rattling_pair(double damping, double mean, double error) {
-  Model m("gear pair");
-  m.add_node("pinion");
-  m.add_node("wheel");
-  m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
-  m.add<GearMesh>("mesh", {"pinion", "wheel"},
-                  {.base_radius_1 = 1.0,
-                   .base_radius_2 = 1.0,
-                   .teeth_1 = 1,
-                   .teeth_2 = 1,
-                   .stiffness = 1.0,
-                   .normal_backlash = 2.0,
-                   .damping = damping,
-                   .damping_law = MeshDamping::always,
-                   .transmission_error = std::vector<Harmonic>{{1.0, error, 0.0}}});
-  m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = mean, .twist_feedback = false});
-  m.constant_speed("pinion", 1.0);
-  return m.build();
+  return problems::DrivenGear{.half_gap = 1.0,
+                              .damping = damping,
+                              .mean = mean,
+                              .transmission_error = std::vector<Harmonic>{{1.0, error, 0.0}}}
+      .build();
 }
 
 /// Cycles of x_n = multiplier^n about a motion of size 1, until they are said to repeat, at most `most`.
