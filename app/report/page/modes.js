@@ -115,7 +115,10 @@ function showCampbell() {
     const c = run.campbell;
     if (shown.length > 1) section.append(make("h3", {}, `Run ${run.name}`));
     if (!c) {
-      section.append(make("p", {}, "No shaft turns in this model, so there are no orders."));
+      const text = run.result.run_up
+        ? "Nothing turns nominally. The speeds that the run passes, with their criticals and orders, are below, under orders over the speed."
+        : "No shaft turns in this model, so there are no orders.";
+      section.append(make("p", {}, text));
       continue;
     }
     const rpm = 60 / (2 * Math.PI),

@@ -320,7 +320,7 @@ function showWaterfall(section, run, group, places) {
       tall: true,
       legend: "never",
       xName: "rpm",
-      xLabel: "speed of the reference shaft [rpm]",
+      xLabel: `speed of ${run.result.run_up.shaft ?? "the reference shaft"} [rpm]`,
       yLabel: "order",
       valueRange: [0, highest + height],
       labels: lines.map((k) => `order ${orderText(fall.orders[k])}`),
