@@ -12,7 +12,6 @@ namespace {
 constexpr double kFurther = 1.25;    // what an angle may come in a step, over what it did at the rate before
 constexpr double kOfTorque = 1e-18;  // terms of P and G below that are left out
 constexpr double kNearEdge = 0.95;   // of the way to where a cell ends
-constexpr double kBesideKnot = 1e-12;  // of the angle, at least of 1 rad: on it but for rounding
 constexpr double kOnes[kLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
 
 }  // namespace
@@ -219,19 +218,8 @@ void ExpandedLoads::move(const Assembler& assembler, const Vector& z, const Vect
   for (Load& l : loads_) {
     if (!l.acts) continue;
     l.move(system_, nominal, z, v);
-    if (l.knots == nullptr) continue;
-    // Nearer to a knot than rounding it is on the piece ahead.
-    const double near = kBesideKnot * std::max(1.0, std::abs(l.angle));
-    if (!(l.angle > l.piece.low + near && l.angle < l.piece.high - near) ||
-        l.ratio * nominal.rate != l.piece_speed)
-      look_up(l, l.speed);
+    if (l.knots != nullptr) l.follow(l.angle, l.speed, l.ratio * nominal.rate);
   }
-}
-
-void ExpandedLoads::look_up(Load& l, double direction) {
-  l.piece_speed = l.ratio * nominal_rate_;
-  l.piece = l.knots->piece(l.angle, direction, l.piece_speed);
-  l.about = l.angle;
 }
 
 void ExpandedLoads::move_as(const ExpandedLoads& other) {
@@ -376,43 +364,38 @@ double ExpandedLoads::work(const TaylorSeries& series, double s) {
   return sum;
 }
 
+ExpandedLoads::Values ExpandedLoads::values(const double* terms, int degree, std::size_t lane, double s) {
+  Values v;
+  for (int k = degree; k >= 0; --k) {
+    v.bend = v.bend * s + 2.0 * v.slope;
+    v.slope = v.slope * s + v.value;
+    v.value = v.value * s + terms[idx(k) * kLanes + lane];
+  }
+  return v;
+}
+
 double ExpandedLoads::swept_work(const TaylorSeries& series, double s) const {
   const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
   double sum = 0.0;
   for (const Group& group : groups_)
     for (std::size_t lane = 0; lane < idx(group.count); ++lane) {
       const Load& l = loads_[idx(group.load[lane])];
-      // At s: the angle, the row's motion, and their rates by s.
-      double x = 0.0, x_1 = 0.0, x_2 = 0.0, along = 0.0, along_1 = 0.0, along_2 = 0.0;
-      for (int k = series.degree(); k >= 0; --k) {
-        const auto at = idx(k) * kLanes + lane;
-        x_2 = x_2 * s + 2.0 * x_1;
-        x_1 = x_1 * s + x;
-        x = x * s + (k > 0 ? group.x[at] : 0.0);
-        along_2 = along_2 * s + 2.0 * along_1;
-        along_1 = along_1 * s + along;
-        along = along * s + (k > 0 ? group.along[at] : 0.0);
-      }
-      double p = 0.0, p_1 = 0.0, p_2 = 0.0, g = 0.0, g_1 = 0.0;
-      for (int j = group.top; j >= 0; --j) {
-        const auto at = idx(j) * kLanes + lane;
-        p_2 = p_2 * x + 2.0 * p_1;
-        p_1 = p_1 * x + p;
-        p = p * x + group.p[at];
-        if (!group.speeds) continue;
-        g_1 = g_1 * x + g;
-        g = g * x + group.g[at];
-      }
-      const double w = x_1 / h_;
-      const double torque = p + g * w * w, slope = p_1 + g_1 * w * w, by_speed = 2.0 * g * w / h_;
-      const double rate = slope * x_1 + by_speed * x_2, rate_2 = p_2 * x_1 * x_1 + p_1 * x_2;
+      const Values x = values(group.x.data(), series.degree(), lane, s);
+      const Values along = values(group.along.data(), series.degree(), lane, s);
+      const Values p = values(group.p.data(), group.top, lane, x.value);
+      const Values g = group.speeds ? values(group.g.data(), group.top, lane, x.value) : Values{};
+      const double w = x.slope / h_;
+      const double torque = p.value + g.value * w * w, slope = p.slope + g.slope * w * w,
+                   by_speed = 2.0 * g.value * w / h_;
+      const double rate = slope * x.slope + by_speed * x.bend,
+                   rate_2 = p.bend * x.slope * x.slope + p.slope * x.bend;
       const auto row = idx(l.row);
       // int p y' by parts; and what y changes of p, on z' and y'.
       const double y_s = l.coeff * y[row], sum_1 = l.coeff * y_sum[row], sum_2 = l.coeff * y_sum_2[row];
       sum += torque * y_s - rate * sum_1 + rate_2 * sum_2;
       if (!l.feedback) continue;
-      sum += slope * (along_1 * sum_1 - along_2 * sum_2 + 0.5 * y_s * y_s);
-      sum += by_speed * (along_1 * y_s - along_2 * sum_1);
+      sum += slope * (along.slope * sum_1 - along.bend * sum_2 + 0.5 * y_s * y_s);
+      sum += by_speed * (along.slope * y_s - along.bend * sum_1);
     }
   return sum;
 }

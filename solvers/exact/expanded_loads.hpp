@@ -34,15 +34,12 @@ class ExpandedLoads final : public TermForces {
   static bool holds(const LoadTerm& term, bool constant);
   void add(const LoadTerm& term, TaylorSeries& series);
 
-  struct Load : TangentLoad {
+  struct Load : TangentLoad, KnottedPlace {  // of knots: P is a cubic times a curve
     using TangentLoad::TangentLoad;
-    std::shared_ptr<HarmonicCells> cells = {};                            // of a sum of harmonics, else:
-    const KnottedLoad* knots = nullptr;                                   // P is a cubic times a curve
-    std::shared_ptr<const CurveCells> curves = {};                        // of knots
-    CubicPiece piece = {.low = std::numeric_limits<double>::infinity()};  // that holds; none yet
-    double about = 0.0, piece_speed = 0.0;  // angle and nominal speed that it is for
-    std::vector<Entry> gain;                // M^-1 b over unknowns
-    bool acts = false;                      // it holds under the nominal motion at hand
+    std::shared_ptr<HarmonicCells> cells = {};      // of a sum of harmonics
+    std::shared_ptr<const CurveCells> curves = {};  // of knots
+    std::vector<Entry> gain;                        // M^-1 b over unknowns
+    bool acts = false;                              // it holds under the nominal motion at hand
   };
   std::vector<Load>& loads() { return loads_; }
   const std::vector<Load>& loads() const { return loads_; }
@@ -56,7 +53,9 @@ class ExpandedLoads final : public TermForces {
   void move(const Assembler& assembler, const Vector& z, const Vector& v);
   void move_as(const ExpandedLoads& other);
   /// The piece ahead of a knot in the direction of the angle, where the load stands.
-  void look_up(Load& load, double direction);
+  void look_up(Load& load, double direction) {
+    load.KnottedPlace::look_up(load.angle, direction, load.ratio * nominal_rate_);
+  }
   /// Adds the tangents over a step of h seconds, and their slopes, to the series.
   void add_to(TaylorSeries& series, double h, const std::array<double, 3>& phi);
   /// The part of the step over which the loads' polynomials hold, <= 1.
@@ -116,6 +115,11 @@ class ExpandedLoads final : public TermForces {
   void find_groups(const MotionPoint& nominal);
   void place(Load& load, Group& group, std::size_t lane);
   void gather(Group& group, const TaylorSeries& series, int m) const;
+  /// sum terms[k] s^k of a lane, and its first two derivatives.
+  struct Values {
+    double value = 0.0, slope = 0.0, bend = 0.0;
+  };
+  static Values values(const double* terms, int degree, std::size_t lane, double s);
 
   const System& system_;
   std::vector<Load> loads_;

@@ -65,8 +65,9 @@ bool KinkResponse::find_limit(double allowed, double scale) {
   limit_ = 1.0;
   const double most = allowed / scale;
   const bool slopes = loads_.expanded().active() || laws_.active();
+  const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
-    const Others bends = slopes ? error_of_slopes(limit_) : Others{};
+    const Others bends = slopes ? error_of_slopes(limit_, change) : Others{};
     if (bends.error > 0.5 * most) {
       const double behind = limit_ - bends.between;
       limit_ = bends.between + behind * kShortened * std::pow(0.5 * most / bends.error, 0.2);
@@ -94,10 +95,10 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
 /// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, and of one by speed d^5/60. between: the s of
 /// the kink that makes most of it.
-KinkResponse::Others KinkResponse::error_of_slopes(double end) const {
+KinkResponse::Others KinkResponse::error_of_slopes(double end,
+                                                   const ExpandedLoads::SlopeChange& change) const {
   const KinkMoments& kinks = loads_.kinks();
   const double h = series_.step();
-  const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
   Others sum;
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {

@@ -59,15 +59,6 @@ double SmoothLoads::beyond_tangent(const Place& l, const Samples& at, std::size_
   return at.torque[q] - l.torque - l.slope * at.turn[q];
 }
 
-/// Nearer to a knot than rounding it is on the piece ahead.
-void SmoothLoads::find_piece(Place& l, double nominal_speed) const {
-  const double near = 1e-12 * std::max(1.0, std::abs(l.angle));
-  if (l.angle > l.piece.low + near && l.angle < l.piece.high - near && nominal_speed == l.piece_speed) return;
-  l.piece = l.knots->piece(l.angle, l.speed, nominal_speed);
-  l.about = l.angle;
-  l.piece_speed = nominal_speed;
-}
-
 /// Torque and slopes at the places s, where turn and rate are known.
 void SmoothLoads::sample(const Place& l, const double* s, Samples& at) const {
   for (std::size_t q = 0; q < kNodes; ++q) {

@@ -73,25 +73,14 @@ void ExpandedLoads::use_slopes(TaylorSeries& series, double s) {
     for (std::size_t lane = 0; lane < idx(group.count); ++lane) {
       const Load& l = loads_[idx(group.load[lane])];
       if (!l.feedback) continue;
-      double x = 0.0, rate = 0.0;
-      for (int k = series.degree(); k >= 1; --k) {
-        rate = rate * s + x;
-        x = x * s + group.x[idx(k) * kLanes + lane];
-      }
-      rate = (rate * s + x) / h_;
-      x *= s;
-      double slope = 0.0, g = 0.0, g_slope = 0.0;
-      for (int j = group.top; j >= 1; --j) {
-        const auto at = idx(j) * kLanes + lane;
-        slope = slope * x + j * group.p[at];
-        if (!group.speeds) continue;
-        g_slope = g_slope * x + j * group.g[at];
-        g = (g + group.g[at]) * x;
-      }
-      group.more_slope[lane] = l.coeff * l.coeff * (slope + g_slope * rate * rate - l.slope);
+      const Values x = values(group.x.data(), series.degree(), lane, s);
+      const Values p = values(group.p.data(), group.top, lane, x.value);
+      const Values g = group.speeds ? values(group.g.data(), group.top, lane, x.value) : Values{};
+      const double w = x.slope / h_;
+      group.more_slope[lane] = l.coeff * l.coeff * (p.slope + g.slope * w * w - l.slope);
       series.add_row_stiffness(l.row, -group.more_slope[lane]);
       if (!group.speeds || l.row >= system_.size()) continue;
-      group.more_by_speed[lane] = l.coeff * l.coeff * (2.0 * (g + group.g[lane]) * rate - l.speed_slope);
+      group.more_by_speed[lane] = l.coeff * l.coeff * (2.0 * g.value * w - l.speed_slope);
       series.add_load_damping(l.row, -group.more_by_speed[lane]);
     }
 }

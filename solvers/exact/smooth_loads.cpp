@@ -30,7 +30,7 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
     const LoadResponse r = assembler.load(*l.term, z, v);
     l.torque = r.torque;
     l.slope = l.feedback ? r.dtorque_dangle : 0.0;
-    if (l.knots != nullptr) find_piece(l, l.ratio * nominal.rate);
+    if (l.knots != nullptr) l.follow(l.angle, l.speed, l.ratio * nominal.rate);
   }
 }
 

@@ -63,19 +63,14 @@ class SmoothLoads {
   double slope_work(const TaylorSeries& series, const Vector& end) const;
 
  private:
-  struct Place : TangentLoad {
+  struct Place : TangentLoad, KnottedPlace {
     using TangentLoad::TangentLoad;
-    const KnottedLoad* knots = nullptr;
-    // Of knots: the piece at the step's start, about an angle, at a nominal speed; none yet.
-    CubicPiece piece = {.low = std::numeric_limits<double>::infinity()};
-    double about = 0.0, piece_speed = 0.0;
     bool kinked = false, unfinished = false, monotone = true;  // in this pass
     double strongest = 1.0;                                    // of the knots passed
   };
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
   void find_loads(const MotionPoint& nominal);
-  void find_piece(Place& load, double nominal_speed) const;
   double differ_knotted(Place& load, const TaylorSeries& series, NodeForces& forces,
                         LegendreProjection& kinks);
   double pass_knots(Place& load, const TaylorSeries& series, double end, LegendreProjection& kinks);

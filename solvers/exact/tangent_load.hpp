@@ -5,8 +5,12 @@
 ///
 /// The slopes go to stiffness and damping; what the load differs from the tangent is added by them.
 #include <drev/core/assembler.hpp>
+#include <drev/core/law/knotted_load.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "solvers/exact/taylor_series.hpp"
 
@@ -37,6 +41,28 @@ struct PlacedLoad {
     deviation = feedback ? coeff * along(system, z) : 0.0;
     angle = ratio * nominal.value + deviation;
     speed = ratio * nominal.rate + (feedback ? coeff * along(system, v) : 0.0);
+  }
+};
+
+/// The piece on which a load that says its knots stands.
+struct KnottedPlace {
+  static constexpr double kBesideKnot =
+      1e-12;                           ///< of the angle, at least of 1 rad: on a knot but for rounding
+  const KnottedLoad* knots = nullptr;  ///< null: it says none
+  CubicPiece piece = {.low = std::numeric_limits<double>::infinity()};  ///< none yet
+  double about = 0.0, piece_speed = 0.0;  ///< angle and nominal speed that it is for
+
+  /// The piece about an angle, on a knot that ahead of it in the direction.
+  void look_up(double angle, double direction, double nominal_speed) {
+    piece = knots->piece(angle, direction, nominal_speed);
+    about = angle;
+    piece_speed = nominal_speed;
+  }
+  /// The same where the piece at hand does not hold: nearer to a knot than rounding the load is on the piece ahead.
+  void follow(double angle, double direction, double nominal_speed) {
+    const double near = kBesideKnot * std::max(1.0, std::abs(angle));
+    if (angle > piece.low + near && angle < piece.high - near && nominal_speed == piece_speed) return;
+    look_up(angle, direction, nominal_speed);
   }
 };
 
