@@ -240,7 +240,7 @@ class ExactRun final : public StepMotion {
       }
       if (expansion_.sweeps()) {
         if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state))
-          return {.s = found->s, .change = found->change};
+          return {.s = found->s, .change = found->change, .at_law_knot = found->at_law_knot};
         expansion_.allow_sweeps(false);
         continue;
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
+#include "solvers/exact/lane_pair.hpp"
 #include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/legendre_projection.hpp"
@@ -26,6 +27,44 @@ double product_term(const std::vector<double>& a, const std::vector<double>& b, 
   for (int i = 0; i <= m; ++i) sum += a[idx(i)] * b[idx(m - i)];
   return sum;
 }
+
+/// Term m of cos and sin of orders of an angle whose s theta' has terms `turn`, and what they add to a sum of orders and to
+/// its slope by the angle.
+struct OrderTerms {
+  template <class L>
+  [[gnu::always_inline]] static void run(const double* turn, int m, int lanes, const double* orders,
+                                         double* cosine, double* sine, double* sums) {
+    L sum{}, slope{}, x, order;
+    for (int first = 0; first < lanes; first += kLanes) {
+      L of_c{}, of_s{};
+      for (int j = 1; j <= m; ++j) {
+        load(cosine + (m - j) * lanes + first, x);
+        of_c += turn[j] * x;
+        load(sine + (m - j) * lanes + first, x);
+        of_s += turn[j] * x;
+      }
+      load(orders + first, order);
+      const L c = (-1.0 / m) * (order * of_s), s = (1.0 / m) * (order * of_c);
+      store(c, cosine + m * lanes + first);
+      store(s, sine + m * lanes + first);
+      L by_cosine, by_sine;
+      load(orders + lanes + first, by_cosine);
+      load(orders + 2 * lanes + first, by_sine);
+      sum += by_cosine * c + by_sine * s;
+      slope += order * (by_sine * c - by_cosine * s);
+    }
+    double lanes_of[2 * kLanes];
+    store(sum, lanes_of);
+    store(slope, lanes_of + kLanes);
+    for (int half = kLanes / 2; half > 0; half /= 2)
+      for (int lane = 0; lane < half; ++lane) {
+        lanes_of[lane] += lanes_of[lane + half];
+        lanes_of[kLanes + lane] += lanes_of[kLanes + lane + half];
+      }
+    sums[0] = lanes_of[0];
+    sums[1] = lanes_of[kLanes];
+  }
+};
 
 double term_or_zero(const std::vector<double>& series, int m) {
   return idx(m) < series.size() ? series[idx(m)] : 0.0;
@@ -63,7 +102,7 @@ ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(s
     series.solve_mass(row, gain);
     for (int i = 0; i < system.size(); ++i)
       if (gain[i] != 0.0) law.gain.push_back({i, gain[i]});
-    for (auto* s : {&law.x, &law.theta, &law.r}) s->assign(capacity(), 0.0);
+    for (auto* s : {&law.x, &law.theta, &law.r, &law.turn, &law.by_phase_terms}) s->assign(capacity(), 0.0);
     laws_.push_back(std::move(law));
   }
 }
@@ -88,11 +127,11 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     const ScalarInput& in = start.inputs[idx(law.index)];
     const LawPiece& p = term.force->pieces()[idx(pieces.piece(law.index))];
     const bool linear = is_linear(term, p);
+    law.known_to = -1;
     law.active = !linear && (p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0);
     active_ = active_ || law.active;
     law.works = !linear && (law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0);
-    sweeps_ =
-        sweeps_ && law.scaled == nullptr && (linear || term.u.empty() || !system_.any_prescribed_moves());
+    sweeps_ = sweeps_ && (linear || term.u.empty() || !system_.any_prescribed_moves());
     law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
     law.k = p.k;
     law.g = p.product;
@@ -133,36 +172,39 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
 }
 
 void ExpandedLaws::start_scale(Law& law) const {
-  law.varies = law.stretch.slope != 0.0 || !law.stretch.orders.empty();
+  const std::span<const ScaleOrder> orders = law.stretch.orders;
+  law.varies = law.stretch.slope != 0.0 || !orders.empty();
   law.r[0] = law.stretch.value;
-  const std::size_t orders = law.stretch.orders.size();
-  law.cosine.assign(orders * capacity(), 0.0);
-  law.sine.assign(orders * capacity(), 0.0);
-  for (std::size_t i = 0; i < orders; ++i) {
-    const ScaleOrder& o = law.stretch.orders[i];
+  law.by_phase_terms[0] = law.stretch.slope;
+  const auto lanes = idx(whole_lanes(static_cast<int>(orders.size())));
+  law.orders.assign(3 * lanes, 0.0);
+  for (auto* terms : {&law.cosine, &law.sine}) terms->assign(lanes * capacity(), 0.0);
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const ScaleOrder& o = orders[i];
     const double c = std::cos(o.order * law.angle), s = std::sin(o.order * law.angle);
-    law.cosine[i * capacity()] = c;
-    law.sine[i * capacity()] = s;
+    law.orders[i] = o.order;
+    law.orders[lanes + i] = o.cosine;
+    law.orders[2 * lanes + i] = o.sine;
+    law.cosine[i] = c;
+    law.sine[i] = s;
     law.r[0] += o.cosine * c + o.sine * s;
+    law.by_phase_terms[0] += o.order * (o.sine * c - o.cosine * s);
   }
 }
 
-/// r_m, m >= 1, from theta_1 ... theta_m.
+/// r_m and the same of dr/dtheta, m >= 1, from theta_1 ... theta_m.
 void ExpandedLaws::add_scale(Law& law, int m) {
   law.r[idx(m)] = law.stretch.slope * law.theta[idx(m)];
-  for (std::size_t i = 0; i < law.stretch.orders.size(); ++i) {
-    const ScaleOrder& o = law.stretch.orders[i];
-    double* c = law.cosine.data() + i * capacity();
-    double* s = law.sine.data() + i * capacity();
-    double of_c = 0.0, of_s = 0.0;
-    for (int j = 1; j <= m; ++j) {
-      of_c += j * law.theta[idx(j)] * c[m - j];
-      of_s += j * law.theta[idx(j)] * s[m - j];
-    }
-    c[m] = -o.order / m * of_s;
-    s[m] = o.order / m * of_c;
-    law.r[idx(m)] += o.cosine * c[m] + o.sine * s[m];
-  }
+  law.by_phase_terms[idx(m)] = 0.0;
+  law.turn[idx(m)] = m * law.theta[idx(m)];
+  if (law.orders.empty()) return;
+  const auto lanes = static_cast<int>(law.orders.size() / 3);
+  double sums[2];
+  run_widest<OrderTerms>(static_cast<const double*>(law.turn.data()), m, lanes,
+                         static_cast<const double*>(law.orders.data()), law.cosine.data(), law.sine.data(),
+                         static_cast<double*>(sums));
+  law.r[idx(m)] += sums[0];
+  law.by_phase_terms[idx(m)] += sums[1];
 }
 
 /// x_m and theta_m.
@@ -183,6 +225,7 @@ double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, doubl
     if (!law.active) continue;
     if (m == 0) add_term(law, series, 0);
     add_term(law, series, m + 1);
+    law.known_to = m;
     double y = law.k * law.r[0] * law.x[idx(m)];
     if (law.varies) {
       if (m > 0) add_scale(law, m);
@@ -198,75 +241,20 @@ double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, doubl
   return std::numeric_limits<double>::infinity();
 }
 
+/// The terms up to the series' degree, those behind what add() has found.
+void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
+  const int degree = series.degree();
+  for (int m = law.known_to < 0 ? 0 : law.known_to + 2; m <= degree; ++m) add_term(law, series, m);
+  if (law.varies)
+    for (int m = std::max(1, law.known_to + 1); m <= degree; ++m) add_scale(law, m);
+  law.known_to = std::max(law.known_to, degree);
+}
+
 void ExpandedLaws::expand(const TaylorSeries& series) {
   for (Law& law : laws_) {
     if (!law.works && law.scaled == nullptr) continue;
-    for (int m = 0; m <= series.degree(); ++m) add_term(law, series, m);
-    if (!law.varies) continue;
-    for (int m = 1; m <= series.degree(); ++m) add_scale(law, m);
+    complete(law, series);
   }
-}
-
-void ExpandedLaws::add_slopes(TaylorSeries& series, const Law& law, double factor) {
-  std::size_t slot = 0;
-  for (const Entry& row : law.term->z)
-    for (const Entry& column : law.term->z) {
-      const double b = factor * row.coeff * column.coeff;
-      series.add_stiffness(law.term->slots[slot], law.slope * b);
-      series.add_damping(law.term->slots[slot++], law.by_speed * b);
-    }
-}
-
-void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
-  changes_.clear();
-  for (Law& law : laws_) {
-    if (!law.active) continue;
-    add_term(law, series, series.degree());
-    const std::span<const double> x = std::span(law.x).first(idx(series.degree() + 1));
-    law.slope = law.k + law.g * polynomial_slope(x, s) / h_;
-    law.by_speed = law.c + law.g * polynomial_value(x, s);
-    add_slopes(series, law, 1.0);
-    double b = 0.0, moved = 0.0, bend = 0.0, turn = 0.0;
-    for (const Entry& e : law.term->z) b = std::max(b, std::abs(e.coeff));
-    for (const Entry& e : law.gain) moved = std::max(moved, std::abs(e.coeff));
-    for (std::size_t k = 1; k < x.size(); ++k) {
-      turn += std::abs(x[k]);
-      bend += static_cast<double>(k * (k - 1)) * std::abs(x[k]);
-    }
-    changes_.push_back(
-        {law.term, b * moved * std::abs(law.g) * bend / h_, b * moved * std::abs(law.g) * turn});
-  }
-}
-
-void ExpandedLaws::return_slopes(TaylorSeries& series) {
-  for (const Law& law : laws_)
-    if (law.active) add_slopes(series, law, -1.0);
-}
-
-double ExpandedLaws::swept_loss(const TaylorSeries& series, double s) const {
-  double sum = 0.0;
-  for (const Law& law : laws_) {
-    if (!law.active) continue;
-    double y = 0.0, rate = 0.0, y_sum = 0.0, y_sum_2 = 0.0;
-    for (const Entry& e : law.term->z) {
-      y += e.coeff * series.swept(0)[e.index];
-      rate += e.coeff * series.swept(-1)[e.index];
-      y_sum += e.coeff * series.swept(1)[e.index];
-      y_sum_2 += e.coeff * series.swept(2)[e.index];
-    }
-    const std::span<const double> x = std::span(law.x).first(idx(series.degree() + 1));
-    double value = 0.0, x_1 = 0.0, x_2 = 0.0;
-    for (std::size_t k = x.size(); k-- > 0;) {
-      x_2 = x_2 * s + 2.0 * x_1;
-      x_1 = x_1 * s + value;
-      value = value * s + x[k];
-    }
-    // int (c + g (x + y)) (x' + y')^2 less that without y, by parts; y as a cube in the last term, which is of its square.
-    const double q = law.c + law.g * value;
-    sum += 2.0 * q * x_1 * y - (law.g * x_1 * x_1 + 2.0 * q * x_2) * y_sum +
-           6.0 * law.g * x_1 * x_2 * y_sum_2 + 0.6 * q * y * rate;
-  }
-  return sum / h_;
 }
 
 bool ExpandedLaws::turns_back(const TaylorSeries& series) {
@@ -325,6 +313,7 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
       if (const auto s = first_crossing(g, end)) {
         first = s;
         end = *s;
+        knot_law_ = &law;
         const double rate = std::max(std::abs(polynomial_slope(g, end)), kLeastRate * std::abs(g[0]));
         knot_clearance_ = kClearOfKnot * std::max(1.0, std::abs(law.angle)) * h_ / rate;
       }
@@ -333,23 +322,25 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
   return first;
 }
 
-LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end) const {
+LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const EvaluatedState& end,
+                           bool swept) const {
   LawWork work;
   const GaussRule& rule = gauss_rule();
   const auto terms = idx(series.degree() + 1);
+  AtNodes x, r, known;
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
     if (!law.works) continue;
-    const std::span<const double> x = std::span(law.x).first(terms);
-    const std::span<const double> r = std::span(law.r).first(law.varies ? terms : 1);
+    if (varies && swept) work.input -= swept_elastic_work(law, series);
+    find_at_nodes(std::span(law.x).first(terms), s, x);
+    find_at_nodes(std::span(law.r).first(law.varies ? terms : 1), s, r);
+    find_at_nodes(law.known, s, known);
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-      const double at = s * rule.s[q];
-      const double deflection = polynomial_value(x, at), rate = polynomial_slope(x, at) / h_;
-      const double known = polynomial_slope(law.known, at) / h_, scale = polynomial_value(r, at);
+      const double deflection = x.value[q], rate = x.slope[q] / h_, scale = r.value[q];
       const double y = scale * (law.y_0 + law.k * deflection) + (law.c + law.g * deflection) * rate;
       const double elastic = scale * (law.elastic_0 + law.elastic_k * deflection);
-      work.add(s * h_ * rule.weight[q], y, rate, rate - known, (y - elastic) * rate, varies);
+      work.add(s * h_ * rule.weight[q], y, rate, rate - known.slope[q] / h_, (y - elastic) * rate, varies);
     }
   }
   return work;

@@ -14,8 +14,10 @@
 #include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
+#include <array>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solvers/exact/law_work.hpp"
@@ -48,19 +50,24 @@ class ExpandedLaws final : public TermForces {
   /// Adds the forces' part to term k of the series, factor = h^2/(k (k - 1)).
   double add(const TaylorSeries& series, int k, double factor, double* term) override;
   bool active() const override { return active_; }
-  /// None follows an angle, and nothing known acts on one that holds.
+  /// Nothing known acts on one that holds.
   bool sweeps() const override { return sweeps_; }
   /// Puts the slopes at s of the step where a sweep to there reads them; and takes them away.
   void use_slopes(TaylorSeries& series, double s);
   void return_slopes(TaylorSeries& series);
-  /// Of how much these slopes change over the step, in accelerations of a row of theirs: by angle [1/s^2] and by speed [1/s].
+  /// Of how much these slopes change along the step, in accelerations of a row of theirs, by angle [1/s^2] and by speed
+  /// [1/s]: bounds of their first derivatives by s, and of the third ones; left out: the slope by a phase whose node is none
+  /// of the law's own [1/s^2].
   struct SlopeChange {
     const ScalarTerm* term;
-    double by_angle, by_speed;
+    double by_angle = 0.0, by_speed = 0.0, by_angle_3 = 0.0, by_speed_3 = 0.0, left_out = 0.0;
   };
   const std::vector<SlopeChange>& slope_changes() const { return changes_; }
-  /// What a motion that a sweep adds up to s changes of the losses [J].
-  double swept_loss(const TaylorSeries& series, double s) const;
+  /// Adds to the moments of a sweep, which was made without, what first and second derivatives of the slopes make of its
+  /// motion: with y = sum of moments that it has, int (e - u)^(j+q)/(j! q!) y du = (j+q)!/(j! q!) of one of them.
+  void add_changes(const TaylorSeries& series, int degree, double* moments) const;
+  /// What a motion that a sweep adds up to the s of its slopes changes of the losses [J].
+  double swept_loss(const TaylorSeries& series) const;
   int known_degree() const override { return known_degree_; }
 
   /// An angle at rest on a knot goes the other way than was assumed: expand anew.
@@ -73,11 +80,13 @@ class ExpandedLaws final : public TermForces {
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
+  /// The knot last found, at s of the series, where a motion was swept up to there: a step of Newton's rule.
+  double swept_knot(const TaylorSeries& series, double s) const;
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
 
-  /// From 0 to s; end: what was evaluated at s.
-  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end) const;
+  /// From 0 to s; end: what was evaluated at s. swept: up to there a motion was swept, whose loss is swept_loss().
+  LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end, bool swept) const;
 
  private:
   struct Law {
@@ -86,10 +95,10 @@ class ExpandedLaws final : public TermForces {
     const AngleScaledForce* scaled = nullptr;                     // null: r = 1
     std::vector<Entry> phase_row;                                 // its phase node's deviation
     std::vector<Entry> gain;                                      // M^-1 b over unknowns
-    double slope = 0.0, by_speed = 0.0;                           // use_slopes()
     double direction = 1.0;                                       // in which the angle went last
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
+    int known_to = -1;  // degree of r so far, of x and theta one more
     // Of the step: the piece about `origin`, where its elastic force is zero.
     bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
@@ -97,18 +106,28 @@ class ExpandedLaws final : public TermForces {
     ScaleStretch stretch;
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
-    std::vector<double> cosine, sine;  // of each order, by degree: cos and sin of order theta
+    std::vector<double> turn, by_phase_terms;  // series of s theta' and dr/dtheta
+    // Of use_slopes(), at its s: x, r and dr/dtheta with their derivatives, and the slopes with two of theirs.
+    std::array<double, 4> x_at{}, r_at{}, p_at{};
+    std::array<double, 3> slope{}, by_speed{}, by_phase{};
+    // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
+    std::vector<double> orders, cosine, sine;
   };
+  static double swept_elastic_work(const Law& law, const TaylorSeries& series);
+  void note_changes(const Law& law, std::span<const double> x, std::span<const double> r,
+                    std::span<const double> p);
   static void add_slopes(TaylorSeries& series, const Law& law, double factor);
   void start_scale(Law& law) const;
   void add_term(Law& law, const TaylorSeries& series, int m) const;
   static void add_scale(Law& law, int m);
+  void complete(Law& law, const TaylorSeries& series) const;
 
   const System& system_;
   Assembler assembler_;
   std::vector<Law> laws_;
   std::vector<SlopeChange> changes_;
   bool active_ = false, sweeps_ = false;
+  const Law* knot_law_ = nullptr;  // of first_knot()
   int known_degree_ = 0;
   double t_ = 0.0, h_ = 0.0, knot_clearance_ = 0.0;
 };

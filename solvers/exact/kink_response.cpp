@@ -32,7 +32,10 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   undo();
   if (!loads_.list_sweep_kinks(series_, end, z_end)) return false;
   end_ = end;
-  if (end == 1.0) limit_ = 1.0;
+  if (end == 1.0) {
+    limit_ = 1.0;
+    corrects_ = false;
+  }
   KinkMoments& kinks = loads_.kinks();
   if (kinks.count() == 0) return found_ = true;
   if (kinks.count() > kMostKinks) return false;
@@ -57,17 +60,23 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   kinks.add_to_sweep(end, degree, stride, moments_.data());
   series_.sweep(moments_.data(), degree);
   if (end == 1.0 && !find_limit(share - rest, scale)) return false;
+  if (!corrects_) return found_ = true;
+  laws_.add_changes(series_, degree, moments_.data());
+  series_.sweep(moments_.data(), degree);
   return found_ = true;
 }
 
 /// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
 bool KinkResponse::find_limit(double allowed, double scale) {
-  limit_ = 1.0;
   const double most = allowed / scale;
   const bool slopes = loads_.expanded().active() || laws_.active();
   const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
     const Others bends = slopes ? error_of_slopes(limit_, change) : Others{};
+    if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {
+      corrects_ = true;
+      continue;
+    }
     if (bends.error > 0.5 * most) {
       const double behind = limit_ - bends.between;
       limit_ = bends.between + behind * kShortened * std::pow(0.5 * most / bends.error, 0.2);
@@ -93,8 +102,9 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
 }
 
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
-/// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, and of one by speed d^5/60. between: the s of
-/// the kink that makes most of it.
+/// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, of one by speed d^5/60, and d^5/120 of a slope that is
+/// left out. Where add_changes() has been, of laws the square of that over y, and what third derivatives make, int (d - u)
+/// (d - u)^3/6 u^3/6 du = d^8/10080, by speed d^7/1260. between: the s of the kink that makes most of it.
 KinkResponse::Others KinkResponse::error_of_slopes(double end,
                                                    const ExpandedLoads::SlopeChange& change) const {
   const KinkMoments& kinks = loads_.kinks();
@@ -103,14 +113,16 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {
     const double d = std::max(0.0, end - kinks.place(i)), fifth = d * d * d * d * d;
-    double by_angle = change.by_angle, by_speed = change.by_speed;
+    double of_slopes = h * h * change.by_angle * d / 360.0 + h * change.by_speed / 60.0;
     for (const ExpandedLaws::SlopeChange& law : laws_.slope_changes()) {
-      const double near = nearness(kinks.row(i), *law.term, d);
-      by_angle = std::max(by_angle, near * law.by_angle);
-      by_speed = std::max(by_speed, near * law.by_speed);
+      double of_law = h * h * law.by_angle * d / 360.0 + h * law.by_speed / 60.0;
+      if (corrects_)
+        of_law = 6.0 * of_law * of_law * d * d +
+                 d * d * (h * h * law.by_angle_3 * d / 10080.0 + h * law.by_speed_3 / 1260.0);
+      of_law += h * h * law.left_out / 120.0;
+      of_slopes = std::max(of_slopes, nearness(kinks.row(i), *law.term, d) * of_law);
     }
-    const double error =
-        loads_.kink_sizes()[idx(i)].pull * fifth * (h * h * by_angle * d / 360.0 + h * by_speed / 60.0);
+    const double error = loads_.kink_sizes()[idx(i)].pull * fifth * of_slopes;
     sum.error += error;
     if (error > most) {
       most = error;

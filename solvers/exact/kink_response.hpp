@@ -6,7 +6,8 @@
 /// (kink_moments.hpp), goes through one sweep (TaylorSeries::sweep). What it adds, y, bends the angle in turn: with the
 /// changed slope in the stiffness the sweep holds that, too, since y of a kink's row is zero ahead of it. Left out is
 /// what other kinks have added to that row before: of order h^4 of the same row's, and h^6 of its neighbours'; the
-/// step ends where that would matter. A knot's place follows from the series alone: a force is continuous there, so
+/// step ends where that would matter. Slopes of laws that change along the step make a second sweep, of their first and second
+/// derivatives on the motion of the first. A knot's place follows from the series alone: a force is continuous there, so
 /// that an error of place counts squared.
 #include <vector>
 
@@ -44,7 +45,7 @@ class KinkResponse {
   /// Loss in all dampers, and what the response changes of that in laws [J].
   double dissipated() {
     return_slopes();
-    return series_.loss(end_, any()) + (any() ? laws_.swept_loss(series_, end_) : 0.0);
+    return series_.loss(end_, any()) + (any() ? laws_.swept_loss(series_) : 0.0);
   }
 
  private:
@@ -62,6 +63,7 @@ class KinkResponse {
   LoadSeries& loads_;
   ExpandedLaws& laws_;
   bool found_ = false, slopes_changed_ = false;
+  bool corrects_ = false;  // in this step, what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
   std::vector<double> moments_;
 };

@@ -239,7 +239,12 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
       lower_ = laws_[j].bounds[i];
       if (lower_.size() < 4) lower_.resize(4, 0.0);
       lower_[2] -= 0.5 * push * mobility * std::abs(b.b_v) / h_;
-      lower_[3] -= push * mobility * std::abs(b.b_x) / 6.0;
+      double scale = 1.0;
+      if (b.b_v != 0.0 && laws_[j].scaled) {
+        scale = 0.0;
+        for (const double r : laws_[j].scale) scale += std::abs(r);
+      }
+      lower_[3] -= push * mobility * scale * std::abs(b.b_x) / 6.0;
       const auto s = first_crossing(lower_, 1.0);
       if (!s) continue;
       if (!found.change || *s < earliest) {
@@ -264,10 +269,13 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
 
 double LawSeries::later(const Change& change, const double* y, const double* rate) const {
   const LawBound& b = current(idx(change.law)).bounds[idx(change.bound)];
-  const std::vector<double>& g = laws_[idx(change.law)].bounds[idx(change.bound)];
+  const Law& law = laws_[idx(change.law)];
+  const std::vector<double>& g = law.bounds[idx(change.bound)];
+  // What the motion turns the angle of r is left out: forces are continuous at such a bound.
+  const double scale = b.b_v != 0.0 && law.scaled ? polynomial_value(law.scale, change.s) : 1.0;
   double beside = polynomial_value(g, change.s);
   for (const Entry& e : system_.scalars()[idx(change.law)].z)
-    beside += e.coeff * (b.b_x * y[e.index] + b.b_v / h_ * rate[e.index]);
+    beside += e.coeff * (scale * b.b_x * y[e.index] + b.b_v / h_ * rate[e.index]);
   return -beside / polynomial_slope(g, change.s);
 }
 

@@ -47,6 +47,25 @@ struct ToPowers {
   }
 };
 
+struct PolynomialAtNodes {
+  template <class L>
+  [[gnu::always_inline]] static void run(const double* terms, std::size_t count, double end,
+                                         const double* nodes, AtNodes* out) {
+    for (std::size_t first = 0; first < out->value.size(); first += kLanes) {
+      L s, value{}, slope{};
+      load(nodes + first, s);
+      s = end * s;
+      for (std::size_t k = count; k-- > 0;) {
+        slope = slope * s + value;
+        value = value * s;
+        value = value + terms[k];
+      }
+      store(value, out->value.data() + first);
+      store(slope, out->slope.data() + first);
+    }
+  }
+};
+
 struct Difference {
   template <class L>
   [[gnu::always_inline]] static void run(int stride, const double* a, const double* b, double* out) {
@@ -83,6 +102,15 @@ void find_gauss_rule(int n, double* s, double* weight) {
     s[i] = 0.5 * (1.0 - x);
     weight[i] = 1.0 / ((1.0 - x * x) * slope * slope);
   }
+}
+
+void find_at_nodes(std::span<const double> polynomial, double end, AtNodes& out) {
+  static const auto nodes = [] {
+    std::array<double, whole_lanes(GaussRule::kNodes)> padded{};
+    std::copy(gauss_rule().s.begin(), gauss_rule().s.end(), padded.begin());
+    return padded;
+  }();
+  run_widest<PolynomialAtNodes>(polynomial.data(), polynomial.size(), end, nodes.data(), &out);
 }
 
 const GaussRule& gauss_rule() {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace drev {
@@ -41,6 +42,11 @@ struct GaussRule {
   std::array<std::array<double, kNodes>, kProjectionTerms> legendre;
 };
 const GaussRule& gauss_rule();
+/// A polynomial of s and its slope at the nodes of Gauss's rule over [0, end].
+struct AtNodes {
+  std::array<double, whole_lanes(GaussRule::kNodes)> value, slope;
+};
+void find_at_nodes(std::span<const double> polynomial, double end, AtNodes& out);
 /// Nodes and weights of Gauss's rule of n nodes on [0, 1].
 void find_gauss_rule(int n, double* s, double* weight);
 

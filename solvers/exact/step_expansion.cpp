@@ -38,7 +38,7 @@ bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& l
     return false;
   made.h = series.expand(from.state.z, from.state.v, h, limits.share);
   if (made.h < h) return true;
-  made.again = known.came_further(series);
+  made.again = expanded.turns_back(series) || known.came_further(series);
   if (made.again) return true;
   kinks.reset();
   if (kinks.find(1.0, nullptr, limits.share)) return sweeps_ = true;
@@ -149,7 +149,7 @@ std::optional<double> StepExpansion::first_knot(double end) {
 
 LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedState& end) {
   LawWork sum = smooth.work(series, s, end);
-  sum += expanded.work(series, s, end);
+  sum += expanded.work(series, s, end, sweeps_ && kinks.any());
   sum.input += known.work(series, s, end.state.z) + laws.input(s) + friction.input(s);
   if (sweeps_) return sum += {kinks.work(), kinks.dissipated()};
   sum.dissipated += series.dissipated(s) + laws.dissipated(s) + friction.dissipated(s);
@@ -160,18 +160,32 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
                                                                          State& at) {
   const LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
   if (found.unsure) return std::nullopt;
-  if (!found.change || found.change->s > kinks.limit()) return SweptEnd{kinks.limit()};
-  SweptEnd end{found.change->s, found.change};
+  SweptEnd end{kinks.limit()};
+  if (found.change && found.change->s <= end.s) {
+    end = {found.change->s, found.change};
+    if (!settle(laws, t, end, at)) return std::nullopt;
+  }
+  const auto knot = first_knot(end.s);
+  if (!knot) return end;
+  // The scale is continuous there, so that an error of place counts squared.
+  if (!evaluate(*knot, at.z, at.v)) return std::nullopt;
+  double s = kinks.any() ? expanded.swept_knot(series, *knot) : *knot;
+  if (!(s > 0.0)) s = *knot;
+  return s < end.s ? SweptEnd{s, {}, true} : end;
+}
+
+/// The s at which a change comes with what kinks add to the motion. False: passes have to tell.
+bool StepExpansion::settle(const LawSeries& laws, double t, SweptEnd& end, State& at) {
   for (int newton = 0; newton < kMostNewton; ++newton) {
     end.change->s = end.s;
-    if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
-    if (!kinks.any()) return end;
+    if (!evaluate(end.s, at.z, at.v)) return false;
+    if (!kinks.any()) return true;
     const double later = laws.later(*end.change, series.swept(0), series.swept(-1));
-    if (std::abs(later) <= kAtChange || end.s * series.step() < kRoundingOfTime * std::abs(t)) return end;
+    if (std::abs(later) <= kAtChange || end.s * series.step() < kRoundingOfTime * std::abs(t)) return true;
     end.s += later;
     if (!(end.s > 0.0 && end.s <= 1.0)) break;
   }
-  return std::nullopt;
+  return false;
 }
 
 bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState& from, const LawSeries& laws,

@@ -92,6 +92,7 @@ class StepExpansion {
   struct SweptEnd {
     double s = 1.0;
     std::optional<LawSeries::Change> change = {};
+    bool at_law_knot = false;
   };
   std::optional<SweptEnd> first_swept_change(LawSeries& laws, double t, State& at);
 
@@ -106,6 +107,7 @@ class StepExpansion {
  private:
   bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
                      Attempt& made);
+  bool settle(const LawSeries& laws, double t, SweptEnd& end, State& at);
 
   std::vector<double> beyond_cubic_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;

@@ -1,0 +1,183 @@
+// ExpandedLaws: their slopes in a sweep, and what the motion that it adds, y, changes in their energies.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/roots.hpp"
+#include "solvers/exact/expanded_laws.hpp"
+
+namespace drev {
+
+namespace {
+
+/// A polynomial and its first three derivatives by s.
+std::array<double, 4> derivatives(std::span<const double> terms, double s) {
+  std::array<double, 4> d{};
+  for (std::size_t k = terms.size(); k-- > 0;) {
+    for (std::size_t i = 3; i > 0; --i) d[i] = d[i] * s + static_cast<double>(i) * d[i - 1];
+    d[0] = d[0] * s + terms[k];
+  }
+  return d;
+}
+
+/// Bounds of its derivatives, the first to the fourth, on [0, 1]; of the polynomial itself ahead of them.
+std::array<double, 5> largest_derivatives(std::span<const double> terms) {
+  std::array<double, 5> most{};
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    double size = std::abs(terms[k]);
+    for (std::size_t i = 0; i < most.size() && i <= k; ++i) {
+      most[i] += size;
+      size *= static_cast<double>(k - i);
+    }
+  }
+  return most;
+}
+
+double along(const std::vector<Entry>& row, const double* y) {
+  double sum = 0.0;
+  for (const Entry& e : row) sum += e.coeff * y[e.index];
+  return sum;
+}
+
+double largest_coefficient(const std::vector<Entry>& row) {
+  double most = 0.0;
+  for (const Entry& e : row) most = std::max(most, std::abs(e.coeff));
+  return most;
+}
+
+}  // namespace
+
+void ExpandedLaws::add_slopes(TaylorSeries& series, const Law& law, double factor) {
+  const std::vector<Entry>& z = law.term->z;
+  std::size_t slot = 0;
+  for (const Entry& row : z)
+    for (const Entry& column : z) {
+      const double b = factor * row.coeff * column.coeff;
+      series.add_stiffness(law.term->slots[slot], law.slope[0] * b);
+      series.add_damping(law.term->slots[slot++], law.by_speed[0] * b);
+    }
+  if (!law.varies) return;
+  // The series reads a column of the pattern as the row of a force: (column, row) is the slot of one that is not symmetric.
+  for (const Entry& e : law.phase_row)
+    for (std::size_t column = 0; column < z.size(); ++column) {
+      if (z[column].index != e.index) continue;
+      for (std::size_t row = 0; row < z.size(); ++row)
+        series.add_stiffness(law.term->slots[column * z.size() + row],
+                             factor * law.by_phase[0] * z[row].coeff * e.coeff);
+    }
+}
+
+void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
+  changes_.clear();
+  const auto terms = idx(series.degree() + 1);
+  for (Law& law : laws_) {
+    if (!law.active && !law.works) continue;
+    complete(law, series);
+    const std::span<const double> x = std::span(law.x).first(terms);
+    const std::span<const double> r = std::span(law.r).first(law.varies ? terms : 1);
+    const std::span<const double> p = std::span(law.by_phase_terms).first(law.varies ? terms : 0);
+    law.x_at = derivatives(x, s);
+    law.r_at = derivatives(r, s);
+    law.p_at = derivatives(p, s);
+    if (!law.active) continue;
+    const auto& [x_0, x_1, x_2, x_3] = law.x_at;
+    const double y = law.y_0 + law.k * x_0, g = law.g / h_;
+    law.slope = {law.k * law.r_at[0] + g * x_1, law.k * law.r_at[1] + g * x_2, law.k * law.r_at[2] + g * x_3};
+    law.by_speed = {law.c + law.g * x_0, law.g * x_1, law.g * x_2};
+    law.by_phase = {law.p_at[0] * y, law.p_at[1] * y + law.p_at[0] * law.k * x_1,
+                    law.p_at[2] * y + 2.0 * law.p_at[1] * law.k * x_1 + law.p_at[0] * law.k * x_2};
+    add_slopes(series, law, 1.0);
+    note_changes(law, x, r, p);
+  }
+}
+
+void ExpandedLaws::note_changes(const Law& law, std::span<const double> x, std::span<const double> r,
+                                std::span<const double> p) {
+  const double b = largest_coefficient(law.term->z), moved = largest_coefficient(law.gain);
+  const double k = std::abs(law.k), g = std::abs(law.g);
+  const std::array<double, 5> of_x = largest_derivatives(x), of_r = largest_derivatives(r);
+  SlopeChange change{.term = law.term};
+  change.by_angle = b * moved * (k * of_r[1] + g * of_x[2] / h_);
+  change.by_angle_3 = b * moved * (k * of_r[3] + g * of_x[4] / h_);
+  change.by_speed = b * moved * g * of_x[1];
+  change.by_speed_3 = b * moved * g * of_x[3];
+  if (law.varies) {
+    const std::array<double, 5> of_p = largest_derivatives(p);
+    const double phase = moved * largest_coefficient(law.phase_row), y = std::abs(law.y_0) + k * of_x[0];
+    change.by_angle += phase * (of_p[1] * y + of_p[0] * k * of_x[1]);
+    change.by_angle_3 +=
+        phase * (of_p[3] * y + k * (3.0 * (of_p[2] * of_x[1] + of_p[1] * of_x[2]) + of_p[0] * of_x[3]));
+    for (const Entry& e : law.phase_row)
+      if (std::none_of(law.term->z.begin(), law.term->z.end(),
+                       [&](const Entry& own) { return own.index == e.index; }))
+        change.left_out = std::max(change.left_out, moved * std::abs(e.coeff * law.by_phase[0]));
+  }
+  changes_.push_back(change);
+}
+
+void ExpandedLaws::return_slopes(TaylorSeries& series) {
+  for (const Law& law : laws_)
+    if (law.active) add_slopes(series, law, -1.0);
+}
+
+void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* moments) const {
+  const double per_time = 1.0 / h_;
+  std::array<double, TaylorSeries::kMostSwept> y, turned;
+  for (const Law& law : laws_) {
+    if (!law.active) continue;
+    const auto last = idx(degree - 1);  // of the moments of y that a sweep has
+    for (std::size_t i = 1; i < last; ++i) {
+      y[i] = along(law.term->z, series.swept(static_cast<int>(i)));
+      turned[i] = law.varies ? along(law.phase_row, series.swept(static_cast<int>(i))) : 0.0;
+    }
+    for (std::size_t j = 0; j + 3 < last; ++j) {
+      // int (e - u)^j/j! of the force, whose slopes are those at e less (e - u) times their first derivatives there, and so on.
+      const double one = static_cast<double>(j + 1), two = 0.5 * one * static_cast<double>(j + 2);
+      const double force = -one * (law.slope[1] * y[j + 2] + law.by_phase[1] * turned[j + 2] +
+                                   per_time * law.by_speed[1] * y[j + 1]) +
+                           two * (law.slope[2] * y[j + 3] + law.by_phase[2] * turned[j + 3] +
+                                  per_time * law.by_speed[2] * y[j + 2]);
+      double* column = moments + (idx(degree) - j) * idx(series.stride());
+      for (const Entry& e : law.term->z) column[e.index] -= e.coeff * force;
+    }
+  }
+}
+
+double ExpandedLaws::swept_loss(const TaylorSeries& series) const {
+  double sum = 0.0;
+  for (const Law& law : laws_) {
+    if (!law.active) continue;
+    const std::vector<Entry>& z = law.term->z;
+    const double y = along(z, series.swept(0)), rate = along(z, series.swept(-1));
+    const auto& [x, x_1, x_2, x_3] = law.x_at;
+    // int (c + g (x + y)) (x' + y')^2 less that without y, by parts; y as a cube in the last term, which is of its square.
+    const double q = law.c + law.g * x;
+    sum += 2.0 * q * x_1 * y - (law.g * x_1 * x_1 + 2.0 * q * x_2) * along(z, series.swept(1)) +
+           6.0 * law.g * x_1 * x_2 * along(z, series.swept(2)) + 0.6 * q * y * rate;
+  }
+  return sum / h_;
+}
+
+double ExpandedLaws::swept_knot(const TaylorSeries& series, double s) const {
+  const double turn = along(knot_law_->phase_row, series.swept(0));
+  const double rate = polynomial_slope(std::span(knot_law_->theta).first(idx(series.degree() + 1)), s);
+  return rate != 0.0 ? s - turn / rate : s;
+}
+
+/// Of a law that is scaled, what y adds to the work of its elastic force E r, E = e_0 + e_k x, by parts: along y, and by
+/// what y turns the angle. y as a cube in the term of its square.
+double ExpandedLaws::swept_elastic_work(const Law& law, const TaylorSeries& series) {
+  const std::vector<Entry>& z = law.term->z;
+  const auto& [x, x_1, x_2, x_3] = law.x_at;
+  const double e = law.elastic_0 + law.elastic_k * x, e_1 = law.elastic_k * x_1;
+  const double y = along(z, series.swept(0)), y_sum = along(z, series.swept(1));
+  const auto& r = law.r_at;
+  const auto& p = law.p_at;
+  const double path = r[0] * (e * y + 0.5 * law.elastic_k * y * y) - r[1] * e * y_sum +
+                      (r[2] * e + r[1] * e_1) * along(z, series.swept(2)) -
+                      2.0 / 7.0 * law.elastic_k * r[1] * y * y_sum;
+  const double turn = p[0] * e * x_1 * along(law.phase_row, series.swept(1)) -
+                      (p[1] * e * x_1 + p[0] * (e_1 * x_1 + e * x_2)) * along(law.phase_row, series.swept(2));
+  return path + turn;
+}
+
+}  // namespace drev
