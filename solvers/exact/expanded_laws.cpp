@@ -15,7 +15,6 @@ namespace drev {
 namespace {
 
 constexpr double kClearOfKnot = 2e-15;  // of an angle, at least of 1 rad: beside a knot
-constexpr double kContinuous = 1e-9;    // of a scale, at its knots
 constexpr double kLeastRate = 1e-6;     // at a knot, of the mean rate to it
 constexpr double kOnLawKnot = 1e-12;    // of the angle, at least of 1 rad
 
@@ -74,13 +73,7 @@ double term_or_zero(const std::vector<double>& series, int m) {
 
 bool ExpandedLaws::takes(const ScalarTerm& term) {
   if (term.force->pieces().empty() || !linear_pieces(term).empty()) return false;
-  if (term.phase_node < 0) return true;
-  const auto* scaled = dynamic_cast<const AngleScaledForce*>(term.force);
-  if (scaled == nullptr) return false;
-  const ScaleStretch before = scaled->scale_stretch(0.0, 1.0);
-  if (std::isinf(before.high)) return true;
-  const double end = before.value + before.slope * before.high;
-  return std::abs(scaled->scale_stretch(before.high, 1.0).value - end) <= kContinuous * std::abs(end);
+  return term.phase_node < 0 || dynamic_cast<const AngleScaledForce*>(term.force) != nullptr;
 }
 
 ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(system) {
@@ -314,6 +307,7 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
         first = s;
         end = *s;
         knot_law_ = &law;
+        knot_ = bound;
         const double rate = std::max(std::abs(polynomial_slope(g, end)), kLeastRate * std::abs(g[0]));
         knot_clearance_ = kClearOfKnot * std::max(1.0, std::abs(law.angle)) * h_ / rate;
       }
@@ -327,20 +321,32 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
   LawWork work;
   const GaussRule& rule = gauss_rule();
   const auto terms = idx(series.degree() + 1);
-  AtNodes x, r, known;
+  AtNodes x, r, p, known, y, turn;
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
     if (!law.works) continue;
-    if (varies && swept) work.input -= swept_elastic_work(law, series);
     find_at_nodes(std::span(law.x).first(terms), s, x);
     find_at_nodes(std::span(law.r).first(law.varies ? terms : 1), s, r);
     find_at_nodes(law.known, s, known);
+    if (swept) {
+      series.swept_at_nodes(law.term->z, s, y);
+      for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+        x.value[q] += y.value[q];
+        x.slope[q] += y.slope[q];
+      }
+    }
+    if (swept && law.varies) {
+      series.swept_at_nodes(law.phase_row, s, turn);
+      find_at_nodes(std::span(law.by_phase_terms).first(terms), s, p);
+      for (std::size_t q = 0; q < GaussRule::kNodes; ++q) r.value[q] += p.value[q] * turn.value[q];
+    }
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
       const double deflection = x.value[q], rate = x.slope[q] / h_, scale = r.value[q];
-      const double y = scale * (law.y_0 + law.k * deflection) + (law.c + law.g * deflection) * rate;
+      const double force = scale * (law.y_0 + law.k * deflection) + (law.c + law.g * deflection) * rate;
       const double elastic = scale * (law.elastic_0 + law.elastic_k * deflection);
-      work.add(s * h_ * rule.weight[q], y, rate, rate - known.slope[q] / h_, (y - elastic) * rate, varies);
+      work.add(s * h_ * rule.weight[q], force, rate, rate - known.slope[q] / h_, (force - elastic) * rate,
+               varies);
     }
   }
   return work;

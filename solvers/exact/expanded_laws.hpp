@@ -32,8 +32,7 @@ class LoadSeries;
 class ExpandedLaws final : public TermForces {
  public:
   explicit ExpandedLaws(const System& system);
-  /// The law is one of these: it states pieces, and what scales them, without jumps (beside a jump rounding of the angle
-  /// may tell the wrong side), and a method for linear pieces does not do.
+  /// The law is one of these: it states pieces, and what scales them, and a method for linear pieces does not do.
   static bool takes(const ScalarTerm& term);
   /// A piece that is the same linear law at any angle: LawSeries adds it.
   static bool is_linear(const ScalarTerm& term, const LawPiece& piece) {
@@ -66,8 +65,6 @@ class ExpandedLaws final : public TermForces {
   /// Adds to the moments of a sweep, which was made without, what first and second derivatives of the slopes make of its
   /// motion: with y = sum of moments that it has, int (e - u)^(j+q)/(j! q!) y du = (j+q)!/(j! q!) of one of them.
   void add_changes(const TaylorSeries& series, int degree, double* moments) const;
-  /// What a motion that a sweep adds up to the s of its slopes changes of the losses [J].
-  double swept_loss(const TaylorSeries& series) const;
   int known_degree() const override { return known_degree_; }
 
   /// An angle at rest on a knot goes the other way than was assumed: expand anew.
@@ -80,12 +77,14 @@ class ExpandedLaws final : public TermForces {
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
-  /// The knot last found, at s of the series, where a motion was swept up to there: a step of Newton's rule.
-  double swept_knot(const TaylorSeries& series, double s) const;
+  /// Whether, at s up to which a motion was swept, an angle is behind a knot that it is not on the series' path: the knot found.
+  bool passes_knot(const TaylorSeries& series, double s);
+  /// By how much of the step the knot last found is later than s, up to which a motion was swept: a step of Newton's rule.
+  double knot_later(const TaylorSeries& series, double s) const;
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
 
-  /// From 0 to s; end: what was evaluated at s. swept: up to there a motion was swept, whose loss is swept_loss().
+  /// From 0 to s; end: what was evaluated at s. swept: up to there a motion was swept.
   LawWork work(const TaylorSeries& series, double s, const EvaluatedState& end, bool swept) const;
 
  private:
@@ -107,13 +106,11 @@ class ExpandedLaws final : public TermForces {
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
     std::vector<double> turn, by_phase_terms;  // series of s theta' and dr/dtheta
-    // Of use_slopes(), at its s: x, r and dr/dtheta with their derivatives, and the slopes with two of theirs.
-    std::array<double, 4> x_at{}, r_at{}, p_at{};
+    // Of use_slopes(), with two derivatives by s.
     std::array<double, 3> slope{}, by_speed{}, by_phase{};
     // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
     std::vector<double> orders, cosine, sine;
   };
-  static double swept_elastic_work(const Law& law, const TaylorSeries& series);
   void note_changes(const Law& law, std::span<const double> x, std::span<const double> r,
                     std::span<const double> p);
   static void add_slopes(TaylorSeries& series, const Law& law, double factor);
@@ -127,9 +124,9 @@ class ExpandedLaws final : public TermForces {
   std::vector<Law> laws_;
   std::vector<SlopeChange> changes_;
   bool active_ = false, sweeps_ = false;
-  const Law* knot_law_ = nullptr;  // of first_knot()
+  const Law* knot_law_ = nullptr;  // of the knot last found
   int known_degree_ = 0;
-  double t_ = 0.0, h_ = 0.0, knot_clearance_ = 0.0;
+  double t_ = 0.0, h_ = 0.0, knot_ = 0.0, knot_clearance_ = 0.0;
 };
 
 }  // namespace drev

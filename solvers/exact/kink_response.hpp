@@ -42,10 +42,10 @@ class KinkResponse {
   double limit() const { return limit_; }
   /// Work of loads beyond what they do along the series [J].
   double work() const { return any() ? loads_.kink_work(series_, end_) : 0.0; }
-  /// Loss in all dampers, and what the response changes of that in laws [J].
+  /// Loss in all dampers of the system and of pieces that are linear [J].
   double dissipated() {
     return_slopes();
-    return series_.loss(end_, any()) + (any() ? laws_.swept_loss(series_) : 0.0);
+    return series_.loss(end_, any());
   }
 
  private:

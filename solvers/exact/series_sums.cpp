@@ -50,7 +50,44 @@ const SumWeights& sum_weights() {
   return weights;
 }
 
+/// Of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
+struct NodeWeights {
+  std::array<AtNodes, kLossTerms> of_moment{};
+  NodeWeights() {
+    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
+    for (std::size_t m = 0; m < kLossTerms; ++m)
+      for (std::size_t k = m; k < kLossTerms; ++k) {
+        const double weight =
+            (2.0 * static_cast<double>(k) + 1.0) * sum_weights().swept[(kLossTerms - 1 - m) * kLossTerms + k];
+        std::array<double, kLossTerms + 1> integral{};  // of L_k, from 0
+        for (std::size_t i = 0; i < kLossTerms; ++i)
+          integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
+        AtNodes at;
+        find_at_nodes(integral, 1.0, at);
+        for (std::size_t q = 0; q < at.value.size(); ++q) {
+          of_moment[m].value[q] += weight * at.value[q];
+          of_moment[m].slope[q] += weight * at.slope[q];
+        }
+      }
+  }
+};
+
 }  // namespace
+
+void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, AtNodes& out) const {
+  static const NodeWeights weights;
+  out = {};
+  double part = 1.0;  // s^-m
+  for (int m = 0; m < kLossTerms; ++m, part /= s) {
+    double moment = 0.0;
+    for (const Entry& e : row) moment += e.coeff * swept(m)[e.index];
+    const AtNodes& weight = weights.of_moment[idx(m)];
+    for (std::size_t q = 0; q < out.value.size(); ++q) {
+      out.value[q] += part * moment * weight.value[q];
+      out.slope[q] += part / s * moment * weight.slope[q];
+    }
+  }
+}
 
 const double* TaylorSeries::sums(double s) {
   if (s == sums_at_) return step_sums_.data();

@@ -93,7 +93,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     // A sweep that was given up leaves the first one.
     const double got =
         pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
-    if (expanded.turns_back(series) || (got == h && known.came_further(series))) return {h, true};
+    if (got == h && (expanded.turns_back(series) || known.came_further(series))) return {h, true};
     if (got < h || last) return {got};
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
@@ -158,34 +158,44 @@ LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedStat
 
 std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeries& laws, double t,
                                                                          State& at) {
-  const LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
+  LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
   if (found.unsure) return std::nullopt;
   SweptEnd end{kinks.limit()};
   if (found.change && found.change->s <= end.s) {
-    end = {found.change->s, found.change};
-    if (!settle(laws, t, end, at)) return std::nullopt;
+    const auto later = [&](double s) {
+      found.change->s = s;
+      return laws.later(*found.change, series.swept(0), series.swept(-1));
+    };
+    const auto s = settle(found.change->s, later, t, at);
+    if (!s) return std::nullopt;
+    end = {*s, found.change};
+    end.change->s = *s;
   }
-  const auto knot = first_knot(end.s);
+  std::optional<double> knot = first_knot(end.s);
+  if (!knot && kinks.any() && !expanded.empty()) {
+    if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
+    if (expanded.passes_knot(series, end.s)) knot = end.s;
+  }
   if (!knot) return end;
-  // The scale is continuous there, so that an error of place counts squared.
-  if (!evaluate(*knot, at.z, at.v)) return std::nullopt;
-  double s = kinks.any() ? expanded.swept_knot(series, *knot) : *knot;
-  if (!(s > 0.0)) s = *knot;
-  return s < end.s ? SweptEnd{s, {}, true} : end;
+  const auto s = settle(
+      *knot, [&](double from) { return expanded.knot_later(series, from); }, t, at);
+  if (!s) return std::nullopt;
+  return *s < end.s ? SweptEnd{*s, {}, true} : end;
 }
 
-/// The s at which a change comes with what kinks add to the motion. False: passes have to tell.
-bool StepExpansion::settle(const LawSeries& laws, double t, SweptEnd& end, State& at) {
+/// The s near one on the series' path at which something comes with what kinks add to the motion; later(s): by how much of the
+/// step it is later. None: passes have to tell.
+template <class Later>
+std::optional<double> StepExpansion::settle(double s, const Later& later, double t, State& at) {
   for (int newton = 0; newton < kMostNewton; ++newton) {
-    end.change->s = end.s;
-    if (!evaluate(end.s, at.z, at.v)) return false;
-    if (!kinks.any()) return true;
-    const double later = laws.later(*end.change, series.swept(0), series.swept(-1));
-    if (std::abs(later) <= kAtChange || end.s * series.step() < kRoundingOfTime * std::abs(t)) return true;
-    end.s += later;
-    if (!(end.s > 0.0 && end.s <= 1.0)) break;
+    if (!evaluate(s, at.z, at.v)) return std::nullopt;
+    if (!kinks.any()) return s;
+    const double by = later(s);
+    if (std::abs(by) <= kAtChange || s * series.step() < kRoundingOfTime * std::abs(t)) return s;
+    s += by;
+    if (!(s > 0.0 && s <= 1.0)) break;
   }
-  return false;
+  return std::nullopt;
 }
 
 bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState& from, const LawSeries& laws,

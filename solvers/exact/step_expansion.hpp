@@ -107,7 +107,8 @@ class StepExpansion {
  private:
   bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
                      Attempt& made);
-  bool settle(const LawSeries& laws, double t, SweptEnd& end, State& at);
+  template <class Later>
+  std::optional<double> settle(double s, const Later& later, double t, State& at);
 
   std::vector<double> beyond_cubic_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;

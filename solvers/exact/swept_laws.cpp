@@ -1,4 +1,4 @@
-// ExpandedLaws: their slopes in a sweep, and what the motion that it adds, y, changes in their energies.
+// ExpandedLaws: their slopes in a sweep, and knots with the motion that it adds.
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +9,11 @@ namespace drev {
 
 namespace {
 
-/// A polynomial and its first three derivatives by s.
+/// A polynomial and its derivatives by s.
 std::array<double, 4> derivatives(std::span<const double> terms, double s) {
   std::array<double, 4> d{};
   for (std::size_t k = terms.size(); k-- > 0;) {
-    for (std::size_t i = 3; i > 0; --i) d[i] = d[i] * s + static_cast<double>(i) * d[i - 1];
+    for (std::size_t i = d.size() - 1; i > 0; --i) d[i] = d[i] * s + static_cast<double>(i) * d[i - 1];
     d[0] = d[0] * s + terms[k];
   }
   return d;
@@ -70,21 +70,18 @@ void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
   changes_.clear();
   const auto terms = idx(series.degree() + 1);
   for (Law& law : laws_) {
-    if (!law.active && !law.works) continue;
+    if (!law.active) continue;
     complete(law, series);
     const std::span<const double> x = std::span(law.x).first(terms);
     const std::span<const double> r = std::span(law.r).first(law.varies ? terms : 1);
     const std::span<const double> p = std::span(law.by_phase_terms).first(law.varies ? terms : 0);
-    law.x_at = derivatives(x, s);
-    law.r_at = derivatives(r, s);
-    law.p_at = derivatives(p, s);
-    if (!law.active) continue;
-    const auto& [x_0, x_1, x_2, x_3] = law.x_at;
-    const double y = law.y_0 + law.k * x_0, g = law.g / h_;
-    law.slope = {law.k * law.r_at[0] + g * x_1, law.k * law.r_at[1] + g * x_2, law.k * law.r_at[2] + g * x_3};
+    const auto [x_0, x_1, x_2, x_3] = derivatives(x, s);
+    const auto [r_0, r_1, r_2, r_3] = derivatives(r, s);
+    const auto [p_0, p_1, p_2, p_3] = derivatives(p, s);
+    const double k = law.k, y = law.y_0 + k * x_0, g = law.g / h_;
+    law.slope = {k * r_0 + g * x_1, k * r_1 + g * x_2, k * r_2 + g * x_3};
     law.by_speed = {law.c + law.g * x_0, law.g * x_1, law.g * x_2};
-    law.by_phase = {law.p_at[0] * y, law.p_at[1] * y + law.p_at[0] * law.k * x_1,
-                    law.p_at[2] * y + 2.0 * law.p_at[1] * law.k * x_1 + law.p_at[0] * law.k * x_2};
+    law.by_phase = {p_0 * y, p_1 * y + p_0 * k * x_1, p_2 * y + 2.0 * p_1 * k * x_1 + p_0 * k * x_2};
     add_slopes(series, law, 1.0);
     note_changes(law, x, r, p);
   }
@@ -142,42 +139,28 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
   }
 }
 
-double ExpandedLaws::swept_loss(const TaylorSeries& series) const {
-  double sum = 0.0;
+bool ExpandedLaws::passes_knot(const TaylorSeries& series, double s) {
+  const auto terms = idx(series.degree() + 1);
   for (const Law& law : laws_) {
-    if (!law.active) continue;
-    const std::vector<Entry>& z = law.term->z;
-    const double y = along(z, series.swept(0)), rate = along(z, series.swept(-1));
-    const auto& [x, x_1, x_2, x_3] = law.x_at;
-    // int (c + g (x + y)) (x' + y')^2 less that without y, by parts; y as a cube in the last term, which is of its square.
-    const double q = law.c + law.g * x;
-    sum += 2.0 * q * x_1 * y - (law.g * x_1 * x_1 + 2.0 * q * x_2) * along(z, series.swept(1)) +
-           6.0 * law.g * x_1 * x_2 * along(z, series.swept(2)) + 0.6 * q * y * rate;
+    if (law.scaled == nullptr) continue;
+    if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
+    const double along_series = polynomial_value(std::span(law.theta).first(terms), s);
+    const double angle = along_series + along(law.phase_row, series.swept(0));
+    const bool up = angle > law.stretch.high && along_series <= law.stretch.high;
+    const bool down = angle < law.stretch.low && along_series >= law.stretch.low;
+    if (!up && !down) continue;
+    knot_law_ = &law;
+    knot_ = up ? law.stretch.high : law.stretch.low;
+    return true;
   }
-  return sum / h_;
+  return false;
 }
 
-double ExpandedLaws::swept_knot(const TaylorSeries& series, double s) const {
-  const double turn = along(knot_law_->phase_row, series.swept(0));
-  const double rate = polynomial_slope(std::span(knot_law_->theta).first(idx(series.degree() + 1)), s);
-  return rate != 0.0 ? s - turn / rate : s;
-}
-
-/// Of a law that is scaled, what y adds to the work of its elastic force E r, E = e_0 + e_k x, by parts: along y, and by
-/// what y turns the angle. y as a cube in the term of its square.
-double ExpandedLaws::swept_elastic_work(const Law& law, const TaylorSeries& series) {
-  const std::vector<Entry>& z = law.term->z;
-  const auto& [x, x_1, x_2, x_3] = law.x_at;
-  const double e = law.elastic_0 + law.elastic_k * x, e_1 = law.elastic_k * x_1;
-  const double y = along(z, series.swept(0)), y_sum = along(z, series.swept(1));
-  const auto& r = law.r_at;
-  const auto& p = law.p_at;
-  const double path = r[0] * (e * y + 0.5 * law.elastic_k * y * y) - r[1] * e * y_sum +
-                      (r[2] * e + r[1] * e_1) * along(z, series.swept(2)) -
-                      2.0 / 7.0 * law.elastic_k * r[1] * y * y_sum;
-  const double turn = p[0] * e * x_1 * along(law.phase_row, series.swept(1)) -
-                      (p[1] * e * x_1 + p[0] * (e_1 * x_1 + e * x_2)) * along(law.phase_row, series.swept(2));
-  return path + turn;
+double ExpandedLaws::knot_later(const TaylorSeries& series, double s) const {
+  const std::span<const double> theta = std::span(knot_law_->theta).first(idx(series.degree() + 1));
+  const double angle = polynomial_value(theta, s) + along(knot_law_->phase_row, series.swept(0));
+  const double rate = polynomial_slope(theta, s) + along(knot_law_->phase_row, series.swept(-1));
+  return rate != 0.0 ? (knot_ - angle) / rate : 0.0;
 }
 
 }  // namespace drev

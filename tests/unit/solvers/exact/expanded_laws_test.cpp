@@ -181,17 +181,19 @@ TEST_CASE("Exact propagation: mesh stiffness by phase and kinks of tables share 
   const double k = 3e7;
   const MeshStiffness constant(k),
       fourier = MeshStiffness::fourier_of_step(0.7 * k, 1.2 * k, 1.6, 4),
-      table = MeshStiffness::table({0.0, 0.3, 0.5, 0.8}, {k, 1.3 * k, 0.8 * k, 0.9 * k});
+      table = MeshStiffness::table({0.0, 0.3, 0.5, 0.8}, {k, 1.3 * k, 0.8 * k, 0.9 * k}),
+      step = MeshStiffness::step(0.8 * k, 1.2 * k, 1.6);
   const std::pair<double, MeshDamping> dampings[] = {
       {0.0, MeshDamping::proportional}, {3e3, MeshDamping::proportional}, {3e3, MeshDamping::limited}};
   for (const auto& [damping, law] : dampings)
-    for (const MeshStiffness* stiffness : {&constant, &fourier, &table}) {
+    for (const MeshStiffness* stiffness : {&constant, &fourier, &table, &step}) {
       const System system =
           cams_behind_mesh({.stiffness = *stiffness, .damping = damping, .damping_law = law}).build();
       State exact = State::initial(system), other = exact;
       const RunSummary run = propagate(system, {.tolerance = 1e-10, .t_end = 0.05}, exact);
       const RunSummary known = simulate(
           system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-13, .t_end = 0.05}, other);
+      INFO(run.brief_report());
       REQUIRE(run.ok());
       REQUIRE(known.ok());
       INFO("damping " << damping << ": " << run.steps << " steps, " << run.contact_changes << " changes");
