@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/base/csv_cell.hpp"
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/results/sweep_result.hpp"
 
 namespace drev::app {
 
@@ -247,16 +249,23 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
   }
-  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
-    if (const double left = largest_left_over(sweep, f); left > kLeftOver)
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
+    std::map<double, double> at_speed;  // the largest of its motions'
+    for (const SweptBranch& branch : sweep.branches)
+      for (const SweptMotion& motion : branch.motions)
+        if (motion.asked && motion.left_over.size() > static_cast<Eigen::Index>(f)) {
+          double& most = at_speed[to_rpm(motion.speed)];
+          most = std::max(most, std::abs(motion.left_over[static_cast<Eigen::Index>(f)]));
+        }
+    LeftOver left;
+    for (const auto& [rpm, most] : at_speed) left.note(most, rpm, kLeftOver);
+    if (left.count > 0)
       notes.push_back(
-          "Mean torque does not balance: up to " + digits(left, kFigureDigits) +
-          " N m are left over on the part of " + sweep.floating_parts[f] +
-          " (referred to the reference shaft). " +
-          (options.balance.empty()
-               ? "The motions are those of the train that this speeds up; --balance NODE takes it "
-                 "up at a node."
-               : "It is taken up at " + options.balance + "."));
+          left_over_sentence(left, sweep.floating_parts[f],
+                             "The motions are those of the train that this speeds up; --balance NODE "
+                             "takes it up at a node.",
+                             options.balance));
+  }
   return notes;
 }
 

@@ -117,18 +117,39 @@ std::string cell(double value) { return std::isfinite(value) ? to_text(value) : 
 
 }  // namespace
 
+void LeftOver::note(double left_over, double speed_rpm, double little) {
+  ++speeds;
+  if (!(std::abs(left_over) > little)) return;
+  ++count;
+  if (!(std::abs(left_over) > most)) return;
+  most = std::abs(left_over);
+  at_rpm = speed_rpm;
+}
+
+std::string left_over_sentence(const LeftOver& left, const std::string& part, const std::string& moving,
+                               const std::string& balance) {
+  return "Mean torque does not balance at " + std::to_string(left.count) + " of " +
+         std::to_string(left.speeds) + " speeds: up to " + digits(left.most, kDigits) + " N m, at " +
+         short_digits(left.at_rpm, 8) + " rpm, are left over " +
+         (left.of > 0.0 ? "of " + digits(left.of, kDigits) + " N m " : "") + "on the part of " + part +
+         " (referred to the reference shaft). " +
+         (balance.empty() ? moving : "It is taken up at " + balance + ".");
+}
+
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
   std::vector<std::string> notes;
-  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
-    if (const double left = largest(sweep.unbalanced[f]); left > kBalanced * sweep.unbalanced_scale[f])
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
+    LeftOver left{.of = sweep.unbalanced_scale[f]};
+    for (std::size_t i = 0; i < request.speeds_rpm.size(); ++i)
+      left.note(sweep.unbalanced[f][static_cast<Eigen::Index>(i)], request.speeds_rpm[i],
+                kBalanced * left.of);
+    if (left.count > 0)
       notes.push_back(
-          "Mean torque does not balance: up to " + digits(left, kDigits) + " N m are left over of " +
-          digits(sweep.unbalanced_scale[f], kDigits) + " N m on the part of " + sweep.floating_parts[f] +
-          " (referred to the reference shaft). " +
-          (request.options.balance.empty()
-               ? "Means are those of the train that this speeds up; --balance NODE takes it up at "
-                 "a node. Vibration does not depend on it."
-               : "It is taken up at " + request.options.balance + "."));
+          left_over_sentence(left, sweep.floating_parts[f],
+                             "Means are those of the train that this speeds up; --balance NODE takes it "
+                             "up at a node. Vibration does not depend on it.",
+                             request.options.balance));
+  }
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
                     " % of what alternates in it (rms) is in none of the orders");

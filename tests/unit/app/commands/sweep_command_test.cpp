@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -117,6 +118,38 @@ TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
   for (std::string line; std::getline(orders, line);) ++rows;
   CHECK(rows == 32);
   CHECK(read_file(out + "/criticals.csv").starts_with("speed_rpm,order,mode,"));
+}
+
+TEST_CASE("Mean torque that does not balance: at how many speeds, where and how much", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "free.toml").string();
+  std::ofstream(file) << R"(format = 1
+[nodes]
+motor = {}
+hub = { nominal_speed_rpm = 1000 }
+[elements]
+J_motor = { type = "inertia", node = "motor", inertia_kg_m2 = 2 }
+J_hub = { type = "inertia", node = "hub", inertia_kg_m2 = 5 }
+shaft = { type = "shaft_spring", nodes = ["motor", "hub"], stiffness_Nm_per_rad = 1e5, damping_Nms_per_rad = 20 }
+torque = { type = "engine_order_torque", node = "motor", mean_Nm = 100, harmonics = { order = [2], amplitude_Nm = [30] } }
+propeller = { type = "propeller", node = "hub", rated_torque_Nm = 100, rated_speed_rpm = 1000 }
+)";
+  const auto said = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"sweep", file, "--speeds", "900,1000,1200", "--orders", "2"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = drev_command(words);
+    CHECK(run.exit_code == 0);
+    std::string line = run.out;  // it is wrapped
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    return line;
+  };
+  // The propeller takes 100 n^2/1000^2: of 100 N m, -19 at 900 rpm, 0 at 1000 and 44 at 1200, of 100 + 144.
+  const std::string sentence =
+      "does not balance at 2 of 3 speeds: up to 44.0000 N m, at 1200 rpm, are left over of 244.000 N m on "
+      "the part of";
+  CHECK(contains(said({}), sentence));
+  CHECK(contains(said({"--balance", "hub"}), sentence));
+  CHECK(contains(said({"--balance", "hub"}), "It is taken up at hub."));
 }
 
 TEST_CASE("Damped modes as JSON: shares of energy sum to one", "[sweep]") {
