@@ -1,6 +1,8 @@
 // First crossing of a polynomial: none missed, none invented, the root at zero not found again.
 #include "solvers/contact/roots.hpp"
 
+#include <drev/core/units.hpp>
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -63,6 +65,27 @@ TEST_CASE("First crossing: two roots close together are not missed though both e
     REQUIRE(s.has_value());
     CHECK(std::abs(*s - 0.4) < 1e-15 / apart + 1e-14);  // condition of the root
   }
+}
+
+TEST_CASE("First crossing: a contact that grazes inside a step, in closed form") {
+  // A vibration cos(w (s - 1/2)) passes a flank at c = 1 - depth for a moment in the middle of the step, w = 3 at the most as
+  // exact propagation takes it: the teeth touch where w (s - 1/2) = -acos(c), and at both ends of the step they do not.
+  for (const double w : {0.5, 1.5, 3.0})
+    for (const double depth : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
+      std::vector<double> g(33);
+      double power = 1.0;  // w^k/k!
+      for (std::size_t k = 0; k < g.size(); power *= w / static_cast<double>(++k)) {
+        const double phase = -0.5 * w + 0.5 * kPi * static_cast<double>(k);  // of the k-th derivative
+        g[k] = -power * std::cos(phase);
+      }
+      g[0] += 1.0 - depth;
+      REQUIRE(g[0] > 0.0);
+      REQUIRE(polynomial_value(g, 1.0) > 0.0);
+      const auto s = first_crossing(g, 1.0);
+      INFO("w = " << w << ", depth " << depth);
+      REQUIRE(s.has_value());
+      CHECK(*s == Approx(0.5 - std::acos(1.0 - depth) / w).epsilon(1e-15 / std::sqrt(depth) / w + 1e-14));
+    }
 }
 
 TEST_CASE("First crossing: the root at zero is divided out") {
