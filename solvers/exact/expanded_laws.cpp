@@ -321,7 +321,7 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
   LawWork work;
   const GaussRule& rule = gauss_rule();
   const auto terms = idx(series.degree() + 1);
-  AtNodes x, r, p, known, y, turn;
+  NodeValues x, r, p, known, y, turn;
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;

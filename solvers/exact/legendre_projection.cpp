@@ -50,7 +50,7 @@ struct ToPowers {
 struct PolynomialAtNodes {
   template <class L>
   [[gnu::always_inline]] static void run(const double* terms, std::size_t count, double end,
-                                         const double* nodes, AtNodes* out) {
+                                         const double* nodes, NodeValues* out) {
     for (std::size_t first = 0; first < out->value.size(); first += kLanes) {
       L s, value{}, slope{};
       load(nodes + first, s);
@@ -104,7 +104,7 @@ void find_gauss_rule(int n, double* s, double* weight) {
   }
 }
 
-void find_at_nodes(std::span<const double> polynomial, double end, AtNodes& out) {
+void find_at_nodes(std::span<const double> polynomial, double end, NodeValues& out) {
   static const auto nodes = [] {
     std::array<double, whole_lanes(GaussRule::kNodes)> padded{};
     std::copy(gauss_rule().s.begin(), gauss_rule().s.end(), padded.begin());

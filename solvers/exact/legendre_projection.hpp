@@ -43,10 +43,10 @@ struct GaussRule {
 };
 const GaussRule& gauss_rule();
 /// A polynomial of s and its slope at the nodes of Gauss's rule over [0, end].
-struct AtNodes {
+struct NodeValues {
   std::array<double, whole_lanes(GaussRule::kNodes)> value, slope;
 };
-void find_at_nodes(std::span<const double> polynomial, double end, AtNodes& out);
+void find_at_nodes(std::span<const double> polynomial, double end, NodeValues& out);
 /// Nodes and weights of Gauss's rule of n nodes on [0, 1].
 void find_gauss_rule(int n, double* s, double* weight);
 

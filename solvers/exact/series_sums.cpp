@@ -52,7 +52,7 @@ const SumWeights& sum_weights() {
 
 /// Of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
 struct NodeWeights {
-  std::array<AtNodes, kLossTerms> of_moment{};
+  std::array<NodeValues, kLossTerms> of_moment{};
   NodeWeights() {
     const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
     for (std::size_t m = 0; m < kLossTerms; ++m)
@@ -62,7 +62,7 @@ struct NodeWeights {
         std::array<double, kLossTerms + 1> integral{};  // of L_k, from 0
         for (std::size_t i = 0; i < kLossTerms; ++i)
           integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
-        AtNodes at;
+        NodeValues at;
         find_at_nodes(integral, 1.0, at);
         for (std::size_t q = 0; q < at.value.size(); ++q) {
           of_moment[m].value[q] += weight * at.value[q];
@@ -74,14 +74,14 @@ struct NodeWeights {
 
 }  // namespace
 
-void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, AtNodes& out) const {
+void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const {
   static const NodeWeights weights;
   out = {};
   double part = 1.0;  // s^-m
   for (int m = 0; m < kLossTerms; ++m, part /= s) {
     double moment = 0.0;
     for (const Entry& e : row) moment += e.coeff * swept(m)[e.index];
-    const AtNodes& weight = weights.of_moment[idx(m)];
+    const NodeValues& weight = weights.of_moment[idx(m)];
     for (std::size_t q = 0; q < out.value.size(); ++q) {
       out.value[q] += part * moment * weight.value[q];
       out.slope[q] += part / s * moment * weight.slope[q];

@@ -112,7 +112,7 @@ class TaylorSeries {
   }
 
   /// y and y' along a row, swept up to s, at the nodes of Gauss's rule over [0, s]: y' as its first Legendre polynomials.
-  void swept_at_nodes(const std::vector<Entry>& row, double s, AtNodes& out) const;
+  void swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const;
 
   /// Loss in all dampers, those of pieces too, up to s; swept_too: with the motion swept up to there [J].
   double loss(double s, bool swept_too);
