@@ -42,12 +42,18 @@ endif()
 # with -DDREV_PRECOMPILE=OFF to see that they do.
 set(DREV_PRECOMPILED <Eigen/Dense> <Eigen/SparseCore> <functional> <memory> <string> <vector>)
 
+# Whose precompiled header those use that compute little.
+set(DREV_COLD drev_core)
+
 # Language level and warnings; further arguments: what to precompile, or REUSE_FROM <target>.
 function(drev_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   if(NOT SKBUILD)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion ${DREV_NO_WARNINGS}
       $<$<BOOL:${DREV_WARNINGS_AS_ERRORS}>:-Werror>)
+  endif()
+  if(ARGV2 STREQUAL "drev_cold")
+    target_compile_options(${target} PRIVATE -O1)
   endif()
   if(NOT DREV_PRECOMPILE OR NOT ARGN)
     return()
@@ -56,4 +62,34 @@ function(drev_compile target)
   else()
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
+endfunction()
+
+# pip install has someone waiting for it: what computes little is compiled with -O1. g++ takes the level from a
+# precompiled header, whatever the command line says, so it has one of its own, which reads what all of them read.
+function(drev_make_cold)
+  find_package(nlohmann_json REQUIRED)
+  file(WRITE ${PROJECT_BINARY_DIR}/generated/drev_cold.cpp "// drev_cold is a precompiled header.\n")
+  add_library(drev_cold OBJECT ${PROJECT_BINARY_DIR}/generated/drev_cold.cpp)
+  set_target_properties(drev_cold PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(drev_cold PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json)
+  target_compile_definitions(drev_cold PRIVATE $<TARGET_PROPERTY:drev_core,INTERFACE_COMPILE_DEFINITIONS>)
+  target_compile_options(drev_cold PRIVATE -O1)
+  drev_compile(drev_cold ${DREV_PRECOMPILED} <nlohmann/json.hpp>)
+endfunction()
+
+# drev_cold_part(<target> <sources>): those of its sources are compiled so.
+function(drev_cold_part target)
+  get_target_property(sources ${target} SOURCES)
+  list(REMOVE_ITEM sources ${ARGN})
+  set_target_properties(${target} PROPERTIES SOURCES "${sources}")
+  add_library(${target}_cold OBJECT ${ARGN})
+  foreach(property POSITION_INDEPENDENT_CODE UNITY_BUILD UNITY_BUILD_MODE INCLUDE_DIRECTORIES COMPILE_DEFINITIONS LINK_LIBRARIES)
+    get_target_property(value ${target} ${property})
+    if(value)
+      set_target_properties(${target}_cold PROPERTIES ${property} "${value}")
+    endif()
+  endforeach()
+  add_dependencies(${target}_cold drev_headers_stamp)
+  drev_compile(${target}_cold REUSE_FROM drev_cold)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_cold>)
 endfunction()
