@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace drev {
@@ -49,6 +50,13 @@ struct Entry {
   int index = 0;
   double coeff = 0.0;
 };
+/// sum coeff x[index] over a row.
+template <class X>
+auto value_along(const std::vector<Entry>& row, const X& x) {
+  std::remove_cvref_t<decltype(x[0])> sum = 0.0;
+  for (const Entry& e : row) sum += e.coeff * x[e.index];
+  return sum;
+}
 
 /// x = sum z + sum u - e.
 struct ScalarTerm {

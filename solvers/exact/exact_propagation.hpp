@@ -5,8 +5,8 @@
 /// Between changes M z'' + C z' + K z + sum b_j y_j = p, and each step is its Taylor series, carried to
 /// the degree at which it is exact to the tolerance (taylor_series.hpp). Contact changes are roots of
 /// polynomials, isolated with a certificate (roots.hpp): none is missed, and the step ends there.
-/// Step and degree follow from the series' own decay; there is no step to choose. Mesh stiffness by phase without
-/// jumps and damping that grows with penetration are products of series (expanded_laws.hpp). Where tables are all that
+/// Step and degree follow from the series' own decay; there is no step to choose. Mesh stiffness by phase
+/// and damping that grows with penetration are products of series (expanded_laws.hpp). Where tables are all that
 /// bends inside a step, the knots that angles pass act on its end by one backward sweep (kink_response.hpp). Beside
 /// torques that are functions, engine orders, and laws of one's own that are smooth between their kinks, all enter by
 /// their projection on polynomials along the path (legendre_projection.hpp).

@@ -22,12 +22,6 @@ constexpr double kSumRounding = 1e-14;     // of a sum, relative to its terms
 constexpr double kGrowing = 4.0;           // torque inside a step over that at its start
 constexpr double kDependent = 1e-10;       // of W_ii: what the stuck contacts leave of it
 
-double value_of(const std::vector<Entry>& row, const double* x) {
-  double sum = 0.0;
-  for (const Entry& e : row) sum += e.coeff * x[e.index];
-  return sum;
-}
-
 double size_of(const std::vector<Entry>& row, const double* x) {
   double sum = 0.0;
   for (const Entry& e : row) sum += std::abs(e.coeff * x[e.index]);
@@ -84,14 +78,14 @@ FrictionSeries::FrictionSeries(const System& system) : system_(system) {
     Vector column = Vector::Zero(system.size());
     for (const Entry& e : contacts_[static_cast<std::size_t>(j)].gain) column[e.index] = e.coeff;
     for (Eigen::Index i = 0; i < n; ++i)
-      w_(i, j) = value_of(contacts_[static_cast<std::size_t>(i)].z, column.data());
+      w_(i, j) = value_along(contacts_[static_cast<std::size_t>(i)].z, column.data());
   }
   w_ = (0.5 * (w_ + w_.transpose())).eval();
   find_gears();
 }
 
 double FrictionSeries::slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const {
-  double w = value_of(c.z, v.data()) + c.nominal * assembler.nominal().rate;
+  double w = value_along(c.z, v.data()) + c.nominal * assembler.nominal().rate;
   for (const Entry& e : c.u) w += e.coeff * assembler.prescribed(e.index).rate;
   return w;
 }
@@ -172,7 +166,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const Friction::Engagement g = law(i).engagement(assembler.time());
     c.capacity = g.terms;
     c.capacity[0] = std::max(0.0, c.capacity[0]);  // a formula's cubic may be below zero by its accuracy
-    acceleration[row] = -value_of(c.gain, others.data()) + c.nominal * assembler.nominal().acceleration;
+    acceleration[row] = -value_along(c.gain, others.data()) + c.nominal * assembler.nominal().acceleration;
     for (const Entry& e : c.u) acceleration[row] += e.coeff * assembler.prescribed(e.index).acceleration;
     c.speed_rounding = patience_ * kSumRounding * size_of(c.gain, sizes.data());
     c.torque_rounding = c.speed_rounding / w_(row, row);
@@ -371,7 +365,7 @@ double FrictionSeries::add(const TaylorSeries& series, int k, double factor, dou
       const SlidingLine line = sliding_line(law(i), c.segment);
       c.torque[d] = c.sign * line.at_zero * g;
       if (line.slope != 0.0) {
-        c.slip[d] = (k - 1) / h_ * value_of(c.z, series.coefficients(k - 1)) + (d < 2 ? c.known[d] : 0.0);
+        c.slip[d] = (k - 1) / h_ * value_along(c.z, series.coefficients(k - 1)) + (d < 2 ? c.known[d] : 0.0);
         for (std::size_t j = 0; j <= std::min(d, c.capacity.size() - 1); ++j)
           c.torque[d] += line.slope * c.capacity[j] * c.slip[d - j];
       }
@@ -389,7 +383,7 @@ double FrictionSeries::add(const TaylorSeries& series, int k, double factor, dou
   Vector rest(m);
   for (Eigen::Index j = 0; j < m; ++j) {
     const Contact& c = contacts_[stuck_[static_cast<std::size_t>(j)]];
-    rest[j] = value_of(c.z, term) / factor + (d == 0 ? c.known[1] / h_ : 0.0);
+    rest[j] = value_along(c.z, term) / factor + (d == 0 ? c.known[1] / h_ : 0.0);
   }
   const Vector torque = (any_on_line_ ? series_inverse_ : stuck_inverse_) * rest;
   const auto hold_by = [&](Contact& c, double more) {

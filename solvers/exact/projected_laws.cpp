@@ -24,12 +24,6 @@ ProjectedLaws::ProjectedLaws(const System& system)
   }
 }
 
-double ProjectedLaws::along(const ScalarTerm& term, const Vector& q) {
-  double sum = 0.0;
-  for (const Entry& e : term.z) sum += e.coeff * q[e.index];
-  return sum;
-}
-
 void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, double h) {
   t_ = start.state.t;
   h_ = h;
@@ -39,8 +33,8 @@ void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, do
     law.k = r.dy_dx;
     law.c = r.dy_dx_dot;
     law.y = r.y;
-    law.x = along(term, start.state.z);
-    law.x_dot = along(term, start.state.v);
+    law.x = value_along(term.z, start.state.z);
+    law.x_dot = value_along(term.z, start.state.v);
     law.angle = start.inputs[idx(law.index)].angle;
     law.stored = r.stored_energy;
     std::size_t s = 0;
@@ -82,8 +76,8 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
     for (const Law& law : laws_) {
       const ScalarTerm& term = *law.term;
       const ScalarResponse r = assembler_.respond(term, z_, v_);
-      const double difference =
-          r.y - law.y - law.k * (along(term, z_) - law.x) - law.c * (along(term, v_) - law.x_dot);
+      const double difference = r.y - law.y - law.k * (value_along(term.z, z_) - law.x) -
+                                law.c * (value_along(term.z, v_) - law.x_dot);
       double mobility = 0.0;
       for (const Entry& e : term.z) {
         mobility += e.coeff * e.coeff * series.mobility(e.index);
@@ -140,7 +134,8 @@ LawWork ProjectedLaws::work(const TaylorSeries& series, double s, const Evaluate
     for (const Law& law : laws_) {
       const ScalarInput in = assembler_.input(*law.term, z_, v_);
       const ScalarResponse r = law.term->force->evaluate(in);
-      work.add(dt, r.y, in.x_dot, along(*law.term, v_), r.dissipated_power, law.term->force->varies());
+      work.add(dt, r.y, in.x_dot, value_along(law.term->z, v_), r.dissipated_power,
+               law.term->force->varies());
     }
   }
   // The same energies as the run's own: at a jump of stiffness rounding may put another look on its other side.

@@ -54,7 +54,6 @@ class ProjectedLaws {
     double y = 0.0, x = 0.0, x_dot = 0.0;  // y and b^T z, b^T v at the start
     double angle = 0.0, stored = 0.0;
   };
-  static double along(const ScalarTerm& term, const Vector& q);
 
   const System& system_;
   Assembler assembler_;

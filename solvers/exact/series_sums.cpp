@@ -79,8 +79,7 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
   out = {};
   double part = 1.0;  // s^-m
   for (int m = 0; m < kLossTerms; ++m, part /= s) {
-    double moment = 0.0;
-    for (const Entry& e : row) moment += e.coeff * swept(m)[e.index];
+    const double moment = value_along(row, swept(m));
     const NodeValues& weight = weights.of_moment[idx(m)];
     for (std::size_t q = 0; q < out.value.size(); ++q) {
       out.value[q] += part * moment * weight.value[q];

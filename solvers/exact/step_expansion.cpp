@@ -158,23 +158,24 @@ LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedStat
 
 std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeries& laws, double t,
                                                                          State& at) {
-  LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
+  const LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
   if (found.unsure) return std::nullopt;
   SweptEnd end{kinks.limit()};
   if (found.change && found.change->s <= end.s) {
+    LawSeries::Change change = *found.change;
     const auto later = [&](double s) {
-      found.change->s = s;
-      return laws.later(*found.change, series.swept(0), series.swept(-1));
+      change.s = s;
+      return laws.later(change, series.swept(0), series.swept(-1));
     };
-    const auto s = settle(found.change->s, later, t, at);
+    const auto s = settle(change.s, later, t, at);
     if (!s) return std::nullopt;
-    end = {*s, found.change};
-    end.change->s = *s;
+    change.s = *s;
+    end = {*s, change};
   }
   std::optional<double> knot = first_knot(end.s);
   if (!knot && kinks.any() && !expanded.empty()) {
     if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
-    if (expanded.passes_knot(series, end.s)) knot = end.s;
+    if (kinks.any() && expanded.passes_knot(series, end.s)) knot = end.s;
   }
   if (!knot) return end;
   const auto s = settle(

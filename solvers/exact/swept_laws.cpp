@@ -32,12 +32,6 @@ std::array<double, 5> largest_derivatives(std::span<const double> terms) {
   return most;
 }
 
-double along(const std::vector<Entry>& row, const double* y) {
-  double sum = 0.0;
-  for (const Entry& e : row) sum += e.coeff * y[e.index];
-  return sum;
-}
-
 double largest_coefficient(const std::vector<Entry>& row) {
   double most = 0.0;
   for (const Entry& e : row) most = std::max(most, std::abs(e.coeff));
@@ -123,8 +117,8 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
     if (!law.active) continue;
     const auto last = idx(degree - 1);  // of the moments of y that a sweep has
     for (std::size_t i = 1; i < last; ++i) {
-      y[i] = along(law.term->z, series.swept(static_cast<int>(i)));
-      turned[i] = law.varies ? along(law.phase_row, series.swept(static_cast<int>(i))) : 0.0;
+      y[i] = value_along(law.term->z, series.swept(static_cast<int>(i)));
+      turned[i] = law.varies ? value_along(law.phase_row, series.swept(static_cast<int>(i))) : 0.0;
     }
     for (std::size_t j = 0; j + 3 < last; ++j) {
       // int (e - u)^j/j! of the force, whose slopes are those at e less (e - u) times their first derivatives there, and so on.
@@ -145,7 +139,7 @@ bool ExpandedLaws::passes_knot(const TaylorSeries& series, double s) {
     if (law.scaled == nullptr) continue;
     if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
     const double along_series = polynomial_value(std::span(law.theta).first(terms), s);
-    const double angle = along_series + along(law.phase_row, series.swept(0));
+    const double angle = along_series + value_along(law.phase_row, series.swept(0));
     const bool up = angle > law.stretch.high && along_series <= law.stretch.high;
     const bool down = angle < law.stretch.low && along_series >= law.stretch.low;
     if (!up && !down) continue;
@@ -158,8 +152,8 @@ bool ExpandedLaws::passes_knot(const TaylorSeries& series, double s) {
 
 double ExpandedLaws::knot_later(const TaylorSeries& series, double s) const {
   const std::span<const double> theta = std::span(knot_law_->theta).first(idx(series.degree() + 1));
-  const double angle = polynomial_value(theta, s) + along(knot_law_->phase_row, series.swept(0));
-  const double rate = polynomial_slope(theta, s) + along(knot_law_->phase_row, series.swept(-1));
+  const double angle = polynomial_value(theta, s) + value_along(knot_law_->phase_row, series.swept(0));
+  const double rate = polynomial_slope(theta, s) + value_along(knot_law_->phase_row, series.swept(-1));
   return rate != 0.0 ? (knot_ - angle) / rate : 0.0;
 }
 

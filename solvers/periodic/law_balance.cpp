@@ -21,12 +21,6 @@ constexpr double kNoBalanceDrag = 1e-13;  // of the largest damping: ratios to r
 constexpr int kMostCorrections = 8;       // of a solution with twice the harmonics
 constexpr double kCorrected = 1e-3;       // of the first correction: the last one
 
-BalanceComplex along_row(const std::vector<Entry>& row, const BalanceComplex* z) {
-  BalanceComplex sum = 0.0;
-  for (const Entry& e : row) sum += e.coeff * z[e.index];
-  return sum;
-}
-
 bool same_row(const std::vector<Entry>& a, const std::vector<Entry>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Entry& x, const Entry& y) { return x.index == y.index && x.coeff == y.coeff; });
@@ -161,7 +155,7 @@ bool LawBalance::set_speed(double speed) {
   std::vector<Complex> z(idx(system_.size()));
   const auto read = [&](Eigen::Ref<Eigen::VectorXcd> out) {
     for (Eigen::Index i = 0; i < rows; ++i)
-      out[i] = along_row(inputs_[static_cast<std::size_t>(i)], z.data());
+      out[i] = value_along(inputs_[static_cast<std::size_t>(i)], z.data());
   };
   for (int n = 0; n <= harmonics_; ++n) {
     if (n > 0 && !stiffness(n, speed)) return false;

@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kNoPart = 1e-9;  // of a rigid motion's largest ratio: the node has no part in it
 
-double along(const std::vector<Entry>& row, const Vector& z) {
-  double sum = 0.0;
-  for (const Entry& e : row) sum += e.coeff * z[e.index];
-  return sum;
-}
-
 }  // namespace
 
 MeanEquilibrium::MeanEquilibrium(const System& system, const Vector& damping, const Vector& stiffness,
@@ -49,7 +43,7 @@ MeanEquilibrium::MeanEquilibrium(const System& system, const Vector& damping, co
     Vector shape(system_.size());
     for (int i = 0; i < system_.size(); ++i) shape[i] = r[idx(i)].real();
     const int node = system_.node(floating_[f]);
-    const double moves = along(system_.row_of(node), shape), ratio = system_.ratio(node);
+    const double moves = value_along(system_.row_of(node), shape), ratio = system_.ratio(node);
     shape *= (ratio != 0.0 ? ratio : 1.0) / moves;
     rigid_.push_back(shape);
     if (ratio == 0.0) dragged_.push_back(f);
@@ -60,7 +54,7 @@ MeanEquilibrium::MeanEquilibrium(const System& system, const Vector& damping, co
     const std::vector<Entry> row = system_.row_of(system_.node(balance));
     bool any = false;
     for (std::size_t f = 0; f < rigid_.size(); ++f)
-      if (!row.empty() && std::abs(along(row, rigid_[f])) > kNoPart * rigid_[f].cwiseAbs().maxCoeff())
+      if (!row.empty() && std::abs(value_along(row, rigid_[f])) > kNoPart * rigid_[f].cwiseAbs().maxCoeff())
         balance_[f] = row, any = true;
     if (!any)
       findings.push_back({system_.name() + "/sweep", "balance", balance, "",
@@ -89,7 +83,7 @@ void MeanEquilibrium::solve(Vector& p, Vector* left) {
     const double over = r.dot(p);
     if (left != nullptr) (*left)[static_cast<Eigen::Index>(f)] = over;
     if (!balance_[f].empty()) {
-      const double moves = along(balance_[f], r);
+      const double moves = value_along(balance_[f], r);
       for (const Entry& e : balance_[f]) p[e.index] -= e.coeff * over / moves;
     } else {
       const Vector inertia = assembler_.product(system_.mass_values(), r);

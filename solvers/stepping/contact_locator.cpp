@@ -27,12 +27,6 @@ void add_known(double y_0, double d_0, double y_1, double d_1, double middle, do
 
 double value(const LawBound& b, double x, double x_dot) { return b.a + b.b_x * x + b.b_v * x_dot; }
 
-double sum(const std::vector<Entry>& entries, const Vector& q) {
-  double s = 0.0;
-  for (const Entry& e : entries) s += e.coeff * q[e.index];
-  return s;
-}
-
 }  // namespace
 
 ContactLocator::ContactLocator(const System& system) : system_(system), zero_(Vector::Zero(system.size())) {
@@ -50,7 +44,7 @@ std::vector<Entry> ContactLocator::of_phase(const ScalarTerm& term) const {
 
 ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State& state, double angle) const {
   const NodeMap& map = system_.node_map(term.phase_node);
-  double rate = sum(of_phase(term), state.v);
+  double rate = value_along(of_phase(term), state.v);
   if (map.prescribed >= 0)
     if (const auto& known = system_.prescribed()[idx(map.prescribed)].at)
       rate += map.coeff * known(state.t).rate;
@@ -60,7 +54,7 @@ ContactLocator::Value ContactLocator::angle(const ScalarTerm& term, const State&
 }
 
 double ContactLocator::acceleration(const ScalarTerm& term, const State& state) const {
-  double a = sum(term.z, state.a);
+  double a = value_along(term.z, state.a);
   for (const Entry& e : term.u)
     if (const auto& known = system_.prescribed()[idx(e.index)].at) a += e.coeff * known(state.t).acceleration;
   return a;
@@ -152,8 +146,8 @@ std::optional<ContactLocator::Crossing> ContactLocator::predict(const EvaluatedS
   }
   for (const std::size_t j : phased_) {
     const ScalarTerm& term = system_.scalars()[j];
-    take(first_knot(
-        j, along(angle(term, point.state, point.inputs[j].angle), sum(of_phase(term), point.state.a))));
+    take(first_knot(j, along(angle(term, point.state, point.inputs[j].angle),
+                             value_along(of_phase(term), point.state.a))));
   }
   return best;
 }
@@ -167,7 +161,7 @@ StepPolynomial::Coefficients ContactLocator::deflection(std::size_t law, const S
   const double h = motion.h();
   const auto known = [&](const EvaluatedState& p) {
     const ScalarInput& in = p.inputs[law];
-    return Value{in.x - sum(term.z, p.state.z), h * (in.x_dot - sum(term.z, p.state.v))};
+    return Value{in.x - value_along(term.z, p.state.z), h * (in.x_dot - value_along(term.z, p.state.v))};
   };
   assembler.set_time(from.state.t + 0.5 * h);
   const ScalarInput middle = assembler.input(term, zero_, zero_);
@@ -185,7 +179,8 @@ StepPolynomial::Coefficients ContactLocator::phase(std::size_t law, const StepPo
   const double h = motion.h();
   const auto known = [&](const EvaluatedState& p) {
     const Value all = angle(term, p.state, p.inputs[law].angle);
-    return Value{all.value - sum(entries, p.state.z), h * (all.rate - sum(entries, p.state.v))};
+    return Value{all.value - value_along(entries, p.state.z),
+                 h * (all.rate - value_along(entries, p.state.v))};
   };
   State between;
   between.t = from.state.t + 0.5 * h;
