@@ -136,13 +136,22 @@ std::string runs_table(const NonlinearSweep& sweep) {
   return text;
 }
 
-double largest_left_over(const NonlinearSweep& sweep, std::size_t part) {
-  double most = 0.0;
+/// The largest of all motions; at how many of the speeds asked for, by the largest of a speed's.
+LeftOver left_over_of(const NonlinearSweep& sweep, std::size_t part) {
+  LeftOver left;
+  std::map<double, double> asked;
   for (const SweptBranch& branch : sweep.branches)
-    for (const SweptMotion& motion : branch.motions)
-      if (motion.left_over.size() > static_cast<Eigen::Index>(part))
-        most = std::max(most, std::abs(motion.left_over[static_cast<Eigen::Index>(part)]));
-  return most;
+    for (const SweptMotion& motion : branch.motions) {
+      if (motion.left_over.size() <= static_cast<Eigen::Index>(part)) continue;
+      const double value = std::abs(motion.left_over[static_cast<Eigen::Index>(part)]);
+      if (value > left.most) {
+        left.most = value;
+        left.at_rpm = to_rpm(motion.speed);
+      }
+      if (motion.asked) asked[to_rpm(motion.speed)] = std::max(asked[to_rpm(motion.speed)], value);
+    }
+  for (const auto& [rpm, value] : asked) left.note(value, rpm, kLeftOver);
+  return left;
 }
 
 std::string notes_text(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
@@ -250,16 +259,8 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
   }
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
-    std::map<double, double> at_speed;  // the largest of its motions'
-    for (const SweptBranch& branch : sweep.branches)
-      for (const SweptMotion& motion : branch.motions)
-        if (motion.asked && motion.left_over.size() > static_cast<Eigen::Index>(f)) {
-          double& most = at_speed[to_rpm(motion.speed)];
-          most = std::max(most, std::abs(motion.left_over[static_cast<Eigen::Index>(f)]));
-        }
-    LeftOver left;
-    for (const auto& [rpm, most] : at_speed) left.note(most, rpm, kLeftOver);
-    if (left.count > 0)
+    const LeftOver left = left_over_of(sweep, f);
+    if (left.most > kLeftOver)
       notes.push_back(
           left_over_sentence(left, sweep.floating_parts[f],
                              "The motions are those of the train that this speeds up; --balance NODE "
@@ -318,7 +319,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
                     {"highest", over_sections(run.highest)}});
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
     floating.push_back(
-        {{"node", sweep.floating_parts[f]}, {"left_over_Nm", number(largest_left_over(sweep, f))}});
+        {{"node", sweep.floating_parts[f]}, {"left_over_Nm", number(left_over_of(sweep, f).most)}});
   for (const double speed : sweep.speeds) speeds.push_back(number(to_rpm(speed)));
   for (const double speed : sweep.unsolved) unsolved.push_back(number(to_rpm(speed)));
   object["speeds_rpm"] = std::move(speeds);
