@@ -171,7 +171,7 @@ class ExactRun final : public StepMotion {
     if (whole)
       evaluate(assembler_, next_, evaluated_at);
     else
-      evaluate_energies(next_, evaluated_at);
+      evaluate_motion(next_, evaluated_at);
     const LawWork work = expansion_.work(laws_, s, next_);
     const EvaluatedState& before = watch(t_new, end);
     if (&before != &now_) assembler_.set_time(evaluated_at);
@@ -419,13 +419,7 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
-  /// Motion, laws and what energies need.
-  void evaluate_energies(EvaluatedState& point, double t) {
-    evaluate_motion(point, t);
-    assembler_.multiply_stiffness(point.state.z, point.kz);
-  }
-
-  /// Motion and laws only.
+  /// Motion and laws only, which energies need.
   void evaluate_motion(EvaluatedState& point, double t) {
     assembler_.set_time(t);
     evaluate_laws(assembler_, point);

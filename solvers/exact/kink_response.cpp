@@ -1,17 +1,23 @@
 #include "solvers/exact/kink_response.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace drev {
 
 namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
-constexpr int kMostKinks = 1000;    // in a step; what they do to each other is bounded pair by pair
-constexpr double kLittle = 0.1;     // of what is allowed, by pairs that are not looked at
-constexpr double kOfShare = 0.1;    // what a sweep of finite degree leaves out
-constexpr double kShortened = 0.9;  // of the part behind a kink over which slopes change little enough
+constexpr int kMostKinks = 1000;      // in a step; what they do to each other is bounded pair by pair
+constexpr double kLittle = 0.1;       // of what is allowed, by pairs that are not looked at
+constexpr double kAllPairs = 0.4;     // the same by all pairs, where none is looked at
+constexpr double kOfShare = 0.1;      // what a sweep of finite degree leaves out
+constexpr double kRuleMargin = 10.0;  // of what Gauss's rule leaves: angles bend, too
+constexpr double kOfRule = 0.1;       // of what a sweep may leave out: by terms of the angles
+constexpr double kPlace = 1e-4;       // of the step: what the place of a knot may be off by at most
+constexpr double kShortened = 0.9;    // of the part behind a kink over which slopes change little enough
 
 }  // namespace
 
@@ -48,6 +54,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) rest = std::max(rest, kink.pull);
   if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
   rest *= 0.5 * scale * end * end;
+  const double response = rest;
   int degree = 0;
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
     rest *= growth / (++degree + 2.0);
@@ -56,14 +63,47 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int stride = series_.stride();
-  moments_.assign(idx((degree + 1) * stride), 0.0);
-  kinks.add_to_sweep(end, degree, stride, moments_.data());
+  moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
+                  0.0);  // zeros but for what a sweep at hand adds
+  const Rule rule = rule_for(response, growth, kOfShare * share, scale, end);
+  kinks.use_terms(rule.terms);
+  kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
   series_.sweep(moments_.data(), degree);
-  if (end == 1.0 && !find_limit(share - rest, scale)) return false;
-  if (!corrects_) return found_ = true;
+  const bool holds = end != 1.0 || find_limit(share - rest, scale);
+  if (!holds || !corrects_) {
+    kinks.clear_rows(degree, stride, moments_.data());
+    return found_ = holds;
+  }
   laws_.add_changes(series_, degree, moments_.data());
   series_.sweep(moments_.data(), degree);
+  std::fill(moments_.begin(), moments_.end(), 0.0);
   return found_ = true;
+}
+
+/// Of kinks that respond by no more than `response` of the motion, what may be `allowed`: Gauss's rule, whose n nodes leave
+/// (n!)^4/((2 n + 1) (2 n)!^3) growth^(2 n) of an integral with exp(rate h s); so many terms of the angles that the force behind
+/// the knot is right; and so many that its place is, of whose error the square counts.
+KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double allowed, double scale,
+                                          double end) const {
+  Rule rule;
+  const KinkMoments& kinks = loads_.kinks();
+  if (!kinks.straight()) return rule;
+  constexpr std::array<double, 2> kLeaves{5.6e-10, 1.9e-16};
+  for (std::size_t i = 0; i < kLeaves.size(); ++i)
+    if (kRuleMargin * response * kLeaves[i] * std::pow(growth, 2 * KinkMoments::kSweepRules[i]) <= allowed) {
+      rule.nodes = KinkMoments::kSweepRules[i];
+      break;
+    }
+  double gain = 0.0, rate = std::numeric_limits<double>::infinity();
+  for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) {
+    gain = std::max(gain, kink.gain);
+    rate = std::min(rate, kink.rate);
+  }
+  const double z = std::max(series_.z_scale()[0], series_.z_scale()[1]);
+  rule.terms = idx(series_.terms_within(kOfRule * allowed / (gain * scale * end * z)));
+  const double place = std::min(kPlace, end * std::sqrt(kOfRule * allowed / response));
+  rule.place_terms = idx(series_.terms_within(place * rate / z));
+  return rule;
 }
 
 /// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
@@ -147,6 +187,16 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) c
   const double little = kLittle * allowed / (kinks.count() * static_cast<double>(kinks.count()));
   Others others;
   double most = 0.0;
+  if (!loads_.kinks_share_rows()) {  // most often all pairs add up to little
+    double pull = 0.0, gain = 0.0;
+    for (const LoadSeries::KinkSize& kink : sizes) {
+      pull = std::max(pull, kink.pull);
+      gain = std::max(gain, kink.gain);
+    }
+    others.error = 0.5 * kinks.count() * kinks.count() * square * gain * pull * std::pow(end, 6) * neighbours;
+    if (others.error <= kAllPairs * allowed) return others;
+    others.error = 0.0;
+  }
   for (int i = 0; i < kinks.count(); ++i) {
     if (kinks.place(i) >= end) continue;
     for (int k = 0; k < kinks.count(); ++k) {

@@ -33,11 +33,8 @@ class KinkResponse {
   bool found() const { return found_; }
   /// s to which y was found.
   double end() const { return end_; }
-  /// Whether there are kinks up to there: else y = 0.
+  /// Whether there are kinks up to there: then TaylorSeries::swept() has y and its rate; else y = 0.
   bool any() const { return found_ && loads_.kinks().count() > 0; }
-  double y(int row) const { return series_.swept(0)[row]; }
-  /// By s.
-  double rate(int row) const { return series_.swept(-1)[row]; }
   /// s up to which the step holds: beyond, more would be left out than its share.
   double limit() const { return limit_; }
   /// Work of loads beyond what they do along the series [J].
@@ -50,6 +47,12 @@ class KinkResponse {
 
  private:
   void return_slopes();
+  /// How moments are taken.
+  struct Rule {
+    int nodes = KinkMoments::kSweepRules.back();
+    std::size_t terms = TaylorSeries::kMaxDegree + 1, place_terms = terms;
+  };
+  Rule rule_for(double response, double growth, double allowed, double scale, double end) const;
   struct Others {
     double error = 0.0;    // of the motion by the scale
     double between = 0.0;  // s between the two kinks that make most of it

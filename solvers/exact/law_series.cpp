@@ -50,6 +50,16 @@ bool opposite(const LawBound& a, const LawBound& b) {
   return cancels(a.a, b.a) && cancels(a.b_x, b.b_x) && cancels(a.b_v, b.b_v);
 }
 
+/// On which side of the gap a piece lies: 1, 0, -1; none: on several, or there is no gap.
+std::optional<int> side_of(const LawPiece& piece, const std::optional<Gap>& gap) {
+  if (!gap) return std::nullopt;
+  const Interval x = piece.x_range();
+  if (x.low >= gap->high) return 1;
+  if (x.high <= gap->low) return -1;
+  if (x.low >= gap->low && x.high <= gap->high) return 0;
+  return std::nullopt;
+}
+
 }  // namespace
 
 LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scalars().size()) {
@@ -62,6 +72,7 @@ LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scala
       for (std::size_t i = 0; i < law.pieces.size(); ++i)
         if (const LawPiece& piece = term.force->pieces()[i]; ExpandedLaws::is_linear(term, piece))
           law.pieces[i] = piece;
+    for (const LawPiece& p : law.pieces) law.sides.push_back(side_of(p, term.force->gap()));
     if (!term.force->varies() || term.phase_node < 0) continue;
     for (const LawPiece& p : law.pieces)
       for (const LawBound& b : p.bounds) law.scaled |= b.b_v != 0.0;
@@ -75,16 +86,6 @@ void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
     laws_[j].piece = piece_at(laws_[j].pieces, in.x, in.x_dot / r);
     laws_[j].root = -1;
   }
-}
-
-std::optional<int> LawSeries::side(int law) const {
-  const std::optional<Gap> gap = system_.scalars()[idx(law)].force->gap();
-  if (!gap) return std::nullopt;
-  const Interval x = current(idx(law)).x_range();
-  if (x.low >= gap->high) return 1;
-  if (x.high <= gap->low) return -1;
-  if (x.low >= gap->low && x.high <= gap->high) return 0;
-  return std::nullopt;
 }
 
 void LawSeries::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {

@@ -33,7 +33,10 @@ class LawSeries {
   void locate(const std::vector<ScalarInput>& inputs);
   int piece(int law) const { return laws_[idx(law)].piece; }
   /// StepMotion::side() of the pieces that hold.
-  std::optional<int> side(int law) const;
+  std::optional<int> side(int law) const {
+    const Law& l = laws_[idx(law)];
+    return l.sides[idx(l.piece)];
+  }
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
@@ -77,8 +80,9 @@ class LawSeries {
 
  private:
   struct Law {
-    std::vector<LawPiece> pieces;  // the law's own; of a projected one its bounds, without forces
-    bool scaled = false;           // by its angle, where that matters to a bound
+    std::vector<LawPiece> pieces;           // the law's own; of a projected one its bounds, without forces
+    bool scaled = false;                    // by its angle, where that matters to a bound
+    std::vector<std::optional<int>> sides;  // of each piece: side()
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part

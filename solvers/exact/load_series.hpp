@@ -13,6 +13,7 @@
 #include "solvers/exact/kink_moments.hpp"
 #include "solvers/exact/projected_laws.hpp"
 #include "solvers/exact/smooth_loads.hpp"
+#include "solvers/exact/straight_loads.hpp"
 #include "solvers/series/legendre_projection.hpp"
 #include "solvers/series/taylor_series.hpp"
 
@@ -39,7 +40,7 @@ class LoadSeries {
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
   /// False: no load can differ from what add_to() adds.
-  bool projects() const { return !loads_.empty() || !smooth_.empty() || expanded_.knotted(); }
+  bool projects() const { return !straight_.empty() || !smooth_.empty() || expanded_.knotted(); }
   /// The part of the step for which the loads' polynomials hold, <= 1; and whether, along the series, some angle came
   /// further than was reckoned with: then the step is to be expanded anew.
   double part_held() const { return expanded_.part_held(); }
@@ -82,11 +83,13 @@ class LoadSeries {
     add_kink_slopes(series, -1.0);
   }
   /// Of each: |d/ds| of the acceleration that sets in [1/s^2], and of what a motion of its row turns, the acceleration that
-  /// comes back [1/s^2].
+  /// comes back [1/s^2]; and how fast the row turns the angle at least, by s [rad or m]: infinity where it does not.
   struct KinkSize {
     const PlacedLoad* load;
-    double pull, gain;
+    double pull, gain, rate;
   };
+  /// Some of them are on one row.
+  bool kinks_share_rows() const { return shared_rows_; }
   const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
   /// Bound of the accelerations of all of them, sum |jump theta'| h^2/sqrt(m): energies tell that they move an unknown of
   /// mass m over s by no more than this s^3/(6 sqrt(m)).
@@ -94,7 +97,7 @@ class LoadSeries {
   /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
   double kink_work(const TaylorSeries& series, double s) const;
   /// Kinks are all that bends loads beyond the series.
-  bool kinks_alone() const { return (!loads_.empty() || expanded_.knotted()) && smooth_.empty(); }
+  bool kinks_alone() const { return (!straight_.empty() || expanded_.knotted()) && smooth_.empty(); }
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
@@ -125,17 +128,7 @@ class LoadSeries {
 
  private:
   void add_kink_slopes(TaylorSeries& series, double factor) const;
-  struct Linear : PlacedLoad {
-    using PlacedLoad::PlacedLoad;
-    LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;  // where `stretch` gives its torque
-    double ahead_angle_0 = 0.0;       // the same of `ahead`
-    LoadStretch next = {};            // behind this bound, at this time
-    double next_bound = 0.0, next_t = 0.0;
-    int next_direction = 0;  // 0: none is known
-  };
   void move(double t, const Vector& z, const Vector& v);
-  void look_up(Linear& load, double direction);
   double angle_term(const PlacedLoad& load, const TaylorSeries& series, int k) const;
   void expand_angle(const PlacedLoad& load, const TaylorSeries& series, std::size_t terms,
                     double* theta) const;
@@ -154,12 +147,12 @@ class LoadSeries {
   /// Calls with every load that says knots, and the bounds that hold for it.
   template <class Each>
   void for_knotted(const Each& each) {
-    for (Linear& l : loads_) each(l, l.stretch.low, l.stretch.high);
+    for (StraightLoads::Load& l : straight_.loads()) each(l, l.stretch.low, l.stretch.high);
     for (ExpandedLoads::Load& l : expanded_.loads())
       if (l.acts && l.knots != nullptr) each(l, l.piece.low, l.piece.high);
   }
   /// The stretch behind this bound of a load's stretch, asked for once a step.
-  const LoadStretch& beyond(Linear& load, double bound, bool rises) const;
+  const LoadStretch& beyond(StraightLoads::Load& load, double bound, bool rises) const;
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const {
@@ -170,7 +163,7 @@ class LoadSeries {
 
   const System& system_;
   Assembler assembler_;
-  std::vector<Linear> loads_;
+  StraightLoads straight_;
   ExpandedLoads expanded_;
   SmoothLoads smooth_;
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
@@ -189,6 +182,10 @@ class LoadSeries {
   static constexpr double kMostInside = 1e-6;
   double kinks_inside_ = 0.0;  // by tables
   double kink_push_ = 0.0;
+  std::vector<int> last_kink_;  // by row: the one listed last, 1 and up in all listings
+  int listed_before_ = 0;       // in listings before this one
+  bool shared_rows_ = false;
+  bool given_kinks_ = false;  // some of a load whose angle follows no motion
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;

@@ -55,10 +55,11 @@ bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
     if (!kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong))) return false;
   }
   if (!kinks.any()) return true;
-  const double per_time = 1.0 / series.step();
+  const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
+  double *to_z = z.data(), *to_v = v.data();
   for (int i = 0; i < series.size(); ++i) {
-    z[i] += kinks.y(i);
-    v[i] += per_time * kinks.rate(i);
+    to_z[i] += y[i];
+    to_v[i] += per_time * rate[i];
   }
   return true;
 }
@@ -115,15 +116,16 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
 }
 
 const double* StepExpansion::beyond_cubic(double s) {
-  const int n = series.size();
-  beyond_cubic_.resize(idx(2 * n));
+  const int n = series.size(), stride = series.stride();
+  beyond_cubic_.resize(idx(2 * stride));
   series.beyond_cubic(s, beyond_cubic_.data());
+  if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
   if (sweeps_ && kinks.any()) {
-    const double per_time = 1.0 / series.step();
+    const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
+    double *of_value = beyond_cubic_.data(), *of_rate = of_value + n;
     for (int i = 0; i < n; ++i) {
-      const double y = std::abs(kinks.y(i)), rate = std::abs(kinks.rate(i));
-      beyond_cubic_[idx(i)] += kOfKinks * y + kOfKinkRates * rate;
-      beyond_cubic_[idx(n + i)] += 10.0 * kOfKinkRates * per_time * rate;
+      of_value[i] += kOfKinks * std::abs(y[i]) + kOfKinkRates * std::abs(rate[i]);
+      of_rate[i] += 10.0 * kOfKinkRates * per_time * std::abs(rate[i]);
     }
   } else if (known.kinked())
     for (int i = 0; i < n; ++i) {

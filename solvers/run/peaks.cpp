@@ -38,7 +38,10 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
       inside_steps_(inside_steps) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const std::vector<Entry>& row = channels_[c].z_row();
-    if (!channels_[c].is_linear() || row.size() > 2 || !channels_[c].v_row().empty()) continue;
+    if (!channels_[c].is_linear() || row.size() > 2 || !channels_[c].v_row().empty()) {
+      others_.push_back(c);
+      continue;
+    }
     watched_[c].two_entries = true;
     if (!row.empty()) watched_[c].first = row[0];
     if (row.size() == 2) watched_[c].second = row[1];
@@ -88,11 +91,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   const double h = to.state.t - from.state.t;
   Interval reach;
   double beyond = 0.0;
-  if (w.two_entries) {
-    reach = cubic_reach(w.last, w.sum(from.state.v), w.sum(to.state.z), w.sum(to.state.v), h);
-    beyond = std::abs(w.first.coeff) * beyond_cubic[w.first.index] +
-             std::abs(w.second.coeff) * beyond_cubic[w.second.index];
-  } else if (channels_[c].is_linear()) {
+  if (channels_[c].is_linear()) {
     // Its rate reads the acceleration, which is the rate's rate.
     reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
                         along(c, to.state.v, to.state.a), h);
@@ -116,12 +115,28 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
 }
 
+/// may_pass() of a channel of two entries, whose value and rate at the step's end it keeps.
+bool Peaks::pair_may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
+                          const double* beyond_cubic) {
+  Watched& w = watched_[c];
+  w.ahead = w.sum(to.state.z);
+  w.ahead_rate = w.sum(to.state.v);
+  const double rate = last_rates_ ? w.last_rate : w.sum(from.state.v);
+  const Interval reach = cubic_reach(w.last, rate, w.ahead, w.ahead_rate, to.state.t - from.state.t);
+  const double beyond = std::abs(w.first.coeff) * beyond_cubic[w.first.index] +
+                        std::abs(w.second.coeff) * beyond_cubic[w.second.index];
+  return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
+}
+
 bool Peaks::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
   passed_over_ = false;
   if (!inside_steps_) return false;
-  for (std::size_t c = 0; c < channels_.size(); ++c)
+  for (const std::size_t c : others_)
     if (may_pass(c, from, to, beyond_cubic)) return true;
+  for (std::size_t c = 0; c < channels_.size(); ++c)
+    if (watched_[c].two_entries && pair_may_pass(c, from, to, beyond_cubic)) return true;
   passed_over_ = true;
+  ahead_t_ = to.state.t;
   return false;
 }
 
@@ -136,8 +151,8 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
 }
 
 void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
-  for (std::size_t c = 0; c < channels_.size(); ++c) {
-    if (watched_[c].two_entries) continue;  // angles do not jump
+  last_rates_ = false;
+  for (const std::size_t c : others_) {  // angles do not jump
     watched_[c].last = value(c, assembler, point);
     peaks_[c].note(watched_[c].last, point.state.t);
     set_bounds(c);
@@ -147,6 +162,17 @@ void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
 void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double length = to.state.t - from.state.t;
   longest_ = std::max(longest_, length);
+  if (passed_over_ && to.state.t < ahead_t_) return;
+  last_rates_ = passed_over_;
+  if (passed_over_) {
+    for (Watched& w : watched_) {
+      w.last = w.ahead;
+      w.last_rate = w.ahead_rate;
+    }
+    for (const std::size_t c : others_) watched_[c].last = value(c, assembler, to);
+    passed_over_ = false;
+    return;
+  }
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     Watched& w = watched_[c];
     const double y = value(c, assembler, to), before = w.last;
@@ -156,8 +182,7 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
     Peak& p = peaks_[c];
     p.note(y, to.state.t);
     const double near = kNear * (p.max - p.min);
-    if (inside_steps_ && !passed_over_ && length > kShort * longest_ &&
-        (higher > p.max - near || lower < p.min + near))
+    if (inside_steps_ && length > kShort * longest_ && (higher > p.max - near || lower < p.min + near))
       look_inside(c, assembler, from, to, before, y);
     set_bounds(c);
   }

@@ -54,7 +54,10 @@ class Peaks final : public Observer {
       return first.coeff * x[first.index] + second.coeff * x[second.index];
     }
     double last = 0.0;
-    std::vector<Entry> row;        ///< of the unknowns that a channel of a law follows
+    double ahead = 0.0,
+           ahead_rate = 0.0;  ///< of one of two entries: at the step's end, once looks_inside() was asked
+    double last_rate = 0.0;   ///< of the same, where last_rates_
+    std::vector<Entry> row;   ///< of the unknowns that a channel of a law follows
     double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
   };
   void set_bounds(std::size_t c);
@@ -64,14 +67,19 @@ class Peaks final : public Observer {
   /// Whether the value may pass its peaks within a step.
   bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
                 const double* beyond_cubic) const;
+  bool pair_may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
+                     const double* beyond_cubic);
 
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
   std::vector<Watched> watched_;
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
-  double longest_ = 0.0;      // step so far [s]
-  bool passed_over_ = false;  // no value passes its peaks inside this step
+  double longest_ = 0.0;             // step so far [s]
+  bool passed_over_ = false;         // no value passes its peaks in this step, inside or at its end
+  double ahead_t_ = 0.0;             // its end [s]
+  bool last_rates_ = false;          // the last step was passed over: rates at its end are known
+  std::vector<std::size_t> others_;  // channels of other kinds than two entries
 };
 
 }  // namespace drev

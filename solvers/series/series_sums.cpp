@@ -1,4 +1,5 @@
 // TaylorSeries: sums over the terms of a step, for its end, its energies and its bounds.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -8,39 +9,49 @@ namespace drev {
 
 namespace {
 
-// Legendre polynomials that rates along the series, and those that are swept, are expanded in. Coefficients fall as
-// (rate h/2)^k/(2 k + 1)!!.
-constexpr int kLossTerms = 8;
-// Columns of the sums: the moments b_k = int z' L_k ds and the rate at the end; then, of sizes, what the terms and their
-// slopes by s add up to, and what lies beyond a cubic, of the motion and of its rate.
-constexpr int kRateSum = kLossTerms, kTermSums = kRateSum + 1, kSizeSum = kTermSums, kSlopeSum = kSizeSum + 1,
-              kBeyondSum = kSlopeSum + 1, kRateBeyondSum = kBeyondSum + 1, kAllSums = kRateBeyondSum + 1;
+// Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what is left out is
+// at most 1e-9 of the loss by a mode of rate h = 3. At nodes for products with other series more are kept.
+constexpr int kLossTerms = 7, kNodeTerms = 8;
+// Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
+constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
+// Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
+constexpr int kRangeTerms = 8, kFirstBeyond = 4, kLastBeyond = 16;
+
+/// Of the moments int y' (s - s')^m/m! ds' = swept(m) in int y' L_k ds, for s = 1: by kTerms - 1 - m, as columns of a sweep
+/// stand, then by k.
+template <int kTerms>
+std::array<double, std::size_t{kTerms} * kTerms> weights_of_swept() {
+  std::array<double, std::size_t{kTerms} * kTerms> weight{};
+  const PowersOf<kTerms> powers = legendre_powers<kTerms>();
+  double factorial = 1.0;
+  for (std::size_t m = 0; m < kTerms; factorial *= static_cast<double>(++m))
+    for (std::size_t k = m; k < kTerms; ++k)
+      weight[(kTerms - 1 - m) * kTerms + k] = (k % 2 == 0 ? factorial : -factorial) * powers[k][m];
+  return weight;
+}
+
+/// Of term k: Hermite's cubic through values and rates at both ends is off by the largest fourth derivative times s^4/384 at most.
+constexpr double beyond_weight(int k) { return k * (k - 1.0) * (k - 2.0) * (k - 3.0) / 384.0; }
 
 struct SumWeights {
-  std::array<double, kAllSums*(TaylorSeries::kMaxDegree + 1)>
-      weight{};  // by term k, then by column, for s = 1
-  // Of the moments int y' (s - s')^m/m! ds' = swept(m) in int y' L_k ds, for s = 1: by kLossTerms - 1 - m, as columns of a
-  // sweep stand, then by k.
-  std::array<double, kLossTerms * kLossTerms> swept{};
+  // By term k, then by column, for s = 1.
+  std::array<double, std::size_t{kSums} * (TaylorSeries::kMaxDegree + 1)> end{};
+  std::array<double, std::size_t{kLossTerms}* kLossTerms> swept = weights_of_swept<kLossTerms>();
+  std::array<double, std::size_t{2} * kRangeTerms>
+      range{};  // of the terms' sizes, from the first on: value, slope
   SumWeights() {
-    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
-    double factorial = 1.0;
-    for (std::size_t m = 0; m < kLossTerms; factorial *= static_cast<double>(++m))
-      for (std::size_t k = m; k < kLossTerms; ++k)
-        swept[(kLossTerms - 1 - m) * kLossTerms + k] = (k % 2 == 0 ? factorial : -factorial) * powers[k][m];
     for (int k = 1; k <= TaylorSeries::kMaxDegree; ++k) {
-      double* w = weight.data() + k * kAllSums;
+      double* w = end.data() + k * kSums;
+      w[kRateSum] = k;
       for (int j = 0; j < kLossTerms; ++j) {
         // k int u^(k-1) L_j du = k! (k-1)!/((k-1-j)! (k+j)!), which is zero below j.
-        w[j] = k > j ? 1.0 : 0.0;
-        for (int i = 1; i <= j; ++i) w[j] *= static_cast<double>(k - i) / (k + i);
+        double& moment = w[kMoments + j];
+        moment = k > j ? 1.0 : 0.0;
+        for (int i = 1; i <= j; ++i) moment *= static_cast<double>(k - i) / (k + i);
       }
-      w[kRateSum] = k;
-      w[kSizeSum] = 1.0;
-      w[kSlopeSum] = k > 1 ? k : 0.0;
-      // Of the fourth derivative: Hermite's cubic through values and rates at both ends is off by |z''''| s^4/384 at most.
-      w[kBeyondSum] = k * (k - 1.0) * (k - 2.0) * (k - 3.0) / 384.0;
-      w[kRateBeyondSum] = w[kBeyondSum] * (k - 4.0);
+      if (k > kRangeTerms) continue;
+      range[idx(2 * k - 2)] = 1.0;
+      range[idx(2 * k - 1)] = k > 1 ? k : 0.0;
     }
   }
 };
@@ -52,15 +63,16 @@ const SumWeights& sum_weights() {
 
 /// Of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
 struct NodeWeights {
-  std::array<NodeValues, kLossTerms> of_moment{};
+  std::array<NodeValues, kNodeTerms> of_moment{};
   NodeWeights() {
-    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
-    for (std::size_t m = 0; m < kLossTerms; ++m)
-      for (std::size_t k = m; k < kLossTerms; ++k) {
+    const PowersOf<kNodeTerms> powers = legendre_powers<kNodeTerms>();
+    const auto swept = weights_of_swept<kNodeTerms>();
+    for (std::size_t m = 0; m < kNodeTerms; ++m)
+      for (std::size_t k = m; k < kNodeTerms; ++k) {
         const double weight =
-            (2.0 * static_cast<double>(k) + 1.0) * sum_weights().swept[(kLossTerms - 1 - m) * kLossTerms + k];
-        std::array<double, kLossTerms + 1> integral{};  // of L_k, from 0
-        for (std::size_t i = 0; i < kLossTerms; ++i)
+            (2.0 * static_cast<double>(k) + 1.0) * swept[(kNodeTerms - 1 - m) * kNodeTerms + k];
+        std::array<double, kNodeTerms + 1> integral{};  // of L_k, from 0
+        for (std::size_t i = 0; i < kNodeTerms; ++i)
           integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
         NodeValues at;
         find_at_nodes(integral, 1.0, at);
@@ -78,7 +90,7 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
   static const NodeWeights weights;
   out = {};
   double part = 1.0;  // s^-m
-  for (int m = 0; m < kLossTerms; ++m, part /= s) {
+  for (int m = 0; m < kNodeTerms; ++m, part /= s) {
     const double moment = value_along(row, swept(m));
     const NodeValues& weight = weights.of_moment[idx(m)];
     for (std::size_t q = 0; q < out.value.size(); ++q) {
@@ -90,20 +102,19 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
 
 const double* TaylorSeries::sums(double s) {
   if (s == sums_at_) return step_sums_.data();
-  const auto& at_end = sum_weights().weight;
+  const auto& at_end = sum_weights().end;
   const double* weight = at_end.data();
   if (s != 1.0) {
     part_weights_.assign(at_end.begin(), at_end.end());
     double power = s, below = 1.0;  // s^k, s^(k-1)
     for (int k = 1; k <= degree_; ++k, below = power, power *= s) {
-      double* w = part_weights_.data() + k * kAllSums;
-      for (int j = 0; j < kAllSums; ++j) w[j] *= j == kRateSum || j == kRateBeyondSum ? below : power;
+      double* w = part_weights_.data() + k * kSums;
+      for (int j = 0; j < kSums; ++j) w[j] *= j == kRateSum ? below : power;
     }
     weight = part_weights_.data();
   }
-  step_sums_.resize(idx(kAllSums * stride_));
-  weighted_sums(stride_, kTermSums, kAllSums - kTermSums, degree_ + 1, weight, coefficients(0),
-                step_sums_.data());
+  step_sums_.resize(idx(kSums * stride_));
+  weighted_sums(stride_, kSums, 0, degree_, weight + kSums, coefficients(1), step_sums_.data());
   sums_at_ = s;
   return step_sums_.data();
 }
@@ -113,7 +124,8 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
   v.resize(n_);
   const double per_time = 1.0 / h_;
   if (s == sums_at_) {
-    const double *start = coefficients(0), *turn = step_sums_.data(), *rate = turn + idx(kRateSum * stride_);
+    const double *start = coefficients(0), *rate = step_sums_.data() + idx(kRateSum * stride_),
+                 *turn = step_sums_.data() + idx(kMoments * stride_);
     for (int i = 0; i < n_; ++i) {
       z[i] = start[i] + turn[i];
       v[i] = per_time * rate[i];
@@ -128,28 +140,67 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
   }
 }
 
-void TaylorSeries::ranges(double* end, double* size, double* slope) {
-  const double* sum = sums(1.0);
-  std::copy_n(sum, stride_, end);
-  std::copy_n(sum + idx(kSizeSum * stride_), stride_, size);
-  std::copy_n(sum + idx(kSlopeSum * stride_), stride_, slope);
+/// out += by unknown, and stride() behind them other_tail: of either kind.
+void TaylorSeries::add_tails(const Norm& tail, const Norm& other_tail, double* out) const {
+  const bool same = kinds_.empty();
+  for (int i = 0; i < n_; ++i) {
+    const std::size_t kind = same ? 0 : idx(kinds_[idx(i)]);
+    out[i] += tail[kind];
+    out[stride_ + i] += other_tail[kind];
+  }
+}
+
+void TaylorSeries::ranges(double* end, double* size) {
+  std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
+  const int terms = std::min(degree_, kRangeTerms);
+  weighted_sums(stride_, 0, 2, terms, sum_weights().range.data(), coefficients(1), size);
+  Norm tail{}, slope_tail{};
+  for (int k = terms + 1; k <= degree_; ++k)
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += sizes_[idx(k)][kind];
+      slope_tail[kind] += k * sizes_[idx(k)][kind];
+    }
+  add_tails(tail, slope_tail, size);
+  for (int i = n_; i < n_ + row_slopes_.size(); ++i)  // loaded rows, of whose terms no sizes are known
+    for (int k = terms + 1; k <= degree_; ++k) {
+      size[i] += std::abs(coefficient(k, i));
+      size[stride_ + i] += k * std::abs(coefficient(k, i));
+    }
 }
 
 void TaylorSeries::beyond_cubic(double s, double* out) {
-  const double *beyond = sums(s) + idx(kBeyondSum * stride_), per_time = 1.0 / h_;
-  std::copy_n(beyond, n_, out);
-  for (int i = 0; i < n_; ++i) out[n_ + i] = per_time * beyond[stride_ + i];
+  const int last = std::min(degree_, kLastBeyond);
+  std::array<double, std::size_t{2} * (kLastBeyond - kFirstBeyond + 1)> weight;
+  Norm tail{}, rate_tail{};
+  double power = s * s * s;  // s^(k-1)
+  for (int k = kFirstBeyond; k <= degree_; ++k) {
+    const double of_rate = beyond_weight(k) * (k - 4.0) * power / h_;
+    power *= s;
+    const double of_value = beyond_weight(k) * power;
+    if (k <= last) {
+      weight[idx(2 * (k - kFirstBeyond))] = of_value;
+      weight[idx(2 * (k - kFirstBeyond) + 1)] = of_rate;
+      continue;
+    }
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += of_value * sizes_[idx(k)][kind];
+      rate_tail[kind] += of_rate * sizes_[idx(k)][kind];
+    }
+  }
+  weighted_sums(stride_, 0, 2, last - kFirstBeyond + 1, weight.data(), coefficients(kFirstBeyond), out);
+  add_tails(tail, rate_tail, out);
 }
 
 double TaylorSeries::work(const double* p, int degree, double s) {
-  if (sums_at_ >= 0.0 && degree <= 2) return work_of_moments(stride_, p, sums(s), s);
+  if (sums_at_ >= 0.0 && degree <= 2)
+    return work_of_moments(stride_, p, sums(s) + idx(kMoments * stride_), s);
   return series_work(stride_, energy_degree(), coefficients(0), degree, p, s);
 }
 
 double TaylorSeries::loss(double s, bool swept_too) {
   if (!damped_) return 0.0;
   // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
-  const double* of_z = sums(s);
+  const double* of_z = sums(s) + idx(kMoments * stride_);
   std::array<double, kLossTerms> factor;
   for (int k = 0; k < kLossTerms; ++k) factor[idx(k)] = (2 * k + 1) / s;
   swept_moments_.resize(idx(kLossTerms * stride_));

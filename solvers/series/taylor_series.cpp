@@ -18,6 +18,7 @@ constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values a
 constexpr double kEigenvalueMargin = 1.1;
 constexpr double kEnergyPart = 0.01;     // of the tolerance: terms that energies do without, 1e-13 to 1e-9
 constexpr double kLastOfProducts = 0.1;  // of what is allowed: the last two terms where series are multiplied
+constexpr int kFewer = 4;                // terms that a step may do with less than the one before
 constexpr double kShortenSeries = 0.9;   // of the step at which the last terms are just small enough
 }  // namespace
 
@@ -144,6 +145,21 @@ void TaylorSeries::add_damping(int slot, double value) {
   c_[position_[idx(slot)]] += value;
   damped_ = true;
   main_damping_ = false;
+}
+
+void TaylorSeries::add_row_slopes(const double* slope) {
+  int first = 0;
+  if (main_ >= 0 && diagonal_mass_) {
+    const double widest =
+        subtract_slopes(stride_, slope, inverse_mass_.data(), k_.data() + diagonals_[idx(main_)].values);
+    k_more_ = std::max(k_more_, widest);
+    first = n_;
+  }
+  for (int row = first; row < n_ + row_slopes_.size(); ++row) {
+    if (slope[row] == 0.0) continue;
+    add_row_stiffness(row, -slope[row]);
+    widen(row, slope[row], 0.0);
+  }
 }
 
 void TaylorSeries::subtract_product(const std::vector<double>& values, bool main_only, const double* x,
@@ -375,26 +391,28 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       products = true;
     }
   double last = 0.0;
+  const double per_time = 1.0 / h;
   // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
   int known = 1;
   const int likely = by_diagonals() ? degree_ - 1 : 0;
+  const int judged = likely - kFewer;  // terms before this one are not asked whether they are the last
   for (int k = 2; k <= kMaxDegree; ++k) {
     if (k > known) {
       known = std::min(std::max({k, known_degree + 2, likely}), kMaxDegree);
       next_terms(k, known);
+      if (const Norm& end = sizes_[idx(known)]; !std::isfinite(end[0] + end[1])) return h_ = 0.0;
     }
     const Norm& size = sizes_[idx(k)];
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < kinds; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i]);
-      v_scale[i] = std::max(v_scale[i], k * size[i] / h);
+      v_scale[i] = std::max(v_scale[i], k * per_time * size[i]);
     }
     degree_ = k;
     ++products_;
-    if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
-    if (k < known_degree + 2) continue;  // a term of the right side may still be to come
+    if (k < std::max(known_degree + 2, judged)) continue;  // a term of the right side may still be to come
     const double before = last;
     last = excess(k);
-    if (k < known_degree + 3) continue;
+    if (k < std::max(known_degree + 3, judged + 1)) continue;
     const double first = k_all * h * h / (k * (k + 1.0)) * before + c_all * h / (k + 1.0) * last;
     const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     const bool is_small = first <= 1.0 && second <= 1.0;
@@ -414,6 +432,16 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
   h_ = r * h;
   return h_;
+}
+
+int TaylorSeries::terms_within(double part) const {
+  Norm tail{};
+  for (int k = degree_; k > 2; --k)
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += sizes_[idx(k)][kind];
+      if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
+    }
+  return 3;
 }
 
 int TaylorSeries::energy_degree() const {

@@ -63,6 +63,8 @@ class TaylorSeries {
     else
       row_slopes_[row - n_] += value;
   }
+  /// Takes slopes of loads from the diagonal of each row, and tells of them (widen()).
+  void add_row_slopes(const double* slope);
   void add_damping(int slot, double value);
   /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
   void add_load_damping(int row, double value) {
@@ -121,6 +123,8 @@ class TaylorSeries {
   int degree() const { return degree_; }
   /// Size of term k of the step's series, of unknowns of a kind.
   double size(int k, std::size_t kind) const { return sizes_[idx(k)][kind]; }
+  /// The least number of terms of the step's series behind which all others add up to no more than `part` of the largest motion.
+  int terms_within(double part) const;
   double step() const { return h_; }
   int size() const { return n_; }
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
@@ -130,10 +134,11 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
-  /// Of each row over the step: how far it comes, and what its terms and, from the second on, their slopes by s add up to.
-  void ranges(double* end, double* size, double* slope);
-  /// Of each unknown, and of its rate, how far it lies at most from the cubic through its values and rates at 0 and s
-  /// (cubic_peak.hpp); out: size() of either.
+  /// Of each row over the step: how far it comes, and bounds of what its terms and, stride() behind them, from the second on
+  /// their slopes by s add up to.
+  void ranges(double* end, double* size);
+  /// Of each unknown, and stride() behind it of its rate, how far it lies at most from the cubic through its values and rates at
+  /// 0 and s (cubic_peak.hpp).
   void beyond_cubic(double s, double* out);
   /// int_0^s (sum P_k u^k) . z' du with columns P_k at p + k stride(), k <= degree.
   double work(const double* p, int degree, double s);
@@ -202,6 +207,7 @@ class TaylorSeries {
   }
   void add_row_forces(const double* p, const double* x_0);
   const double* sums(double s);
+  void add_tails(const Norm& tail, const Norm& other_tail, double* out) const;
   bool add_term_forces(int k, double factor, double* term);
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;

@@ -113,7 +113,7 @@ TEST_CASE("Moments of a curved force behind a knot: in closed form along a strai
   for (std::size_t k = 0; k < 2; ++k) terms[k * kLanes] = theta[k];
   constexpr int kDegree = 6, kStride = 8;
   std::vector<double> columns((kDegree + 1) * kStride);
-  kinks.add_to_sweep(end, kDegree, kStride, columns.data());
+  kinks.add_to_sweep(end, kDegree, 8, 2, kStride, columns.data());
   CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
   for (int j = 0; j <= kDegree; ++j) {
     double truth = 0.0;  // int_0^r (r - u)^j/j! u^q du = q! r^(j+q+1)/(j+q+1)!
