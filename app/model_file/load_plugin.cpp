@@ -1,4 +1,4 @@
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/app/model_file/plugin.hpp>
 
 #include <dlfcn.h>

@@ -1,5 +1,6 @@
+#include "solvers/accuracy/work_precision.hpp"
+
 #include <drev/core/error.hpp>
-#include <drev/solvers/accuracy/work_precision.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/step_scheme.hpp>

@@ -1,6 +1,6 @@
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>

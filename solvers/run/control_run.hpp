@@ -1,10 +1,10 @@
 #pragma once
 /// ControlRun: the sampled controllers of a system in one run (sampled_controller.hpp): when they are asked, what they
 /// see, and what acts from then on.
-#include <drev/core/control/signal.hpp>
-
 #include <memory>
 #include <vector>
+
+#include "core/control/signal.hpp"
 
 namespace drev {
 

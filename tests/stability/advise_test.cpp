@@ -3,7 +3,7 @@
 // than the advice's, and the figure of the model advised is found anew from its recipe.
 #include <drev/advice/advise.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 
 #include "advice/figure_estimate.hpp"
