@@ -157,7 +157,7 @@ class FormComparison {
   }
 
  private:
-  static constexpr double kRepeats = 1e-7;  // of a curve: rounding of the angle
+  static constexpr double kRepeats = 1e-7;  // of the curve's size a period later: rounding of the angle
   void repeats(const char* curve, double here, double later, double size, const LoadInput& in) {
     if (std::abs(here - later) > kRepeats * size)
       add("curves", std::string(curve) + " is " + to_text(here) + ", " + to_text(later) + " a period later",

@@ -134,7 +134,7 @@ CubicPiece GasPressure::piece(double angle, double direction, double speed, bool
 
 CubicPiece GasPressure::ungated_piece(double angle, double direction, const std::vector<double>& parts,
                                       bool misfires) const {
-  constexpr double kOnKnot = 1e-13;  // of the angle, at least of 1 rad
+  constexpr double kOnKnot = 1e-13;  // distance from a knot over the angle, or over 1 rad
   const bool up = direction > 0.0;
   double side = 1.0, at = angle;
   CubicPiece sum;

@@ -63,7 +63,7 @@ class SparseNewton {
   std::vector<ScalarInput> inputs_;  // and responses: of the last residual, unless handed over
   std::vector<ScalarResponse> responses_;
   std::vector<double> slopes_, kinks_;
-  Weights weights_;  // of the tangent, as slopes_ and shift_
+  Weights weights_;  // weights of the tangent, slopes_ and shift_
   double shift_ = 0.0;
   bool tangent_kept_ = false;
   double scale_ = 0.0, rounding_ = 0.0;

@@ -19,10 +19,10 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 constexpr int kLoadSamples = 128;
-constexpr double kShift = 1e-3;        // of the first eigenvalue
+constexpr double kShift = 1e-3;        // shift over the first eigenvalue
 constexpr int kRefinements = 5;        // each takes the shift's error down by kShift at least
-constexpr double kSamePattern = 1e-6;  // of the largest load pattern
-constexpr double kDependent = 1e-10;   // in energy, of shapes
+constexpr double kSamePattern = 1e-6;  // difference of equal load patterns over the largest one
+constexpr double kDependent = 1e-10;   // energy of a shape beside the others, over its own
 
 /// K^+ of the modes left out, contacts closed.
 class Residual {

@@ -88,8 +88,8 @@ class ContactStatistics final : public Observer {
   StepMotion* motion_ = nullptr;
   std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
   std::vector<std::size_t> terms_;
-  std::vector<std::vector<Entry>> rows_;  // of the deflections over the unknowns
-  std::vector<bool> in_unknowns_;         // nothing else moves them
+  std::vector<std::vector<Entry>> rows_;  // rows of the deflections over the unknowns
+  std::vector<bool> in_unknowns_;         // whether unknowns alone move the deflection
   std::vector<Gap> gaps_;
   std::vector<double> masses_;
   std::vector<ContactInterval> intervals_;
@@ -132,7 +132,7 @@ class ContactEvents final : public Observer {
   const System& system_;
   std::function<void(const ContactEvent&)> sink_;
   const StepMotion* motion_ = nullptr;
-  std::vector<std::optional<int>> sides_;  // of each law in the last step that knew
+  std::vector<std::optional<int>> sides_;  // side of each law in the last step that knew it
   std::vector<double> states_;             // of each friction contact in the last step
   std::vector<ContactEvent> all_;
 };

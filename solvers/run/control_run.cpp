@@ -12,7 +12,7 @@
 namespace drev {
 
 namespace {
-constexpr double kSamePoint = 1e-9;  // of a communication step
+constexpr double kSamePoint = 1e-9;  // distance of equal times over a communication step
 }
 
 ControlRun::ControlRun(const System& system, double t_start, double t_end)

@@ -214,7 +214,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
   const double rate = kappa_v / kappa_z;
 
   NewtonResult result;
-  double change = 0.0;  // of z since the loads were evaluated
+  double change = 0.0;  // change of z since the loads were evaluated
   for (int pass = 1;; ++pass) {
     ++load_passes_;
     clock_.enter(RunSection::linear);
