@@ -177,7 +177,7 @@ class AccurateRun {
                                   [&](const ContactFigures& c) { return keeps(c); });
   }
 
-  /// Rounding, which shakes stiff elements in each run anew, is a part of its error that no finer run takes away.
+  /// Rounding, which shakes stiff elements in each run again, is a part of its error that no finer run takes away.
   void add_peak_torque(const Watched& a, const Watched& b) {
     const Channel& channel = b.torque.channel();
     add("peak torque", channel.unit(), a.torque.value(), b.torque.value(), b.torque.value(), b.torque.time());

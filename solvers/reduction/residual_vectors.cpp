@@ -192,7 +192,7 @@ ResidualVectors residual_vectors(const System& system, const KeptModes& modes, d
     taken = beside(taken, orthonormal_in_energy(most, kDependent));
   }
   if (taken.cols() == 0) return found;
-  // Among them: K-orthonormal already, but for rounding, so M x = mu K x.
+  // Among them: K-orthonormal already, except for rounding, so M x = mu K x.
   found.columns = taken * symmetric_eigen(taken.transpose() * residual.stiffness(taken),
                                           taken.transpose() * residual.mass(taken))
                               .vectors;
