@@ -77,7 +77,7 @@ void compare_load(const Load& load, std::span<const LoadInput> at, std::vector<C
       if (table) StretchComparison(load, "table", found).at(in, table->stretch(angle, direction), next_break);
       const std::optional<LoadStretch> s = load.stretch(in.t, angle, direction);
       if (s.has_value() != stretches)
-        found.push_back({"stretch", "is told at t = 0, angle = 0 or" + where(in) + ", but not at both"});
+        found.push_back({"stretch", "is stated at t = 0, angle = 0 or" + where(in) + ", but not at both"});
       else if (s)
         StretchComparison(load, "stretch", found).at(in, *s, next_break);
     }

@@ -176,7 +176,7 @@ void ViscoelasticStiffness::check(ParameterCheck& check) const {
   check.within("loss_factor", p.loss_factor, 0.0, 2.0, "");
   if (!p.frequencies.empty() && (!std::isnan(p.stiffness) || p.loss_factor != 0.0))
     check.fail("stiffness", to_text(p.stiffness), "N m/rad",
-               "must not be there beside a table over the frequency");
+               "must not be given together with a table over the frequency");
   if (p.branches < 0 || p.branches > kMostBranches)
     check.fail("branches", std::to_string(p.branches), "", "must be 1 to 12, or 0 for two a decade");
   check.positive("permitted_error", p.permitted_error, "");

@@ -172,7 +172,7 @@ void GasPressure::check(ParameterCheck& check) const {
     check.fail("pressure", "speed and load", "",
                "curves are given over the speed or over the load, not both");
   if (!p.peak_speed.empty() && !p.speed.empty())
-    check.fail("peak_pressure", "given", "", "must not be there beside curves over the speed");
+    check.fail("peak_pressure", "given", "", "must not be given together with curves over the speed");
   check.all_finite("pressure.pressure", p.pressure, "Pa");
   for (const double pressure : p.pressure)
     if (pressure < -kAtmosphere) {
