@@ -8,7 +8,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <array>
@@ -119,7 +119,7 @@ TEST_CASE("Ties: a motion that starts at rest on the edge of a gap is the same b
   m.set_initial("m", 0.5, 0.0);
   const System system = m.build();
   State stepped = State::initial(system), exact = State::initial(system);
-  run_method(system, {.step = 1e-4}, {.t_end = t_end}, stepped);
+  simulate(system, {.step = 1e-4, .t_end = t_end}, stepped);
   propagate(system, {.tolerance = 1e-13, .t_end = t_end}, exact);
   CHECK(exact.z[0] == Approx(expected).epsilon(1e-12));
   CHECK(stepped.z[0] == Approx(expected).epsilon(1e-6));
