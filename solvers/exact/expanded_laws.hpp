@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "solvers/exact/law_work.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

@@ -28,7 +28,7 @@
 #include <optional>
 
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/exact/legendre_projection.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 namespace drev {
 

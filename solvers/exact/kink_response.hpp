@@ -13,7 +13,7 @@
 
 #include "solvers/exact/expanded_laws.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/exact/smooth_loads.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 

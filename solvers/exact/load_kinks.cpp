@@ -4,7 +4,7 @@
 
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 

@@ -11,10 +11,10 @@
 
 #include "solvers/exact/expanded_loads.hpp"
 #include "solvers/exact/kink_moments.hpp"
-#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
 #include "solvers/exact/smooth_loads.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

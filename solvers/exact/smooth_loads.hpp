@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/tangent_load.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 namespace drev {
 

@@ -1,4 +1,4 @@
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/extreme_eigenvalue.hpp"
 #include "solvers/linear/vector_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 

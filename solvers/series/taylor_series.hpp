@@ -20,9 +20,9 @@
 #include <algorithm>
 #include <array>
 
-#include "solvers/exact/legendre_projection.hpp"
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 

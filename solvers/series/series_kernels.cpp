@@ -1,4 +1,4 @@
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 #include <drev/core/ids.hpp>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "solvers/exact/lane_pair.hpp"
+#include "solvers/series/lane_pair.hpp"
 
 namespace drev {
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
