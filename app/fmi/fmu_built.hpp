@@ -2,12 +2,12 @@
 /// The model of an FmuInstance, made ready: its system with the inputs, and its outputs.
 #include <drev/core/assembler.hpp>
 #include <drev/core/control/sampled_controller.hpp>
-#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
 #include <cmath>
 
 #include "app/fmi/fmu_instance.hpp"
+#include "core/control/signal.hpp"
 
 namespace drev::app {
 

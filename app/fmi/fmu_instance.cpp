@@ -3,7 +3,6 @@
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/assembler.hpp>
 #include <drev/core/control/sampled_controller.hpp>
-#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/start.hpp>
 
@@ -12,6 +11,7 @@
 #include <filesystem>
 
 #include "app/fmi/fmu_built.hpp"
+#include "core/control/signal.hpp"
 
 namespace drev::app {
 

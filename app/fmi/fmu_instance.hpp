@@ -73,7 +73,7 @@ class FmuInstance {
   FmuStepped step(double t, double h, const FmuStepWishes& wishes = {});
   /// sum_j (dy_i/du_j) seed_j of outputs y by inputs u, where the motion has come to, with the inputs as they are set: what
   /// follows an input at once (accelerations, reactions, forces of dampers beside a speed). By central differences,
-  /// which are exact but for rounding where the law is linear.
+  /// which are exact except for rounding where the law is linear.
   std::vector<double> directional_derivative(const std::vector<unsigned>& unknowns,
                                              const std::vector<unsigned>& knowns,
                                              const std::vector<double>& seed);

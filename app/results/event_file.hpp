@@ -9,7 +9,7 @@
 /// flank: front or back; contact: made or lost; of dry friction, without a flank: stuck, sliding forward, sliding backward
 /// or open, of a freewheel locked or released, of a lossy gear stuck, turning forward or turning backward. rate: of the deflection, positive towards the front flank, m/s along the
 /// line of action or rad/s; of friction the slip speed. 17 significant digits, element names as csv_cell() has them.
-#include <drev/solvers/run/contact_events.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
 
 #include <string>
 #include <vector>

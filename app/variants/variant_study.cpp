@@ -1,6 +1,6 @@
 #include "app/variants/variant_study.hpp"
 
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
 #include <drev/core/units.hpp>

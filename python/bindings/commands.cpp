@@ -1,7 +1,7 @@
 #include "app/commands/commands.hpp"
 
 #include <drev/app/model_file/element_table.hpp>
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/version.hpp>
 #include <drev/models/model_case.hpp>
 

@@ -1,5 +1,5 @@
 #include <drev/core/error.hpp>
-#include <drev/solvers/periodic/speed_sweep.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
 
 #include <algorithm>
 #include <map>

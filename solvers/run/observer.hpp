@@ -45,7 +45,7 @@ class Observer {
   /// observer does, points inside a step of exact propagation have none: a is not a number there.
   virtual bool needs_acceleration() const { return true; }
   /// Asked before exact propagation shows a step: whether it wants points inside, close enough for cubics between them;
-  /// where no observer does, the step is shown whole but for next_stop(). beyond_cubic: of each unknown, how far it
+  /// where no observer does, the step is shown whole except for next_stop(). beyond_cubic: of each unknown, how far it
   /// lies at most from the cubic through its values and rates at both ends [rad or m]; behind them the same of each rate.
   virtual bool looks_inside(const EvaluatedState& /*from*/, const EvaluatedState& /*to*/,
                             const double* /*beyond_cubic*/) {

@@ -10,8 +10,8 @@
 namespace drev {
 
 namespace {
-constexpr double kNear = 0.05;   // of the range so far: steps that may hold a new peak inside
-constexpr double kShort = 1e-6;  // of the longest step: nothing moves in shorter ones
+constexpr double kNear = 0.05;   // distance from the range so far, over it, of steps that may hold a new peak
+constexpr double kShort = 1e-6;  // length over the longest step: nothing moves in shorter ones
 }  // namespace
 
 std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,

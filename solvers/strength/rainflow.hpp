@@ -29,7 +29,7 @@ class RainflowCounter {
   explicit RainflowCounter(Take take) : take_(std::move(take)) {}
   /// The next value of the signal, a turning point or not; finite.
   void add(double value);
-  /// Counts what is left as half cycles, and begins anew.
+  /// Counts what is left as half cycles, and begins again.
   void finish();
 
  private:

@@ -30,7 +30,7 @@ class UnpackedFmu {
   mutable void* library_ = nullptr;
 };
 
-/// The FMU of a file: one for all models of the process, unpacked anew where the file has changed. Its folder is
+/// The FMU of a file: one for all models of the process, unpacked again where the file has changed. Its folder is
 /// removed when the process ends.
 std::shared_ptr<const UnpackedFmu> unpacked_fmu(const std::string& file);
 

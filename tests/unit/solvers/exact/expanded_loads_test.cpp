@@ -4,8 +4,8 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 #include <random>
@@ -80,9 +80,8 @@ TEST_CASE("Smooth loads as series, kinks and a mesh with damping together: the m
     const std::vector<std::string> channels{"cam.angle_rad", "throw_1.speed_rad_per_s"};
     Recorder shown(system, channels, kEnd / 40.0), reference(system, channels, kEnd / 40.0);
     const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = kEnd}, exact, {&shown});
-    const RunSummary known =
-        simulate(system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-12, .t_end = kEnd}, other,
-                 {&reference});
+    const RunSummary known = run_method(system, {.name = "dormand_prince", .tolerance = 1e-12},
+                                        {.t_end = kEnd}, other, {&reference});
     REQUIRE(run.ok());
     REQUIRE(known.ok());
     INFO("seed " << seed << ": " << run.steps << " steps, " << run.contact_changes << " contact changes");
