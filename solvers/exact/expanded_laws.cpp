@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
-#include "solvers/exact/lane_pair.hpp"
 #include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/load_series.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 

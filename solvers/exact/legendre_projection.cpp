@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/exact/lane_pair.hpp"
 #include "solvers/exact/series_kernels.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 
