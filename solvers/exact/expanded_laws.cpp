@@ -7,7 +7,7 @@
 #include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/series/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 #include "solvers/series/legendre_projection.hpp"
 
 namespace drev {

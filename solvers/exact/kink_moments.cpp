@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "solvers/series/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 

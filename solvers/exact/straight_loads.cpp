@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/series/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 

@@ -51,8 +51,14 @@ class LinearResponse {
   void find_carried_loads(double speed);
   /// sqrt(sum |X_h|^2) of term t in the response under the loads that are set.
   double amplitude_of(std::size_t t, double speed);
-  /// Deviations under the mean loads at the speed; unbalanced and load_sum are those of a Point.
-  std::vector<double> mean_motion(double speed, Vector& unbalanced, Vector& load_sum);
+  std::vector<double> load_means(double speed);
+  /// Deviations under mean loads at the speed, >= 0; unbalanced and load_sum are those of a Point.
+  std::vector<double> mean_motion(double speed, const std::vector<double>& means, Vector& unbalanced,
+                                  Vector& load_sum);
+  /// The sections' means from deviations.
+  void find_means(const std::vector<double>& z, Point& point) const;
+  /// What each load of mean 1 leads to alone, and the drag of a speed of 1 rad/s.
+  void find_mean_of_parts(Eigen::Index loads);
   void find_active(double speed, int only);
   /// The same at the frequencies of all lanes, to damping_lanes_ and stiffness_lanes_.
   void spread_frequency_terms(const Lanes& w);
@@ -73,11 +79,14 @@ class LinearResponse {
   double direction_ = 1.0;  // sign of the reference shaft's speed
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
   Vector damping_before_, stiffness_before_;      // of the last speed
+  bool plain_ = false;                            // nothing was added to them there
   Vector damping_at_omega_, stiffness_at_omega_;  // with complex stiffnesses; unused without
   /// Places of the pattern that frequency terms add to, which term each, and how often.
   std::vector<int> slots_, slot_terms_;
   std::vector<double> slot_times_;
-  std::vector<bool> term_held_;  // of each frequency term: its element's internal nodes are
+  std::vector<bool> term_held_;      // of each frequency term: its element's internal nodes are
+  std::vector<bool> term_constant_;  // what is beyond them is the same at all frequencies
+  bool all_constant_ = false;        // and under all loads, of each term
   std::optional<ComplexElimination> elimination_;
   std::optional<LaneElimination> lanes_;
   bool follows_mean_ = false, follows_amplitude_ = false;  // some complex stiffness
@@ -91,6 +100,9 @@ class LinearResponse {
   LaneArray beyond_re_, beyond_im_, beyond_over_;  // of each frequency term; Im over |w|
   LaneArray re_, im_, p_re_, p_im_;                // the solution, and its right side
   std::optional<MeanEquilibrium> mean_;
+  /// A column a load, and one of the speed: sections' means, their twists', unbalanced of a Point; its load_sum.
+  Eigen::MatrixXd mean_of_parts_, sum_of_parts_;
+  Vector given_means_, mean_figures_;
   std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
   std::vector<std::complex<double>> z_;
 };

@@ -367,26 +367,32 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
   const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::MatrixXd values;
   const auto curves_with = [&](int samples) {
     std::vector<Content> curves;
     std::vector<Complex> lines;
     std::vector<double> column(static_cast<std::size_t>(samples));
-    Eigen::MatrixXd values(samples, count);
+    const Eigen::MatrixXd half = std::move(values);  // every other one of them, but the first time
+    values.resize(samples, count);
+    for (Eigen::Index k = 0; k < count; ++k)
+      for (int i = 0; i < samples; ++i)
+        values(i, k) = half.size() > 0 && i % 2 == 0
+                           ? half(i / 2, k)
+                           : load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
+    const Eigen::RowVectorXd means = values.colwise().mean();
+    const Eigen::MatrixXd vary = values.rowwise() - means;
     for (Eigen::Index k = 0; k < count; ++k) {
       Content content;
-      for (int i = 0; i < samples; ++i)
-        values(i, k) = load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
-      content.mean = values.col(k).mean();
-      values.col(k).array() -= content.mean;
-      content.rms = std::sqrt(values.col(k).squaredNorm() / samples);
-      std::copy_n(values.col(k).data(), samples, column.begin());
+      content.mean = means[k];
+      content.rms = std::sqrt(vary.col(k).squaredNorm() / samples);
+      std::copy_n(vary.col(k).data(), samples, column.begin());
       fft.fwd(lines, column);
       lines.resize(static_cast<std::size_t>(samples) / 2);
       for (Complex& line : lines) line *= 2.0 / samples;
       pick(lines, spacing, ratio > 0.0, content);
       curves.push_back(std::move(content));
     }
-    source.products = values.transpose() * values / samples;
+    source.products = vary.transpose() * vary / samples;
     return curves;
   };
   int samples = fewest_samples(spacing);
@@ -408,15 +414,20 @@ void OrderContent::sum_curves(const LoadTerm& term, const Source& source, double
   const Eigen::Map<const Vector> f(factors.data(), static_cast<Eigen::Index>(factors.size()));
   sum.node = term.node;
   sum.mean = 0.0;
-  sum.amplitudes.assign(orders_.size(), 0.0);
+  sum.amplitudes.resize(orders_.size());
   sum.rms = std::sqrt(std::max(0.0, f.dot(source.products * f)));
-  double taken = 0.0;
+  const auto orders = static_cast<Eigen::Index>(orders_.size());
+  Eigen::Map<Eigen::VectorXcd> amplitudes(sum.amplitudes.data(), orders);
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const Content& curve = source.curves[k];
+    const Eigen::Map<const Eigen::VectorXcd> part(curve.amplitudes.data(), orders);
     sum.mean += factors[k] * curve.mean;
-    for (std::size_t o = 0; o < orders_.size(); ++o) sum.amplitudes[o] += factors[k] * curve.amplitudes[o];
+    if (k == 0)
+      amplitudes = factors[k] * part;
+    else
+      amplitudes += factors[k] * part;
   }
-  for (const Complex& c : sum.amplitudes) taken += 0.5 * std::norm(c);
+  const double taken = 0.5 * amplitudes.squaredNorm();
   sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - taken));
   if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
 }

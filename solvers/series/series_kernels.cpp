@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "solvers/series/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "solvers/series/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 #include "solvers/series/series_kernels.hpp"
 
 namespace drev {

@@ -229,8 +229,7 @@ class Chart {
           valueFormatter: (y) => sig(y, 5),
           axisLabelFormatter: (y) => tidy(y),
           axisLabelWidth: o.tall ? 58 : 52,
-          pixelsPerLabel: o.tall ? 40 : 28,
-          ...(o.log ? { ticker: decades } : {}),
+          ticker: o.log ? decades : (low, high, pixels) => heights(low, high, pixels / (o.tall ? 40 : 28)),
         },
       },
       zoomCallback: (from, to) => o.group.show(from, to),
@@ -279,6 +278,13 @@ function decades(low, high) {
     const v = 10 ** (first + i);
     return { v, label: (last - first - i) % every ? "" : tidy(v) };
   });
+}
+
+/// Ticks of a y axis, about so many, but three at the least.
+function heights(low, high, count) {
+  let ticks = [];
+  for (let n = Math.max(count, 3); ticks.length < 3 && n < 100; n *= 1.3) ticks = niceTicks(low, high, n);
+  return ticks;
 }
 
 /// Text beside a place in a chart, unless it would cover another.

@@ -65,6 +65,37 @@ struct LanePair {
   to.low = x.low < 0.0 ? a.low : b.low;
   to.high = x.high < 0.0 ? a.high : b.high;
 }
+/// least = min(least, x).
+[[gnu::always_inline]] inline void sink(Lanes& least, const Lanes& x) { least = x < least ? x : least; }
+[[gnu::always_inline]] inline void sink(LanePair& least, const LanePair& x) {
+  least.low = x.low < least.low ? x.low : least.low;
+  least.high = x.high < least.high ? x.high : least.high;
+}
+/// to = otherwise in the lanes where a >= b does not hold, not a number included. A choice between doubles: GCC 12
+/// takes masks of lanes to pieces.
+[[gnu::always_inline]] inline void keep_where_not_below(const Lanes& a, const Lanes& b,
+                                                        const Lanes& otherwise, Lanes& to) {
+  to = a >= b ? to : otherwise;
+}
+[[gnu::always_inline]] inline void keep_where_not_below(const LanePair& a, const LanePair& b,
+                                                        const LanePair& otherwise, LanePair& to) {
+  to.low = a.low >= b.low ? to.low : otherwise.low;
+  to.high = a.high >= b.high ? to.high : otherwise.high;
+}
+/// A row of lanes, or one number for all of them, as lanes of either type; and back. By reference: a vector passed by
+/// value has another calling convention on each level.
+[[gnu::always_inline]] inline void take(const LaneRow& from, Lanes& to) { to = from.v; }
+[[gnu::always_inline]] inline void take(const LaneRow& from, LanePair& to) {
+  load(reinterpret_cast<const double*>(&from.v), to);
+}
+template <class L>
+[[gnu::always_inline]] inline void take(double from, L& to) {
+  to = L{} + from;
+}
+[[gnu::always_inline]] inline void put(const Lanes& from, LaneRow& to) { to.v = from; }
+[[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
+  store(from, reinterpret_cast<double*>(&to.v));
+}
 /// to = x with its halves, quarters or neighbours exchanged: lane l of x in lane l ^ distance.
 [[gnu::always_inline]] inline void exchange(const Lanes& x, int distance, Lanes& to) {
   to = distance == 4   ? __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3)
