@@ -1,8 +1,9 @@
 #include "core/dense/eigenvalues.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <complex>
 #include <limits>
+#include <vector>
 
 #include "core/dense/factorization.hpp"
 #include "core/dense/lapack.hpp"
@@ -49,8 +50,19 @@ GeneralEigen solve_general(Eigen::MatrixXd a, bool with_vectors) {
 }  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
-  return {solver.eigenvalues(), solver.eigenvectors(), solver.info() == Eigen::Success};
+  eigen_assert(a.rows() == a.cols());
+  const auto n = static_cast<int>(a.rows());
+  SymmetricEigen found{Vector(n), a, false};
+  if (!a.allFinite()) return found;
+  const int ld = std::max(n, 1), liwork = 5 * n + 3;  // as much as vectors want
+  std::vector<int> iwork(static_cast<std::size_t>(liwork));
+  int info = 0;
+  with_workspace([&](double* work, const int* lwork) {
+    dsyevd_("V", "L", &n, found.vectors.data(), &ld, found.values.data(), work, lwork, iwork.data(), &liwork,
+            &info, 1, 1);
+  });
+  found.converged = info == 0;
+  return found;
 }
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

@@ -1,6 +1,5 @@
 #pragma once
-/// Eigenvalues of small dense matrices: symmetric ones by Eigen's solver, compiled once, since its templates are large;
-/// general ones by LAPACK.
+/// Eigenvalues of small dense matrices, by LAPACK.
 #include <drev/core/system.hpp>
 
 #include <Eigen/Core>

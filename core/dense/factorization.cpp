@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 #include <vector>
 
 #include "core/dense/lapack.hpp"
@@ -54,7 +54,16 @@ Vector lu_solve(const Eigen::MatrixXd& a, const Vector& b) { return LuFactor(a).
 Eigen::MatrixXd lu_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return LuFactor(a).solve(b); }
 
 Eigen::VectorXcd lu_solve(const Eigen::MatrixXcd& a, const Eigen::VectorXcd& b) {
-  return Eigen::PartialPivLU<Eigen::MatrixXcd>(a).solve(b);
+  eigen_assert(a.rows() == a.cols() && a.rows() == b.size());
+  const auto n = static_cast<int>(a.rows());
+  const int one = 1, ld = std::max(n, 1);
+  Eigen::MatrixXcd factored = a;
+  Eigen::VectorXcd x = b;
+  std::vector<int> pivots(static_cast<std::size_t>(n));
+  int info = 0;
+  zgesv_(&n, &one, factored.data(), &ld, pivots.data(), x.data(), &ld, &info);
+  if (info != 0) x.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return x;
 }
 
 Eigen::MatrixXd ldlt_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -116,6 +125,37 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& a) {
 
 Eigen::MatrixXd pivoted_basis(const Eigen::MatrixXd& a) { return pivoted_qr(a).q; }
 
-Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) { return a.exp(); }
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) {
+  const double norm = a.size() > 0 ? a.cwiseAbs().colwise().sum().maxCoeff() : 0.0;
+  if (!std::isfinite(norm)) return a * std::numeric_limits<double>::quiet_NaN();
+  // Degree m of Pade's approximant, and the largest norm at which it is exact to rounding (Higham's table 2.3).
+  constexpr std::pair<int, double> kDegrees[] = {{3, 1.495585217958292e-2},
+                                                 {5, 2.539398330063230e-1},
+                                                 {7, 9.504178996162932e-1},
+                                                 {9, 2.097847961257068}};
+  constexpr double kMost = 5.371920351148152;
+  int degree = 13;
+  for (const auto& [m, most] : kDegrees)
+    if (norm <= most) {
+      degree = m;
+      break;
+    }
+  const int halvings = norm > kMost ? static_cast<int>(std::ceil(std::log2(norm / kMost))) : 0;
+  const Eigen::MatrixXd scaled = a * std::ldexp(1.0, -halvings), square = scaled * scaled;
+  // p(A) = sum c_j A^j in even and odd powers, e^A = p(A)/p(-A).
+  Eigen::MatrixXd power = Eigen::MatrixXd::Identity(a.rows(), a.cols());
+  Eigen::MatrixXd even = power, odd = 0.5 * power;
+  double c = 0.5;
+  for (int j = 2; j <= degree; j += 2) {
+    power = power * square;
+    const auto next = [&](int k) { return c *= double(degree - k + 1) / (k * (2 * degree - k + 1)); };
+    even += next(j) * power;
+    if (j < degree) odd += next(j + 1) * power;
+  }
+  odd = scaled * odd;
+  Eigen::MatrixXd result = lu_solve(even - odd, Eigen::MatrixXd(even + odd));
+  for (int i = 0; i < halvings; ++i) result = result * result;
+  return result;
+}
 
 }  // namespace drev

@@ -1,6 +1,7 @@
 #pragma once
 /// The routines of LAPACK (Anderson et al., LAPACK Users' Guide, 1999) that drev calls, as Fortran compilers name them: the
 /// lengths of character arguments stand last. Matrices are stored by columns.
+#include <complex>
 #include <cstddef>
 #include <vector>
 
@@ -23,6 +24,16 @@ void dgeqp3_(const int* m, const int* n, double* a, const int* lda, int* jpvt, d
 /// The columns of Q from its reflections.
 void dorgqr_(const int* m, const int* n, const int* k, double* a, const int* lda, const double* tau,
              double* work, const int* lwork, int* info);
+
+/// Eigenvalues in ascending order and orthonormal eigenvectors, in the place of A, of a symmetric matrix, by divide and
+/// conquer.
+void dsyevd_(const char* vectors, const char* triangle, const int* n, double* a, const int* lda,
+             double* values, double* work, const int* lwork, int* iwork, const int* liwork, int* info,
+             std::size_t vectors_length, std::size_t triangle_length);
+
+/// A x = b by elimination with row pivoting; info > 0 where A is singular.
+void zgesv_(const int* n, const int* nrhs, std::complex<double>* a, const int* lda, int* pivots,
+            std::complex<double>* b, const int* ldb, int* info);
 }
 
 namespace drev {

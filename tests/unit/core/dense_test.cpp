@@ -1,5 +1,6 @@
 // Small full matrices beside closed forms: what Eigen's and LAPACK's routines give through core/dense.
 // Covers factorization.hpp, eigenvalues.hpp and lapack.hpp of core/dense.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,6 +52,8 @@ TEST_CASE("Complex equations by elimination with pivoting") {
   const Eigen::VectorXcd x = lu_solve(a, Eigen::VectorXcd{{2.0, 0.0}});
   CHECK(std::abs(x[0] - std::complex<double>(0.0, 2.0)) < 1e-15);
   CHECK(std::abs(x[1] - std::complex<double>(0.0, -2.0)) < 1e-15);
+  a.row(1).setZero();
+  CHECK_FALSE(lu_solve(a, x).allFinite());
 }
 
 TEST_CASE("Least squares: a line through points, and the shortest of many solutions") {
@@ -105,14 +108,19 @@ TEST_CASE("Eigenvalues in closed form: a spiral, a pair of matrices, and none of
   CHECK(pair.values[1] == Approx(1.5).epsilon(1e-14));
   CHECK((pair.vectors.transpose() * m * pair.vectors - Eigen::MatrixXd::Identity(2, 2)).norm() < 1e-14);
   CHECK_FALSE(symmetric_eigen(k, -m).converged);
+  k(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(symmetric_eigen(k).converged);
 }
 
-TEST_CASE("The exponential of a turn by one radian, and of a nilpotent matrix") {
-  Eigen::MatrixXd turn(2, 2), nilpotent(2, 2);
-  turn << 0, -1, 1, 0;
-  nilpotent << 0, 7, 0, 0;
-  const Eigen::MatrixXd turned = exponential(turn);
-  CHECK(turned(0, 0) == Approx(std::cos(1.0)).epsilon(1e-14));
-  CHECK(turned(1, 0) == Approx(std::sin(1.0)).epsilon(1e-14));
-  CHECK((exponential(nilpotent) - Eigen::MatrixXd{{1.0, 7.0}, {0.0, 1.0}}).norm() < 1e-14);
+TEST_CASE("The exponential of turns, of every degree of the approximant, and of a nilpotent matrix") {
+  for (const double angle : {0.01, 0.2, 0.9, 2.0, 5.0, 40.0}) {
+    const Eigen::MatrixXd turned = exponential(Eigen::MatrixXd{{0.0, -angle}, {angle, 0.0}});
+    CAPTURE(angle);
+    CHECK(std::abs(turned(0, 0) - std::cos(angle)) < 4e-15 * std::max(1.0, angle));
+    CHECK(std::abs(turned(1, 0) - std::sin(angle)) < 4e-15 * std::max(1.0, angle));
+  }
+  CHECK((exponential(Eigen::MatrixXd{{0.0, 7.0}, {0.0, 0.0}}) - Eigen::MatrixXd{{1.0, 7.0}, {0.0, 1.0}})
+            .norm() < 1e-14);
+  CHECK(exponential(Eigen::MatrixXd::Constant(2, 2, INFINITY)).array().isNaN().all());
+  CHECK(exponential(Eigen::MatrixXd(0, 0)).size() == 0);
 }
