@@ -19,15 +19,21 @@ namespace drev {
 
 namespace {
 
-constexpr double kWatchedAngle = 0.3;  // omega h between points that observers see
-constexpr double kGrowth = 1.5;        // of the step after one that had to be shortened
+constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
+// Factor by which a step may be longer than the one before, which had to be shortened.
+constexpr double kGrowth = 1.5;
 constexpr int kMaxCuts = 20;
-constexpr double kShortest = 1e-6;    // of the largest step
-constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
-constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the step
-constexpr double kRetreat = 1.0 / 16.0;                         // of the step where the series overflowed
-constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;      // of the time; of the run's times
-constexpr double kEnergyTolerance = 1e-6, kNoProgress = 1e-12;  // the latter relative to the largest step
+// A shorter step, relative to the largest one, is not shortened for what projection leaves.
+constexpr double kShortest = 1e-6;
+constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
+// Distances from a step's ends, relative to the step's length.
+constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
+// Length of the next attempt relative to a step whose terms overflowed.
+constexpr double kRetreat = 1.0 / 16.0;
+// Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
+constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
+// Relative to the energy scale; least advance of a step, relative to the largest step.
+constexpr double kEnergyTolerance = 1e-6, kNoProgress = 1e-12;
 
 class ExactRun final : public StepMotion {
  public:
@@ -87,7 +93,7 @@ class ExactRun final : public StepMotion {
     return summary_;
   }
 
-  /// With its acceleration, which steps that nobody watches do without.
+  /// The last state with its acceleration, which steps that nobody watches do not compute.
   State take_state() {
     if (!whole_ && now_.state.z.allFinite()) evaluate(assembler_, now_, now_.state.t);
     return std::move(now_.state);
@@ -120,7 +126,7 @@ class ExactRun final : public StepMotion {
     if (running() && now_.state.t < options_.t_end) restart();
   }
 
-  /// Behind a breakpoint or communication point: forces and known motions have their new values.
+  /// Goes on behind a breakpoint or communication point, where forces and known motions have their new values.
   void restart() {
     next_ = now_;
     controls_.sample(assembler_, now_.state);
@@ -131,7 +137,7 @@ class ExactRun final : public StepMotion {
     for (Observer* o : observers_) o->restart(assembler_, now_);
   }
 
-  /// What sticks and what slides, by the forces and speeds of now_.
+  /// Finds which contacts stick and which slide, by the forces and speeds of now_.
   void locate_friction() {
     if (friction_.empty()) return;
     friction_.locate(assembler_, now_);
@@ -144,7 +150,7 @@ class ExactRun final : public StepMotion {
     double s = 1.0;
     std::optional<LawSeries::Change> change = {};
     bool at_knot = false;      // of a load
-    bool at_law_knot = false;  // of a law's phase, where its stiffness may jump
+    bool at_law_knot = false;  // the step ends at a knot of a law's phase, where its stiffness may jump
     std::optional<FrictionSeries::Change> friction = {};
     bool at_change() const { return change || friction; }
   };
@@ -295,7 +301,7 @@ class ExactRun final : public StepMotion {
     bool inside = false;
     const double* beyond_cubic = expansion_.beyond_cubic(end.s);
     for (Observer* o : observers_) inside |= o->looks_inside(now_, next_, beyond_cubic);
-    // What projection holds swings faster.
+    // Projected forces swing faster.
     const double parts = inside ? std::max(std::ceil(fastest_ * length / kWatchedAngle),
                                            known_.projected() ? kProjectionDegree : 0.0)
                                 : 1.0;

@@ -11,8 +11,9 @@ namespace {
 
 constexpr int kMomentNodes = 10;
 constexpr int kMaxNewton = 30;
-constexpr double kSettled = 1e-8;       // last Newton step in s
-constexpr double kSweepSettled = 1e-5;  // the same where a force is continuous, so that its square counts
+constexpr double kSettled = 1e-8;  // Newton's rule ends below this last step in s
+// The same where the force is continuous, so that the square of the place's error counts.
+constexpr double kSweepSettled = 1e-5;
 
 /// Ones in so many lanes, zeros behind them.
 constexpr auto kFirstLanes = [] {

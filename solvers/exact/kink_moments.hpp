@@ -36,21 +36,21 @@ class KinkMoments {
   static constexpr std::array<int, 3> kSweepRules{4, 6, 8};
   /// Zeros to where add_to_sweep() added.
   void clear_rows(int degree, int stride, double* columns) const;
-  /// Of theta's terms, those that count from here on.
+  /// Only so many of theta's terms count from here on.
   void use_terms(std::size_t terms) { terms_ = std::min(terms_, terms); }
-  /// After either: the s at which theta passes the knot of kink i.
+  /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
   int row(int i) const { return row_[static_cast<std::size_t>(i)]; }
   double knot(int i) const { return knot_[static_cast<std::size_t>(i)]; }
   double end(int i) const { return end_[static_cast<std::size_t>(i)]; }
-  /// Of the slope at the knot.
+  /// Jump of the slope at the knot.
   double jump(int i) const { return force_[static_cast<std::size_t>(i) / kLanes * kForce + lane_of(i)]; }
   /// f, its slope, and its integral from the knot on, at an angle of kink i behind its knot.
   struct Force {
     double value = 0.0, slope = 0.0, integral = 0.0;
   };
   Force force(int i, double behind) const;
-  /// After add_to_sweep(): W_j of kink i alone.
+  /// W_j of kink i alone, as add_to_sweep() found it.
   double moment(int i, int j) const {
     const auto at = static_cast<std::size_t>(i);
     return sweep_moments_[(at / kLanes * idx_of(degree_ + 1) + idx_of(j)) * kLanes + at % kLanes];
@@ -64,10 +64,10 @@ class KinkMoments {
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
   static constexpr std::size_t kForce = kMostPowers * kLanes;
   int count_ = 0, degree_ = 0;
-  std::size_t terms_ = 0, powers_ = 1;  // of the angles; of the forces
+  std::size_t terms_ = 0, powers_ = 1;  // terms of the angles; powers of the forces
   std::vector<int> row_;
   std::vector<double> knot_, end_, place_;
-  std::vector<double> theta_, force_;  // by group of lanes, degree, lane
+  std::vector<double> theta_, force_;  // terms by group of lanes, then degree, then lane
   std::vector<double> moments_, sweep_moments_;
 };
 

@@ -10,14 +10,16 @@ namespace drev {
 namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
-constexpr int kMostKinks = 1000;      // in a step; what they do to each other is bounded pair by pair
-constexpr double kLittle = 0.1;       // of what is allowed, by pairs that are not looked at
-constexpr double kAllPairs = 0.4;     // the same by all pairs, where none is looked at
-constexpr double kOfShare = 0.1;      // what a sweep of finite degree leaves out
-constexpr double kRuleMargin = 10.0;  // of what Gauss's rule leaves: angles bend, too
-constexpr double kOfRule = 0.1;       // of what a sweep may leave out: by terms of the angles
-constexpr double kPlace = 1e-4;       // of the step: what the place of a knot may be off by at most
-constexpr double kShortened = 0.9;    // of the part behind a kink over which slopes change little enough
+constexpr int kMostKinks = 1000;  // kinks in a step; what they do to each other is bounded pair by pair
+// Part of what is allowed that pairs of kinks may add up to without being looked at.
+constexpr double kLittle = 0.1;
+constexpr double kAllPairs = 0.4;     // the same part where no pair is looked at
+constexpr double kOfShare = 0.1;      // part of a step's share that a sweep of finite degree may leave out
+constexpr double kRuleMargin = 10.0;  // margin on what Gauss's rule leaves out, since angles bend, too
+constexpr double kOfRule = 0.1;       // part of what a sweep may leave out that cut series of angles may take
+constexpr double kPlace = 1e-4;       // largest error of a knot's place, relative to the step
+// Factor on the part of the step behind a kink over which slopes change little enough.
+constexpr double kShortened = 0.9;
 
 }  // namespace
 
@@ -80,7 +82,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   return found_ = true;
 }
 
-/// Of kinks that respond by no more than `response` of the motion, what may be `allowed`: Gauss's rule, whose n nodes leave
+/// The rule for kinks that respond by no more than `response` of the motion, with an error of `allowed`: n nodes of Gauss leave
 /// (n!)^4/((2 n + 1) (2 n)!^3) growth^(2 n) of an integral with exp(rate h s); so many terms of the angles that the force behind
 /// the knot is right; and so many that its place is, of whose error the square counts.
 KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double allowed, double scale,
@@ -106,7 +108,7 @@ KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double
   return rule;
 }
 
-/// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
+/// Finds where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
 bool KinkResponse::find_limit(double allowed, double scale) {
   const double most = allowed / scale;
   const bool slopes = loads_.expanded().active() || laws_.active();

@@ -28,7 +28,7 @@ class KinkResponse {
   /// Finds y up to s = end, where the series stands at z_end; the whole step first. share: of the motion, what may be
   /// left out. False: some load's kinks are none of this kind.
   bool find(double end, const double* z_end, double share);
-  /// Back to the loads' slopes at the step's start.
+  /// Returns to the loads' slopes at the step's start.
   void undo();
   bool found() const { return found_; }
   /// s to which y was found.
@@ -47,7 +47,7 @@ class KinkResponse {
 
  private:
   void return_slopes();
-  /// How moments are taken.
+  /// Nodes and terms by which moments are taken.
   struct Rule {
     int nodes = KinkMoments::kSweepRules.back();
     std::size_t terms = TaylorSeries::kMaxDegree + 1, place_terms = terms;
@@ -66,7 +66,7 @@ class KinkResponse {
   LoadSeries& loads_;
   ExpandedLaws& laws_;
   bool found_ = false, slopes_changed_ = false;
-  bool corrects_ = false;  // in this step, what slopes of laws change towards the end
+  bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
   std::vector<double> moments_;
 };

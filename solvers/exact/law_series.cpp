@@ -17,11 +17,12 @@ constexpr double kZero = 1e-13;
 // The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not
 // seen).
 constexpr double kFloor = 4e-15;
-constexpr double kClear = 1e-14;     // of the terms that a deflection is summed from
-constexpr double kMostClear = 1e-3;  // of the step
+// A deflection is clear of a bound, relative to the terms that it is summed from.
+constexpr double kClear = 1e-14;
+constexpr double kMostClear = 1e-3;  // largest distance from a change, relative to the step
 // A crossing that a motion beside the series moves by no more of the step, with slopes that differ by no more, is one.
 constexpr double kNearCrossing = 0.05, kAlike = 3.0;
-constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
+constexpr double kParallel = 1e-9;  // two bounds are one line, relative to their coefficients
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
 double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {

@@ -61,7 +61,7 @@ class LawSeries {
     bool unsure = false;
   };
   Beside first_change_beside(const TaylorSeries& series, double push);
-  /// By how much of the step a change is later where these motions y and rates y' (by s) add to the series at its s.
+  /// Part of the step by which a change is later where these motions y and rates y' (by s) add to the series at its s.
   double later(const Change& change, const double* y, const double* rate) const;
   /// The s nearest to a change, behind it at the start (s = 0) or ahead of it at s > 0, at which the law's
   /// deflection is clear of the bound by more than rounding.
@@ -73,7 +73,7 @@ class LawSeries {
   /// The step was accepted and no bound is known to be at zero any more.
   void forget_roots();
 
-  /// From 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
+  /// Energies from 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
   /// ends.
   double dissipated(double s) const;
   double input(double s) const;
@@ -82,7 +82,7 @@ class LawSeries {
   struct Law {
     std::vector<LawPiece> pieces;           // the law's own; of a projected one its bounds, without forces
     bool scaled = false;                    // by its angle, where that matters to a bound
-    std::vector<std::optional<int>> sides;  // of each piece: side()
+    std::vector<std::optional<int>> sides;  // StepMotion::side() of each piece
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part

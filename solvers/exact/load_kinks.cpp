@@ -13,9 +13,9 @@ namespace drev {
 namespace {
 
 constexpr double kMonotone = StraightLoads::kMonotone;
-// Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
+// Error of the motion inside a step by the rest of a kink in it, relative to jump h |theta'| h^2/(2 m), at most.
 constexpr double kKinkInside = 1e-4;
-constexpr int kMostListed = 1 << 30;  // in all listings, before their count starts anew
+constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before their count starts again
 
 }  // namespace
 
@@ -89,7 +89,7 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const Tay
     if (rises ? end <= bound : end >= bound) break;
     const double turn = std::abs(end - bound);
     const std::optional<Behind> behind = next(bound, rises, turn);
-    // Of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
+    // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
     double chord = 0.0, slope = 0.0, power = 1.0;
     if (behind)
       for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {

@@ -9,17 +9,19 @@ namespace drev {
 
 namespace {
 
-constexpr double kTermRounding = 1e-13;  // of the largest term of an angle's series
-// What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
+// Rounding of a term, relative to the largest term of an angle's series.
+constexpr double kTermRounding = 1e-13;
+// Error of the path inside a step, relative to the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
-// What the step's end is off by, of the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
+// Error of the step's end, relative to the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
 constexpr double kEndRest = 1e-6;
-// By the last coefficients: so many that a force which is even or odd by chance is not taken for a smooth one.
+// Coefficients that tell the rest: so many that a force which is even or odd by chance is not taken for a smooth one.
 constexpr int kTail = 4;
-constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between the bounds of its pieces
+// The same for a sum of harmonics, and for a law between the bounds of its pieces.
+constexpr int kAnalyticTail = 2;
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
-// Of the largest force so far: rounding of the projection's coefficients.
+// Rounding of the projection's coefficients, relative to the largest force so far.
 constexpr double kForceRounding = 4e-15;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
@@ -137,7 +139,7 @@ double LoadSeries::angle_term(const PlacedLoad& l, const TaylorSeries& series, i
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-/// Of the largest force on the row so far, what a held contact's torque is off by. Coefficients of smooth forces fall
+/// Error of a held contact's torque, relative to the largest force on the row so far. Coefficients of smooth forces fall
 /// from degree to degree at an even rate: the next one tells, where the tail would ask for far shorter steps.
 double LoadSeries::held_rest(const LegendreProjection& forces, int row) const {
   const auto larger = [&](int j) {

@@ -49,18 +49,18 @@ class LoadSeries {
   /// One pass of the fixed-point iteration between the forces' projection and the path that they lead to.
   /// Relative to the largest deflection and speed [-].
   struct Pass {
-    /// Of the motion, by what this pass changed of the forces' projection; 0: nothing to project.
+    /// Change of the motion by what this pass changed of the forces' projection; 0: nothing to project.
     double change = 0.0;
     /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated
     /// from the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
     double contraction = 0.0;
-    /// Of the motion at the step's end, by what no polynomial of the projection's degree holds of the forces.
+    /// Error of the motion at the step's end by what no polynomial of the projection's degree holds of the forces.
     double residual = 0.0;
     /// The same inside the step, of smooth forces.
     double inside = 0.0;
     /// s of a knot that leaves too much of the motion inside the step: the step should end there.
     std::optional<double> cut = {};
-    /// Where friction holds: of the largest force on a row so far, what the projection lacks of it. It tells when
+    /// Where friction holds: what the projection lacks of a force, relative to the largest force on its row so far. It tells when
     /// a contact lets go, also where nothing moves.
     double torque = 0.0;
   };
@@ -103,7 +103,7 @@ class LoadSeries {
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
-  /// Of the motion, what kinks leave inside the step at most.
+  /// Bound of what kinks leave inside the step, relative to the motion.
   double kinks_inside() const { return smooth_.kinked() ? kMostInside : kinks_inside_; }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;
@@ -119,7 +119,7 @@ class LoadSeries {
   /// First s in (0, end] (0 for a load about to leave backwards) at which a load whose angle may turn back
   /// leaves its stretch: the step must end there.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
-  /// After first_knot() and advance() to it: that load goes on to the next stretch.
+  /// The load found by first_knot() goes on to the next stretch, once advance() has come to the knot.
   void pass_knot();
   ElementId knot_element() const { return leaving_->term->element; }
 
@@ -169,9 +169,9 @@ class LoadSeries {
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
   std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
-  std::vector<double> base_;  // of the series' right side, degrees 0 to 2, before projection
+  std::vector<double> base_;  // the series' right side, degrees 0 to 2, before projection
   int degree_ = 2;            // of p_
-  LegendreProjection projection_, last_;  // of this pass, and the last
+  LegendreProjection projection_, last_;  // projection of this pass, and of the pass before
   LegendreProjection of_loads_;           // of this pass, where there are laws too
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
   std::vector<double> largest_force_;     // by row, of steps in which friction held
@@ -180,9 +180,9 @@ class LoadSeries {
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.
   static constexpr double kMostInside = 1e-6;
-  double kinks_inside_ = 0.0;  // by tables
+  double kinks_inside_ = 0.0;  // what kinks of tables leave inside the step, relative to the motion
   double kink_push_ = 0.0;
-  std::vector<int> last_kink_;  // by row: the one listed last, 1 and up in all listings
+  std::vector<int> last_kink_;  // by row, the kink listed last, counted from 1 over all listings
   int listed_before_ = 0;       // in listings before this one
   bool shared_rows_ = false;
   bool given_kinks_ = false;  // some of a load whose angle follows no motion
@@ -190,8 +190,8 @@ class LoadSeries {
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
   std::vector<double> power_, force_;
-  std::vector<double> ranges_;  // by row: how far it comes, and what its terms and their slopes add up to
-  std::vector<KinkSize> kink_sizes_;  // of each of kinks_
+  std::vector<double> ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
+  std::vector<KinkSize> kink_sizes_;  // sizes of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
   const PlacedLoad* leaving_ = nullptr;

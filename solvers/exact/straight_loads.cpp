@@ -9,7 +9,7 @@
 namespace drev {
 
 namespace {
-constexpr double kOnKnot = 1e-13;  // relative to the angle, at least to 1 rad
+constexpr double kOnKnot = 1e-13;  // an angle stands on a knot, relative to the angle and to 1 rad at least
 }  // namespace
 
 struct StraightLoads::Move {

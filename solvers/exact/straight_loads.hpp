@@ -18,7 +18,7 @@ class StraightLoads {
   struct Load : PlacedLoad {
     using PlacedLoad::PlacedLoad;
     LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;  // where `stretch` gives its torque
+    double t_0 = 0.0, angle_0 = 0.0;  // time and angle at which `stretch` gives its torque
     double ahead_angle_0 = 0.0;       // the same of `ahead`
     LoadStretch next = {};            // behind this bound, at this time
     double next_bound = 0.0, next_t = 0.0;
@@ -32,12 +32,12 @@ class StraightLoads {
   /// All of them, with their angles where the step starts.
   std::vector<Load>& loads();
 
-  /// To a state, at the nominal motion there.
+  /// Moves all loads to a state, at the nominal motion there.
   void move(const MotionPoint& nominal, const Vector& z, const Vector& v);
   void move_as(const StraightLoads& other);
-  /// Each load's stretch ahead of its angle at time t [s].
+  /// Finds each load's stretch ahead of its angle at time t [s].
   void locate(double t);
-  /// After move() further on: the stretches that loads came to, where `whole` those ahead of the step that was listed.
+  /// Takes the stretches that loads came to by move(); where `whole`, those ahead of the step that was listed.
   void advance(double t, bool whole);
   void look_up(Load& load, double t, double direction);
 
@@ -51,7 +51,7 @@ class StraightLoads {
                                        const std::array<double, 3>& phi, const double* turns);
   /// Work of the slopes on the motion from that of the series' start to z [J].
   double slope_work(const TaylorSeries& series, const Vector& z);
-  /// Of each row, the motion; loaded rows behind the unknowns.
+  /// The motion of each row; loaded rows stand behind the unknowns.
   const double* rows_of(const Vector& z);
 
  private:
@@ -72,7 +72,7 @@ class StraightLoads {
     kQuantities
   };
   struct Layer {
-    std::vector<double> values;  // by quantity, then by row
+    std::vector<double> values;  // quantities one behind the other, each by row
     std::vector<int> load;       // of each row; -1: none
   };
   struct Move;
@@ -91,7 +91,7 @@ class StraightLoads {
   int stride_;
   std::vector<Load> loads_;
   std::vector<Layer> layers_;
-  std::vector<int> listed_;  // of loads_: near knots when looked at last
+  std::vector<int> listed_;  // indices in loads_ of those that were near knots when last asked for
   std::vector<Load*> near_;
   std::vector<double> rows_, rates_, slopes_, excess_;
   bool stale_ = false;  // loads_ lack the angles

@@ -11,7 +11,7 @@
 namespace drev {
 
 namespace {
-constexpr int kMostTerms = 128;  // of a product of two series
+constexpr int kMostTerms = 128;  // terms of a product of two series
 
 /// 1/k.
 constexpr auto kInverse = [] {
@@ -116,7 +116,7 @@ struct Polynomial {
 };
 
 struct Sums {
-  static constexpr int kTogether = 4;  // of sums, which stay in registers
+  static constexpr int kTogether = 4;  // sums that stay in registers together
   template <class L, int kCount, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void some(int stride, int count, int per_column, const double* weight,
                                           const double* f, double* out) {

@@ -17,8 +17,8 @@ constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
 constexpr int kRangeTerms = 8, kFirstBeyond = 4, kLastBeyond = 16;
 
-/// Of the moments int y' (s - s')^m/m! ds' = swept(m) in int y' L_k ds, for s = 1: by kTerms - 1 - m, as columns of a sweep
-/// stand, then by k.
+/// Weights of the moments int y' (s - s')^m/m! ds' = swept(m) in int y' L_k ds, for s = 1: by kTerms - 1 - m, in the order of a
+/// sweep's columns, then by k.
 template <int kTerms>
 std::array<double, std::size_t{kTerms} * kTerms> weights_of_swept() {
   std::array<double, std::size_t{kTerms} * kTerms> weight{};
@@ -30,15 +30,15 @@ std::array<double, std::size_t{kTerms} * kTerms> weights_of_swept() {
   return weight;
 }
 
-/// Of term k: Hermite's cubic through values and rates at both ends is off by the largest fourth derivative times s^4/384 at most.
+/// Weight of term k: Hermite's cubic through values and rates at both ends is off by the largest fourth derivative times s^4/384 at most.
 constexpr double beyond_weight(int k) { return k * (k - 1.0) * (k - 2.0) * (k - 3.0) / 384.0; }
 
 struct SumWeights {
-  // By term k, then by column, for s = 1.
+  // Weights by term k, then by column, for s = 1.
   std::array<double, std::size_t{kSums} * (TaylorSeries::kMaxDegree + 1)> end{};
   std::array<double, std::size_t{kLossTerms}* kLossTerms> swept = weights_of_swept<kLossTerms>();
   std::array<double, std::size_t{2} * kRangeTerms>
-      range{};  // of the terms' sizes, from the first on: value, slope
+      range{};  // weights of the terms' sizes from the first on: of the value, of the slope
   SumWeights() {
     for (int k = 1; k <= TaylorSeries::kMaxDegree; ++k) {
       double* w = end.data() + k * kSums;
@@ -61,7 +61,7 @@ const SumWeights& sum_weights() {
   return weights;
 }
 
-/// Of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
+/// Weights of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
 struct NodeWeights {
   std::array<NodeValues, kNodeTerms> of_moment{};
   NodeWeights() {
@@ -71,7 +71,7 @@ struct NodeWeights {
       for (std::size_t k = m; k < kNodeTerms; ++k) {
         const double weight =
             (2.0 * static_cast<double>(k) + 1.0) * swept[(kNodeTerms - 1 - m) * kNodeTerms + k];
-        std::array<double, kNodeTerms + 1> integral{};  // of L_k, from 0
+        std::array<double, kNodeTerms + 1> integral{};  // powers of the integral of L_k from 0
         for (std::size_t i = 0; i < kNodeTerms; ++i)
           integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
         NodeValues at;

@@ -14,12 +14,13 @@
 namespace drev {
 
 namespace {
-constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
+constexpr double kDiagonalFill = 2.0;  // diagonals are kept up to this many values an entry
 constexpr double kEigenvalueMargin = 1.1;
-constexpr double kEnergyPart = 0.01;     // of the tolerance: terms that energies do without, 1e-13 to 1e-9
-constexpr double kLastOfProducts = 0.1;  // of what is allowed: the last two terms where series are multiplied
-constexpr int kFewer = 4;                // terms that a step may do with less than the one before
-constexpr double kShortenSeries = 0.9;   // of the step at which the last terms are just small enough
+constexpr double kEnergyPart = 0.01;  // terms that energies do without, relative to the tolerance
+// Size of the last two terms where series are multiplied, relative to what is allowed.
+constexpr double kLastOfProducts = 0.1;
+constexpr int kFewer = 4;               // terms that a step may do with less than the step before
+constexpr double kShortenSeries = 0.9;  // factor on the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
@@ -215,7 +216,7 @@ void TaylorSeries::widen(int row, double k, double c) {
 }
 
 double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
-  // What the iteration lacks after its steps is in the margin.
+  // The margin covers what the iteration lacks after its steps.
   return kEigenvalueMargin * extreme_eigenvalue(n_, [&](const Vector& x, Vector& product) {
            std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
            std::copy_n(x.data(), n_, z_.data() + pad_);
@@ -369,7 +370,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   v_scale = v_scale_;
   const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
   const std::size_t kinds = kinds_.empty() ? 1 : 2;
-  // How far a term is above what is allowed, and what was added to it above what is then.
+  // Size of a term over what is allowed, and the same of what forces added to it.
   const auto excess_of = [&](const Norm& size, int k) {
     double largest = 0.0;
     for (std::size_t i = 0; i < kinds; ++i)
@@ -384,7 +385,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     return excess_of(size, k) / kLastOfProducts;
   };
   int known_degree = right_degree_;
-  bool products = false;  // of series: their tails are not bounded by the norms of K and C alone
+  bool products = false;  // products of series act, whose tails the norms of K and C alone do not bound
   for (const TermForces* forces : term_forces_)
     if (forces->active()) {
       known_degree = std::max(known_degree, forces->known_degree());

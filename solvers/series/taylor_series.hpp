@@ -63,7 +63,7 @@ class TaylorSeries {
     else
       row_slopes_[row - n_] += value;
   }
-  /// Takes slopes of loads from the diagonal of each row, and tells of them (widen()).
+  /// Subtracts slopes of loads from the diagonal of each row, and notes them (widen()).
   void add_row_slopes(const double* slope);
   void add_damping(int slot, double value);
   /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
@@ -78,7 +78,7 @@ class TaylorSeries {
         load_damping_.back().coeff;
     load_damping_.pop_back();
   }
-  /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
+  /// Notes tangents added to a row that bound_rates() did not see, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
   /// The same of a damping along any row, as a rate c/m [1/s].
   void widen_damping(double rate) { c_more_ += rate; }
@@ -101,14 +101,14 @@ class TaylorSeries {
   /// overflow. tolerance: relative to the largest deflection and speed noted so far.
   double expand(const Vector& z, const Vector& v, double h, double tolerance);
 
-  /// Of forces f on the unknowns that come on top of the right side in the step, the motion y that they add up to
-  /// s = e, by one backward sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
+  /// The motion y that forces f on the unknowns, on top of the right side, add up to s = e, by one backward
+  /// sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
   /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each.
   /// Only where sweeps() holds. Source: variation of constants, with exp(A (e - s)) as its Taylor series.
   void sweep(const double* moments, int degree);
   bool sweeps() const;
   static constexpr int kMostSwept = 28;  ///< largest degree of a sweep
-  /// After sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
+  /// Results of sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
   const double* swept(int part) const {
     return swept_.data() + idx(pad_ + (swept_degree_ + 1 - part) * stride_);
   }
@@ -134,11 +134,11 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
-  /// Of each row over the step: how far it comes, and bounds of what its terms and, stride() behind them, from the second on
-  /// their slopes by s add up to.
+  /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
+  /// s from the second term on.
   void ranges(double* end, double* size);
-  /// Of each unknown, and stride() behind it of its rate, how far it lies at most from the cubic through its values and rates at
-  /// 0 and s (cubic_peak.hpp).
+  /// Bound of the distance of each unknown from the cubic through its values and rates at 0 and s (cubic_peak.hpp), and
+  /// stride() behind it the same of its rate.
   void beyond_cubic(double s, double* out);
   /// int_0^s (sum P_k u^k) . z' du with columns P_k at p + k stride(), k <= degree.
   double work(const double* p, int degree, double s);
@@ -223,7 +223,7 @@ class TaylorSeries {
   std::vector<DiagonalView> k_views_, c_views_;          // of each block of lanes
   std::vector<int> block_begin_;
   bool chain_ = false;  // nearly all of them are the main one and its neighbours
-  bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
+  bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, largest_coupling_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
@@ -234,14 +234,14 @@ class TaylorSeries {
   std::vector<Entry> load_damping_;                               // by row, within c_
   double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
   std::vector<double> p_, z_, rates_, forces_, zeros_;
-  // Of the system's loaded rows.
+  // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
   std::vector<double> with_rows_;
   mutable std::vector<double> values_;
   Vector solve_in_, solve_out_;
-  // Of the terms, from 2 on; and of what forces that act on every term added to them.
+  // Sizes of the terms from the second on, and of what forces that act on every term added to them.
   std::array<Norm, kMaxDegree + 1> sizes_{}, added_{};
-  std::vector<int> kinds_;  // of the unknowns, if the system has both
+  std::vector<int> kinds_;  // kinds of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
   double h_ = 0.0, energy_part_ = 0.0;
