@@ -236,8 +236,14 @@ void StraightLoads::locate(double t) {
 /// Calls with each load of a layer whose excess_ is not below zero.
 template <class Each>
 void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
-  for (int i = 0; i < stride_; ++i)
-    if (excess_[idx(i)] >= 0.0) each(layer.load[idx(i)]);
+  for (int first = 0; first < stride_; first += kLanes) {
+    const double* excess = excess_.data() + first;
+    double most = excess[0];
+    for (int lane = 1; lane < kLanes; ++lane) most = std::max(most, excess[lane]);
+    if (!(most >= 0.0)) continue;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (excess[lane] >= 0.0) each(layer.load[idx(first + lane)]);
+  }
 }
 
 void StraightLoads::advance(double t, bool whole) {

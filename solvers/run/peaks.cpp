@@ -10,8 +10,9 @@
 namespace drev {
 
 namespace {
-constexpr double kNear = 0.05;   // distance from the range so far, over it, of steps that may hold a new peak
-constexpr double kShort = 1e-6;  // length over the longest step: nothing moves in shorter ones
+constexpr double kNear = 0.05;  // distance from the range so far, over it, of steps that may hold a new peak
+constexpr double kMostBulge = 0.15;  // > 4/27: cubic_reach()
+constexpr double kShort = 1e-6;      // length over the longest step: nothing moves in shorter ones
 }  // namespace
 
 std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
@@ -121,11 +122,15 @@ bool Peaks::pair_may_pass(std::size_t c, const EvaluatedState& from, const Evalu
   Watched& w = watched_[c];
   w.ahead = w.sum(to.state.z);
   w.ahead_rate = w.sum(to.state.v);
-  const double rate = last_rates_ ? w.last_rate : w.sum(from.state.v);
-  const Interval reach = cubic_reach(w.last, rate, w.ahead, w.ahead_rate, to.state.t - from.state.t);
+  const double rate = last_rates_ ? w.last_rate : w.sum(from.state.v), h = to.state.t - from.state.t;
   const double beyond = std::abs(w.first.coeff) * beyond_cubic[w.first.index] +
                         std::abs(w.second.coeff) * beyond_cubic[w.second.index];
-  return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
+  const double high = peaks_[c].max - beyond, low = peaks_[c].min + beyond;
+  // Most values are so far from their peaks that no slope at an end leads there.
+  const double bulge = kMostBulge * h * (std::abs(rate) + std::abs(w.ahead_rate));
+  if (std::max(w.last, w.ahead) + bulge <= high && std::min(w.last, w.ahead) - bulge >= low) return false;
+  const Interval reach = cubic_reach(w.last, rate, w.ahead, w.ahead_rate, h);
+  return !(reach.high <= high && reach.low >= low);
 }
 
 bool Peaks::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
@@ -148,10 +153,11 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
     watched_[c].last = y;
     set_bounds(c);
   }
+  passed_over_ = last_rates_ = false;
 }
 
 void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
-  last_rates_ = false;
+  passed_over_ = last_rates_ = false;
   for (const std::size_t c : others_) {  // angles do not jump
     watched_[c].last = value(c, assembler, point);
     peaks_[c].note(watched_[c].last, point.state.t);

@@ -133,6 +133,7 @@ void TaylorSeries::find_views(bool far) {
 void TaylorSeries::reset() {
   std::copy(k_base_.begin(), k_base_.end(), k_.begin());  // the views stay
   std::copy(c_base_.begin(), c_base_.end(), c_.begin());
+  scaled_ = Scaled::none;
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
@@ -144,6 +145,7 @@ void TaylorSeries::reset() {
 
 void TaylorSeries::add_damping(int slot, double value) {
   c_[position_[idx(slot)]] += value;
+  scaled_ = Scaled::none;
   damped_ = true;
   main_damping_ = false;
 }
@@ -151,8 +153,7 @@ void TaylorSeries::add_damping(int slot, double value) {
 void TaylorSeries::add_row_slopes(const double* slope) {
   int first = 0;
   if (main_ >= 0 && diagonal_mass_) {
-    const double widest =
-        subtract_slopes(stride_, slope, inverse_mass_.data(), k_.data() + diagonals_[idx(main_)].values);
+    const double widest = subtract_slopes(stride_, slope, inverse_mass_.data(), main_diagonal());
     k_more_ = std::max(k_more_, widest);
     first = n_;
   }
@@ -289,14 +290,19 @@ TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) co
 
 /// The matrices that stand now, for the recursion over a step of h_.
 void TaylorSeries::scale_step() {
-  if (!by_kernel()) return;
-  for (int i = 0; i < n_; ++i) mobility_step_[idx(i)] = h_ * h_ * inverse_mass_[idx(i)];
-  const double* mobility = mobility_step_.data();
+  if (!by_kernel() || (scaled_ == Scaled::all && scaled_h_ == h_)) return;
+  const bool main_only = scaled_ == Scaled::without_main && scaled_h_ == h_;
+  double* mobility = mobility_step_.data();
+  if (!main_only)
+    for (int i = 0; i < n_; ++i) mobility[i] = h_ * h_ * inverse_mass_[idx(i)];
   for (const Diagonal& d : diagonals_) {
+    if (main_only && d.offset != 0) continue;
     scaled_product(stride_, -1.0, mobility, k_.data() + d.values, k_step_.data() + d.values);
-    if (damped_ && !(main_damping_ && d.offset != 0))
+    if (!main_only && damped_ && !(main_damping_ && d.offset != 0))
       scaled_product(stride_, -1.0 / h_, mobility, c_.data() + d.values, c_step_.data() + d.values);
   }
+  scaled_ = Scaled::all;
+  scaled_h_ = h_;
 }
 
 SeriesRecursion TaylorSeries::recursion() {

@@ -55,13 +55,18 @@ class TaylorSeries {
 
   /// K and C back to the system's own, the right side to zero; then add what the pieces add.
   void reset();
-  void add_stiffness(int slot, double value) { k_[position_[idx(slot)]] += value; }
+  void add_stiffness(int slot, double value) {
+    k_[position_[idx(slot)]] += value;
+    scaled_ = Scaled::none;
+  }
   /// The same on the diagonal of a row.
   void add_row_stiffness(int row, double value) {
-    if (row < n_)
-      add_stiffness(system_.diagonal_slots()[idx(row)], value);
-    else
+    if (row >= n_)
       row_slopes_[row - n_] += value;
+    else if (main_ >= 0)
+      main_diagonal()[row] += value;
+    else
+      add_stiffness(system_.diagonal_slots()[idx(row)], value);
   }
   /// Subtracts slopes of loads from the diagonal of each row, and notes them (widen()).
   void add_row_slopes(const double* slope);
@@ -70,12 +75,14 @@ class TaylorSeries {
   void add_load_damping(int row, double value) {
     c_[position_[idx(system_.diagonal_slots()[idx(row)])]] += value;
     damped_ = true;
+    scaled_ = Scaled::none;
     load_damping_.push_back({row, value});
   }
   /// Takes back what was added last.
   void take_load_damping() {
     c_[position_[idx(system_.diagonal_slots()[idx(load_damping_.back().index)])]] -=
         load_damping_.back().coeff;
+    scaled_ = Scaled::none;
     load_damping_.pop_back();
   }
   /// Notes tangents added to a row that bound_rates() did not see, |k| [N m/rad or N/m] and |c|.
@@ -177,6 +184,11 @@ class TaylorSeries {
     int offset;
     std::size_t values;
   };
+  /// K's main diagonal, to be changed: what was scaled for the step lacks it then.
+  double* main_diagonal() {
+    if (scaled_ == Scaled::all) scaled_ = Scaled::without_main;
+    return k_.data() + diagonals_[idx(main_)].values;
+  }
   void find_storage();
   void find_views(bool far);
   void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
@@ -217,10 +229,13 @@ class TaylorSeries {
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<double> k_step_, c_step_, mobility_step_;  // SeriesRecursion's k, c and mobility
-  std::vector<std::size_t> position_;                    // of a slot of the pattern in k_, c_
-  std::vector<Diagonal> diagonals_;                      // padded to stride_; empty: rows of the pattern
-  int main_ = -1;                                        // which diagonal is the main one
-  std::vector<DiagonalView> k_views_, c_views_;          // of each block of lanes
+  enum class Scaled { none, without_main, all };
+  Scaled scaled_ = Scaled::none;                 // which of the values that stand now are in those
+  double scaled_h_ = 0.0;                        // step that they are for [s]
+  std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_
+  std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
+  int main_ = -1;                                // which diagonal is the main one
+  std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
   bool chain_ = false;  // nearly all of them are the main one and its neighbours
   bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
