@@ -20,20 +20,19 @@ namespace drev {
 namespace {
 
 constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
-// Factor by which a step may be longer than the one before, which had to be shortened.
-constexpr double kGrowth = 1.5;
+constexpr double kGrowth = 1.5;  // most of a step's length over that of the one before, which was shortened
 constexpr int kMaxCuts = 20;
 // A shorter step, relative to the largest one, is not shortened for what projection leaves.
 constexpr double kShortest = 1e-6;
 constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
 // Distances from a step's ends, relative to the step's length.
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
-// Length of the next attempt relative to a step whose terms overflowed.
-constexpr double kRetreat = 1.0 / 16.0;
+constexpr double kRetreat =
+    1.0 / 16.0;  // length of the next attempt relative to a step whose terms overflowed
 // Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
 constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
-// Relative to the energy scale; least advance of a step, relative to the largest step.
-constexpr double kEnergyTolerance = 1e-6, kNoProgress = 1e-12;
+constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
+constexpr double kNoProgress = 1e-12;      // least advance of a step, relative to the largest step
 
 class ExactRun final : public StepMotion {
  public:
@@ -174,10 +173,12 @@ class ExactRun final : public StepMotion {
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
     const bool whole = forces_ || t_new == stop.t || end.friction;
-    if (whole)
+    if (whole) {
       evaluate(assembler_, next_, evaluated_at);
-    else
+    } else {
       evaluate_motion(next_, evaluated_at);
+      assembler_.multiply_stiffness(to.z, next_.kz);
+    }
     const LawWork work = expansion_.work(laws_, s, next_);
     const EvaluatedState& before = watch(t_new, end);
     if (&before != &now_) assembler_.set_time(evaluated_at);
@@ -425,7 +426,7 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
-  /// Motion and laws only, which energies need.
+  /// Motion and laws only.
   void evaluate_motion(EvaluatedState& point, double t) {
     assembler_.set_time(t);
     evaluate_laws(assembler_, point);

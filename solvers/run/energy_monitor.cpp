@@ -7,7 +7,6 @@ namespace drev {
 EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& start)
     : assembler_(assembler),
       mass_(assembler.system().pattern(), assembler.system().mass_values()),
-      stiffness_(assembler.system().pattern(), assembler.system().stiffness_values()),
       damped_((assembler.system().damping_values().array() != 0.0).any()) {
   balance_.kinetic = 0.5 * mass_.energy(start.state.v);
   balance_.stored = stored(start);
@@ -15,7 +14,8 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& s
 }
 
 double EnergyMonitor::stored(const EvaluatedState& point) const {
-  double sum = 0.5 * stiffness_.energy(point.state.z) + point.general_energy;
+  double sum =
+      0.5 * dot(assembler_.system().size(), point.state.z.data(), point.kz.data()) + point.general_energy;
   for (const ScalarResponse& r : point.responses) sum += r.stored_energy;
   return sum;
 }

@@ -36,7 +36,7 @@ class EnergyMonitor {
   bool enter(const EvaluatedState& to, double input, double dissipated, double stored);
 
   const Assembler& assembler_;
-  MatrixProduct mass_, stiffness_;
+  MatrixProduct mass_;
   bool damped_ = false;  // there are constant dampers
   EnergyBalance balance_;
 };

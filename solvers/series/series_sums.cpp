@@ -10,8 +10,8 @@ namespace drev {
 namespace {
 
 // Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what is left out is
-// at most 1e-9 of the loss by a mode of rate h = 3. At nodes for products with other series more are kept.
-constexpr int kLossTerms = 7, kNodeTerms = 8;
+// at most 1e-11 of the loss by a mode of rate h = 3.
+constexpr int kLossTerms = 8;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
 constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
@@ -63,16 +63,16 @@ const SumWeights& sum_weights() {
 
 /// Weights of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
 struct NodeWeights {
-  std::array<NodeValues, kNodeTerms> of_moment{};
+  std::array<NodeValues, kLossTerms> of_moment{};
   NodeWeights() {
-    const PowersOf<kNodeTerms> powers = legendre_powers<kNodeTerms>();
-    const auto swept = weights_of_swept<kNodeTerms>();
-    for (std::size_t m = 0; m < kNodeTerms; ++m)
-      for (std::size_t k = m; k < kNodeTerms; ++k) {
+    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
+    const auto swept = weights_of_swept<kLossTerms>();
+    for (std::size_t m = 0; m < kLossTerms; ++m)
+      for (std::size_t k = m; k < kLossTerms; ++k) {
         const double weight =
-            (2.0 * static_cast<double>(k) + 1.0) * swept[(kNodeTerms - 1 - m) * kNodeTerms + k];
-        std::array<double, kNodeTerms + 1> integral{};  // powers of the integral of L_k from 0
-        for (std::size_t i = 0; i < kNodeTerms; ++i)
+            (2.0 * static_cast<double>(k) + 1.0) * swept[(kLossTerms - 1 - m) * kLossTerms + k];
+        std::array<double, kLossTerms + 1> integral{};  // powers of the integral of L_k from 0
+        for (std::size_t i = 0; i < kLossTerms; ++i)
           integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
         NodeValues at;
         find_at_nodes(integral, 1.0, at);
@@ -90,7 +90,7 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
   static const NodeWeights weights;
   out = {};
   double part = 1.0;  // s^-m
-  for (int m = 0; m < kNodeTerms; ++m, part /= s) {
+  for (int m = 0; m < kLossTerms; ++m, part /= s) {
     const double moment = value_along(row, swept(m));
     const NodeValues& weight = weights.of_moment[idx(m)];
     for (std::size_t q = 0; q < out.value.size(); ++q) {
