@@ -21,9 +21,8 @@ constexpr int kFewest = 16, kMost = 4096;
 constexpr double kLargestSize = 2e7;  // largest unknowns x harmonics: 320 MB for each motion
 constexpr double kFirstTail = 1e-3;   // part of the motion beyond the first number of harmonics [-]
 constexpr double kPeriodicity = 1e-8;
-constexpr double kUneven =
-    10.0;                        // factor of the error [-]: kinks lie unevenly between samples (7.5 measured)
-constexpr double kSwing = 0.02;  // largest rise of an extremum above its samples over the range [-]
+constexpr double kUneven = 10.0;           // factor of the error [-]: kinks between samples; 7.5 was measured
+constexpr double kSwing = 0.02;            // largest rise of an extremum above its samples over the range [-]
 constexpr double kLoosest = 1e-2;          // largest error accepted with the most harmonics [-]
 constexpr double kNewtonTolerance = 1e-2;  // tolerance of Newton's method over that of the response [-]
 
