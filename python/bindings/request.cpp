@@ -10,8 +10,7 @@ namespace {
 
 thread_local Watch* current = nullptr;
 
-constexpr auto kBetweenQuestions =
-    std::chrono::milliseconds(20);  // shortest time between uses of Python's lock
+constexpr auto kBetweenQuestions = std::chrono::milliseconds(20);  // shortest time between lockings
 
 }  // namespace
 
