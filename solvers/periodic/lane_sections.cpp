@@ -6,7 +6,7 @@ namespace drev {
 
 namespace {
 
-/// Sums of z over rows.
+/// Computes the products of rows with z.
 struct RowSums {
   template <class L>
   [[gnu::always_inline]] static void run(int rows, const int* begin, const int* index, const double* coeff,
@@ -23,7 +23,7 @@ struct RowSums {
   }
 };
 
-/// Damping common to all lanes (Value double), or of each (LaneRow).
+/// Powers with damping values common to all lanes (Value: double), or with those of each lane (LaneRow).
 template <class Value>
 struct FindPowersOf {
   template <class L>
@@ -51,7 +51,8 @@ struct FindPowersOf {
   }
 };
 
-/// i w times a number turns it. With a frequency term: the matrices' torque and what is beyond them; heat = w/2 Im(T conj x).
+/// Torques, twists and heat from the products of rows with z. Rates are i w times the deflections. With a
+/// frequency term, the torque is that of the matrices plus the part beyond them, and heat = w/2 Im(T conj x).
 struct Torques {
   template <class L>
   [[gnu::always_inline]] static void run(int sections, const int* term, const LaneRow* re, const LaneRow* im,

@@ -19,8 +19,8 @@ namespace {
 using Complex = std::complex<double>;
 using Section = LinearResponse::Section;
 
-constexpr double kNoDrag = 1e-13;    // of the largest damping
-constexpr double kSameChain = 1e-9;  // rounding of an element's chain
+constexpr double kNoDrag = 1e-13;    // drag relative to speed times largest damping that is rounding [-]
+constexpr double kSameChain = 1e-9;  // relative rounding of the stiffness of an element's Maxwell chain [-]
 
 template <class Values>
 auto product(const std::vector<Entry>& row, const Values& z) {
@@ -128,7 +128,7 @@ void LinearResponse::spread_frequency_terms(const Lanes& w) {
       im[lane] = k.imag();
     }
     beyond_re_[t].v = re;
-    beyond_im_[t].v = w[0] < 0.0 ? -im : im;  // at a negative w k* is conjugate
+    beyond_im_[t].v = w[0] < 0.0 ? -im : im;  // at a negative w, k* is the complex conjugate
     beyond_over_[t].v = im / size;
   }
   if (anew || !all_constant_)
@@ -178,7 +178,7 @@ std::vector<bool> LinearResponse::find_held() {
       if (row.size() == 1 && row[0].coeff == 1.0 && !used[idx(row[0].index)]) inner.push_back(row[0].index);
     }
     if (static_cast<int>(inner.size()) != internal.count) continue;
-    // Nothing else may act on them: they must give, condensed, what the element says that they do.
+    // No other element may act on them: condensed, they must give the stiffness that the element states.
     bool alone = true;
     for (const double omega : {10.0, 1000.0}) {
       Complex given = 0.0;
@@ -225,7 +225,7 @@ const Vector& LinearResponse::damping_at(double speed) {
   damping_here_ = damping_;
   stiffness_here_ = stiffness_;
   content_->add_slopes(direction_ * speed, &damping_here_, &stiffness_here_);
-  // Most loads that follow the speed have no slope of their own.
+  // Most loads that depend on the speed have no slope of their own.
   spread_ = spread_ && damping_here_ == damping_before_ && stiffness_here_ == stiffness_before_;
   return damping_here_;
 }
@@ -239,7 +239,7 @@ std::vector<double> LinearResponse::load_means(double speed) {
 std::vector<double> LinearResponse::mean_motion(double speed, const std::vector<double>& means,
                                                 Vector& unbalanced, Vector& load_sum) {
   Vector p = -direction_ * speed * system_.nominal_drag().head(system_.size());
-  // Ratios to rounding leave that of the dampers between nodes of one speed.
+  // Rounding of the ratios leaves a drag of dampers between nodes of equal speed.
   if (p.cwiseAbs().maxCoeff() <= kNoDrag * speed * damping_.cwiseAbs().maxCoeff()) p.setZero();
   const std::vector<Vector>& rigid = mean_->rigid();
   load_sum = Vector::Zero(static_cast<Eigen::Index>(rigid.size()));
@@ -258,7 +258,7 @@ void LinearResponse::mean(double speed, Point& point) {
   const auto& contents = content_->at(direction_ * speed);
   const auto count = static_cast<Eigen::Index>(sections_.size()),
              loads = static_cast<Eigen::Index>(contents.size());
-  // All of it is linear in the speed and in what the loads are on average.
+  // All means are linear in the speed and in the means of the loads.
   constexpr Eigen::Index kFewLoads = 64;
   if (loads <= kFewLoads) {
     if (mean_of_parts_.size() == 0) find_mean_of_parts(loads);
@@ -319,7 +319,7 @@ double LinearResponse::amplitude_of(std::size_t t, double speed) {
 }
 
 void LinearResponse::find_carried_loads(double speed) {
-  constexpr double kClose = 1e-12;  // relative, of amplitudes
+  constexpr double kClose = 1e-12;  // relative tolerance of amplitudes [-]
   constexpr int kMostRounds = 100, kMostSteps = 200;
   const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
   if (follows_mean_) {
@@ -349,11 +349,11 @@ void LinearResponse::find_carried_loads(double speed) {
       if (!terms[t].stiffness->follows_amplitude()) continue;
       several = number++ > 0;
       const double before = carried_[t].amplitude;
-      const auto beyond = [&](double a) {  // of the response over what was assumed
+      const auto beyond = [&](double a) {  // amplitude of the response minus the assumed amplitude
         carried_[t].amplitude = a;
         return amplitude_of(t, speed) - a;
       };
-      // Illinois' variant of the false position between 0 and an amplitude that the response does not reach.
+      // Illinois method between 0 and an amplitude that the response does not reach.
       double low = 0.0, at_low = beyond(0.0), high = at_low, at_high = 0.0;
       if (!std::isfinite(at_low)) refuse(t);
       int steps = 0;
@@ -424,7 +424,7 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   const auto& contents = content_->at(direction_ * speed);
   const int used = static_cast<int>(std::min<std::size_t>(kLanes, active_.size() - first));
   Lanes w{};
-  // Lanes that are not needed repeat the first.
+  // Unused lanes repeat the first.
   for (int lane = 0; lane < kLanes; ++lane)
     w[lane] = direction_ * orders_[idx(active_[first + idx(lane < used ? lane : 0)])] * speed;
   std::fill(p_re_.begin(), p_re_.end(), LaneRow{});
@@ -445,7 +445,7 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   im_ = p_im_;
   const bool own = !system_.frequency_terms().empty();
   if (own) spread_frequency_terms(w);
-  // One or two frequencies are not worth the lanes.
+  // For one or two frequencies lanes are slower than scalars.
   constexpr int kWorthLanes = 3;
   Lanes lost = Lanes{} + 1.0;
   if (used >= kWorthLanes && own)

@@ -7,7 +7,7 @@
 
 namespace drev {
 
-/// What fills one register where lanes are of type L.
+/// The vector type that fills one register where lanes have the type L.
 template <class L>
 struct RegisterOf {
   using Type = Lanes;
@@ -16,7 +16,7 @@ template <>
 struct RegisterOf<LanePair> {
   using Type = LanePair::Half;
 };
-/// Lanes from number `first` on of a row, as many as a register holds; and back.
+/// Loads the lanes of a row from number `first` on, as many as a register holds; and stores them.
 template <class Part>
 [[gnu::always_inline]] inline void take_part(const LaneRow& row, int first, Part& to) {
   std::memcpy(&to, reinterpret_cast<const double*>(&row.v) + first, sizeof to);
@@ -26,9 +26,9 @@ template <class Part>
   std::memcpy(reinterpret_cast<double*>(&row.v) + first, &from, sizeof from);
 }
 
-/// y at all points, of the sums over a quarter of the cycle:
+/// Values y at all points of the cycle, from the sums over a quarter of it:
 ///   cos n (pi - x) = (-1)^n cos n x, sin n (pi - x) = -(-1)^n sin n x, and both times (-1)^n at x + pi.
-/// ends: the highest and the lowest.
+/// ends: receives the highest and the lowest value.
 struct SumQuarters {
   template <class L>
   [[gnu::always_inline]] static void run(int points, int orders, int even, const double* cosines,
@@ -36,7 +36,7 @@ struct SumQuarters {
                                          LaneRow* y, LaneRow* ends) {
     const int quarter = points / 4;
     L most = L{} - std::numeric_limits<double>::infinity(), least = -1.0 * most;
-    // Two points at a time: each amplitude that is read serves both.
+    // Two points at a time, so that each amplitude is read once for both.
     for (int p = 0; p <= quarter; p += 2, cosines += 2 * orders, sines += 2 * orders) {
       L ce{}, se{}, co{}, so{}, ce_2{}, se_2{}, co_2{}, so_2{}, x;
       for (int k = 0; k < even; ++k) {
@@ -65,18 +65,18 @@ struct SumQuarters {
   }
 };
 
-/// Points in a word of marks: bits of a double's significand.
+/// Number of points in a word of marks: the bits of a double's significand.
 inline constexpr int kMarksAWord = 52;
 
-/// Marks the points within half a step of which the largest value may be, and those for the smallest: bit p % kMarksAWord
-/// of tops[p / kMarksAWord] and of bottoms in each lane. slack: S = B h^3 / 15.5, B a bound of the third derivative, by
-/// which the sum may exceed the parabola through three points; ends: highest and lowest of the points; y: with the
-/// points before and behind the cycle.
+/// Marks the points within half a step of which the largest value may be, and those for the smallest: bit
+/// p % kMarksAWord of tops[p / kMarksAWord], and of bottoms, in each lane. slack: S = B h^3 / 15.5 by which
+/// the sum may exceed the parabola through three points, with B a bound of the third derivative; ends:
+/// highest and lowest value of the points; y: values, with the points before and after the cycle.
 ///
-/// A maximum at x in [-1/2, 1/2] has slope 0 and no curvature upwards: with errors of the parabola's slope, B h^3 / 6, and
-/// of its curvature, B h^3 / 2, the middle point is at most 2/3 B h^3 = 10.4 S below its neighbours. The parabola rises
-/// above the middle point by c/8 at the most where its vertex is in there, c its curvature downwards, else by
-/// |slope|/2 - c/8.
+/// A maximum at x in [-1/2, 1/2] has slope 0 and no upward curvature. With the errors B h^3 / 6 of the
+/// parabola's slope and B h^3 / 2 of its curvature, the middle point is at most 2/3 B h^3 = 10.4 S below its
+/// neighbours. With c the downward curvature, the parabola rises above the middle point by at most c/8 where
+/// its vertex is in this interval, otherwise by |slope|/2 - c/8.
 struct MarkExtremes {
   template <class L>
   [[gnu::always_inline]] static void run(int points, const LaneRow* y, const LaneRow* slack,
@@ -100,8 +100,9 @@ struct MarkExtremes {
                      end_up = steep - eighth, end_down = steep + eighth,
                      reach = here + (eighth > end_up ? eighth : end_up),
                      depth = here - (-eighth > end_down ? -eighth : end_down);
-          // The least of three differences that must not be negative, and the largest of three that must not be
-          // positive; not a number: none. Choices between doubles: GCC 12 takes masks of lanes to pieces.
+          // The smallest of three differences that must not be negative, and the largest of three that must
+          // not be positive; not a number: none. Written as choices between doubles, since GCC 12 splits
+          // masks of lanes.
           Part over = rise < fall ? rise : fall, below = rise > fall ? rise : fall;
           over += below_neighbours;
           below -= below_neighbours;
@@ -120,10 +121,11 @@ struct MarkExtremes {
   }
 };
 
-/// The tops of up to kLanes places, from the seven points about each, times its sign: the polynomial through them.
-/// at: its maximum within half a step (value: what it has there), by Newton's rule from a start, both in steps beside the middle point; reach: what
-/// the sum cannot exceed within half a step. That is, where the polynomial bends down all along, its tangent's highest
-/// value and what the seventh derivative can add: |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh.
+/// Tops at up to kLanes places, from the polynomial through the seven points around each, times its sign.
+/// at: place of its maximum within half a step, by Newton's method from a start, both in steps from the
+/// middle point; value: the polynomial there; reach: upper bound of the sum within half a step. Where the
+/// polynomial is concave throughout, the bound is the highest value of its tangent plus the largest
+/// contribution of the seventh derivative: |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh.
 struct LookBetween {
   static constexpr int kSides = 3;
   static constexpr double kSeventh = 12.35 / 5040.0;
@@ -138,7 +140,7 @@ struct LookBetween {
       sum = right + left - 2.0 * middle;
     };
     sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
-    // Derivatives at the middle point over their factorials.
+    // Derivatives at the middle point divided by their factorials.
     const L c1 = 0.75 * d1 - 0.15 * d2 + d3 / 60.0, c2 = 0.75 * s1 - 0.075 * s2 + s3 / 180.0,
             c3 = (8.0 * d2 - 13.0 * d1 - d3) / 48.0, c4 = (12.0 * s2 - 39.0 * s1 - s3) / 144.0,
             c5 = (5.0 * d1 - 4.0 * d2 + d3) / 240.0, c6 = (15.0 * s1 - 6.0 * s2 + s3) / 720.0;
@@ -151,7 +153,7 @@ struct LookBetween {
       const L bend = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5 + x * 30.0 * c6)));
       x -= tilt / bend;
     }
-    // Not to be trusted, or not a number: the start again.
+    // If the place is unreliable or not a number, take the start.
     away = x - start;
     magnitude(away);
     const L half = L{} + 0.5;
@@ -164,7 +166,7 @@ struct LookBetween {
     take(*rest, addition);
     const L height = middle + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * (c5 + x * c6)))));
     L bound = height + upwards + addition;
-    // The second derivative's largest value within half a step is below this.
+    // Upper bound of the second derivative within half a step.
     L b3 = c3, b4 = c4, b5 = c5, b6 = c6;
     magnitude(b3), magnitude(b4), magnitude(b5), magnitude(b6);
     const L bends = 2.0 * c2 + 3.0 * b3 + 3.0 * b4 + 2.5 * b5 + 1.875 * b6;
@@ -174,8 +176,8 @@ struct LookBetween {
   }
 };
 
-/// exp(i n angle), n = 0, 1, ... count - 1 (even), angle = point + away, exp(i point) known, |away| < 0.6 rad: series to rounding,
-/// and products of two steps.
+/// Powers exp(i n angle), n = 0, 1, ... count - 1 (count even), with angle = point + away, exp(i point) given
+/// and |away| < 0.6 rad, by a series to rounding and products of every second power.
 struct FindPowers {
   template <class L>
   [[gnu::always_inline]] static void run(int count, const LaneRow* point, const LaneRow* away, LaneRow* re,
@@ -210,17 +212,18 @@ struct FindPowers {
   }
 };
 
-/// From an angle whose powers exp(i n angle) are known, by place: value and five derivatives there, and the step to where
-/// the slope of that polynomial is 0: Halley's step, where it does not turn Newton's round, and one of Newton's behind it.
+/// From an angle whose powers exp(i n angle) are given by place: the value and five derivatives there, and
+/// the step to the place where the slope of that Taylor polynomial is 0: Halley's step, unless it reverses
+/// Newton's, followed by one Newton step.
 struct FollowTop {
   struct Found {
-    LaneRow value, bend, step, behind;  ///< behind: the sum after the step
+    LaneRow value, bend, step, behind;  ///< behind: value of the sum after the step
   };
   template <class L>
   [[gnu::always_inline]] static void run(int orders, const int* multiples, const int* places,
                                          const LaneRow* re, const LaneRow* im, const LaneRow* power_re,
                                          const LaneRow* power_im, Found* found) {
-    // A vector that fills a register at a time: all sums stay in registers.
+    // One register-wide vector at a time, so that all sums stay in registers.
     using Part = typename RegisterOf<L>::Type;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
     for (int first = 0; first < kLanes; first += kWidth) {
@@ -242,7 +245,7 @@ struct FollowTop {
       Part d = newton / (third > half ? third : half);
       const Part tilt = s1 + d * (s2 + d * (0.5 * s3 + d * ((1.0 / 6.0) * s4 + d * (1.0 / 24.0) * s5))),
                  curve = s2 + d * (s3 + d * (0.5 * s4 + d * (1.0 / 6.0) * s5)), closer = d - tilt / curve;
-      // Where the next derivatives are no correction: Halley's alone.
+      // If the higher derivatives do not improve the step, take Halley's alone.
       Part moved = (closer - d) * (closer - d);
       d = moved < 0.01 * d * d ? closer : d;
       const Part behind =
@@ -254,8 +257,8 @@ struct FollowTop {
   }
 };
 
-/// sums: of weight |a|, of other |a|, at the most: |a| <= larger + half of the smaller part. Not finite where an amplitude
-/// is not.
+/// sums: upper bounds of the sums of weight |a| and of other |a|, from |a| <= larger + half of the smaller
+/// part. Not finite where an amplitude is not.
 struct BoundSizes {
   template <class L>
   [[gnu::always_inline]] static void run(int orders, const double* weights, const double* others,

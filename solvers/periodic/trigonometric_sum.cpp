@@ -18,13 +18,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kSameOrder = 1e-9;  // of the highest order: rounding of orders written down
-constexpr int kPointsAPeriod = 4;    // of the highest order
+constexpr double kSameOrder = 1e-9;  // rounding of orders as text, relative to the highest order [-]
+constexpr int kPointsAPeriod = 4;    // points in a period of the highest order
 constexpr int kFewestPoints = 16;
 constexpr int kRefinements = 20;
-constexpr double kAngleTolerance = 5e-3;  // of the distance of points: (n d)^6/720 of a step d is rounding
+constexpr double kAngleTolerance = 5e-3;  // last step d over distance of points [-]: (n d)^6/720 is rounding
 
-/// The largest order that all are whole multiples of, by Euclid's algorithm; 0: below `least`.
+/// The largest order of which all are integer multiples, by Euclid's algorithm; 0: it is below `least`.
 double common_order(const std::vector<double>& orders, double least, double same) {
   double common = 0.0;
   for (double order : orders) {
@@ -66,7 +66,7 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
     turned_re_.push_back(std::cos(step_ * p));
     turned_im_.push_back(std::sin(step_ * p));
   }
-  for (int p = 0; p <= points / 4 + 1; ++p)  // one more: they are taken by twos
+  for (int p = 0; p <= points / 4 + 1; ++p)  // one more, since points are processed in pairs
     for (const int n : multiples_) {
       cosines_.push_back(turned_re_[idx(n * p % points)]);
       sines_.push_back(turned_im_[idx(n * p % points)]);
@@ -83,7 +83,7 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
 
-/// Of a top's sum and sign.
+/// Place of a top's sum and sign in best_, values_ and angles_.
 int TrigonometricSum::place_of(const Top& top) { return (top.sign > 0.0 ? 0 : kLanes) + top.lane; }
 
 void TrigonometricSum::find_powers(const LaneRow* point, const LaneRow& angle, const LaneRow& away) {
@@ -179,8 +179,8 @@ void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index f
   LaneRow sizes[2];
   run_widest<BoundSizes>(orders, cubes_.data(), sevenths_.data(), re_.data(), im_.data(), sizes);
   thirds_ = sizes[0];
-  // Within half a step the sum is above the parabola through three points by at most this, above the polynomial
-  // through seven by at most that.
+  // Largest excess of the sum, within half a step, over the parabola through three points and over the
+  // polynomial through seven.
   const double third = step_ * step_ * step_ / (9.0 * std::sqrt(3.0)),
                seventh = LookBetween::kSeventh * std::pow(step_, 7);
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -216,7 +216,7 @@ void TrigonometricSum::take_marked(int used, double sign, const LaneRow* marks) 
         const double before = sample_at(p - 1, lane), here = sample_at(p, lane),
                      after = sample_at(p + 1, lane);
         const double bend = sign * (2.0 * here - before - after), tilt = 0.5 * sign * (after - before);
-        // The parabola's highest place within half a step.
+        // Place of the parabola's maximum within half a step.
         const double shift = std::abs(tilt) < 0.5 * bend ? tilt / bend : std::copysign(0.5, tilt);
         Top top{lane, p, sign, shift, sign * here + shift * (tilt - 0.5 * bend * shift) + slack_.v[lane]};
         if (top.reach >= best_[idx(place_of(top))]) tops_.push_back(top);
@@ -283,7 +283,7 @@ void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<
     find_tops(used);
     look_between();
     follow_leaders();
-    // What the others can reach may be known to be too little now.
+    // The upper bounds of other tops may now be below the best value.
     for (std::size_t next = 0; next < tops_.size();) {
       std::array<int, kLanes> places;
       places.fill(-1);
