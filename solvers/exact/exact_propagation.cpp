@@ -27,8 +27,7 @@ constexpr double kShortest = 1e-6;
 constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
 // Distances from a step's ends, relative to the step's length.
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
-constexpr double kRetreat =
-    1.0 / 16.0;  // length of the next attempt relative to a step whose terms overflowed
+constexpr double kRetreat = 1.0 / 16.0;  // length of the next attempt over that of a step with overflow
 // Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
 constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
 constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
