@@ -9,6 +9,7 @@
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/step_expansion.hpp"
+#include "solvers/linear/matrix_product.hpp"
 #include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
@@ -42,6 +43,7 @@ class ExactRun final : public StepMotion {
         observers_(observers),
         assembler_(system),
         inside_assembler_(system),
+        stiffness_(system.pattern(), system.stiffness_values()),
         expansion_(system),
         series_(expansion_.series),
         known_(expansion_.known),
@@ -99,10 +101,13 @@ class ExactRun final : public StepMotion {
 
   Point at(double t) override {
     move_inside(t, look_);
-    evaluate(inside_assembler_, look_, t);
+    evaluate_wanted(inside_assembler_, look_, t);
     return {inside_assembler_, look_};
   }
   std::optional<int> side(int law) const override { return laws_.side(law); }
+  std::optional<DeflectionRange> deflection_range(int law) override {
+    return expansion_.deflection_range(laws_, system_.scalars()[idx(law)], law, step_.s);
+  }
 
  private:
   bool running() const { return summary_.status == RunStatus::success; }
@@ -172,12 +177,7 @@ class ExactRun final : public StepMotion {
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
     const bool whole = forces_ || t_new == stop.t || end.friction;
-    if (whole) {
-      evaluate(assembler_, next_, evaluated_at);
-    } else {
-      evaluate_motion(next_, evaluated_at);
-      assembler_.multiply_stiffness(to.z, next_.kz);
-    }
+    whole ? evaluate(assembler_, next_, evaluated_at) : evaluate_motion(assembler_, next_, evaluated_at);
     const LawWork work = expansion_.work(laws_, s, next_);
     const EvaluatedState& before = watch(t_new, end);
     if (&before != &now_) assembler_.set_time(evaluated_at);
@@ -334,14 +334,8 @@ class ExactRun final : public StepMotion {
       if (!(t < t_new - (t == ahead ? 0.0 : same))) return *last;
       if (t == part) i += 1.0;
       EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      if (exactly)
-        move_inside(t, point);
-      else
-        move_along(t, point);
-      if (forces_)
-        evaluate(assembler_, point, t);
-      else
-        evaluate_motion(point, t);
+      exactly ? move_inside(t, point) : move_along(t, point);
+      evaluate_wanted(assembler_, point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
@@ -425,11 +419,16 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
-  /// Motion and laws only.
-  void evaluate_motion(EvaluatedState& point, double t) {
-    assembler_.set_time(t);
-    evaluate_laws(assembler_, point);
+  /// Motion and what energies need alone.
+  void evaluate_motion(Assembler& assembler, EvaluatedState& point, double t) {
+    assembler.set_time(t);
+    evaluate_laws(assembler, point);
+    stiffness_.multiply(1.0, point.state.z, point.kz);
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  /// What observers want of a point inside a step.
+  void evaluate_wanted(Assembler& assembler, EvaluatedState& point, double t) {
+    forces_ ? evaluate(assembler, point, t) : evaluate_motion(assembler, point, t);
   }
 
   void evaluate(Assembler& assembler, EvaluatedState& point, double t) {
@@ -437,7 +436,7 @@ class ExactRun final : public StepMotion {
     assembler.set_time(t);
     evaluate_laws(assembler, point);
     assembler.external(s.z, s.v, point.p);
-    assembler.multiply_stiffness(s.z, point.kz);
+    stiffness_.multiply(1.0, s.z, point.kz);
     assembler.multiply_damping(s.v, point.cv);
     point.total = point.kz + point.cv - point.p;
     add_law_forces(system_, point, 1.0, point.total);
@@ -450,6 +449,7 @@ class ExactRun final : public StepMotion {
   const ExactOptions& options_;
   const std::vector<Observer*>& observers_;
   Assembler assembler_, inside_assembler_;
+  MatrixProduct stiffness_;
   StepExpansion expansion_;
   TaylorSeries& series_;  // its parts
   LoadSeries& known_;

@@ -11,9 +11,8 @@ namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
 constexpr int kMostKinks = 1000;  // kinks in a step; what they do to each other is bounded pair by pair
-// Part of what is allowed that pairs of kinks may add up to without being looked at.
-constexpr double kLittle = 0.1;
-constexpr double kAllPairs = 0.4;     // the same part where no pair is looked at
+// Part of what is allowed that pairs of kinks may add up to by their bound.
+constexpr double kMostRowsApart = 0.5;
 constexpr double kOfShare = 0.1;      // part of a step's share that a sweep of finite degree may leave out
 constexpr double kRuleMargin = 10.0;  // margin on what Gauss's rule leaves out, since angles bend, too
 constexpr double kOfRule = 0.1;       // part of what a sweep may leave out that cut series of angles may take
@@ -176,29 +175,21 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
 
 /// What kinks add to rows of later kinks ahead of these, and what these make of it, up to s = end: of a kink ahead by d in
 /// the same row pull d^3/6, one row away k/m h^2 pull d^5/120, two rows away about (rate h)^4/16 pull d^7/5040, three or more
-/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2. Pairs that would
-/// add up to little of what is allowed as neighbours with the largest coupling are taken for such.
+/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2.
 KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) const {
   const KinkMoments& kinks = loads_.kinks();
   const std::vector<LoadSeries::KinkSize>& sizes = loads_.kink_sizes();
   const double h = series_.step(), square = h * h;
   // (2 j + 4)! of rows j apart.
-  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), two = quarter * quarter / 40320.0,
-               more = quarter * quarter * quarter / 3628800.0;
-  const double neighbours = square * series_.largest_coupling() / 720.0 + std::max(two, more);
-  const double little = kLittle * allowed / (kinks.count() * static_cast<double>(kinks.count()));
+  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), beside = square / 720.0,
+               two = quarter * quarter / 40320.0, more = quarter * quarter * quarter / 3628800.0;
   Others others;
-  double most = 0.0;
-  if (!loads_.kinks_share_rows()) {  // most often all pairs add up to little
-    double pull = 0.0, gain = 0.0;
-    for (const LoadSeries::KinkSize& kink : sizes) {
-      pull = std::max(pull, kink.pull);
-      gain = std::max(gain, kink.gain);
-    }
-    others.error = 0.5 * kinks.count() * kinks.count() * square * gain * pull * std::pow(end, 6) * neighbours;
-    if (others.error <= kAllPairs * allowed) return others;
+  if (!loads_.kinks_share_rows()) {
+    others.error = square * bound_of_rows_apart(end, beside, std::max(two, more));
+    if (others.error <= kMostRowsApart * allowed) return others;
     others.error = 0.0;
   }
+  double most = 0.0;
   for (int i = 0; i < kinks.count(); ++i) {
     if (kinks.place(i) >= end) continue;
     for (int k = 0; k < kinks.count(); ++k) {
@@ -209,10 +200,8 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) c
       const int row = kinks.row(i), other = kinks.row(k);
       if (row == other)
         error /= 24.0;
-      else if (const double at_most = error * d_2 * neighbours; at_most <= little)
-        error = at_most;
-      else if (const double beside = series_.coupling(row, other); beside > 0.0)
-        error *= d_2 * (square * beside / 720.0 + two * d_2);
+      else if (const double coupling = series_.coupling(row, other); coupling > 0.0)
+        error *= d_2 * (beside * coupling + two * d_2);
       else
         error *= d_4 * (series_.share_neighbour(row, other) ? two : more * d_2);
       others.error += error;
@@ -223,6 +212,31 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) c
     }
   }
   return others;
+}
+
+/// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, and all as if they
+/// were two rows apart.
+double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) const {
+  const KinkMoments& kinks = loads_.kinks();
+  const LoadSeries::KinkSize* sizes = loads_.kink_sizes().data();
+  double sum = 0.0;
+  for (int i = 0; i < kinks.count(); ++i) {
+    const double place = kinks.place(i);
+    if (place >= end) continue;
+    double of_all = 0.0, of_neighbours = 0.0;
+    for (int k = 0; k < kinks.count(); ++k) {
+      const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d, d_4 = d_2 * d_2;
+      of_all += sizes[k].pull * (d_4 * d_4);
+    }
+    series_.for_coupled(kinks.row(i), [&](int row, double coupling) {
+      const int k = loads_.kink_on(row);
+      if (k < 0) return;
+      const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d;
+      of_neighbours += coupling * sizes[k].pull * (d_2 * d_2 * d_2);
+    });
+    sum += sizes[i].gain * (apart * of_all + beside * of_neighbours);
+  }
+  return sum;
 }
 
 }  // namespace drev

@@ -58,6 +58,7 @@ class KinkResponse {
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed) const;
+  double bound_of_rows_apart(double end, double beside, double apart) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double allowed, double scale);

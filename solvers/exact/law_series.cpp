@@ -1,12 +1,15 @@
 #include "solvers/exact/law_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "solvers/contact/pieces.hpp"
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/expanded_laws.hpp"
+#include "solvers/run/cubic_peak.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
@@ -143,12 +146,16 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
     law.x.assign(std::max(terms, offset.size()), 0.0);
     law.x_size.assign(law.x.size(), 0.0);
     law.known.assign(3, 0.0);
-    for (const Entry& e : term.z)
-      for (std::size_t k = 0; k < terms; ++k) {
-        const double part = e.coeff * series.coefficient(static_cast<int>(k), e.index);
-        law.x[k] += part;
-        law.x_size[k] += std::abs(part);
+    double *x = law.x.data(), *size = law.x_size.data();
+    const auto stride = static_cast<std::size_t>(series.stride());
+    for (const Entry& e : term.z) {
+      const double coeff = e.coeff, *z = series.coefficients(0) + e.index;
+      for (std::size_t k = 0; k < terms; ++k, z += stride) {
+        const double part = coeff * *z;
+        x[k] += part;
+        size[k] += std::abs(part);
       }
+    }
     for (const Entry& e : term.u)
       for (std::size_t k = 0; k < 3; ++k) {
         const double part = e.coeff * known.prescribed(e.index)[k];
@@ -203,6 +210,23 @@ LawSeries::Start LawSeries::start_of(Law& law, const LawBound& b, int index) {
     g[k] = 0.0;
   }
   return Start::holds;
+}
+
+Interval LawSeries::range(int law, double end) const {
+  constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
+  const std::vector<double>& x = laws_[idx(law)].x;
+  std::array<double, kParts> s, value, slope;
+  for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
+  polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
+  Interval range{x[0], x[0]};
+  const auto take = [&range](double y) { range = {std::min(range.low, y), std::max(range.high, y)}; };
+  double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
+  for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
+    take(value[i]);
+    const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
+    if (inside) take(polynomial_value(x, s[i] - end / kParts * (1.0 - inside->s)));
+  }
+  return range;
 }
 
 std::optional<LawSeries::Change> LawSeries::change_at_once() {

@@ -38,6 +38,9 @@ class LawSeries {
     return l.sides[idx(l.piece)];
   }
 
+  /// The smallest and the largest value of a law's deflection on its series in [0, end].
+  Interval range(int law, double end) const;
+
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
   /// Adds the stiffest pieces of all laws, to bound the fastest rate.

@@ -91,6 +91,8 @@ class LoadSeries {
   /// Some of them are on one row.
   bool kinks_share_rows() const { return shared_rows_; }
   const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
+  /// The kink listed last on a row; -1: none.
+  int kink_on(int row) const { return std::max(last_kink_[idx(row)] - listed_before_, 0) - 1; }
   /// Bound of the accelerations of all of them, sum |jump theta'| h^2/sqrt(m): energies tell that they move an unknown of
   /// mass m over s by no more than this s^3/(6 sqrt(m)).
   double kink_push() const { return kink_push_; }

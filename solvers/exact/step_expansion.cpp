@@ -138,6 +138,19 @@ const double* StepExpansion::beyond_cubic(double s) {
   return beyond_cubic_.data();
 }
 
+StepMotion::DeflectionRange StepExpansion::deflection_range(const LawSeries& laws, const ScalarTerm& term,
+                                                            int law, double s) const {
+  const Interval range = laws.range(law, s);
+  double error = 0.0;
+  for (const Entry& e : term.z)
+    if (sweeps_ && kinks.any())  // from zero at rest, |y| <= |y_1| + 4/27 |y'_1| on the cubic
+      error += std::abs(e.coeff) * ((1.0 + kOfKinks) * std::abs(series.swept(0)[e.index]) +
+                                    (4.0 / 27.0 + kOfKinkRates) * std::abs(series.swept(-1)[e.index]));
+    else if (known.kinked())
+      error += std::abs(e.coeff) * known.kinks_inside() * series.z_scale()[idx(series.kind(e.index))];
+  return {range.low, range.high, error};
+}
+
 std::optional<double> StepExpansion::first_knot(double end) {
   std::optional<double> first;
   const auto take = [&](auto& laws) {

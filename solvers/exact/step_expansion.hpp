@@ -13,6 +13,7 @@
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/projected_laws.hpp"
+#include "solvers/run/observer.hpp"
 #include "solvers/series/taylor_series.hpp"
 
 namespace drev {
@@ -77,6 +78,9 @@ class StepExpansion {
 
   /// Observer::looks_inside() over the step up to s.
   const double* beyond_cubic(double s);
+  /// StepMotion::deflection_range() up to s: of the series; what kinks add is within the error.
+  StepMotion::DeflectionRange deflection_range(const LawSeries& laws, const ScalarTerm& term, int law,
+                                               double s) const;
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.

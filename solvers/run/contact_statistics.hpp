@@ -83,6 +83,8 @@ class ContactStatistics final : public Observer {
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
+  bool may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to,
+                       const double* beyond_cubic);
   void note_forces(std::size_t i, const EvaluatedState& from, const EvaluatedState& to);
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
@@ -90,9 +92,11 @@ class ContactStatistics final : public Observer {
   std::vector<std::size_t> terms_;
   std::vector<std::vector<Entry>> rows_;  // rows of the deflections over the unknowns
   std::vector<bool> in_unknowns_;         // whether unknowns alone move the deflection
+  std::vector<bool> one_spring_;          // and each flank is one spring without damping
   std::vector<Gap> gaps_;
   std::vector<double> masses_;
   std::vector<ContactInterval> intervals_;
+  std::vector<std::optional<double>> largest_inside_;  // of each force in the step at hand, where it is known
   std::vector<ContactRecord> records_;
 };
 

@@ -15,7 +15,8 @@ class StepMotion {
   virtual ~StepMotion() = default;
   struct Point {
     const Assembler& assembler;  ///< stands at the point's time
-    const EvaluatedState& at;    ///< its motion, accelerations too, and the laws' inputs and responses
+    /// Its motion, with accelerations if some observer needs them, and the laws' inputs and responses.
+    const EvaluatedState& at;
   };
   /// At a time [s] between the two points that step() was given; valid until the next call. To the accuracy
   /// of the step's end in exact propagation; elsewhere on the polynomial through both ends of the step.
@@ -23,6 +24,12 @@ class StepMotion {
   /// Where a law (of System::scalars()) that has a gap is between the two points: 1 on the flank above it, 0 in
   /// the gap, -1 below; none where the method does not end its steps at changes.
   virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
+  /// The smallest and the largest deflection of a law between the two points that looks_inside() was given, both off by at
+  /// most `error` [m or rad]; none where that costs as much as to show the points inside.
+  struct DeflectionRange {
+    double low, high, error;
+  };
+  virtual std::optional<DeflectionRange> deflection_range(int /*law*/) { return std::nullopt; }
 };
 
 class Observer {

@@ -116,13 +116,13 @@ struct Polynomial {
 };
 
 struct Sums {
-  static constexpr int kTogether = 4;  // sums that stay in registers together
+  static constexpr int kTogether = 5;  // sums that stay in registers together
   template <class L, int kCount, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void some(int stride, int count, int per_column, const double* weight,
                                           const double* f, double* out) {
     L sum[kCount], x;
     if constexpr (kAdd) {
-#pragma GCC unroll 4
+#pragma GCC unroll 5
       for (int j = 0; j < kCount; ++j) load(out + j * stride, sum[j]);
     } else {
       clear(sum);
@@ -130,10 +130,10 @@ struct Sums {
     for (int q = 0; q < count; ++q, weight += per_column, f += stride) {
       load(f, x);
       if constexpr (kSizes) magnitude(x);
-#pragma GCC unroll 4
+#pragma GCC unroll 5
       for (int j = 0; j < kCount; ++j) sum[j] += weight[j] * x;
     }
-#pragma GCC unroll 4
+#pragma GCC unroll 5
     for (int j = 0; j < kCount; ++j) store(sum[j], out + j * stride);
   }
   template <class L, bool kSizes, bool kAdd>
@@ -151,6 +151,9 @@ struct Sums {
           break;
         case 3:
           some<L, 3, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          break;
+        case 4:
+          some<L, 4, kSizes, kAdd>(stride, count, per_column, w, f, to);
           break;
         default:
           some<L, kTogether, kSizes, kAdd>(stride, count, per_column, w, f, to);

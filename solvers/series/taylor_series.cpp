@@ -183,14 +183,13 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
 }
 
 double TaylorSeries::bound_rates() {
-  const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
-  k_norm_ = c_norm_ = largest_coupling_ = 0.0;
+  const int* outer = system_.pattern().outerIndexPtr();
+  k_norm_ = c_norm_ = 0.0;
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
       const double k = std::abs(k_[position_[idx(s)]]);
       k_sum += k;
-      if (inner[s] != row) largest_coupling_ = std::max(largest_coupling_, k * mobility(row));
       c_sum += std::abs(c_[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
@@ -229,7 +228,6 @@ double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
 void TaylorSeries::scale_as(const TaylorSeries& other) {
   k_norm_ = other.k_norm_;
   c_norm_ = other.c_norm_;
-  largest_coupling_ = other.largest_coupling_;
   z_scale_ = z_step_scale_ = other.z_scale_;
   v_scale_ = v_step_scale_ = other.v_scale_;
 }

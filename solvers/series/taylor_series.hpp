@@ -172,8 +172,13 @@ class TaylorSeries {
   }
   /// |k| between two unknowns over the first one's mass [1/s^2].
   double coupling(int row, int other) const;
-  /// The largest of them, as bound_rates() saw them.
-  double largest_coupling() const { return largest_coupling_; }
+  /// Calls each(other, coupling(row, other)) for every unknown that is coupled with a row.
+  template <class Each>
+  void for_coupled(int row, const Each& each) const {
+    const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
+    for (int s = outer[row]; s < outer[row + 1]; ++s)
+      if (inner[s] != row) each(inner[s], std::abs(k_[position_[idx(s)]]) * mobility(row));
+  }
   /// Whether some third one is coupled with both.
   bool share_neighbour(int row, int other) const;
   /// The same of the unknown that a force on a row moves most.
@@ -240,7 +245,7 @@ class TaylorSeries {
   bool chain_ = false;  // nearly all of them are the main one and its neighbours
   bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
-  double k_norm_ = 0.0, c_norm_ = 0.0, largest_coupling_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
+  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;     // of M^-1, largest row sum, where M is not diagonal
   std::vector<double> swept_;  // columns of the sweep behind two of zeros
