@@ -65,6 +65,12 @@ TEST_CASE("The class calculation judges what the sweep finds, fired and misfirin
         CHECK(limit == Approx(90e6 * modulus / 1.6));  // local stress: nominal times 1.6
         CHECK(s.at("stress_Pa")[3].get<double>() ==
               Approx(1.6 * s.at("half_range_Nm")[3].get<double>() / modulus));
+        // A peak between the speeds is what counts: half range, stress and utilisation are of one speed.
+        const double worst = s.at("worst_half_range_Nm");
+        CHECK(worst >= largest * (1.0 - 1e-12));
+        CHECK(s.at("worst_permissible_Nm") == limit);
+        CHECK(s.at("utilisation").get<double>() == Approx(worst / limit));
+        CHECK(s.at("worst_stress_Pa").get<double>() == Approx(1.6 * worst / modulus));
       }
     }
   }
