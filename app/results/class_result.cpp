@@ -151,17 +151,15 @@ std::string case_text(const ClassCase& c) {
                     j.rule.empty() ? "not judged" : j.rule});
     for (const ExceededRange& range : j.exceeded)
       ranges += wrap(s.name + ": exceeded from " + exceeded_text(range), 2);
-    for (const RuleBarredRange& b : j.barred)
-      ranges += wrap(s.name + ": critical at " +
-                         digits(to_rpm(c.sweep.criticals[static_cast<std::size_t>(b.critical)].speed), 5) +
-                         " rpm (order " +
-                         short_digits(c.sweep.criticals[static_cast<std::size_t>(b.critical)].order, 4) +
-                         ", mode " +
-                         std::to_string(c.sweep.criticals[static_cast<std::size_t>(b.critical)].mode + 1) +
+    for (const RuleBarredRange& b : j.barred) {
+      const SweepCritical& critical = c.sweep.criticals[static_cast<std::size_t>(b.critical)];
+      ranges += wrap(s.name + ": critical at " + digits(to_rpm(critical.speed), 5) + " rpm (order " +
+                         short_digits(critical.order, 4) + ", mode " + std::to_string(critical.mode + 1) +
                          "), speed ratio " + digits(b.speed_ratio, 3) +
                          (b.to > 0.0 ? ": barred by IACS UR M68.5 from " + rpm_range(b.from, b.to)
                                      : ": IACS UR M68.5 permits no barred range from a ratio of 0.8 on"),
                      2);
+    }
     if (j.heat > data.permissible_heat)
       ranges += wrap(
           s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);
