@@ -380,7 +380,7 @@ void SystemBuilder::finish() {
   all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
-System SystemBuilder::at_speed(const System& system, double speed) {
+System SystemBuilder::at_speed(const System& system, double speed, const Vector& forces) {
   std::vector<Finding> findings;
   ParameterCheck check(system.name(), findings);
   check.finite("speed", speed, "rad/s");
@@ -390,6 +390,8 @@ System SystemBuilder::at_speed(const System& system, double speed) {
   if (!findings.empty()) throw ModelError(std::move(findings));
   System other = system;
   other.reference_ = constant_speed(speed);
+  // At a constant speed the drag of the nominal motion is a constant force, too.
+  if (forces.size() > 0) other.nominal_drag_.head(other.size()) -= forces / speed;
   return other;
 }
 

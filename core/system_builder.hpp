@@ -15,7 +15,7 @@ class SystemBuilder {
   explicit SystemBuilder(const Model& model) : model_(model) {}
   System build();
   /// solvers/at_speed.hpp
-  static System at_speed(const System& system, double speed);
+  static System at_speed(const System& system, double speed, const Vector& forces);
 
  private:
   // Names, known motions, elements: what can be found wrong with each by itself.

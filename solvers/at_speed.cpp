@@ -4,6 +4,8 @@
 
 namespace drev {
 
-System at_speed(const System& system, double speed) { return SystemBuilder::at_speed(system, speed); }
+System at_speed(const System& system, double speed, const Vector& forces) {
+  return SystemBuilder::at_speed(system, speed, forces);
+}
 
 }  // namespace drev

@@ -27,12 +27,13 @@ constexpr double kUnbounded =
     30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kBatches = 20;
 constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
-constexpr double kTwoPoints = 0.57735026918962576;  // Gauss's rule of two points
-constexpr double kRunTolerance = 1e-9;              // of a cycle by exact propagation
+constexpr int kQuarters = 4;        // points in a step, for statistics
+constexpr double kGoldenRatio = 0.61803398874989485;  // whose multiples fill 0 to 1 evenly
+constexpr double kRunTolerance = 1e-9;                // of a cycle
 
-/// Mean, mean square and extremes of channels over a part of a run.
+/// Mean, mean square and extremes of channels over a part of a run, and the mean torque left over on floating parts.
 struct CycleFigures {
-  Vector mean, square, lowest, highest;
+  Vector mean, square, lowest, highest, left_over;
   Vector largest() const { return highest.cwiseMax(-lowest); }
   Vector deviation() const { return (square - mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt(); }
 };
@@ -48,6 +49,7 @@ struct FigureSum {
     }
     all.mean += (part.mean - all.mean) / count;
     all.square += (part.square - all.square) / count;
+    all.left_over += (part.left_over - all.left_over) / count;
     all.lowest = all.lowest.cwiseMin(part.lowest);
     all.highest = all.highest.cwiseMax(part.highest);
   }
@@ -56,8 +58,7 @@ struct FigureSum {
 /// Mean and mean square of each run that it is shown, extremes of all of them.
 class FigureObserver final : public Observer {
  public:
-  /// fine: 8 of Gauss's points in a step, and extremes located, for figures of one motion; else 2, and extremes of them and
-  /// the ends of steps, for statistics.
+  /// fine: Gauss's points in a step, and extremes located, for figures of one motion; else as statistics are.
   FigureObserver(const std::vector<Channel>& channels, bool fine) : peaks_(channels, fine), fine_(fine) {}
 
   void look_through(StepMotion& motion) override {
@@ -74,31 +75,34 @@ class FigureObserver final : public Observer {
       lowest_ = Vector::Constant(sum_.size(), INFINITY);
       highest_ = -lowest_;
     }
+    end_ = values(assembler, point.state);
   }
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
                     const double* beyond_cubic) override {
     return peaks_.looks_inside(from, to, beyond_cubic);
   }
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
-    const double half = 0.5 * (to.state.t - from.state.t), middle = 0.5 * (to.state.t + from.state.t);
-    const auto add_pair = [&](double place, double weight) {
-      for (const double side : {-half, half}) add(motion_->at(middle + side * place), half * weight);
-    };
-    if (half > 0.0 && fine_)
-      for (std::size_t g = 0; g < kGaussPoints.size(); ++g) add_pair(kGaussPoints[g], kGaussWeights[g]);
-    else if (half > 0.0)
-      add_pair(kTwoPoints, 1.0);
-    lasted_ += 2.0 * half;
+    const double h = to.state.t - from.state.t;
+    if (h > 0.0 && fine_) {
+      const double half = 0.5 * h, middle = from.state.t + half;
+      for (std::size_t g = 0; g < kGaussPoints.size(); ++g)
+        for (const double side : {-half, half})
+          add(motion_->at(middle + side * kGaussPoints[g]), half * kGaussWeights[g]);
+    } else if (h > 0.0) {
+      add_quarters(assembler, from.state.t, h, to.state);
+    }
+    lasted_ += h;
     peaks_.step(assembler, from, to);
   }
   void restart(const Assembler& assembler, const EvaluatedState& point) override {
     peaks_.restart(assembler, point);
+    end_ = values(assembler, point.state);
   }
   bool needs_acceleration() const override { return peaks_.needs_acceleration(); }
   bool watches_loads() const override { return peaks_.watches_loads(); }
 
   CycleFigures figures() const {
-    CycleFigures found{sum_ / lasted_, squares_ / lasted_, lowest_, highest_};
+    CycleFigures found{sum_ / lasted_, squares_ / lasted_, lowest_, highest_, {}};
     for (Eigen::Index c = 0; c < sum_.size(); ++c) {
       const Peak& peak = peaks_.peaks()[static_cast<std::size_t>(c)];
       found.lowest[c] = std::min(lowest_[c], peak.min);
@@ -108,22 +112,39 @@ class FigureObserver final : public Observer {
   }
 
  private:
+  Vector values(const Assembler& assembler, const State& state) const {
+    Vector y(sum_.size());
+    for (Eigen::Index c = 0; c < y.size(); ++c)
+      y[c] = peaks_.channels()[static_cast<std::size_t>(c)].evaluate(assembler, state);
+    return y;
+  }
   void add(const StepMotion::Point& point, double weight) {
-    for (Eigen::Index c = 0; c < sum_.size(); ++c) {
-      const double y =
-          peaks_.channels()[static_cast<std::size_t>(c)].evaluate(point.assembler, point.at.state);
-      sum_[c] += weight * y;
-      squares_[c] += weight * y * y;
-      lowest_[c] = std::min(lowest_[c], y);
-      highest_[c] = std::max(highest_[c], y);
-    }
+    const Vector y = values(point.assembler, point.at.state);
+    sum_ += weight * y;
+    squares_ += weight * y.cwiseAbs2();
+    lowest_ = lowest_.cwiseMin(y);
+    highest_ = highest_.cwiseMax(y);
+  }
+  /// One point in each quarter, all at the same place u in it, which is even in 0 to 1 over the steps. What is off the middle
+  /// has the mean 0; of what is smooth, the ends' difference takes it away at once.
+  void add_quarters(const Assembler& assembler, double t, double h, const State& end) {
+    place_ += kGoldenRatio;
+    place_ -= std::floor(place_);
+    const double quarter = h / kQuarters;
+    for (int i = 0; i < kQuarters; ++i) add(motion_->at(t + (i + place_) * quarter), quarter);
+    const Vector to = values(assembler, end);
+    const double off = (place_ - 0.5) * quarter;
+    sum_ -= off * (to - end_);
+    squares_ -= off * (to.cwiseAbs2() - end_.cwiseAbs2());
+    end_ = to;
   }
 
   Peaks peaks_;
   bool fine_;
   StepMotion* motion_ = nullptr;
   Vector sum_, squares_, lowest_, highest_;
-  double lasted_ = 0.0;
+  Vector end_;  // values at the end of the last step
+  double lasted_ = 0.0, place_ = 0.0;
 };
 
 class CycleRun {
@@ -132,6 +153,7 @@ class CycleRun {
       : system_(system),
         options_(options),
         exact_(!why_not_exact(system)),
+        hold_(system, options.floating),
         channels_(find_channels(system, options.channels)),
         state_(std::move(start)) {
     state_.t = 0.0;
@@ -141,6 +163,7 @@ class CycleRun {
  private:
   void run_to(double t, const std::vector<Observer*>& observers);
   bool cycle(FigureObserver* watch, FigureSum* figures);
+  Vector end_cycle();
   bool settle();
   void of_repetitions(const CycleDecay::Repetition& found);
   void of_statistics(const std::vector<CycleFigures>& cycles);
@@ -149,6 +172,7 @@ class CycleRun {
   const System& system_;
   const CycleRunOptions& options_;
   bool exact_;
+  SpeedHold hold_;
   std::vector<Channel> channels_;
   State state_;
   long cycles_ = 0;
@@ -161,7 +185,7 @@ void CycleRun::run_to(double t, const std::vector<Observer*>& observers) {
       exact_ ? Method{kExact, 0.0, kRunTolerance} : Method{"sdirk4", options_.period / 20.0, 1e-8};
   // A run in which the damping is not in the energy's books is judged by the motion alone.
   const RunSummary run = run_method(
-      system_, method, {.t_start = state_.t, .t_end = t, .energy_tolerance = 1e6}, state_, observers);
+      hold_.system(), method, {.t_start = state_.t, .t_end = t, .energy_tolerance = 1e6}, state_, observers);
   if (run.status != RunStatus::success) throw SolverError(run.reason);
 }
 
@@ -173,10 +197,21 @@ bool CycleRun::cycle(FigureObserver* watch, FigureSum* figures) {
   }
   std::vector<Observer*> observers;
   if (watch != nullptr) observers.push_back(watch);
-  run_to(options_.period * static_cast<double>(++cycles_), observers);
+  hold_.begin_cycle(state_);
+  run_to(options_.period * static_cast<double>(cycles_ + 1), observers);
+  const Vector left_over = end_cycle();
   decay_.add(state_.z, state_.v);
-  if (watch != nullptr) figures->add(watch->figures());
+  if (watch != nullptr) {
+    CycleFigures of = watch->figures();
+    of.left_over = left_over;
+    figures->add(of);
+  }
   return true;
+}
+
+Vector CycleRun::end_cycle() {
+  ++cycles_;
+  return hold_.end_cycle(state_, options_.period, kRunTolerance);
 }
 
 CycleRunResult CycleRun::run() {
@@ -238,15 +273,22 @@ void CycleRun::of_repetitions(const CycleDecay::Repetition& found) {
   run.deviation = now.deviation();
   run.lowest = now.lowest;
   run.highest = now.highest;
+  run.left_over = now.left_over;
   sample(found.cycles);
 }
 
 void CycleRun::sample(int cycles) {
   const int count = (options_.samples + cycles - 1) / cycles;
-  for (int i = 0; i < cycles * count; ++i) {
-    const double t = options_.period * (static_cast<double>(cycles_) + static_cast<double>(i) / count);
-    if (t > state_.t) run_to(t, {});
-    result_.motion.push_back(state_.z);
+  for (int c = 0; c < cycles; ++c) {
+    hold_.begin_cycle(state_);
+    for (int i = 0; i < count; ++i) {
+      const double t = options_.period * (static_cast<double>(cycles_) + static_cast<double>(i) / count);
+      if (i > 0) run_to(t, {});
+      result_.motion.push_back(state_.z);
+    }
+    if (c + 1 == cycles) break;
+    run_to(options_.period * static_cast<double>(cycles_ + 1), {});
+    end_cycle();
   }
 }
 
@@ -265,6 +307,7 @@ void CycleRun::of_statistics(const std::vector<CycleFigures>& cycles) {
   run.deviation = sum.all.deviation();
   run.lowest = sum.all.lowest;
   run.highest = sum.all.highest;
+  run.left_over = sum.all.left_over;
   run.mean_error = Vector::Zero(run.mean.size());
   for (const FigureSum& batch : batches) run.mean_error += (batch.all.mean - run.mean).cwiseAbs2();
   run.mean_error = kStudent * (run.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
@@ -292,9 +335,7 @@ std::optional<std::vector<CycleRunResult>> run_at_speeds(const System& system,
   std::atomic<std::size_t> done{0};
   std::atomic<bool> stop{false};
   for_all(starts.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const double speed = results[i].run.speed = starts[i].speed;
-    results[i].run.reason = starts[i].why_not;
-    if (!starts[i].why_not.empty()) return;
+    const double speed = starts[i].speed;
     const System here = at_speed(system, reference_direction(system) * speed);
     State state = State::initial(here);
     if (starts[i].z.size() > 0) {

@@ -6,8 +6,11 @@
 /// the one before: what they change by, and will by the ratio at which cycles come closer, is their error. A run that
 /// does not repeat in the first half of its cycles has the figures of the second, in which it may repeat still.
 ///
-/// Means are integrals over the steps (Gauss's rule on the motion inside each); extremes are located (Peaks), but those of
-/// statistics are of the ends of steps and two points inside each.
+/// Parts that float freely keep their mean speed (speed_hold.hpp).
+///
+/// Means of a motion that repeats are integrals over the steps (Gauss's rule on the motion inside each), and its extremes are
+/// located (Peaks). Statistics are of the ends of steps and four points inside each, one in each quarter, in places
+/// that differ from step to step: steps that keep time with the teeth sample a stiffness that jumps without bias.
 #include <drev/core/channel.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
@@ -17,15 +20,18 @@
 #include <string>
 #include <vector>
 
+#include "solvers/speed_hold.hpp"
+
 namespace drev {
 
 struct CycleRunOptions {
   double period = 0.0;     ///< of a cycle [s]
   int cycles = 0;          ///< at most, before what is watched of a motion that repeats; >= 40
   double tolerance = 0.0;  ///< of the figures of a motion that repeats, beside each channel's largest value
-  std::vector<std::string> channels = {};  ///< whose figures are found
-  int samples = 0;                         ///< of a motion that repeats
-  std::function<bool()> go_on = {};        ///< asked before each cycle; false: end
+  std::vector<std::string> channels = {};   ///< whose figures are found
+  int samples = 0;                          ///< of a motion that repeats
+  std::vector<FloatingPart> floating = {};  ///< parts whose mean speed is kept
+  std::function<bool()> go_on = {};         ///< asked before each cycle; false: end
 };
 
 struct CycleRunResult {
@@ -38,9 +44,8 @@ struct CycleRunResult {
 
 /// Where a run begins.
 struct RunStart {
-  double speed = 0.0;        ///< of the reference shaft, > 0 [rad/s]
-  Vector z, v;               ///< empty: the model's initial conditions
-  std::string why_not = {};  ///< not empty: there is no run, for this reason
+  double speed = 0.0;  ///< of the reference shaft, > 0 [rad/s]
+  Vector z, v;         ///< empty: the model's initial conditions
 };
 
 /// system: at its speed; the cycle begins at the state given. A run that fails has its reason.

@@ -325,9 +325,8 @@ void Sweeper::find_jumps() {
 NonlinearSweep Sweeper::run() {
   start_at(high_);
   if (tell(0.25)) start_at(low_);
-  for (const double speed : options_.speeds) {
-    if (!any_at(speed) && tell(0.4)) start_at(speed);
-  }
+  for (const double speed : options_.speeds)
+    if (!stable_at(speed) && tell(0.4)) start_at(speed);
   if (options_.runs && (stability_ != nullptr || sweep_.branches.empty())) fill_with_runs();
   for (const double speed : options_.speeds)
     if (!any_at(speed)) sweep_.unsolved.push_back(speed);

@@ -14,7 +14,7 @@
 /// cycles do not repeat; they are described by statistics.
 ///
 /// Free parts: as in linear_sweep.hpp, what is left over of mean torque is reported, and taken up by `balance` or
-/// by the acceleration of the part.
+/// by the acceleration of the part; a run in time keeps their mean speed all the same (speed_hold.hpp).
 ///
 /// Refused: loads in time, given motions, general elements.
 ///
@@ -100,6 +100,8 @@ struct SweptRun {
   /// Of a run that repeats, its mean's own change, as error; else half of the 95 % interval, by batch means.
   Vector mean, mean_error;
   Vector deviation, lowest, highest;  ///< extremes of a run that repeats are located
+  /// Mean torque left over on each floating part, as in MotionFigures; the part keeps its mean speed all the same.
+  Vector left_over;
 };
 
 struct NonlinearSweep {
@@ -131,7 +133,7 @@ double cycle_turns(const System& system);
 ///
 /// At each speed asked for, section by section: of the motions that are stable (or not judged) the one with the largest half range, with its
 /// mean, extremes and orders; where none is stable, mean, lowest and highest value of the run in time (no orders; heat
-/// is not known, and 0). Speeds with neither are left out, and listed. Points of stable curves between two speeds that are
+/// and twist are not known: NaN). Speeds with neither are left out, and listed. Points of stable curves between two speeds that are
 /// higher than at both of them are peaks. There are no criticals: orders meet no natural frequency of a train whose
 /// contacts open.
 struct WorstMotions {

@@ -10,7 +10,6 @@ namespace drev {
 namespace {
 
 constexpr double kPerturbation = 1e-3;
-constexpr double kBalanced = 1e-6;  // N m left over that a run may have
 constexpr double kRepresented =
     0.3;  // of a section's largest value: the few harmonics' distance from the run
 
@@ -114,6 +113,7 @@ void Sweeper::fill_with_runs() {
   CycleRunOptions of{.cycles = options_.run_cycles, .tolerance = options_.tolerance};
   for (const SectionRows& row : sections_->sections()) of.channels.push_back(row.name);
   of.samples = 4 * most_harmonics(*family(1).balance);
+  of.floating = floating_parts_of(system_, family(1).balance->mean());
   for (std::size_t round = 1; !left.empty(); round = std::min(round, left.size())) {
     std::vector<RunStart> starts;
     for (std::size_t i = 0; i < round; ++i) {
@@ -121,8 +121,6 @@ void Sweeper::fill_with_runs() {
       if (const SweptMotion* near = nearest(left[i])) {
         start.z = (1.0 + kPerturbation) * near->z;
         start.v = (1.0 + kPerturbation) * near->v;
-        if (near->left_over.size() > 0 && near->left_over.cwiseAbs().maxCoeff() > kBalanced)
-          start.why_not = "the mean torque does not balance: the train would run away";
       }
       starts.push_back(std::move(start));
     }

@@ -93,6 +93,7 @@ WorstMotions worst_motions(const NonlinearSweep& given) {
       if (answers[i].stable.empty()) {
         const SweptRun& run = *answers[i].run;
         s.mean[at] = run.mean[section];
+        s.heat[at] = s.twist_mean[at] = s.twist_half_range[at] = std::nan("");
         s.maximum[at] = run.highest[section] - run.mean[section];
         s.minimum[at] = run.lowest[section] - run.mean[section];
         continue;

@@ -17,6 +17,7 @@
 #include "app/cli/option_values.hpp"
 #include "app/report/report_file.hpp"
 #include "app/run/excitation.hpp"
+#include "app/run/run_up.hpp"
 
 namespace drev::app {
 
@@ -60,10 +61,10 @@ void check_orders_of(const ModelRequest& model, const CommandLine& line, std::ve
   const std::vector<std::string>& names = model.system.node_names();
   if (std::find(names.begin(), names.end(), *node) == names.end())
     findings.push_back({kCommandLine, "--orders-of", *node, "", "is none of the nodes"});
-  else if (model.system.reference_speed() != 0.0 ||
-           speed_range(model.system, model.model_case.duration).fastest > 0.0)
+  else if (!turns_actually(model.system, model.model_case.duration))
     findings.push_back({kCommandLine, "--orders-of", *node, "",
-                        "is for models in which nothing turns nominally; orders are of the reference shaft"});
+                        "is for models in which nothing turns nominally, or whose reference shaft runs up "
+                        "freely; orders are of the reference shaft"});
 }
 
 /// The tolerance of exact propagation, or of controlled steps.

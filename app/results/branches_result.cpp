@@ -142,16 +142,18 @@ std::string runs_table(const NonlinearSweep& sweep) {
 LeftOver left_over_of(const NonlinearSweep& sweep, std::size_t part) {
   LeftOver left;
   std::map<double, double> asked;
-  for (const SweptBranch& branch : sweep.branches)
-    for (const SweptMotion& motion : branch.motions) {
-      if (motion.left_over.size() <= static_cast<Eigen::Index>(part)) continue;
-      const double value = std::abs(motion.left_over[static_cast<Eigen::Index>(part)]);
-      if (value > left.most) {
-        left.most = value;
-        left.at_rpm = to_rpm(motion.speed);
-      }
-      if (motion.asked) asked[to_rpm(motion.speed)] = std::max(asked[to_rpm(motion.speed)], value);
+  const auto note = [&](const Vector& over, double speed, bool is_asked) {
+    if (over.size() <= static_cast<Eigen::Index>(part)) return;
+    const double value = std::abs(over[static_cast<Eigen::Index>(part)]);
+    if (value > left.most) {
+      left.most = value;
+      left.at_rpm = to_rpm(speed);
     }
+    if (is_asked) asked[to_rpm(speed)] = std::max(asked[to_rpm(speed)], value);
+  };
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions) note(motion.left_over, motion.speed, motion.asked);
+  for (const SweptRun& run : sweep.runs) note(run.left_over, run.speed, true);
   for (const auto& [rpm, value] : asked) left.note(value, rpm, kLeftOver);
   return left;
 }

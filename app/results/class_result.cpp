@@ -146,7 +146,7 @@ std::string case_text(const ClassCase& c) {
                     j.judged() ? digits(worst.permissible, kShown) : "",
                     j.judged() ? digits(100.0 * j.utilisation, 3) + " %" : "",
                     j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
-                    digits(j.heat, 4) +
+                    (std::isnan(j.heat) ? "-" : digits(j.heat, 4)) +
                         (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
                     j.rule.empty() ? "not judged" : j.rule});
     for (const ExceededRange& range : j.exceeded)

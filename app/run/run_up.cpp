@@ -14,9 +14,17 @@ constexpr std::size_t kMostCriticals = 40;
 constexpr double kTurning = 1.0;  // rad/s, at which loads are looked at where no speed is known
 }  // namespace
 
+bool turns_actually(const System& system, double duration) {
+  const SpeedRange range = speed_range(system, duration);
+  const std::vector<std::string> floating = system.floating_parts(Contact::closed);
+  if (!(range.fastest > 0.0)) return !floating.empty();
+  return range.changes() && system.loads_depend_on_motion() &&
+         std::any_of(floating.begin(), floating.end(),
+                     [&](const std::string& node) { return system.ratio(system.node(node)) != 0.0; });
+}
+
 OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration) {
-  if (speed_range(system, duration).fastest > 0.0 || system.floating_parts(Contact::closed).empty())
-    return {};
+  if (!turns_actually(system, duration)) return {};
   OrderShaft shaft{named.empty() ? driven_node(system) : named, {}};
   if (shaft.node.empty()) return shaft;
   if (system.reference()) {

@@ -2,7 +2,8 @@
 /// What a run whose speed changes passes: the criticals of its speeds, and the orders over them.
 ///
 /// Speeds are the nominal ones, where the nominal speed changes. Where nothing turns nominally (a start from rest, whose
-/// speed its torques make) orders are of the actual angle of a node, and speeds the actual mean speed of each window.
+/// speed its torques make), or the nominal speed changes and the reference shaft floats freely under torques of its
+/// actual angle, orders are of the actual angle of a node, and speeds the actual mean speed of each window.
 #include <drev/core/model.hpp>
 #include <drev/solvers/periodic/order_tracking.hpp>
 
@@ -20,7 +21,9 @@ struct OrderShaft {
   std::string node;              ///< empty: of none, its nominal speed changes or does not
   std::optional<System> turned;  ///< the model that turns nominally with it, for ratios and orders
 };
-/// Where nothing turns nominally and a part can: the node named, or, that empty, the one that is driven (driven_node(): the
+/// Whether orders of such a run are of an actual angle.
+bool turns_actually(const System& system, double duration);
+/// Where turns_actually(): the node named, or, that empty, the one that is driven (driven_node(): the
 /// orders of its torque are counted by its own turns).
 OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration);
 

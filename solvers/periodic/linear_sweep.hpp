@@ -83,7 +83,9 @@ struct SweepPeak {
 struct SweepCritical {
   int mode = 0;  ///< number of the elastic mode, from 0
   double order = 0.0;
-  double speed = 0.0;  ///< speed at which the order's amplitude is largest in `section` [rad/s]
+  /// Speed at which the order's amplitude is largest in `section`, within half the mode's width; on the flank of another
+  /// mode, where it has no top of its own, speed at which the order meets the mode's frequency [rad/s].
+  double speed = 0.0;
   double frequency_Hz = 0.0,
          damping_ratio = 0.0;  ///< damped natural frequency and damping ratio at that speed
   /// Section in which the order's amplitude is largest relative to the section's largest half range.

@@ -28,6 +28,8 @@ class MeanEquilibrium {
 
   const std::vector<std::string>& floating() const { return floating_; }
   const std::vector<Vector>& rigid() const { return rigid_; }
+  /// For each floating part the row of the node whose torque balances it; empty: none.
+  const std::vector<std::vector<Entry>>& balance() const { return balance_; }
   /// p -> z. left: receives the unbalanced torque of each floating part, r_f' p [N m at the reference shaft];
   /// null if not wanted.
   void solve(Vector& p, Vector* left);

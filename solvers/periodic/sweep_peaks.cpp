@@ -208,16 +208,20 @@ class Search {
       }
       critical.section = most_moved(critical.speed, order, 1.0);
       const auto section = static_cast<Eigen::Index>(critical.section);
-      const double reach = 4.0 * critical.damping_ratio;
-      const BracketedMaximum found = bracketed_maximum(
-          std::max(low_, critical.speed / (1.0 + reach)), critical.speed,
-          std::min(high_, critical.speed * (1.0 + reach)), kPeakSpeed * critical.speed, [&](double speed) {
-            response_.vibration(speed, point_, order);
-            return std::abs(point_.amplitude(order, section));
-          });
-      critical.speed = found.at;
-      critical.amplitude = found.value;
-      critical.half_range = one(found.at, static_cast<std::size_t>(critical.section));
+      const auto amplitude = [&](double speed) {
+        response_.vibration(speed, point_, order);
+        return std::abs(point_.amplitude(order, section));
+      };
+      // Within half the mode's width. An order that only rises or falls there, on the flank of another mode, has no
+      // top of this one: it is stated where it meets the mode.
+      const double reach = 1.0 + critical.damping_ratio, width = kPeakSpeed * critical.speed;
+      const double from = std::max(low_, critical.speed / reach),
+                   to = std::min(high_, critical.speed * reach);
+      const BracketedMaximum found = bracketed_maximum(from, critical.speed, to, width, amplitude);
+      const bool top = found.at > from + 2.0 * width && found.at < to - 2.0 * width;
+      if (top) critical.speed = found.at;
+      critical.amplitude = top ? found.value : amplitude(critical.speed);
+      critical.half_range = one(critical.speed, static_cast<std::size_t>(critical.section));
     }
     std::stable_sort(sweep_.criticals.begin(), sweep_.criticals.end(),
                      [](const SweepCritical& a, const SweepCritical& b) { return a.speed < b.speed; });

@@ -104,9 +104,10 @@ class Judge {
           range.may_be_passed = range.may_be_passed && p.half_range <= limit(data, p.speed).transient;
     }
     add_barred(data, section, found);
-    Eigen::Index hottest = 0;
-    found.heat = s.heat.maxCoeff(&hottest);
-    found.heat_speed = sweep_.speeds[static_cast<std::size_t>(hottest)];
+    for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
+      if (const double heat = s.heat[static_cast<Eigen::Index>(i)];
+          !(heat <= found.heat) && !std::isnan(heat))
+        found.heat = heat, found.heat_speed = sweep_.speeds[i];
     return found;
   }
 

@@ -10,6 +10,7 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,8 @@ struct SectionJudgement {
   std::string rule;                 ///< rule of the limit at that speed
   std::vector<ExceededRange> exceeded;
   std::vector<RuleBarredRange> barred;
-  double heat = 0.0, heat_speed = 0.0;  ///< largest heat [W], and its speed [rad/s]
+  /// Largest heat [W], and its speed [rad/s]; NaN: it is not known at any speed.
+  double heat = std::numeric_limits<double>::quiet_NaN(), heat_speed = heat;
   bool judged() const { return utilisation > 0.0; }
 };
 

@@ -210,14 +210,16 @@ TEST_CASE("A run-up lists the criticals that it passes and tracks the orders ove
 TEST_CASE(
     "A start from rest without nominal speed has its orders by the turns of the driven node, or of one "
     "named") {
-  const std::string model =
-      "format = 1\n[nodes]\nrotor = {}\ndisc = {}\n[elements]\n"
+  const std::string nodes = "format = 1\n[nodes]\nrotor = {";
+  const std::string elements =
+      "}\ndisc = {}\n[elements]\n"
       "J_1 = { type = \"inertia\", node = \"rotor\", inertia_kg_m2 = 1 }\n"
       "J_2 = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 0.05 }\n"
       "shaft = { type = \"shaft_spring\", nodes = [\"rotor\", \"disc\"], stiffness_Nm_per_rad = 150, "
       "damping_Nms_per_rad = 0.15 }\nload = { type = \"engine_order_torque\", node = \"rotor\", mean_Nm = 5, "
       "harmonics = { order = [2], amplitude_Nm = [3] } }\n[run]\nduration_s = 10\n"
       "record = [\"shaft.torque_Nm\"]\n";
+  const std::string model = nodes + elements;
   const Ran run = run_of(model);
   REQUIRE(run.exit_code == 0);
   const Json& up = run.json["run_up"];
@@ -240,6 +242,22 @@ TEST_CASE(
   CHECK(run_of(model, {"--orders-of", "disc"}).json["run_up"]["shaft"] == "disc");
   const Ran wrong = run_of(model, {"--orders-of", "dics"});
   CHECK(wrong.exit_code != 0);
+
+  // A nominal run-up does not hold a rotor that floats freely: it turns as its torques make it, with the same orders.
+  const std::string free =
+      nodes + "run_up = { speed_0_rpm = 0, speed_1_rpm = 2000, time_1_s = 10 }" + elements;
+  const Json floats = run_of(free).json["run_up"];
+  CHECK(floats["shaft"] == "rotor");
+  const auto actual = floats["speed_rpm"].get<std::vector<double>>();
+  REQUIRE(actual.size() > 10);
+  CHECK(actual.back() == Approx(speed.back()).epsilon(1e-3));
+  const auto largest_of = [](const Json& of) {
+    double most = 0.0;
+    for (const double a : of["channels"][0]["amplitude"][0]) most = std::max(most, a);
+    return most;
+  };
+  CHECK(largest_of(floats) == Approx(largest_of(up)).epsilon(1e-3));
+  CHECK(run_of(free, {"--orders-of", "disc"}).json["run_up"]["shaft"] == "disc");
 }
 
 TEST_CASE(

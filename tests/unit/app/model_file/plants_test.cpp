@@ -80,6 +80,17 @@ TEST_CASE("The marine plant: printed frequencies, the propeller's damping, the f
     return at.sections[0].half_range()[0];
   };
   CHECK(first_order("3") > 5.0 * first_order("0"));
+  // Each critical is its own mode's, within half its width, beside a neighbour five times as large, too.
+  std::vector<double> range;
+  for (double n = 20.0; n <= 110.0; n += 2.0) range.push_back(rpm(n));
+  const LinearSweep all =
+      sweep_linear(plant("marine_two_stroke", {{"misfire", "3"}}).model.build(), {.speeds = range});
+  CHECK(all.criticals.size() > 10);
+  for (const SweepCritical& c : all.criticals) {
+    INFO("order " << c.order << ", mode " << c.mode << ", " << to_rpm(c.speed) << " rpm");
+    CHECK(std::abs(std::log(c.order * c.speed / (kTwoPi * c.frequency_Hz))) <=
+          std::log1p(c.damping_ratio) + 1e-3);
+  }
 }
 
 TEST_CASE("The wind turbine: ratio, first mode, planets against each other, shared load") {

@@ -424,6 +424,7 @@ TEST_CASE("What a sweep of contacts comes to at each speed: the worst of its sta
       Pair{.error = 0.5}.build(), {.speeds = {1.0, 1.001}, .sections = {"mesh.force_N"}, .tolerance = 1e-2});
   const WorstMotions run = worst_motions(chaos);
   CHECK(run.by_runs == chaos.speeds);
+  CHECK(run.sweep.sections[0].heat.array().isNaN().all());
   CHECK(run.sweep.sections[0].half_range()[0] ==
         Approx(0.5 * (chaos.runs[0].highest[0] - chaos.runs[0].lowest[0])).epsilon(1e-14));
 

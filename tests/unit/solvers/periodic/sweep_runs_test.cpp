@@ -1,6 +1,6 @@
 // Runs in time of a sweep: when their motion repeats, what their figures are, and the curves that start from them.
 // Expected values: maps with known multipliers, balances of mean torque, runs by propagate() that are not stopped.
-// Covers solvers/cycle_decay.hpp, cycle_run.hpp and, through sweep_nonlinear(), sweeper.hpp.
+// Covers solvers/cycle_decay.hpp, cycle_run.hpp, speed_hold.hpp and, through sweep_nonlinear(), sweeper.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
@@ -14,6 +14,7 @@
 #include "solvers/at_speed.hpp"
 #include "solvers/cycle_decay.hpp"
 #include "solvers/cycle_run.hpp"
+#include "solvers/speed_hold.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/driven_gear.hpp"
 
@@ -123,6 +124,86 @@ TEST_CASE("A run that repeats has figures of whole cycles, as a long run has the
   CHECK(run_cycles(here, State::initial(here),
                    {.period = period, .cycles = 400, .tolerance = 1e-8, .go_on = [&] { return ++asked < 3; }})
             .ended);
+}
+
+TEST_CASE("A free train in a run keeps its mean speed, and its teeth carry what the balance of means gives",
+          "[cycle_run]") {
+  // Two gears that rattle, 20 N m on one and 5 N m against it on the other: 15 N m are left over.
+  Model m("free pair");
+  m.add_node("motor");
+  m.add_node("wheel");
+  m.set_reference("motor", constant_speed(100.0));
+  m.add<Inertia>("J_1", {"motor"}, {.inertia = 0.5});
+  m.add<Inertia>("J_2", {"wheel"}, {.inertia = 1.0});
+  m.add<GearMesh>("mesh", {"motor", "wheel"},
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.1,
+                   .teeth_1 = 1,
+                   .teeth_2 = 1,
+                   .stiffness = 1e6,
+                   .normal_backlash = 1e-4,
+                   .damping = 100.0,
+                   .damping_law = MeshDamping::always,
+                   .transmission_error = std::vector<Harmonic>{{1.0, 1e-3, 0.0}}});
+  m.add<EngineOrderTorque>("drive", {"motor"}, {.harmonics = {{0.5, 10.0, 0.0}}, .mean = 20.0});
+  m.add<EngineOrderTorque>("load", {"wheel"}, {.mean = 5.0});
+  const System system = at_speed(m.build(), 100.0);
+  const Vector rigid{{1.0, -1.0}};
+  for (const bool balanced : {false, true}) {
+    INFO(balanced);
+    FloatingPart part{rigid, {}};
+    if (balanced) part.balance = {{1, 1.0}};
+    const SweptRun run = run_cycles(system, State::initial(system),
+                                    {.period = 2.0 * kTwoPi / 100.0,
+                                     .cycles = 200,
+                                     .tolerance = 1e-6,
+                                     .channels = {"mesh.force_N", "motor.speed_rad_per_s"},
+                                     .floating = {part}})
+                             .run;
+    REQUIRE(run.reason.empty());
+    REQUIRE(run.lowest[0] * run.highest[0] <= 0.0);  // the teeth part
+    // Motor: 20 N m less J_1 15/(J_1 + J_2), or 20 N m.
+    const double force = (balanced ? 20.0 : 20.0 - 0.5 * 15.0 / 1.5) / 0.1;
+    INFO(run.mean[0] << " +- " << run.mean_error[0]);
+    CHECK(std::abs(std::abs(run.mean[0]) - force) <= 2.0 * run.mean_error[0] + 1e-3 * force);
+    CHECK(run.mean_error[0] < 0.05 * force);
+    CHECK(std::abs(run.mean[1]) < 1e-3);  // of 100 rad/s
+    REQUIRE(run.left_over.size() == 1);
+    CHECK(run.left_over[0] == Approx(15.0).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("Means of a stiffness that jumps do not depend on where the steps fall", "[cycle_run]") {
+  // 20 N m on a wheel whose pinion is held at its speed: 400 N, whatever the teeth do.
+  const double speed = rpm(1200.0);
+  Model m("step pair");
+  m.add_node("pinion");
+  m.add_node("wheel");
+  m.add<Inertia>("J", {"wheel"}, {.inertia = 0.01});
+  m.add<GearMesh>("mesh", {"pinion", "wheel"},
+                  {.base_radius_1 = 0.05,
+                   .base_radius_2 = 0.05,
+                   .teeth_1 = 30,
+                   .teeth_2 = 30,
+                   .stiffness = MeshStiffness::step(1.5e8, 2.5e8, 1.5),
+                   .normal_backlash = 1e-4,
+                   .damping = 100.0,
+                   .damping_law = MeshDamping::always,
+                   .transmission_error = std::vector<Harmonic>{{1.0, 2.5e-6, 0.0}}});
+  m.add<EngineOrderTorque>("load", {"wheel"}, {.mean = 20.0});
+  m.constant_speed("pinion", speed);
+  m.set_initial("wheel", 1e-4, 0.0);
+  const System system = m.build();
+  const SweptRun run =
+      run_cycles(
+          system, State::initial(system),
+          {.period = kTwoPi / speed / 30.0, .cycles = 400, .tolerance = 1e-6, .channels = {"mesh.force_N"}})
+          .run;
+  REQUIRE(run.reason.empty());
+  REQUIRE(run.repeats == 0);
+  INFO(run.mean[0] << " +- " << run.mean_error[0]);
+  CHECK(std::abs(std::abs(run.mean[0]) - 400.0) <= std::max(1.0, 2.0 * run.mean_error[0]));
+  CHECK(run.mean_error[0] < 40.0);
 }
 
 TEST_CASE("Where closed contacts lead to no curve the harmonics of a run do", "[nonlinear_sweep]") {
