@@ -14,13 +14,13 @@ namespace drev {
 
 namespace {
 
-constexpr double kAccuracy = 0.05;       // of a figure's own error, over what is allowed
-constexpr double kEnoughSeconds = 0.01;  // of processor time measured
+constexpr double kAccuracy = 0.05;       // error of a figure itself over the one allowed
+constexpr double kEnoughSeconds = 0.01;  // s of processor time are enough to measure
 constexpr int kRepeats = 3;
-constexpr double kMostCost = 3.0;     // of a rung over the full model; more expensive ones are given up
-constexpr double kDear = 0.5;         // cost of few modes over that of all, with their static shapes
-constexpr double kStaticPart = 0.25;  // of the static shapes of loads, over what is allowed
-constexpr double kAsCheap = 1.25;     // times the least cost: no difference that would last
+constexpr double kMostCost = 3.0;     // cost of a rung over the full model's beyond which it is given up
+constexpr double kExpensive = 0.5;    // cost of few modes over that of all, with their static shapes
+constexpr double kStaticPart = 0.25;  // error of the loads' static shapes over the one allowed
+constexpr double kAsCheap = 1.25;     // cost over the least one that counts as equal
 constexpr int kSteadyTurns = 2;
 constexpr double kSteadyPart = 0.2;
 
@@ -176,7 +176,7 @@ class Ladder {
         if (!rungs.back().unsuitable.empty()) break;
       }
       settle(rungs, first);
-      if (rungs.size() == first || (rungs.back().holds && rungs[first].cost < kDear * cost)) return;
+      if (rungs.size() == first || (rungs.back().holds && rungs[first].cost < kExpensive * cost)) return;
     }
   }
 

@@ -13,7 +13,7 @@ namespace drev {
 
 namespace {
 
-constexpr int kModes = 10, kOrders = 3;  // of parametric resonances looked at
+constexpr int kModes = 10, kOrders = 3;  // modes and orders whose parametric resonances are looked at
 
 std::string number(double value, const char* form = "%.4g") {
   char text[64];

@@ -16,15 +16,15 @@ namespace drev {
 
 namespace {
 
-constexpr double kSafety = 2.0;  // on the difference of two runs
+constexpr double kSafety = 2.0;  // error over the difference of two runs
 constexpr double kFirstOfExact = 1e-2,
                  kTighterExact = 1e-3;  // tolerance over accuracy, from run to run
 constexpr double kTighterSteps = 0.1;
 constexpr double kLeastTolerance = 1e-12;
 constexpr int kLevels = 4, kLevelsOfSteps = 8;
-constexpr double kFirstSteps = 500.0;    // in the run
-constexpr double kLeastOrder = 0.25;     // of a difference of constant steps over the one before
-constexpr double kSecondsOfWork = 2e-9;  // of MethodChoice::exact_work
+constexpr double kFirstSteps = 500.0;    // steps of the run, in the first run
+constexpr double kLeastOrder = 0.25;     // difference of constant steps over the one before, at least
+constexpr double kSecondsOfWork = 2e-9;  // s for each unit of MethodChoice::exact_work
 constexpr double kWorthAsking = 5e-3;    // s of exact propagation beyond which stepping may be cheaper
 constexpr double kSensitive = 0.01;      // relative difference of the last states: another trajectory
 constexpr int kEnsemble = 8;

@@ -31,7 +31,7 @@ void place_same(Model& to, const ElementInstance& p, const std::vector<NodeRef>&
   to.add(p.name, nodes, p.element);
 }
 
-/// The model with each element placed anew, and without the nodes `gone` and what touches them.
+/// The model with each element placed again, and without the nodes `gone` and what touches them.
 Model copy(const Model& model, const Place& place, const std::set<std::string>& gone = {}) {
   Model to(model.name());
   std::set<std::string> internal;

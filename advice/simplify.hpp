@@ -1,7 +1,7 @@
 #pragma once
 /// Simpler models made from a model: one thing left out at a time, the rest as it was. Each returns nothing
 /// where the model has nothing of the kind. Initial conditions go along: parts that a simplification ties
-/// anew start turned as rigid bodies, so that every shaft starts with its twist. What cannot be built then (a
+/// again start turned as rigid bodies, so that every shaft starts with its twist. What cannot be built then (a
 /// load on a node that is gone) says so in Model::build().
 #include <drev/core/system.hpp>
 

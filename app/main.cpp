@@ -1,5 +1,5 @@
 // The command drev. See drev --help.
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 
 #include <cstdio>
 #include <exception>

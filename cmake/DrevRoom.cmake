@@ -17,7 +17,7 @@ foreach(header IN LISTS DREV_PUBLIC_HEADERS)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/drev/${folder})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${PROJECT_BINARY_DIR}/include/drev/${header} SYMBOLIC)
 endforeach()
-# <drev/headers_stamp.hpp>: made anew where one of them changes.
+# <drev/headers_stamp.hpp>: made again where one of them changes.
 set(DREV_HEADERS_STAMP ${PROJECT_BINARY_DIR}/include/drev/headers_stamp.hpp)
 list(TRANSFORM DREV_PUBLIC_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE stamped)
 add_custom_command(OUTPUT ${DREV_HEADERS_STAMP}

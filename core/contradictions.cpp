@@ -151,10 +151,11 @@ void PieceComparison::kinks() {
   const std::span<const double> own = derived_.kinks(), told = law_.kinks();
   for (const double kink : own)
     if (!has(told, kink))
-      found_.push_back({"kinks", "none is told at x = " + to_text(kink) + ", where the pieces have a bound"});
+      found_.push_back(
+          {"kinks", "none is stated at x = " + to_text(kink) + ", where the pieces have a bound"});
   for (const double kink : told)
     if (!has(own, kink))
-      found_.push_back({"kinks", "one is told at x = " + to_text(kink) + ", where no piece has a bound"});
+      found_.push_back({"kinks", "one is stated at x = " + to_text(kink) + ", where no piece has a bound"});
 }
 
 std::string text(const std::optional<Gap>& gap) {
@@ -167,7 +168,7 @@ void PieceComparison::gap() {
   if (own.has_value() == told.has_value() &&
       (!own || (same(own->low, told->low) && same(own->high, told->high))))
     return;
-  found_.push_back({"gap", "the pieces have " + text(own) + ", told is " + text(told)});
+  found_.push_back({"gap", "the pieces have " + text(own) + ", stated is " + text(told)});
 }
 
 /// They must lie among those of the pieces that carry elastic force.
@@ -182,7 +183,7 @@ void PieceComparison::closed_slopes() {
     const double size = kAgree * std::max(std::abs(low), std::abs(high));
     if (told < low - size || told > high + size)
       found_.push_back(
-          {name, to_text(told) + " is told, the pieces have " + to_text(low) + " to " + to_text(high)});
+          {name, to_text(told) + " is stated, the pieces have " + to_text(low) + " to " + to_text(high)});
   };
   check("closed_stiffness", law_.closed_stiffness(), &LawPiece::k);
   check("closed_damping", law_.closed_damping(), &LawPiece::c);

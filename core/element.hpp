@@ -1,6 +1,6 @@
 #pragma once
 /// What an element (element_interface.hpp) adds to the equation of motion. An element of one's own includes this header,
-/// and so do the sources of the catalogue, but not its headers: they do without terms, which are dear to compile.
+/// and so do the sources of the catalogue, but not its headers: they do without terms, which are expensive to compile.
 #include <drev/core/element_interface.hpp>
 
 #include <Eigen/Core>

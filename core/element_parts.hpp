@@ -43,7 +43,7 @@ class ElementParts {
   Terms zero_{0}, terms_{0};  // kept, so that elements of one size allocate their matrices once
 };
 
-/// Calls visit(element, terms, nodes) for the terms of every element of a system, part by part, asked of them anew.
+/// Calls visit(element, terms, nodes) for the terms of every element of a system, part by part, asked of them again.
 template <class Visit>
 void for_each_stated(const System& system, const Visit& visit) {
   const NameIndex by_name(system.node_count(),

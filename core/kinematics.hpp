@@ -20,7 +20,7 @@ struct RatioRow {
   bool only_in_contact = false;
   bool holds_deviation = false;
   bool ratio_only = false;
-  int element = -1;  ///< that asks for it
+  int element = -1;  ///< the element that asks for it
 };
 
 /// A row over three nodes or more, sum b_i n_i = 0 (a planetary set).

@@ -151,7 +151,7 @@ void SystemBuilder::find_nominal_motion() {
 std::vector<int> SystemBuilder::floating_parts(const std::vector<double>& relative, Contact contact) const {
   const bool open = contact == Contact::open;
   const std::vector<int> component = connected_components(system_.node_count(), ratio_rows_, !open);
-  std::vector<bool> counted(component.size(), false);  // as tied or floating, by component
+  std::vector<bool> counted(component.size(), false);  // components counted as tied or floating
   for (const RatioRow& row : ratio_rows_)
     if (row.second < 0 && !(open && row.only_in_contact)) counted[idx(component[idx(row.first)])] = true;
   for (const int node : resolved_prescriptions_)
@@ -264,7 +264,7 @@ void SystemBuilder::set_initial() {
 }
 
 System SystemBuilder::constrained() {
-  constexpr double kNone = 1e-12;  // of the largest entry: none is left
+  constexpr double kNone = 1e-12;  // entry over the largest one that counts as none
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system_.size(), system_.size());
   std::vector<int> dependent;
   for (const WideConstraint& constraint : wide_constraints_) {
@@ -319,7 +319,7 @@ System SystemBuilder::constrained() {
 }
 
 void SystemBuilder::find_varying_inertias() {
-  constexpr int kAngles = 360;  // of a turn, at which the inertia must be positive
+  constexpr int kAngles = 360;  // angles of a turn at which the inertia must be positive
   for (const LoadTerm& load : system_.loads_) {
     const auto* inertia = dynamic_cast<const VaryingInertia*>(load.load);
     if (inertia == nullptr || !inertia->inertia_varies()) continue;

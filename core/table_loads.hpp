@@ -72,7 +72,7 @@ class TableLoads {
   };
   Nearest find_knot(int e, double argument) const;
   std::vector<Knot> knots_;
-  std::map<const double*, int> begin_of_;  // of a table in knots_, by its values' array
+  std::map<const double*, int> begin_of_;  // first knot of a table in knots_, by the array of its values
   // Of the entries; begin: of its table in knots_.
   std::vector<double> coeff_, ratio_, gain_, offset_, period_, inverse_period_, inverse_spacing_;
   std::vector<int> unknown_, begin_, count_;
@@ -101,7 +101,7 @@ class KnottedLoads {
     std::vector<char> called;
     std::vector<int> place;
     std::vector<double> nominal_angle, nominal_speed, gain, coeff;
-    std::vector<double> angle, speed;   // where they are looked up
+    std::vector<double> angle, speed;   // where the tables are looked up [rad, rad/s]
     std::vector<double> low, high;      // angles for which the following hold; of one that is called, none
     std::vector<double> about, centre;  // of the cubic, of the cell [rad]
     std::vector<double> cubic, factor, by_speed;  // terms, by groups of lanes, degree by degree

@@ -7,7 +7,7 @@
 namespace drev {
 
 namespace {
-constexpr double kReferenceFraction = 1.0 / 20.0;  // of the half gap
+constexpr double kReferenceFraction = 1.0 / 20.0;  // reference penetration over the half gap
 constexpr std::size_t kMostStretches = 50;
 }  // namespace
 

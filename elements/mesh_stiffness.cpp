@@ -37,7 +37,7 @@ MeshStiffness MeshStiffness::table(std::vector<double> phases, std::vector<doubl
 /// width r about a point is left as soon as value - |slope| r - curvature r^2/2, which no value in it is below, is
 /// positive; the others are halved.
 double MeshStiffness::low_value_of(const Fourier& series) {
-  constexpr double kFinest = 1e-9;  // of the period: a minimum so narrow that is positive is taken as such
+  constexpr double kFinest = 1e-9;  // part of the period: narrower positive minima are taken as they are
   double size = 0.0, curvature = 0.0, phases = 0.0;
   for (const Harmonic& h : series.harmonics) {
     size += std::abs(h.amplitude);

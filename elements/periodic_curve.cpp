@@ -73,7 +73,7 @@ CurvePoint PeriodicCurve::at(double argument) const {
 }
 
 CubicPiece PeriodicCurve::piece(double argument, double direction) const {
-  constexpr double kOnKnot = 1e-13;  // of the argument, at least of 1 rad
+  constexpr double kOnKnot = 1e-13;  // distance from a knot over the argument, or over 1 rad
   const std::vector<double>& u = points_.arguments();
   const std::size_t n = u.size();
   const double period = points_.period(), near = kOnKnot * std::max(1.0, std::abs(argument));

@@ -38,7 +38,7 @@ int segments_for(double length, double wave_speed, double accuracy, double up_to
   check.positive("up_to_Hz", up_to_Hz, "Hz");
   check.within("ends", ends, 0.0, 1.0, "");
   if (!findings.empty()) throw ModelError(findings);
-  const double phase = hz(up_to_Hz) * length / wave_speed;  // of the whole shaft
+  const double phase = hz(up_to_Hz) * length / wave_speed;  // phase of a wave along the whole shaft [rad]
   const auto enough = [&](double n) {
     const double theta = phase / n;
     return theta <= kPi && std::abs(segment_frequency_error(mass, theta)) <= accuracy &&

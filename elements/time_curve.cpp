@@ -8,7 +8,7 @@ namespace drev {
 namespace {
 
 constexpr int kMostHalvings = 24;
-constexpr int kLooks = 257;  // for the largest value
+constexpr int kLooks = 257;  // points at which the largest value is looked for
 
 using Cubic = std::array<double, 4>;
 

@@ -3,7 +3,7 @@
 ///
 /// The same time given twice makes a jump: the first value holds before it, the second from it on
 /// (the curve is right-continuous). Every knot is a breakpoint: integration stops there and starts
-/// anew.
+/// again.
 #include <drev/core/error.hpp>
 #include <drev/elements/curve.hpp>
 

@@ -1,7 +1,5 @@
-#include <drev/models/camshaft/build_camshaft.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
 #include <drev/models/model_case.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include "models/two_inertia/build_two_inertia.hpp"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes the table "Size of the rooms" of docs/architecture.md anew: of each room of tests/tree/rooms.cmake the number of
+# Writes the table "Size of the rooms" of docs/architecture.md again: of each room of tests/tree/rooms.cmake the number of
 # source and header files, the median of their lines, and the largest.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

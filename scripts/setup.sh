@@ -59,7 +59,7 @@ build() {
     options+=("-DDREV_PYTHON_PACKAGE=$DREV_PYTHON_PACKAGE")
   fi
   echo "Building preset $preset"
-  # --fresh needs CMake 3.24; a tree that was moved or made by another generator is configured anew.
+  # --fresh needs CMake 3.24; a tree that was moved or made by another generator is configured again.
   local cache=build/$preset/CMakeCache.txt
   if [ -f "$cache" ] && ! { grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$cache" &&
       grep -qx "CMAKE_GENERATOR:INTERNAL=Ninja" "$cache"; }; then

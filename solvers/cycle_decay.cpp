@@ -8,8 +8,8 @@ namespace drev {
 
 namespace {
 
-constexpr double kForgotten = 0.9;  // of the size of the unknowns, a cycle: what a start has left behind
-constexpr int kFewestSeen = 4;      // cycles
+constexpr double kForgotten = 0.9;  // part of the largest size so far that still counts a cycle later
+constexpr int kFewestSeen = 4;      // cycles seen at least
 
 int half_window(int k) { return std::max(kFewestSeen, 2 * k); }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A method in time by its name and its tolerance or step, and running it.
+/// A method in time by its name and its tolerance or step: running it, and which one suits a system.
 #include <drev/solvers/run/run_summary.hpp>
 
 #include <functional>
@@ -42,5 +42,69 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
 /// The same from the model's initial conditions.
 RunSummary run_method(const System& system, const Method& method, const MethodRunOptions& options,
                       const std::vector<Observer*>& observers = {});
+
+/// Which method in time suits a system.
+///
+/// The choice follows what the system is, not taste:
+///   1. exact propagation, where why_not_exact() finds nothing and it is affordable. Nothing is cheaper
+///      (docs/which_method.md).
+///   2. dormand_prince with steps controlled to 1e-4, where exact propagation cannot be used (general
+///      elements, motions that are unknown functions) and it is affordable.
+///   3. sdirk4, controlled likewise: implicit, for what is too stiff, too large or too long for 1 or 2.
+///   4. average acceleration at the model's step, where errors cannot be estimated: a general element has a
+///      history, whose error no estimate sees, or the mass matrix is singular.
+///
+/// Affordable: p (20 + unknowns + 10 contacts) <= 1.5e10 products, about half a minute; p: 25 for exact
+/// propagation, 70 for dormand_prince, in each step of 3/omega of the fastest mode.
+struct MethodChoice {
+  Method method;
+  std::string reason;  ///< one sentence without full stop
+  /// What exact propagation would cost: products times the last factor above; 0 where it cannot be used.
+  double exact_work = 0.0;
+};
+
+inline constexpr double kControlledTolerance = 1e-4;  ///< of stepping methods, unless another is asked for
+
+/// duration: to be simulated [s]; step: where it comes to constant steps [s].
+MethodChoice choose_method(const System& system, double duration, double step);
+
+/// Laws that have a gap or pieces.
+long contact_count(const System& system);
+
+/// max(sqrt |M^-1 K|, |M^-1 C|) [1/s], contacts closed, general elements as at the start, within some percent
+/// from below (20 steps of the power method). Throws SolverError where M is singular.
+double fastest_rate(const System& system);
+
+/// Whether the chosen method is far more expensive than another that keeps the accuracy: both are tried.
+///
+///   1. The chosen method runs 1,000 steps, fewer where they are expensive, up to five times as many while its steps
+///      still grow behind the start. What it would cost over the whole run follows from the last half of them.
+///      Below two seconds it stays.
+///   2. The other controlled methods, at the tolerance 1e-4, run 4,000 steps or less in the same way. Where one
+///      would be cheap enough, every force and torque must agree with the first at 32 times of its trial, to
+///      1e-3 of its peak there.
+///   3. One that costs less than a twentieth is taken.
+///
+/// Costs are counts times weights in nanoseconds that were measured once, no clocks: the same system gives the
+/// same answer every time, on every machine.
+///
+///   exact      products (20 + unknowns + 10 contacts) 2 + steps (8000 + 4 x 12 (loads + projected laws) 100)
+///   stepping   solves (10 (20 + unknowns + 10 contacts) 2 + loads 100)
+///
+/// The second factor is what a product costs (as above); 4 passes over 12 nodes evaluate the loads of a step.
+struct MethodTrial {
+  MethodChoice choice;  ///< with the reason of a change; else as it was
+  double chosen_ns =
+      0.0;                ///< of the whole run with the method first chosen; 0: it came to the end, or failed
+  double other_ns = 0.0;  ///< the same of the cheapest other one that keeps the accuracy; 0: none
+};
+
+/// A change is made where the chosen method costs more than kTooExpensive times as much as another.
+inline constexpr double kTooExpensive = 20.0;
+
+/// chosen: by choose_method(), for the same system and duration [s]. progress: returns false to stop trying.
+/// Throws nothing of its own: a method that fails in its trial is no candidate.
+MethodTrial try_methods(const System& system, const MethodChoice& chosen, double duration,
+                        const std::function<bool()>& progress = {});
 
 }  // namespace drev

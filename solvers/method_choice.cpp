@@ -2,7 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,9 @@ namespace drev {
 namespace {
 
 constexpr int kPowerSteps = 20;
-constexpr double kRipple = 0.3;         // of the start of the power iteration
-constexpr double kRateTimesStep = 3.0;  // of exact propagation, and where dormand_prince is stable
-constexpr double kMostWork = 1.5e10;    // products times what one costs: half a minute
+constexpr double kRipple = 0.3;         // amplitude of the ripple that the power iteration starts from
+constexpr double kRateTimesStep = 3.0;  // omega h of exact propagation, and where dormand_prince is stable
+constexpr double kMostWork = 1.5e10;    // products times the cost of one: half a minute
 
 /// Size of the largest eigenvalue of M^-1 A, A on the system's pattern.
 double largest_of(const Assembler& assembler, SparseCholesky& mass, const Vector& values) {

@@ -2,7 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/core/system.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <algorithm>
@@ -83,10 +83,10 @@ class Trial {
     for (const char* name : {"dormand_prince", "sdirk4"}) {
       const Method other{.name = name, .tolerance = kControlledTolerance};
       if (other.name == chosen_.method.name || stopped_) continue;
-      const double ns = cost_of_other(other, trial.chosen_ns / kTooDear, right);
+      const double ns = cost_of_other(other, trial.chosen_ns / kTooExpensive, right);
       if (ns > 0.0 && (!best || ns < trial.other_ns)) best = other, trial.other_ns = ns;
     }
-    if (best && kTooDear * trial.other_ns < trial.chosen_ns) change(trial, *best);
+    if (best && kTooExpensive * trial.other_ns < trial.chosen_ns) change(trial, *best);
     return trial;
   }
 

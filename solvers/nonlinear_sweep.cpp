@@ -13,12 +13,12 @@ namespace drev {
 namespace {
 
 constexpr int kFewestHarmonics = 24;
-constexpr int kMostRows = 1100;  // of Newton's matrix with more harmonics: 0.3 s a step
-constexpr int kMostLaws = 50;    // each of 49 rows with the fewest harmonics: 3 s a step
+constexpr int kMostRows = 1100;  // rows of Newton's matrix with more harmonics: 0.3 s a step
+constexpr int kMostLaws = 50;    // laws, each 49 rows with the fewest harmonics: 3 s a step
 constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
-constexpr double kTail = 1e-5;   // of the linear motion
+constexpr double kTail = 1e-5;   // part of the linear motion beyond the harmonics taken
 constexpr int kMostBranches = 12;
-constexpr double kSameFold = 1e-7;  // of the speed: a fold with more harmonics
+constexpr double kSameFold = 1e-7;  // relative difference of speed of a fold found with more harmonics
 constexpr int kDefaultOrders = 12;
 
 using Kind = BranchEvent::Kind;

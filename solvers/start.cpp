@@ -16,10 +16,10 @@ namespace drev {
 namespace {
 
 constexpr double kSameFrequency = 1e-9;  // relative
-constexpr double kMostMultiple = 1000;   // of the shared frequency
-constexpr int kTimesOfCycle = 97;        // at which loads are compared
+constexpr double kMostMultiple = 1000;   // largest frequency over the shared one
+constexpr int kTimesOfCycle = 97;        // times of a cycle at which loads are compared
 constexpr double kSameLoad = 1e-8;       // relative
-constexpr double kMostCycles = 1e5;      // of a run that settles
+constexpr double kMostCycles = 1e5;      // cycles of a run that settles
 
 /// The largest frequency that divides all frequencies of loads [Hz]; 0: there is none, or it is too low.
 double shared_frequency(const System& system) {

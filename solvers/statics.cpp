@@ -16,7 +16,7 @@ namespace {
 /// Of the largest K_ii / M_ii: keeps the tangent definite while a contact is open. It only shapes Newton's
 /// direction; the residual and so the answer do not contain it.
 constexpr double kShift = 1e-10;
-constexpr int kMeanSamples = 720;  // of loads over the time that they are averaged over
+constexpr int kMeanSamples = 720;  // samples of the loads over the time that their mean is of
 
 }  // namespace
 

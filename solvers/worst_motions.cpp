@@ -1,4 +1,4 @@
-#include <drev/solvers/worst_motions.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <algorithm>
 #include <cmath>

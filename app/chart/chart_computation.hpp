@@ -4,13 +4,12 @@
 /// The runs last the model's duration, less of it where the method that is chosen for it would take more than half of the
 /// limit, and not past the time at which a small difference of the state has grown by a factor of 1000: beyond, every
 /// error is mostly growth, and the methods cannot be told apart. The advice is for what was measured.
-#include <drev/solvers/accuracy/work_precision.hpp>
-
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/run/model_request.hpp"
+#include "solvers/accuracy/work_precision.hpp"
 
 namespace drev::app {
 

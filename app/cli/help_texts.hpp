@@ -8,12 +8,12 @@ inline constexpr const char* kMainExamples =
     "  drev list camshaft                 its parameters and channels\n"
     "  drev modes camshaft                its natural frequencies\n"
     "  drev sweep my.toml --speeds 300:10:1800   its steady vibration by orders, and its criticals\n"
-    "  drev run camshaft                  5 s of it, with gear drive and backlash\n"
-    "  drev run camshaft --report a.html  the report of it, a page for any browser\n"
-    "  drev chart camshaft                which method to use for it, measured\n"
-    "  drev study                         the source's studies repeated, and what stands of them\n"
-    "  drev advise camshaft               how little of it a figure needs, measured\n"
-    "  drev optimise camshaft ...         the parameters at which a figure is least\n"
+    "  drev run camshaft                  5 s, with gear drive and backlash\n"
+    "  drev run camshaft --report a.html  its report, a page for any browser\n"
+    "  drev chart camshaft                which method suits it, measured\n"
+    "  drev study                         the source's studies repeated, and which of their results stand\n"
+    "  drev advise camshaft               the simplest model that a figure needs, measured\n"
+    "  drev optimise camshaft ...         the parameters that make a figure least\n"
     "  drev export camshaft --out my.toml the same as a file, to be changed\n"
     "  drev check my.toml                 what is wrong with it, if anything\n"
     "  drev run my.toml                   a file stands wherever a model does\n";
@@ -37,17 +37,17 @@ inline constexpr const char* kRunExamples =
     "\n"
     "Several models, the model files *.toml of a directory, and all combinations of --vary run side by\n"
     "side, each in a process of its own with the same options. DIR/NAME has the results of each,\n"
-    "DIR/runs.csv the figures of all, DIR/runs.json all summaries. What fails does not stop the others;\n"
-    "the exit code is that of those that failed, or 1 if they differ. Of a directory, files without\n"
-    "format at their top and files that another one includes are not run.\n"
+    "DIR/runs.csv the figures of all, DIR/runs.json all summaries. A run that fails stops no other one;\n"
+    "the exit code is that of the failed runs, or 1 if they differ. Files of a\n"
+    "directory that have no format at their top, or that another one includes, are not run.\n"
     "\n"
     "--table keeps a row of figures of each variant, in DIR/variants.h5: constant steps of eight variants\n"
     "in lockstep, other methods one by one, over all processors or the ranks of MPI, with the same bytes.\n"
-    "What is finished is on the disk; --resume goes on where a study ended, and refuses another one.\n"
+    "Finished variants are on the disk; --resume continues a study where it ended, and refuses another one.\n"
     "--report draws histograms, figures over parameters and Sobol indices.\n"
     "\n"
     "--accuracy runs the model at one tolerance or step, then at tighter ones, and takes the\n"
-    "differences for the errors; where small differences grow too fast for that, figures are\n"
+    "differences as the errors; where small differences grow too fast for that, figures are\n"
     "statistics with their 95 % confidence intervals. history.csv is of one more run at the tightest.\n"
     "\n"
     "history.csv: time_s, then the channels in the order asked for, at the times 0, 1, 2, ... "
@@ -72,7 +72,7 @@ inline constexpr const char* kSweepExamples =
     "  drev sweep geared.toml --speeds 300:10:1800 --contact closed --balance generator\n"
     "  drev sweep gear_pair.toml --speeds 2000:50:4000 --out result\n"
     "\n"
-    "Of each section: half range, maximum and minimum of the sum of all orders with their phases over the\n"
+    "Each section has half range, maximum and minimum of the sum of all orders with their phases over the\n"
     "whole cycle, mean, twist, heat; amplitude and phase of each order with --json and --out. Peaks between\n"
     "the speeds are found. Models with contacts: curves of periodic motions through their folds, which of\n"
     "them are stable, where the train jumps. docs/sweep.md has the equations and examples.\n";
@@ -82,14 +82,14 @@ inline constexpr const char* kCampbellExamples =
     "  drev campbell engine.toml --speeds 300:10:1800\n"
     "  drev campbell engine.toml --speeds 300,1800 --orders 1,2,4,6 --out result --json\n"
     "\n"
-    "relative: amplitude of the order in that section over that of the largest critical.\n";
+    "relative: amplitude of the order in that section, divided by that of the largest critical.\n";
 
 inline constexpr const char* kClassExamples =
     "Examples:\n"
     "  drev class genset.toml --speeds 600:10:1800\n"
     "  drev class genset.toml --speeds 600:10:1800 --report tvc.pdf --out result\n"
     "\n"
-    "What sections may carry stands in the model file, [class]: docs/class_report.md.\n";
+    "The limits of sections are given in the model file, [class]: docs/class_report.md.\n";
 
 inline constexpr const char* kShaftExamples =
     "Examples:\n"
@@ -103,7 +103,7 @@ inline constexpr const char* kImportExamples =
     "  drev import assembly.json --out train.toml\n"
     "  drev import mass_elastic.csv --out train.toml\n"
     "\n"
-    "What could not be taken over is said on standard error and in the file's note.\n";
+    "Standard error and the file's note say what could not be taken over.\n";
 
 inline constexpr const char* kGearExamples =
     "Examples:\n"
@@ -125,8 +125,8 @@ inline constexpr const char* kAdviseExamples =
     "  drev advise gear_drive --for mesh_1.force_N --within 0.01 --json\n"
     "\n"
     "FIGURE is the largest |value| over the run of the model's deflection, of its torques, or of one\n"
-    "CHANNEL; with 'steady' before it that of the last turns. Simpler models are tried, from the gear\n"
-    "held to all of the model but one thing; each is measured against the full one, and the errors of\n"
+    "CHANNEL; with 'steady' before it, over the last turns. Simpler models are tried, from the gear\n"
+    "held to the full model without one part; each is measured against the full one, and the errors of\n"
     "both figures count against it. cost: processor time over that of the full model.\n";
 
 inline constexpr const char* kOptimiseExamples =
@@ -135,8 +135,8 @@ inline constexpr const char* kOptimiseExamples =
     "  drev optimise camshaft --set drive=held cylinders=6 --vary 'firing_order=orders(6)' \\\n"
     "    --minimise deflection_deg --start periodic --duration 0.16\n"
     "\n"
-    "Where the combinations of all values are no more than --variants, all are computed: the best is then\n"
-    "certain. Else a quarter of the variants is a Latin hypercube and the rest a search from its best by\n"
+    "If there are no more combinations than --variants, all are computed, and the best is certain.\n"
+    "Otherwise a quarter of the variants is a Latin hypercube and the rest a search from its best by\n"
     "NLopt (ESCH for values and orders, Subplex for uniform parameters). The same seed gives the same.\n";
 
 inline constexpr const char* kReportExamples =

@@ -1,5 +1,5 @@
 #include <drev/core/units.hpp>
-#include <drev/solvers/worst_motions.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
 
 #include <algorithm>
 

@@ -8,24 +8,24 @@ namespace drev::app {
 
 const std::vector<CommandEntry>& commands() {
   using enum OptionEntry::Values;
-  static const OptionEntry run{"--run", "NAME", "Run of a model file that is meant; default: its [run]"};
+  static const OptionEntry run{"--run", "NAME", "Which run of a model file; default: its [run]"};
   static const OptionEntry plugin{"--plugin", "FILE,...",
                                   "Shared libraries with elements of one's own for model files", commas};
   static const OptionEntry speeds{"--speeds", "RPM",
-                                  "FIRST:STEP:LAST or A,B,C of the reference shaft; must be given"};
-  static const OptionEntry orders{"--orders", "ORDERS",
-                                  "FIRST:STEP:LAST or A,B,C a revolution of it; default: 0.5:0.5:12"};
+                                  "Speeds of the reference shaft, FIRST:STEP:LAST or A,B,C; must be given"};
+  static const OptionEntry orders{
+      "--orders", "ORDERS", "Orders of the reference shaft, FIRST:STEP:LAST or A,B,C; default: 0.5:0.5:12"};
   static const OptionEntry linear{
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
   static const OptionEntry sections{"--record", "CHANNEL,...",
                                     "Sections; default: every torque and force of an element", commas};
   static const OptionEntry cycle{"--cycle", "TURNS",
-                                 "Of a model with contacts: turns of the reference shaft that everything "
-                                 "repeats in; default: found"};
+                                 "Turns of the reference shaft in which everything repeats, for a model "
+                                 "with contacts; default: found"};
   static const OptionEntry motion_tolerance{
-      "--tolerance", "T", "Of a model with contacts: relative error of a motion; default: 1e-5"};
+      "--tolerance", "T", "Relative error of a motion of a model with contacts; default: 1e-5"};
   static const OptionEntry run_threads{
-      "--jobs", "N", "Of a model with contacts: so many runs in time at once; default: one a processor"};
+      "--jobs", "N", "How many runs in time of a model with contacts go at once; default: one per processor"};
   static const OptionEntry sweep_report{"--report", "FILE",
                                         "Writes FILE.html, or FILE.pdf: amplitudes over speed, orders, "
                                         "criticals, Campbell diagram; of contacts: "
@@ -38,7 +38,8 @@ const std::vector<CommandEntry>& commands() {
            {{"--method", "METHOD", "Time integration; default: what suits the model; see below"},
             {"--step", "SECONDS", "Time step; default: the model's"},
             {"--tolerance", "T",
-             "Relative: of exact, default 1e-10; of any other method, whose steps it controls"},
+             "Relative tolerance: of exact propagation (default 1e-10), or of any other method's step "
+             "control"},
             {"--accuracy", "A", "Finds the figures to the relative error A and states the error of each"},
             {"--start",
              "STATE",
@@ -47,7 +48,7 @@ const std::vector<CommandEntry>& commands() {
              {"rest", "static", "periodic"}},
             {"--duration", "SECONDS", "Length of the run; default: the model's"},
             {"--settle", "SECONDS",
-             "Figures are of the run from then on; auto: when what the start excited has decayed to 0.1 %"},
+             "Figures are taken from this time on; auto: once what the start excited has decayed to 0.1 %"},
             {"--reduce", "ERROR",
              "Fewer coordinates where that pays and adds at most ERROR to any channel: 1%, or off"},
             {"--out", "DIR", "Creates DIR with history.csv, summary.json and report.html"},
@@ -61,30 +62,31 @@ const std::vector<CommandEntry>& commands() {
              "Counts load cycles (ASTM E1049) of channels; sections with an S-N line are counted anyway",
              commas},
             {"--orders-of", "NODE",
-             "Of a run from rest without nominal speed: node whose turns orders are of; default: where the "
-             "strongest torque with orders acts"},
+             "Node whose turns the orders count, for a start from rest without nominal speed; default: node "
+             "of the strongest torque with orders"},
             {"--energy", "",
              "Work, heat and largest stored energy of each element over the span of the figures", none},
             {"--every", "SECONDS",
              "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
             {"--format",
              "FORMAT,...",
-             "Of the history: csv (always written), hdf5 (history.h5 too)",
+             "Formats of the history: csv (always written), hdf5 (history.h5 in addition)",
              commas,
              {"csv", "hdf5"}},
             {"--vary", "NAME=VALUES",
-             "A run for each value A,B,C, FIRST:STEP:LAST or both mixed of a parameter, in DIR/NAME=VALUE; "
+             "Runs each value of a parameter, A,B,C, FIRST:STEP:LAST or both mixed, in DIR/NAME=VALUE; "
              "also orders(N), and with --sample uniform(LOW,HIGH), normal(MEAN,DEVIATION)",
              again},
-            {"--jobs", "N", "Of several runs: so many at once; default: one a processor"},
+            {"--jobs", "N", "How many of several runs go at once; default: one per processor"},
             {"--table", "",
-             "Of --vary: one table of figures, DIR/variants.h5, in place of a folder each; constant steps in "
-             "lockstep",
+             "One table of figures for --vary, DIR/variants.h5, in place of a folder for each run; constant "
+             "steps go in lockstep",
              none},
             {"--sample", "KIND:N",
-             "A table of N variants drawn by random, lhs, sobol or saltelli (Sobol indices); a seed behind: "
+             "A table of N variants drawn by random, lhs, sobol or saltelli (Sobol indices); seed at the "
+             "end: "
              "lhs:1000:7"},
-            {"--correlate", "A,B=C", "Of --sample: correlation of two parameters", again},
+            {"--correlate", "A,B=C", "Correlation of two parameters of --sample", again},
             {"--resume", "", "Goes on with a table that was not finished, or begins it", none},
             run,
             plugin},
@@ -96,9 +98,10 @@ const std::vector<CommandEntry>& commands() {
                    {"--contact", "STATE", "Contacts: closed (default) or open", one, {"closed", "open"}},
                    {"--damped", "", "With damping: eigenvalues, damping ratios, complex shapes, energies",
                     none},
-                   {"--speed", "RPM", "Of the reference shaft: loads that follow it (a propeller) damp, too"},
+                   {"--speed", "RPM",
+                    "Speed of the reference shaft, at which loads that follow it (a propeller) damp"},
                    {"--out", "DIR",
-                    "Of --damped: creates DIR with modes.csv, shapes.csv, energy.csv and summary.json"},
+                    "Creates DIR with modes.csv, shapes.csv, energy.csv and summary.json of --damped"},
                    run,
                    plugin},
        .footer = kModesExamples,
@@ -111,8 +114,9 @@ const std::vector<CommandEntry>& commands() {
                    linear,
                    sections,
                    {"--balance", "NODE",
-                    "Where the mean torque that is left over is taken up; default: nowhere"},
-                   {"--absolute-sum", "", "Sums of the orders' amplitudes without their phases, too", none},
+                    "Node that takes up the mean torque that is left over; default: none"},
+                   {"--absolute-sum", "", "Adds the sums of the orders' amplitudes without their phases",
+                    none},
                    cycle,
                    motion_tolerance,
                    run_threads,
@@ -138,12 +142,12 @@ const std::vector<CommandEntry>& commands() {
        .execute = campbell_command},
       {.name = "class",
        .summary =
-           "Judges a sweep by what sections may carry: stress, barred and chatter ranges, heat, misfire",
+           "Judges a sweep by the limits of sections: stress, barred and chatter ranges, heat, misfire",
        .options = {speeds,
                    orders,
                    linear,
                    {"--balance", "NODE",
-                    "Where the mean torque that is left over is taken up; default: nowhere"},
+                    "Node that takes up the mean torque that is left over; default: none"},
                    cycle,
                    motion_tolerance,
                    run_threads,
@@ -207,7 +211,7 @@ const std::vector<CommandEntry>& commands() {
        .summary = "The cheapest model that finds a figure well enough, measured against the full one",
        .options = {{"--for", "FIGURE",
                     "'peak deflection' (default), 'peak torque', 'steady peak ...'; see below"},
-                   {"--within", "PART", "What it may be off by, 2% (default) or 0.02"},
+                   {"--within", "PART", "Largest relative error of the figure: 2% (default) or 0.02"},
                    run,
                    plugin},
        .footer = kAdviseExamples,
@@ -216,15 +220,16 @@ const std::vector<CommandEntry>& commands() {
        .summary = "The parameters at which a figure is least or largest, firing orders among them",
        .options =
            {{"--vary", "NAME=VALUES",
-             "What may differ: uniform(LOW,HIGH), A,B,C, FIRST:STEP:LAST or orders(N)", again},
+             "Values of a parameter: uniform(LOW,HIGH), A,B,C, FIRST:STEP:LAST or orders(N)", again},
             {"--minimise", "FIGURE",
              "The figure, such as max_torque_Nm or CHANNEL.max; a wrong one lists them"},
             {"--maximise", "FIGURE", "In place of --minimise"},
-            {"--variants", "N", "Computed at the most, default: 1000; so many combinations are all computed"},
-            {"--seed", "N", "Of the Latin hypercube and the search; default: 1"},
+            {"--variants", "N",
+             "Largest number of variants, default: 1000; up to it, all combinations are computed"},
+            {"--seed", "N", "Seed of the Latin hypercube and of the search; default: 1"},
             {"--method", "METHOD", "Time integration; default: what suits the model"},
             {"--step", "SECONDS", "Time step; default: the model's"},
-            {"--tolerance", "T", "Relative: of exact, or of controlled steps"},
+            {"--tolerance", "T", "Relative tolerance of exact propagation, or of controlled steps"},
             {"--start",
              "STATE",
              "rest: the model's initial conditions (default); static: equilibrium; periodic: steady state",
@@ -232,7 +237,7 @@ const std::vector<CommandEntry>& commands() {
              {"rest", "static", "periodic"}},
             {"--duration", "SECONDS", "Length of the runs; default: the model's"},
             {"--record", "CHANNEL,...", "Channels whose largest and least values are figures, too", commas},
-            {"--jobs", "N", "Threads; default: one a processor"},
+            {"--jobs", "N", "Threads; default: one per processor"},
             {"--out", "DIR", "Creates DIR with tried.csv, every variant computed, and optimum.json"},
             run,
             plugin},
@@ -250,13 +255,13 @@ const std::vector<CommandEntry>& commands() {
                    {"--torque", "NODE,...", "Nodes on which a torque is an input of the FMU", commas},
                    {"--speed", "NODE,...", "Prescribed nodes whose speed is an input of the FMU", commas},
                    {"--record", "CHANNEL,...", "Outputs of the FMU; default: the model's", commas},
-                   {"--fmi", "VERSION", "Of the FMU: 3 (default) or 2", one, {"2", "3"}},
+                   {"--fmi", "VERSION", "Version of FMI: 3 (default) or 2", one, {"2", "3"}},
                    run,
                    plugin},
        .footer = kExportExamples,
        .execute = export_command},
       {.name = "report",
-       .summary = "The report of a run once more, or of two runs compared",
+       .summary = "Writes the report of a run again, or compares two runs",
        .takes_model = false,
        .options = {{"RUN", "RUN [RUN]", "Directory of drev run --out, or its report.html", words},
                    {"--out", "FILE", "The report to write, .html or .pdf"}},

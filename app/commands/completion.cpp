@@ -1,6 +1,5 @@
 #include "app/commands/completion.hpp"
 
-#include <drev/app/model_file/load_plugin.hpp>
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>

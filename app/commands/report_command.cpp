@@ -43,7 +43,7 @@ bool is_sweep(const std::string& block) {
   return data.is_object() && data.value("kind", "") == "sweep";
 }
 
-/// The data block of one run, written anew; empty, and a finding, if there is none.
+/// The data block of one run, written again; empty, and a finding, if there is none.
 std::string block_of(const std::string& named, std::vector<Finding>& findings) {
   const std::string run = run_page(named), partial = run != named ? partial_run(named) : "";
   const bool readable = std::filesystem::is_regular_file(run) && std::ifstream(run).good();
@@ -61,7 +61,7 @@ std::string block_of(const std::string& named, std::vector<Finding>& findings) {
                       : blocks.size() == 1 && is_sweep(blocks.front())
                           ? "is the report of a sweep; print it from the browser, or write it to a .pdf"
                       : blocks.size() == 1 ? "is damaged: the data of its run are cut off or changed; write "
-                                             "the report anew with drev run"
+                                             "the report again with drev run"
                                            : "is no report of drev run"});
   return {};
 }

@@ -3,7 +3,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 

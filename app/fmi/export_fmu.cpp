@@ -22,7 +22,7 @@ namespace drev::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Contents = std::map<std::string, std::string>;  // by name in the archive
+using Contents = std::map<std::string, std::string>;  // contents by name in the archive
 
 constexpr const char* kLibrary = "drev_fmu.so";
 constexpr const char* kArchive = "fmu_library.zip";
@@ -46,7 +46,7 @@ fs::path common_folder(const std::vector<fs::path>& files) {
   return common;
 }
 
-/// The model's files in the layout that they have; sets where the model itself is.
+/// The model's files in their folder layout; main receives the path of the model itself.
 Contents model_files(const ModelRequest& model, const FmuRequest& request, std::string& main) {
   if (!model.file) {
     main = "model/model.toml";
@@ -64,7 +64,8 @@ Contents model_files(const ModelRequest& model, const FmuRequest& request, std::
   return all;
 }
 
-/// FNV-1a, twice with different starts, as a GUID: tells one FMU's files from another's.
+/// Token that distinguishes the files of one FMU from another's: FNV-1a, twice with different starts, as a
+/// GUID.
 std::string token_of(const Contents& contents) {
   std::uint64_t parts[] = {0xcbf29ce484222325U, 0x84222325cbf29ce4U};
   for (std::uint64_t& hash : parts) {
@@ -82,7 +83,7 @@ std::string token_of(const Contents& contents) {
   return text;
 }
 
-/// A C name.
+/// The name as a C identifier.
 std::string identifier_of(const std::string& name) {
   std::string all = "drev_";
   for (const char c : name) all += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -100,7 +101,7 @@ FmuInterface interface_of(const ModelRequest& model, const FmuRequest& request) 
   return interface;
 }
 
-/// An instance of resources as the FMU's library will find them.
+/// An instance made from the resources as the FMU's library will find them.
 class Extracted {
  public:
   explicit Extracted(const Contents& resources) {
@@ -140,7 +141,7 @@ void check_names(const ModelRequest& model) {
 FmuLibrary::FmuLibrary() {
   std::error_code none;
   Dl_info self{};
-  // The Python package holds them in an archive beside its extension module.
+  // The Python package contains them in an archive next to its extension module.
   if (::dladdr(reinterpret_cast<const void*>(&export_fmu), &self) != 0 && self.dli_fname != nullptr)
     if (const fs::path archive = fs::path(self.dli_fname).parent_path() / kArchive;
         fs::exists(archive, none)) {

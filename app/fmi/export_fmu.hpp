@@ -11,20 +11,20 @@
 namespace drev::app {
 
 struct FmuRequest {
-  std::string file;                          ///< .fmu
-  std::string model;                         ///< the model file as given; empty: a built-in model
-  std::optional<std::string> text = {};      ///< of the model file, where it is not to be read
-  std::string run = {};                      ///< of it; empty: [run]
-  std::vector<std::string> torques, speeds;  ///< nodes
-  std::vector<std::string> outputs;          ///< channels
-  int fmi = 3;                               ///< 2 or 3
+  std::string file;                          ///< path of the .fmu file
+  std::string model;                         ///< path of the model file as given; empty: a built-in model
+  std::optional<std::string> text = {};      ///< text of the model file, if it is not to be read
+  std::string run = {};                      ///< named run of the model file; empty: [run]
+  std::vector<std::string> torques, speeds;  ///< nodes whose torque or speed is an input
+  std::vector<std::string> outputs;          ///< channels that are outputs
+  int fmi = 3;                               ///< version of FMI: 2 or 3
 };
 
-/// drev_fmu.so and the libraries that it needs: of the command those installed with it, of the Python package unpacked
-/// for as long as this lives.
+/// drev_fmu.so and the libraries that it needs: for the command those installed with it, for the Python
+/// package those unpacked for the lifetime of this object.
 class FmuLibrary {
  public:
-  /// Throws OutputError where they are not there.
+  /// Throws OutputError if they are missing.
   FmuLibrary();
   const std::filesystem::path& folder() const { return folder_; }
 
@@ -33,7 +33,8 @@ class FmuLibrary {
   std::filesystem::path folder_;
 };
 
-/// Throws ModelError for a model, inputs or outputs that cannot be, OutputError where the file cannot be written.
+/// Throws ModelError for an invalid model or invalid inputs or outputs, OutputError if the file cannot be
+/// written.
 void export_fmu(const ModelRequest& model, const FmuRequest& request);
 
 }  // namespace drev::app

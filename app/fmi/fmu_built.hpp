@@ -1,17 +1,17 @@
 #pragma once
-/// The model of an FmuInstance, made ready: its system with the inputs, and its outputs.
+/// The model of an FmuInstance, ready for computation: its system with the inputs, and its outputs.
 #include <drev/core/assembler.hpp>
 #include <drev/core/control/sampled_controller.hpp>
-#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
 #include <cmath>
 
 #include "app/fmi/fmu_instance.hpp"
+#include "core/control/signal.hpp"
 
 namespace drev::app {
 
-/// A model with values of its parameters, made ready.
+/// A model with values of its parameters, ready for computation.
 struct FmuInstance::Built {
   Built(ModelCase given, const FmuInterface& interface)
       : torques(interface.torques.size()),
@@ -58,7 +58,7 @@ struct FmuInstance::Built {
   std::vector<std::shared_ptr<InputSignal>> torques;
   std::vector<std::shared_ptr<SpeedInput>> speeds;
   ModelCase model_case;
-  System original;  // without the inputs
+  System original;  // system without the inputs
   System system;
   Assembler assembler;
   std::vector<Signal> outputs;

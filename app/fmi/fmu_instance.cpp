@@ -3,7 +3,6 @@
 #include <drev/app/model_file/model_file.hpp>
 #include <drev/core/assembler.hpp>
 #include <drev/core/control/sampled_controller.hpp>
-#include <drev/core/control/signal.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/start.hpp>
 
@@ -12,12 +11,13 @@
 #include <filesystem>
 
 #include "app/fmi/fmu_built.hpp"
+#include "core/control/signal.hpp"
 
 namespace drev::app {
 
 namespace {
 
-constexpr double kProbe = 0.01;  // change of a parameter that is tried, relative
+constexpr double kProbe = 0.01;  // relative change of a parameter that is tried [-]
 
 bool same_motion(const Motion* a, const Motion* b, double t) {
   const bool moves_a = a != nullptr && a->at, moves_b = b != nullptr && b->at;
@@ -26,7 +26,7 @@ bool same_motion(const Motion* a, const Motion* b, double t) {
   return p.value == q.value && p.rate == q.rate;
 }
 
-/// Whether a state of one system is one of the other at time t, and means the same motion.
+/// Whether a state of one system is also one of the other at time t, for the same motion.
 bool same_unknowns(const System& a, const System& b, double t) {
   if (a.size() != b.size() || a.history_size() != b.history_size() || a.node_names() != b.node_names() ||
       a.prescribed_count() != b.prescribed_count())
@@ -77,7 +77,7 @@ std::vector<std::string> FmuInstance::find_tunable() const {
       if (same_unknowns(now, other, 0.0) && same_unknowns(now, other, model_case().duration) &&
           now.initial_deviation() == other.initial_deviation() && now.initial_rate() == other.initial_rate())
         all.push_back(known[i].name);
-    } catch (const ModelError&) {  // the value cannot be: the parameter is left fixed
+    } catch (const ModelError&) {  // the value is invalid: the parameter remains fixed
     }
   }
   return all;
@@ -176,7 +176,7 @@ void FmuInstance::set_parameters(const std::vector<std::pair<std::size_t, std::s
   for (const auto& [place, value] : values) all[place] = value;
   std::unique_ptr<Built> built = build(all);
   if (state_.mode == FmuMode::step) {
-    // The motions that are inputs, too, are compared where they have come to.
+    // Motions that are inputs are compared, too, at their current values.
     for (std::size_t i = 0; i < state_.speeds.size(); ++i) *built->speeds[i] = state_.speeds[i];
     if (!same_unknowns(built_->system, built->system, state_.state.t))
       throw FmuError(
@@ -188,7 +188,7 @@ void FmuInstance::set_parameters(const std::vector<std::pair<std::size_t, std::s
     find_acceleration();
     return;
   }
-  // A speed that nobody has set follows the parameters.
+  // A speed that was not set follows from the parameters.
   for (std::size_t i = 0; i < state_.speeds.size(); ++i)
     if (state_.speed_values[i].value == built_->start_speeds[i])
       state_.speed_values[i].value = built->start_speeds[i];

@@ -1,7 +1,7 @@
 #pragma once
-/// An instance of an FMU, whatever the version of FMI: the model with its inputs, its state, and the steps that
-/// exact propagation takes. Wrong use throws FmuError, a wrong model ModelError, a failed computation SolverError;
-/// the instance is then as before the call.
+/// An instance of an FMU, for both versions of FMI: the model with its inputs, its state, and its steps by
+/// exact propagation. Wrong use throws FmuError, an invalid model ModelError, a failed computation
+/// SolverError; the instance is then as before the call.
 #include <drev/core/channel.hpp>
 #include <drev/core/system.hpp>
 
@@ -26,54 +26,56 @@ class FmuError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What an importer wishes for in a step.
+/// Requests of an importer for a step.
 struct FmuStepWishes {
-  bool end_at_change = false;  ///< end it where a contact changes
-  /// Called inside the step: real() then gives outputs there, and nothing may be set.
+  bool end_at_change = false;  ///< true: the step ends where a contact changes
+  /// Called at points inside the step: real() then gives the outputs there, and nothing may be set.
   std::function<void(double t)> inside = {};
 };
 struct FmuStepped {
-  std::string warning = {};  ///< or nothing
-  bool at_change = false;    ///< it ended ahead of its time, at a contact change
+  std::string warning = {};  ///< warning; empty: none
+  bool at_change = false;    ///< true: the step ended early, at a contact change
 };
 
 class FmuInstance {
  public:
-  /// Of the folder that holds interface.toml. Builds the model with the parameters' start values.
+  /// resources: the folder that contains interface.toml. Builds the model with the parameters' start values.
   explicit FmuInstance(const std::string& resources);
   ~FmuInstance();
   FmuInstance(const FmuInstance&) = delete;
   FmuInstance& operator=(const FmuInstance&) = delete;
 
   const FmuInterface& interface() const { return interface_; }
-  /// By value reference.
+  /// The variables, indexed by value reference.
   const std::vector<FmuVariable>& variables() const { return variables_; }
   const std::vector<Parameter>& parameters() const;
   const ModelCase& model_case() const;
-  /// The real parameters that may change while a simulation runs: those with which unknowns, nominal and prescribed
-  /// motions and initial conditions stay what they are. Tried with values near the start values.
+  /// The real parameters that may change while a simulation runs: those that leave unknowns, nominal and
+  /// prescribed motions and initial conditions unchanged. They are found by trying values near the start
+  /// values.
   std::vector<std::string> find_tunable() const;
   FmuMode mode() const { return state_.mode; }
 
-  /// Values by value reference; throws FmuError for one that there is not, or that is of another type.
+  /// The value of a value reference; throws FmuError for one that does not exist or has another type.
   double real(unsigned reference);
   int integer(unsigned reference) const;
   const std::string& text(unsigned reference) const;
-  /// Throws FmuError where one of them cannot be set now; none is set then.
+  /// Throws FmuError if one of them cannot be set now; then none is set.
   void set_reals(const unsigned* references, const double* values, std::size_t count);
   void set_integers(const unsigned* references, const int* values, std::size_t count);
   void set_texts(const unsigned* references, const std::vector<std::string>& values);
-  /// The first derivative of an input over the next step, 1/s of its unit.
+  /// The first time derivatives of inputs over the next step [unit of the input per s].
   void set_input_slopes(const unsigned* references, const double* values, std::size_t count);
 
-  /// tolerance: relative, 0: the default; t_stop <= t_start: there is none. s.
+  /// tolerance: relative tolerance [-], 0: the default. t_start, t_stop [s]; t_stop <= t_start: there is no
+  /// stop time.
   void enter_initialization(double t_start, double t_stop, double tolerance);
   void exit_initialization();
-  /// From t over h [s], or to the first contact change if that is wished for.
+  /// A step from t over h [s], or to the first contact change if that is requested.
   FmuStepped step(double t, double h, const FmuStepWishes& wishes = {});
-  /// sum_j (dy_i/du_j) seed_j of outputs y by inputs u, where the motion has come to, with the inputs as they are set: what
-  /// follows an input at once (accelerations, reactions, forces of dampers beside a speed). By central differences,
-  /// which are exact but for rounding where the law is linear.
+  /// sum_j (dy_i/du_j) seed_j of outputs y by inputs u in the current state, with the inputs as set: the
+  /// direct feedthrough (accelerations, reactions, forces of dampers at a prescribed speed). By central
+  /// differences, which are exact within rounding where the law is linear.
   std::vector<double> directional_derivative(const std::vector<unsigned>& unknowns,
                                              const std::vector<unsigned>& knowns,
                                              const std::vector<double>& seed);
@@ -81,7 +83,7 @@ class FmuInstance {
   void reset();
 
   const FmuState& state() const { return state_; }
-  /// Throws for a state of another model.
+  /// Throws FmuError for a state of another model.
   void set_state(const FmuState& state);
 
  private:
@@ -93,7 +95,7 @@ class FmuInstance {
   void require(bool right, const char* call, const char* when) const;
   void set_parameters(const std::vector<std::pair<std::size_t, std::string>>& values);
   std::unique_ptr<Built> build(const std::vector<std::string>& parameters) const;
-  /// Finds the state that the model starts from, with the inputs as they are.
+  /// Finds the start state of the model with the current inputs.
   void start();
   void hand_inputs_on();
   void find_acceleration();
@@ -107,7 +109,7 @@ class FmuInstance {
   std::vector<FmuVariable> variables_;
   FmuState state_;
   std::unique_ptr<Built> built_;
-  /// The point inside a step that the importer is being shown.
+  /// The point inside a step at which the importer is being called.
   struct {
     const Assembler* assembler = nullptr;
     const State* state = nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-/// What an FMU of drev offers, and how its library is told: resources/interface.toml.
+/// The interface of an FMU of drev, which its library reads from resources/interface.toml.
 #include <drev/core/ids.hpp>
 #include <drev/models/model_case.hpp>
 
@@ -9,17 +9,17 @@
 namespace drev::app {
 
 struct FmuInterface {
-  std::string model;  ///< the model file, relative to the folder of interface.toml
-  std::string run;    ///< named run of it; empty: [run] alone
-  std::string token;  ///< ties library and description together: guid of FMI 2, instantiationToken of FMI 3
+  std::string model;  ///< path of the model file relative to the folder of interface.toml
+  std::string run;    ///< named run of the model file; empty: [run] alone
+  std::string token;  ///< common to library and description: guid of FMI 2, instantiationToken of FMI 3
   std::vector<std::string> torques, speeds;  ///< nodes whose torque or speed is an input
-  std::vector<std::string> outputs;          ///< channels
-  ParameterValues parameters;                ///< start values that are not the file's defaults
+  std::vector<std::string> outputs;          ///< channels that are outputs
+  ParameterValues parameters;                ///< start values that differ from the file's defaults
   std::vector<std::string> tunable = {};     ///< parameters that may change while a simulation runs
 };
 
 std::string interface_text(const FmuInterface& interface);
-/// Throws ModelError for a file that is not one.
+/// Throws ModelError for a file that is not an interface.toml.
 FmuInterface read_interface(const std::string& path);
 
 /// One of the FMU's variables. Its value reference is its place in the list; the first is the time.
@@ -29,12 +29,13 @@ struct FmuVariable {
   std::string name;
   Type type = Type::real;
   Role role = Role::time;
-  std::size_t place = 0;  ///< among the variables of its role
+  std::size_t place = 0;  ///< number among the variables of its role
   std::string unit = {}, meaning = {};
-  bool tunable = false;  ///< of a parameter
+  bool tunable = false;  ///< true: a parameter that may change while a simulation runs
 };
 
-/// Time, parameters, torques, speeds, outputs. kinds: of the torques' nodes, then the speeds'.
+/// The variables: time, parameters, torques, speeds, outputs. kinds: kinds of the torque nodes, then of the
+/// speed nodes.
 std::vector<FmuVariable> fmu_variables(const FmuInterface& interface,
                                        const std::vector<Parameter>& parameters,
                                        const std::vector<NodeKind>& kinds,

@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* kHead = "drev FMU state 1";
 
-/// One list of fields writes and reads. Sizes are checked against what is left before memory is taken.
+/// One list of fields serves for writing and reading. Sizes are checked against the bytes left before memory
+/// is allocated.
 class Writer {
  public:
   template <class T>
@@ -50,7 +51,7 @@ class Reader {
   std::size_t left_;
 };
 
-/// As a byte, since not every byte is a bool.
+/// A flag as a byte, since not every byte value is a valid bool.
 void flag_field(Writer& writer, bool flag) { writer.plain(static_cast<std::uint8_t>(flag)); }
 void flag_field(Reader& reader, bool& flag) {
   std::uint8_t byte = 0;

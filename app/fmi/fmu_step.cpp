@@ -1,4 +1,4 @@
-// The second part of FmuInstance: communication steps, what outputs are, and how they follow the inputs.
+// The second part of FmuInstance: communication steps, outputs, and their derivatives by the inputs.
 #include <drev/solvers/run/observer.hpp>
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kSameTime = 1e-9;  // relative to the communication step
+constexpr double kSameTime = 1e-9;  // difference of equal times relative to the communication step [-]
 constexpr double kDefaultTolerance = 1e-10;
 constexpr double kChange =
     1e-4;  // of an input, for derivatives: relative, or in its unit where it is less than 1
 
 }  // namespace
 
-/// Shows the importer the points of the step that a run's observers see.
+/// Calls the importer at the points of the step that a run's observers see.
 class FmuInstance::Inside final : public Observer {
  public:
   Inside(FmuInstance& of, const std::function<void(double t)>& tell) : of_(of), tell_(tell) {}
@@ -42,7 +42,7 @@ void FmuInstance::hand_inputs_on() {
   built_->assembled = std::nan("");
 }
 
-/// a = M^-1 (p - C v - K z - B y).
+/// Finds the acceleration a = M^-1 (p - C v - K z - B y).
 void FmuInstance::find_acceleration() {
   State& s = state_.state;
   const System& system = built_->system;
@@ -61,13 +61,13 @@ void FmuInstance::find_acceleration() {
   mass.solve(rest, s.a);
 }
 
-/// The motion of speed input i goes on from where the last step's has come to.
+/// The deviation that speed input i has reached at time t, from which the motion of the next step continues.
 double FmuInstance::reached(const SpeedInput& input, std::size_t i, double t) const {
   const double ratio = built_->original.ratio(built_->original.node(interface_.speeds[i]));
   return input.at(t, ratio, built_->system.reference()).value;
 }
 
-/// When the first contact changes behind the start of a run and ahead of its end; the state stays as it is.
+/// Time of the first contact change after the start of a run and before its end; the state is not changed.
 std::optional<double> FmuInstance::first_change(const ExactOptions& options) {
   const double near = kSameTime * (options.t_end - options.t_start);
   std::optional<double> first;
@@ -99,7 +99,7 @@ FmuStepped FmuInstance::step(double t, double h, const FmuStepWishes& wishes) {
       state_.speeds[i] = {{t, state_.speed_values[i].value, state_.speed_values[i].slope}, deviation};
     }
     hand_inputs_on();
-    // The whole simulation's tolerance, shared out over its steps.
+    // The tolerance of the whole simulation, divided among its steps.
     const double span =
         state_.t_stop > state_.t_start ? state_.t_stop - state_.t_start : built_->model_case.duration;
     const double whole = state_.tolerance > 0.0 ? state_.tolerance : kDefaultTolerance;

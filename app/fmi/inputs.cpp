@@ -14,7 +14,7 @@ const InputNode* speed_of(const std::vector<InputNode>& inputs, const std::strin
   return nullptr;
 }
 
-/// Everything of a model but the motions of nodes whose speed is an input.
+/// The model without the prescribed motions of nodes whose speed is an input.
 Model without_motions(const Model& model, const std::vector<InputNode>& inputs) {
   Model all(model.name());
   std::vector<bool> internal(model.node_names().size(), false);

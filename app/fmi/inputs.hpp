@@ -1,5 +1,6 @@
 #pragma once
-/// What an FMU's importer drives a model by: torques on nodes, and speeds of nodes whose motion is prescribed.
+/// Inputs by which an FMU's importer drives a model: torques on nodes, and speeds of nodes whose motion is
+/// prescribed.
 #include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/model.hpp>
@@ -11,7 +12,7 @@ namespace drev::app {
 
 /// An input over a communication step: value + slope (t - t_0), in the input's unit and per second.
 struct InputSignal {
-  double t_0 = 0.0;  ///< s
+  double t_0 = 0.0;  ///< begin of the communication step [s]
   double value = 0.0;
   double slope = 0.0;
   double at(double t) const { return value + slope * (t - t_0); }
@@ -41,21 +42,21 @@ class InputTorque final : public Element, public Load {
 ///   u(t) = u_0 + w (t - t_0) + w' (t - t_0)^2 / 2 - n (phi(t) - phi(t_0)).
 struct SpeedInput {
   InputSignal signal;      ///< w
-  double deviation = 0.0;  ///< u_0 [rad or m], at t_0
+  double deviation = 0.0;  ///< deviation u_0 at t_0 [rad or m]
   MotionPoint at(double t, double ratio, const std::optional<Motion>& nominal) const;
 };
 
 /// The model with input torques on nodes, and with speeds in place of the motions of prescribed nodes.
 struct InputNode {
   std::string node;
-  std::shared_ptr<const InputSignal> torque = {};  ///< one of both
+  std::shared_ptr<const InputSignal> torque = {};  ///< either torque or speed is set
   std::shared_ptr<const SpeedInput> speed = {};
 };
-/// Throws ModelError for nodes that there are not, and for speeds of nodes whose motion is not prescribed or whose
-/// inertia is coupled to others', where a jump of the speed would be an impulse.
+/// Throws ModelError for nodes that do not exist, and for speeds of nodes whose motion is not prescribed or
+/// whose inertia is coupled to others, where a jump of the speed would be an impulse.
 Model with_inputs(const Model& model, const std::vector<InputNode>& inputs);
 
-/// Name of the element that an input torque is: its channel is NAME.torque_Nm.
+/// Name of the element of an input torque, whose channel is NAME.torque_Nm.
 std::string input_element(const std::string& node);
 
 }  // namespace drev::app

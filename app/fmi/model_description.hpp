@@ -6,7 +6,8 @@
 
 namespace drev::app {
 
-/// fmi: 2 or 3. identifier: name of the library, a C name. instance: as built with its start values.
+/// fmi: version 2 or 3. identifier: name of the library, a C identifier. instance: an instance with its start
+/// values.
 std::string model_description(FmuInstance& instance, int fmi, const std::string& identifier);
 
 }  // namespace drev::app

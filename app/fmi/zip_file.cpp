@@ -10,7 +10,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kPart = std::size_t{1} << 24;  // bytes that are handed to minizip at once
+constexpr std::size_t kPart = std::size_t{1} << 24;  // number of bytes given to minizip at once
 
 }  // namespace
 
@@ -30,7 +30,7 @@ ZipFile::~ZipFile() {
 
 void ZipFile::add(const std::string& name, std::string_view content) {
   zip_fileinfo info{};
-  info.tmz_date = {0, 0, 0, 1, 0, 1980};  // the same bytes whenever it is written
+  info.tmz_date = {0, 0, 0, 1, 0, 1980};  // a fixed date: the same bytes at any time
   bool good = zipOpenNewFileInZip64(zip_, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED,
                                     Z_DEFAULT_COMPRESSION, 0) == ZIP_OK;
   while (good && !content.empty()) {

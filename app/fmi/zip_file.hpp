@@ -7,7 +7,7 @@ namespace drev::app {
 
 class ZipFile {
  public:
-  /// Creates DIR/NAME.partial.EXT of path DIR/NAME.EXT. Throws OutputError, as the others.
+  /// Creates DIR/NAME.partial.EXT for the path DIR/NAME.EXT. Throws OutputError, like the other functions.
   explicit ZipFile(const std::string& path);
   ~ZipFile();
   ZipFile(const ZipFile&) = delete;
@@ -15,7 +15,7 @@ class ZipFile {
 
   /// Adds a file, compressed; names have '/' between folders.
   void add(const std::string& name, std::string_view content);
-  /// Gives the archive its own name.
+  /// Completes the archive and gives it its own name.
   void commit();
 
  private:

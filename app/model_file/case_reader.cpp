@@ -236,7 +236,8 @@ class CaseReader {
   /// Names of an element's nodes, which are looked up; sets the kind of the part.
   std::vector<std::string> nodes_of(const Value& table, const std::string& where, Part& part) {
     const Entry *one = table.find("node"), *several = table.find("nodes");
-    if (one != nullptr && several != nullptr) refuse(several->at, where + ".nodes", "is there beside node");
+    if (one != nullptr && several != nullptr)
+      refuse(several->at, where + ".nodes", "is given together with node");
     if (one == nullptr && several == nullptr) return {};
     const Entry& given = one != nullptr ? *one : *several;
     std::vector<std::string> names;

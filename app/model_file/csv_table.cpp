@@ -84,7 +84,7 @@ class Rows {
   int line_ = 1;
 };
 
-/// A name that drev would have written with ' before it, lest a spreadsheet take it for a formula.
+/// A name that drev would have written with ' before it, so that no spreadsheet takes it for a formula.
 std::string column_name(const std::string& cell) {
   const std::size_t first = cell.find_first_not_of('\'');
   const bool marked =

@@ -1,4 +1,4 @@
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/app/model_file/plugin.hpp>
 
 #include <dlfcn.h>
@@ -34,7 +34,7 @@ std::string load(const std::string& file) {
   if (stamp == nullptr || add == nullptr) return "is no plugin of drev: it lacks DREV_PLUGIN()";
   const std::string built_for = stamp();
   if (built_for != DREV_PLUGIN_STAMP)
-    return "was built for " + built_for + "; this is " + DREV_PLUGIN_STAMP + ": build it anew";
+    return "was built for " + built_for + "; this is " + DREV_PLUGIN_STAMP + ": build it again";
   register_from(file, add);
   return {};
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// A model file as a model case: the model with its parameters, and its runs. docs/model_file.md
-/// describes the format.
+/// describes the format. load_plugins() enters the elements that plugins give files.
 #include <drev/app/model_file/position.hpp>
 #include <drev/models/model_case.hpp>
 
@@ -41,5 +41,14 @@ class ModelFile {
 
 /// Whether a MODEL of the command line means a file: it ends in .toml, or names a file and no built-in model.
 bool is_model_file(const std::string& model);
+
+/// Takes in the elements of plugins (plugin.hpp): loads shared libraries, which stay until the program ends; their types then stand in every model file.
+/// Throws ModelError with what is wrong with each: no such file, no plugin of drev, one for another drev, a
+/// type that is there already. The program must export its symbols (CMake: ENABLE_EXPORTS), as the command
+/// drev does.
+void load_plugins(const std::vector<std::string>& files);
+
+/// Those that were loaded, as they were named.
+const std::vector<std::string>& loaded_plugins();
 
 }  // namespace drev::app

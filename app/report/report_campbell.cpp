@@ -12,9 +12,9 @@ namespace drev::app {
 namespace {
 
 constexpr std::size_t kCrossings = 400;
-constexpr double kFarthest = 4.0;  // crossings up to as many times the fastest speed of the run
+constexpr double kFarthest = 4.0;  // largest speed of crossings relative to the fastest of the run [-]
 
-/// One node for each speed there is.
+/// One node for each distinct speed.
 Json shafts_object(const System& system, const std::string& reference) {
   const auto key_of = [](double ratio) { return std::lround(ratio * 1e6); };
   std::map<long, std::string> shafts;

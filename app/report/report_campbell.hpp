@@ -11,9 +11,9 @@ namespace drev::app {
 /// Name of the node through which the reference motion was given; "reference shaft" if there is none.
 std::string reference_name(const Model& model);
 
-/// Null where no shaft turns. Else {shaft, speed: [slowest, fastest of the run, rad/s], orders: [{order, of}],
-/// crossings: [{mode, order, speed, static}], shafts: [{name, ratio}]}: speeds of the reference shaft
-/// [rad/s], orders per its revolution; shafts: one of each speed.
+/// Null if no shaft turns, otherwise {shaft, speed: [slowest, fastest of the run, rad/s], orders: [{order,
+/// of}], crossings: [{mode, order, speed, static}], shafts: [{name, ratio}]}: speeds of the reference shaft
+/// [rad/s], orders per revolution of it; shafts: one for each distinct speed.
 Json campbell_object(const Model& model, const System& system, const ModeSet& modes, double duration);
 
 }  // namespace drev::app

@@ -17,11 +17,11 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kRunSamples = 1e5;   // of a run, unless --every says otherwise
-constexpr double kAboveModes = 3.0;   // spectra go so far beyond the highest mode listed
-constexpr double kAboveSpeed = 40.0;  // or to this order, where that is higher
+constexpr double kRunSamples = 1e5;   // number of samples of a run, unless --every is given
+constexpr double kAboveModes = 3.0;   // end of the spectra over the highest listed natural frequency [-]
+constexpr double kAboveSpeed = 40.0;  // end of the spectra as an order, if that is higher
 
-/// The command that gives this run again.
+/// The command that reproduces this run.
 std::string command_of(const RunRequest& request, const RunResult& result) {
   const Method& method = result.method;
   std::string text = "drev run " + request.words + model_options(request.model.parameters);
@@ -38,7 +38,7 @@ std::string command_of(const RunRequest& request, const RunResult& result) {
   return text;
 }
 
-/// Share of each group's time, a byte each: 255 is all of it.
+/// Part of each group's time, as one byte: 255 is all of it.
 std::string shares(const std::vector<float>& seconds, const ReportHistory& history) {
   std::vector<unsigned char> bytes(seconds.size());
   for (std::size_t i = 0; i < seconds.size(); ++i) {
@@ -77,7 +77,7 @@ Json history_object(const ReportHistory& history) {
   return object;
 }
 
-/// Line by line, each over all windows.
+/// The waterfall order by order, each over all windows.
 Json waterfall_object(const OrderTracks& tracks) {
   if (tracks.time.size() < 2) return nullptr;
   Json channels = Json::array(), speeds = Json::array();
@@ -92,8 +92,8 @@ Json waterfall_object(const OrderTracks& tracks) {
   return {{"orders", tracks.orders}, {"speed_rpm", std::move(speeds)}, {"channels", std::move(channels)}};
 }
 
-/// The nominal speed over the time, for histories over the speed; where nothing turns nominally that of the windows in
-/// which orders are tracked.
+/// The nominal speed over time, for histories over speed; if nothing turns nominally, the speed of the
+/// windows in which orders are tracked.
 Json speeds_object(const System& system, const OrderTracks& tracks, double end) {
   constexpr int kPoints = 512;
   Json times = Json::array(), speeds = Json::array();
@@ -118,7 +118,7 @@ double report_interval(const RunRequest& request, const Method& method) {
   const double duration = request.model.model_case.duration, about = duration / kRunSamples;
   const double cycle = cycle_of(request.model);
   if (!(cycle > 2.0 * about) || cycle > duration) return about;
-  // A number of samples a cycle that transforms are fast for.
+  // A number of samples per cycle for which transforms are fast.
   return cycle / std::exp2(std::floor(std::log2(cycle / about)));
 }
 
@@ -147,7 +147,7 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   data["waterfall"] = result.run_up ? waterfall_object(result.run_up->waterfall) : Json();
   data["speeds"] =
       result.run_up ? speeds_object(m.system, result.run_up->orders, result.summary.t_end) : Json();
-  // A run-up has its orders over the speed instead (result.run_up).
+  // A run-up has orders over speed instead (result.run_up).
   data["spectra"] = result.run_up
                         ? Json()
                         : spectra_object(history, result.span.from, cycle_of(m), m.system.reference_speed(),

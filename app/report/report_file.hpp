@@ -1,5 +1,5 @@
 #pragma once
-/// Where a report goes: a page, or the page printed as PDF. The file gets its name when it is complete.
+/// The file of a report: a page, or the page printed as PDF. It gets its name when it is complete.
 #include <optional>
 #include <string>
 
@@ -7,26 +7,26 @@
 
 namespace drev::app {
 
-/// What speaks against a report of this name on this machine, as a finding says it; nullopt: nothing.
+/// Why a report of this name cannot be made on this machine, in the words of a finding; nullopt: it can.
 std::optional<std::string> why_no_report(const std::string& path);
 
 class ReportFile {
  public:
-  /// path: of an .html or a .pdf file. Opens it. Throws OutputError.
+  /// Opens the file. path: path of an .html or a .pdf file. Throws OutputError.
   explicit ReportFile(const std::string& path);
-  /// What was not committed is removed.
+  /// Removes a file that was not committed.
   ~ReportFile();
   ReportFile(const ReportFile&) = delete;
   ReportFile& operator=(const ReportFile&) = delete;
 
-  /// Writes the page, prints it where that is asked for. Throws OutputError.
+  /// Writes the page, and prints it if the file is a PDF. Throws OutputError.
   void commit(const std::string& page);
   const std::string& path() const { return path_; }
 
  private:
   std::string path_;
   OutputFile file_;
-  bool complete_ = false;  ///< the report has its name
+  bool complete_ = false;  ///< true: the report has its name
 };
 
 }  // namespace drev::app

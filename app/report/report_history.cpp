@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kPlaces = 200000, kMostPlaces = 1 << 15;  // two floats each: 2 MB in the page
 constexpr std::size_t kTail = 4000000, kMostTail = 1 << 17;
-constexpr double kSameTime = 1e-9;  // relative to the interval
+constexpr double kSameTime = 1e-9;  // difference of equal times relative to the interval [-]
 
 /// Part of a step from x0 to x1 (linear) above the edge [-].
 double share_above(double x0, double x1, double edge) {

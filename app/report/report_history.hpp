@@ -1,14 +1,14 @@
 #pragma once
-/// What the report keeps of a run over time, in memory that does not grow with it:
+/// The history of a run that the report keeps, in memory that does not grow with the run:
 ///
 ///   groups   of 1, 2, 4, ... consecutive samples, at most kPlaces / channels of them; of each group the
 ///            first time, and the lowest and the highest value of every channel, so that no peak of the
-///            samples is lost. When all places are taken, neighbours are joined and groups are twice as long
+///            samples is lost. When all places are taken, neighbours are joined, and groups are twice as long
 ///            from then on.
-///   tail     the last samples as they are, for spectra: at most kTail / channels, 2^17 at most.
-///   contacts time of each group that a gap spent closed on its front and on its back flank.
+///   tail     the last samples unchanged, for spectra: at most kTail / channels, and at most 2^17.
+///   contacts the time in each group during which a gap is in contact on its front and on its back flank.
 ///
-/// Samples are taken at k * every, or at every step (every = 0). Past the channels asked for stand kinetic
+/// Samples are taken at times k * every, or at every step (every = 0). The channels are followed by kinetic
 /// and stored energy [J].
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/run/channel_values.hpp>
@@ -22,7 +22,7 @@ namespace drev::app {
 
 class ReportHistory final : public Observer {
  public:
-  /// every >= 0 [s]; 0: every step, for methods whose steps an output time would cut.
+  /// every: sampling interval [s], >= 0; 0: every step, for methods whose steps output times would shorten.
   ReportHistory(const System& system, const std::vector<std::string>& channels, double every);
 
   void look_through(StepMotion& motion) override { channels_.look_through(motion); }
@@ -37,10 +37,11 @@ class ReportHistory final : public Observer {
   /// One curve: a channel, or an energy.
   struct Series {
     std::string name, unit;
-    std::vector<float> low, high;  ///< of each group
+    std::vector<float> low, high;  ///< lowest and highest value in each group
     std::vector<double> tail;      ///< a ring: see tail_at()
   };
-  /// The gap of one element: seconds of each group in which its front, its back flank is in contact.
+  /// The gap of one element: the times in each group during which its front or its back flank is in contact
+  /// [s].
   struct Band {
     std::string element;
     std::vector<float> front, back;
@@ -48,9 +49,9 @@ class ReportHistory final : public Observer {
 
   double every() const { return every_; }
   long samples() const { return samples_; }
-  long group() const { return group_; }                        ///< samples in a group
-  double end() const { return end_; }                          ///< s, of the last sample
-  const std::vector<double>& times() const { return times_; }  ///< s, first of each group
+  long group() const { return group_; }                        ///< number of samples in a group
+  double end() const { return end_; }                          ///< time of the last sample [s]
+  const std::vector<double>& times() const { return times_; }  ///< first time of each group [s]
   const std::vector<Series>& series() const { return series_; }
   const std::vector<Band>& bands() const { return bands_; }
   std::size_t channel_count() const { return channels_.channels().size(); }
@@ -59,8 +60,8 @@ class ReportHistory final : public Observer {
   /// Sample i of the tail, the oldest first.
   double tail_time(std::size_t i) const { return tail_times_[tail_place(i)]; }
   double tail_value(std::size_t series, std::size_t i) const { return series_[series].tail[tail_place(i)]; }
-  /// Mean of nominal speed and drift over the tail from t = `from` on, of the reference shaft [rad/s], without
-  /// sign; 0 where none turns.
+  /// Absolute mean speed of the reference shaft [rad/s], nominal speed and drift, over the tail from t =
+  /// `from` on; 0 if no shaft turns.
   double mean_speed(double from) const;
 
  private:
@@ -74,7 +75,7 @@ class ReportHistory final : public Observer {
   std::size_t places_, tail_places_, oldest_ = 0;
   int drifting_ = -1;  // node of a part that may drift from its nominal speed
   double drifting_ratio_ = 1.0;
-  std::vector<double> angle_;  // of the reference shaft, with the drift; as the tail [rad]
+  std::vector<double> angle_;  // angle of the reference shaft at each sample of the tail [rad]
   long samples_ = 0, group_ = 1, in_group_ = 0;
   std::vector<double> times_, tail_times_;
   std::vector<Series> series_;

@@ -15,7 +15,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kSumRounding = 1e-9;  // relative, of sums that should be zero
+constexpr double kSumRounding = 1e-9;  // relative rounding of sums that should be zero [-]
 constexpr std::size_t kSharesShown = 3;
 constexpr double kShareShown = 0.005;
 
@@ -26,7 +26,7 @@ std::vector<int> nodes_of(const ElementInstance& placement, const System& system
   return nodes;
 }
 
-/// Writes one element into the drawing.
+/// Adds one element to the drawing.
 class Drawing {
  public:
   explicit Drawing(const System& system) : inertia_(static_cast<std::size_t>(system.node_count())) {}
@@ -68,7 +68,8 @@ class Drawing {
     return joints.back();
   }
 
-  /// A spring with nodes of its own inside (rubber in time) that says its deflection: one shaft of its static stiffness.
+  /// Adds a spring with internal nodes (a viscoelastic element) that gives its deflection: one shaft of its
+  /// static stiffness.
   bool add_along_deflection(const Terms& terms) {
     if (terms.outputs.size() != 1 || terms.outputs[0].deflection.size() == 0) return false;
     std::vector<int> ends, inner;
@@ -83,7 +84,7 @@ class Drawing {
     return true;
   }
 
-  /// damping: of a shaft beside its stiffness.
+  /// damping: damping of a shaft in addition to its stiffness.
   void add_matrix(const Eigen::MatrixXd& k, const char* kind, const char* value,
                   const Eigen::MatrixXd* damping = nullptr) {
     for (Eigen::Index i = 0; i < k.rows(); ++i) {
@@ -111,8 +112,8 @@ class Drawing {
     law["radii"] = {std::abs(spec.b[local[0]]), std::abs(spec.b[local[1]])};
     law["internal"] = internal;
     if (local.size() == 2) return;
-    // Behind the gears stands what carries them (a planet is the second of the sun's mesh, the first of the ring's), or the
-    // centre of each.
+    // The nodes after the gears are their carrier (a planet is the second gear of the sun's mesh, the first
+    // of the ring's), or the centre of each gear.
     law["carried"] = local.size() == 3;
     if (local.size() == 3) joint("other", {local[internal ? 0 : 1], local[2]});
     for (std::size_t i = 2; local.size() > 3 && i < local.size(); ++i)
@@ -141,7 +142,8 @@ class Drawing {
     return local;
   }
 
-  /// More than two nodes at once: each is joined with the one that weighs most, the carrier of a planetary set.
+  /// More than two nodes: each is joined to the one with the largest coefficient, the carrier of a planetary
+  /// gear set.
   void add_star(const LocalRow& row) {
     const std::vector<int> local = nodes_in(row);
     if (local.empty()) return add_other();
@@ -162,7 +164,7 @@ class Drawing {
   ElementParts parts_;
 };
 
-/// q'Kq of a part of an element, its laws closed, at the shape of a mode over all nodes.
+/// q'Kq of a part of an element, with its laws closed, for the shape of a mode over all nodes.
 double potential(const Terms& terms, const std::vector<int>& nodes, const Eigen::VectorXd& shape) {
   const Eigen::VectorXd q = shape(nodes);
   double energy = q.dot(terms.stiffness * q);

@@ -1,9 +1,9 @@
 #pragma once
-/// The model as the report draws it: nodes with their inertias, what joins them, loads; and its modes.
+/// The model as the report draws it: nodes with their inertias, joints between them, loads; and its modes.
 ///
-/// All of it is read from what the elements say of themselves (Element::describe), so that one's own elements
-/// are drawn too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
-/// a constraint is an ideal gear, dry friction a clutch.
+/// Everything is taken from the elements' own descriptions (Element::describe), so that user-defined elements
+/// are drawn, too: a constant stiffness between two nodes is a shaft, a law along a line of action is a mesh,
+/// a constraint is an ideal gear, dry friction is a clutch.
 #include <drev/core/system.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
@@ -16,8 +16,8 @@ namespace drev::app {
 /// ground.
 Json model_object(const Model& model, const System& system);
 
-/// [{frequency_Hz, shape: [a number a node, largest 1], energy: [{element, share}]}]: share of the mode's
-/// potential energy, the three largest above 0.5 %.
+/// [{frequency_Hz, shape: [one number for each node, largest 1], energy: [{element, share}]}]: share of the
+/// mode's potential energy, for the three largest shares above 0.5 %.
 Json modes_object(const System& system, const ModeSet& modes);
 
 }  // namespace drev::app

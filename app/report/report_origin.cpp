@@ -1,6 +1,6 @@
 #include "app/report/report_origin.hpp"
 
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/version.hpp>
 
 #include <chrono>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the data blocks of all reports say of where they come from.
+/// The origin of a report, in the data blocks of all reports.
 #include "app/base/json_values.hpp"
 #include "app/run/model_request.hpp"
 
@@ -11,11 +11,12 @@ void add_origin(Json& data);
 /// [{name, value, default, unit, range, meaning}]
 Json inputs_array(const Parameters& parameters);
 
-/// " --set NAME=VALUE" of each parameter that is not at its default, and " --plugin FILE" of each loaded.
+/// " --set NAME=VALUE" for each parameter that is not at its default, and " --plugin FILE" for each loaded
+/// plugin.
 std::string model_options(const Parameters& parameters);
 
-/// What the pages of sweeps and studies begin with: origin, command (words and the model's options), title, and the
-/// model with its inputs.
+/// The data at the beginning of the pages of sweeps and studies: origin, command (words and the model's
+/// options), title, and the model with its inputs.
 Json page_data(const std::string& kind, const std::string& title, const ModelRequest& model,
                const std::string& words);
 

@@ -19,10 +19,10 @@ namespace drev::app {
 namespace {
 
 constexpr std::string_view kBlockBegin = "<script type=\"application/json\" class=\"run\">";
-constexpr std::size_t kMostGroups = std::size_t{1} << 28;  // of a history: more than a page can hold
+constexpr std::size_t kMostGroups = std::size_t{1} << 28;  // more groups of a history than a page can hold
 constexpr std::string_view kEnd = "</script>";
 
-/// What pages differ in: their sections, and the parts of their program.
+/// The parts in which pages differ: their sections, and the parts of their program.
 struct PageParts {
   std::vector<std::pair<const char*, const char*>> sections;  ///< id and heading
   std::vector<std::string_view> program;
@@ -92,7 +92,7 @@ void fill(std::string& page, const std::string& name, const std::string& text) {
   page.replace(page.find(marker), marker.size(), text);
 }
 
-/// A word that no one could have written into a model before its report was made.
+/// A random word that nobody can know before the report is made.
 std::string new_nonce() {
   std::random_device random;
   std::vector<std::uint32_t> words(4);
@@ -100,8 +100,8 @@ std::string new_nonce() {
   return base64(words);
 }
 
-/// What the browser may do: run the page's own two programs, which bear the nonce, and nothing else. Whatever a
-/// text of a run contains, it is neither run nor fetched.
+/// The content security policy: the browser may run the page's own two programs, which have the nonce, and
+/// nothing else. Content of a text of a run is neither executed nor fetched.
 std::string policy(const std::string& nonce) {
   return "default-src 'none'; script-src 'nonce-" + nonce +
          "'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
@@ -112,7 +112,8 @@ constexpr const char* kChecksum = "checksum";
 std::string dumped(const Json& data) { return data.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// FNV-1a, 64 bits, of the data written without their checksum, in hexadecimal digits (G. Fowler, L. C. Noll, K.-P.
-/// Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm). Against accidents: it proves no one's authorship.
+/// Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm). It detects accidental damage; it does not
+/// prove origin.
 std::string checksum_of(const Json& data) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : dumped(data)) {
@@ -125,7 +126,7 @@ std::string checksum_of(const Json& data) {
   return text;
 }
 
-/// Whether the data are those that were written; those of a version without a checksum are taken as they are.
+/// Whether the data are those that were written; data of a version without a checksum are accepted.
 bool is_sound(const Json& data) {
   if (!data.contains(kChecksum)) return data.contains("format") && data.at("format") == 1;
   Json bare = data;
@@ -133,7 +134,7 @@ bool is_sound(const Json& data) {
   return data.at(kChecksum) == checksum_of(bare);
 }
 
-/// Whether this is the base64 text of so many bytes.
+/// Whether this is the base64 text of `bytes` bytes.
 bool is_base64(const Json& text, std::size_t bytes) {
   constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   if (!text.is_string()) return false;
@@ -144,7 +145,7 @@ bool is_base64(const Json& text, std::size_t bytes) {
          letters.size() - std::min(end, letters.size()) == (3 - bytes % 3) % 3;
 }
 
-/// Whether every series of a history has its values.
+/// Whether every series of a history has all its values.
 bool is_history(const Json& history) {
   if (!history.is_object() || !history.contains("series") || !history.at("series").is_array()) return false;
   const Json groups = history.value("groups", Json());

@@ -16,10 +16,10 @@ std::string report_page(const std::vector<std::string>& blocks, ReportPage kind 
 /// A data block as text that may stand in a page.
 std::string block_text(const Json& data);
 
-/// The data of a block's text; null if it is damaged: no JSON, or without what a block has.
+/// The data of a block's text; null if it is damaged: no JSON, or without the members of a block.
 Json read_block(const std::string& text);
 
-/// The blocks of a page that report_page() made; none if it is no such page.
+/// The blocks of a page that report_page() made; empty if it is no such page.
 std::vector<std::string> blocks_of(const std::string& page);
 
 }  // namespace drev::app

@@ -22,7 +22,7 @@ namespace drev::app {
 
 namespace {
 
-/// A new folder, of this user alone, removed with all that is in it.
+/// A new folder that only this user can access, removed with its content.
 class NewFolder {
  public:
   explicit NewFolder(const std::string& parent) : path_(parent + "/drev_print_XXXXXX") {
@@ -41,7 +41,7 @@ class NewFolder {
   std::string path_;
 };
 
-/// Where temporary files go.
+/// The folder for temporary files.
 std::string temporary_folder() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::temp_directory_path(error);
@@ -52,7 +52,8 @@ std::string temporary_folder() {
                     " is not there; set TMPDIR to a folder that is");
 }
 
-/// Runs a program without input or output, and waits. Returns what waitpid() says, -1: not started.
+/// Runs a program without input or output, and waits for it. Returns the status of waitpid(); -1: not
+/// started.
 int run_silently(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -82,7 +83,7 @@ std::string file_url(const std::string& path) {
   return url;
 }
 
-/// A file as text; empty if it is no PDF in full, which says so at its end.
+/// A file as text; empty if it is not a complete PDF, which ends with %%EOF.
 std::string complete_pdf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -108,7 +109,7 @@ std::string find_browser() {
 std::string print_as_pdf(const std::string& page, const std::string& folder) {
   const std::string browser = find_browser();
   if (browser.empty()) throw OutputError("cannot print a PDF: it " + std::string(kNoBrowser));
-  // The page and its print lie in a folder of their own, where no one else has put anything.
+  // The page and its print are in a folder of their own, to which no other user can write.
   const NewFolder profile(temporary_folder()), work(folder);
   write_file(work.path(), "page", "html", page);
   const std::string pdf = work.path() + "/page.pdf";
@@ -120,7 +121,7 @@ std::string print_as_pdf(const std::string& page, const std::string& folder) {
                                  "--no-pdf-header-footer",
                                  "--virtual-time-budget=20000",
                                  "--print-to-pdf=" + pdf};
-  // It refuses to run as root with its sandbox. The page's own policy holds all the same: nothing but its own
+  // The browser refuses to run as root with its sandbox. The page's own policy still applies: only its own
   // program runs, and nothing is fetched.
   if (::geteuid() == 0) words.push_back("--no-sandbox");
   words.push_back(file_url(work.path() + "/page.html"));

@@ -1,5 +1,5 @@
 #pragma once
-/// A page printed as PDF, by the Chromium that is installed.
+/// Printing of a page as PDF by the installed Chromium.
 #include <string>
 
 namespace drev::app {
@@ -13,7 +13,7 @@ inline constexpr const char* kNoBrowser =
 std::string find_browser();
 
 /// The PDF of a page of report_page(), printed in a folder of its own inside `folder`, which is removed. Throws
-/// OutputError if no complete PDF came of it.
+/// OutputError if no complete PDF results.
 std::string print_as_pdf(const std::string& page, const std::string& folder);
 
 }  // namespace drev::app

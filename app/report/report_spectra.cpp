@@ -12,10 +12,10 @@ namespace drev::app {
 namespace {
 
 constexpr std::size_t kFewest = 64;
-constexpr std::size_t kLines = 6000;  // in the page, of each channel
+constexpr std::size_t kLines = 6000;  // largest number of lines of each channel in the page
 constexpr int kPeaks = 6;
 
-/// The largest number up to n whose factors are 2, 3, 5: what the transform is fast for.
+/// The largest number up to n with the prime factors 2, 3, 5 only, for which the transform is fast.
 std::size_t fast_size(std::size_t n) {
   for (std::size_t best = n; best > 1; --best) {
     std::size_t rest = best;
@@ -32,7 +32,7 @@ std::vector<double> resampled(const ReportHistory& history, std::size_t series, 
                               std::size_t count) {
   std::vector<double> values(count);
   const std::size_t n = history.tail_size();
-  std::size_t next = 2;  // place of the third of the four
+  std::size_t next = 2;  // number of the third of the four
   for (std::size_t i = 0; i < count; ++i) {
     const double t = from + dt * static_cast<double>(i);
     while (next + 2 < n && history.tail_time(next) < t) ++next;
@@ -48,7 +48,7 @@ std::vector<double> resampled(const ReportHistory& history, std::size_t series, 
   return values;
 }
 
-/// Largest of each `pool` neighbours, the mean (line 0) left out.
+/// The largest of each `pool` neighbouring lines, without the mean (line 0).
 std::vector<float> pooled(const std::vector<double>& amplitude, std::size_t lines, std::size_t pool) {
   std::vector<float> out;
   for (std::size_t k = 1; k <= lines; ++k) {

@@ -18,7 +18,7 @@ namespace drev::app {
 
 namespace {
 
-/// Channels of the report: those asked for, and what the contacts carry.
+/// Channels of the report: those requested, and the forces of the contacts.
 std::vector<std::string> report_channels(const RunRequest& request) {
   constexpr std::size_t kMeshes = 6;
   std::vector<std::string> names = request.record;
@@ -29,7 +29,7 @@ std::vector<std::string> report_channels(const RunRequest& request) {
   return names;
 }
 
-/// A row a window and order.
+/// The waterfall as CSV, with one row for each window and order.
 std::string waterfall_as_csv(const OrderTracks& tracks) {
   std::string text = "time_s,speed_rpm,order";
   for (const std::string& channel : tracks.channels) text += "," + channel;

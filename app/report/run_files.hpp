@@ -1,6 +1,6 @@
 #pragma once
-/// The files of one run: history, events, summary and reports. They get their own names only if the run came to its
-/// end.
+/// The files of one run: history, events, summary and reports. They get their own names only if the run
+/// reached its end.
 #include <drev/app/report/run_outcome.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
@@ -19,21 +19,21 @@ namespace drev::app {
 
 class RunFiles {
  public:
-  /// Opens what the request asks for. Throws OutputError.
+  /// Opens the files that the request asks for. Throws OutputError.
   explicit RunFiles(const RunRequest& request);
 
-  /// What writes the history of the run, and keeps of it what the report shows.
+  /// The observers that write the history of the run and keep the data of the report.
   std::vector<Observer*> observers(const RunPlan& plan);
-  /// What keeps the history or the events from being written; empty: nothing.
+  /// Why the history or the events cannot be written; empty: there is no fault.
   std::string fault() const {
     if (history_ && !history_->error().empty()) return history_->error();
     return events_ ? events_->error() : "";
   }
 
-  /// Returns false if something could not be written. notes() has the reason, and what else is to be known.
+  /// Returns false if a file could not be written. notes() has the reason and other remarks.
   bool close(const RunResult& result);
   const std::vector<std::string>& notes() const { return notes_; }
-  /// What was written where, for the table.
+  /// The files that were written, as text for the table.
   std::string text() const;
 
  private:
@@ -52,10 +52,10 @@ class RunFiles {
   std::vector<std::string> report_paths_, notes_;
 };
 
-/// What else watches a run, made of the system that is run: a reduction has fewer unknowns.
+/// Makes further observers of a run from the system that is run, since a reduced system has fewer unknowns.
 using Watchers = std::function<std::vector<Observer*>(const System& system)>;
 
-/// Runs what was asked for and writes its files. Throws OutputError where these cannot be opened.
+/// Executes the requested run and writes its files. Throws OutputError if these cannot be opened.
 RunOutcome run_and_write(const RunRequest& request, const Watchers& watchers = {});
 
 }  // namespace drev::app

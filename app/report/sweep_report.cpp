@@ -22,7 +22,7 @@ std::string floats(const Vector& values) {
   return base64(list);
 }
 
-/// Order by order, each over all speeds.
+/// The amplitudes order by order, each over all speeds.
 std::string amplitudes(const SweepSection& section) {
   std::vector<float> list;
   for (Eigen::Index k = 0; k < section.amplitude.rows(); ++k)
@@ -31,7 +31,7 @@ std::string amplitudes(const SweepSection& section) {
   return base64(list);
 }
 
-/// Local maxima of the half range, those between the speeds among them; the largest first.
+/// Local maxima of the half range, including those between the speeds; the largest first.
 Json peaks_of(const LinearSweep& sweep, int number_of_section) {
   const Vector half = sweep.sections[static_cast<std::size_t>(number_of_section)].half_range();
   Eigen::Index at = 0;
@@ -48,7 +48,7 @@ Json peaks_of(const LinearSweep& sweep, int number_of_section) {
   return list;
 }
 
-/// Means that are rounding beside the largest are zero.
+/// The means of a section, with 0 where they are rounding relative to the largest mean.
 Vector rounded_means(const SweepSection& section, double largest) {
   constexpr double kRounding = 1e-12;
   Vector mean = section.mean;

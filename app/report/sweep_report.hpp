@@ -1,6 +1,6 @@
 #pragma once
-/// The report of a sweep: one page with amplitudes over speed, by order and in sum, orders at a speed, criticals
-/// and the Campbell diagram.
+/// The report of a sweep: one page with amplitudes over speed, by order and in sum, orders at a speed,
+/// critical speeds and the Campbell diagram.
 #include <drev/solvers/strength/section_strength.hpp>
 
 #include <string>
@@ -14,22 +14,23 @@ namespace drev::app {
 struct DrawnLimit {
   int section = 0;
   std::string name;
-  Vector values;  ///< over the speeds, in the section's unit; not finite where there is none
+  Vector values;  ///< limit at each speed, in the section's unit; not finite where there is none
 };
 
-/// Torques that sections may carry, continuously and while a range is passed, over the speeds [rad/s]; of those among
-/// the channels `sections` that have a limit.
+/// Permissible torques of sections at the speeds [rad/s], in continuous running and while a speed range is
+/// passed, for those among the channels `sections` that have a limit.
 std::vector<DrawnLimit> limits_of(const Strength& strength, const std::vector<std::string>& sections,
                                   const std::vector<double>& speeds);
 
-/// A sweep of the same speeds and sections that is drawn beside the first: one cylinder misfiring.
+/// A sweep with the same speeds and sections that is drawn with the first one, for example with a misfiring
+/// cylinder.
 struct SweepBeside {
   std::string name;
   const LinearSweep* sweep = nullptr;
 };
 
-/// The page's data, for report_page(..., ReportPage::sweep). title: "vibration by orders"; words: the command that
-/// gives it again, without the model's parameters.
+/// The page's data for report_page(..., ReportPage::sweep). title: for example "vibration by orders"; words:
+/// the command that reproduces it, without the model's parameters.
 Json sweep_report_data(const SweepRequest& request, const LinearSweep& sweep, const std::string& title,
                        const std::string& words, const std::vector<DrawnLimit>& limits = {},
                        const std::vector<SweepBeside>& beside = {});

@@ -8,8 +8,9 @@
 
 namespace drev::app {
 
-/// The page's data, for report_page(..., ReportPage::variants). summary: variants.json; points: rows of the table
-/// (app/variants/variant_points.hpp); words: the command that gives it again, without the model's parameters.
+/// The page's data for report_page(..., ReportPage::variants). summary: variants.json; points: rows of the
+/// table (app/variants/variant_points.hpp); words: the command that reproduces it, without the model's
+/// parameters.
 Json variants_report_data(const ModelRequest& model, const Json& summary, Json points,
                           const std::string& words);
 

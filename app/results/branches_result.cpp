@@ -17,8 +17,8 @@ namespace drev::app {
 namespace {
 
 constexpr int kFigureDigits = 6;
-constexpr int kCurveDigits = 4;     // of a speed between those asked for: a step along the curve
-constexpr double kLeftOver = 1e-9;  // N m that is worth a word
+constexpr int kCurveDigits = 4;     // digits of a speed that a step along the curve gives
+constexpr double kLeftOver = 1e-9;  // unbalanced mean torque above which it is reported [N m]
 
 std::string rpm_text(double speed) { return short_digits(to_rpm(speed), 8); }
 
@@ -26,8 +26,8 @@ std::string state_of(const SweptMotion& motion) {
   return !motion.judged ? "" : motion.stable ? "stable" : "unstable";
 }
 
-/// Where stability changes between two motions of a branch that follow each other: the located change next to the
-/// stable one; without one, the stable motion.
+/// The speed at which stability changes between two consecutive motions of a branch: that of the located
+/// change next to the stable one; without a located change, that of the stable motion.
 double edge_of_stability(const NonlinearSweep& sweep, int branch, double stable, double unstable) {
   double edge = stable, nearest = std::abs(unstable - stable);
   for (const SweptChange& change : sweep.changes) {
@@ -39,7 +39,7 @@ double edge_of_stability(const NonlinearSweep& sweep, int branch, double stable,
   return edge;
 }
 
-/// "810 to 1150 rpm" of the stable stretches of a branch, in the order of its arc.
+/// The speed ranges of the stable stretches of a branch, in the order of its arc: "810 to 1150 rpm".
 std::string stable_text(const NonlinearSweep& sweep, std::size_t number) {
   const SweptBranch& branch = sweep.branches[number];
   const auto speed = [&](std::size_t motion) { return branch.motions[motion].speed; };
@@ -70,7 +70,8 @@ std::string branches_table(const NonlinearSweep& sweep) {
   return columns_text(rows);
 }
 
-/// Of each section the largest half range at the speeds asked for, among the motions that a train can have.
+/// Table of the largest half range of each section at the given speeds, among the motions that a train can
+/// have.
 std::string largest_table(const NonlinearSweep& sweep) {
   std::vector<std::vector<std::string>> rows{
       {"section", "half range", "at [rpm]", "curve", "lowest", "highest", "heat [W]"}};
@@ -92,7 +93,7 @@ std::string largest_table(const NonlinearSweep& sweep) {
   return columns_text(rows);
 }
 
-/// The power of ten above an error, which itself is known to no digit.
+/// An error bound as the next higher power of ten, since no digit of an error is reliable.
 std::string bound_text(double error, double speed) {
   if (!std::isfinite(error)) return "unknown";
   return short_digits(std::pow(10.0, std::ceil(std::log10(std::max(error, 1e-9 * speed)))), 1);
@@ -136,7 +137,8 @@ std::string runs_table(const NonlinearSweep& sweep) {
   return text;
 }
 
-/// The largest of all motions; at how many of the speeds asked for, by the largest of a speed's.
+/// The largest unbalanced mean torque of all motions, and the number of given speeds at which there is any,
+/// counted by the largest of the motions at a speed.
 LeftOver left_over_of(const NonlinearSweep& sweep, std::size_t part) {
   LeftOver left;
   std::map<double, double> asked;
@@ -160,7 +162,7 @@ std::string notes_text(const NonlinearSweepOptions& options, const NonlinearSwee
   return text;
 }
 
-/// [section] of a vector of sections in one motion, or of one number.
+/// Element [section] of a vector over sections in one motion, or one number.
 template <class Of>
 Json along(const SweptBranch& branch, const Of& of) {
   Json list = Json::array();

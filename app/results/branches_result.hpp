@@ -10,18 +10,19 @@
 
 namespace drev::app {
 
-/// Sentences on errors, stability, mean torque that does not balance, and what was not found.
+/// Sentences on errors, stability, unbalanced mean torque, and motions that were not found.
 std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep);
 std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,
                              const NonlinearSweep& sweep);
-/// As docs/results.schema.json describes it, kind "branches".
+/// The result as an object of kind "branches" of docs/results.schema.json.
 Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& options,
                      const NonlinearSweep& sweep);
-/// A row a motion, along each curve: of each section half range, maximum, minimum, mean, heat, deflection.
+/// One row for each motion along each curve: half range, maximum, minimum, mean, heat and deflection of each
+/// section.
 std::string motions_as_csv(const NonlinearSweep& sweep);
-/// A row a motion at the speeds asked for, and order: of each section amplitude and phase.
+/// One row for each order of each motion at the given speeds: amplitude and phase of each section.
 std::string motion_orders_as_csv(const NonlinearSweep& sweep);
-/// A row a fold, doubling of the period, opening of a contact.
+/// One row for each fold, period doubling and opening of a contact.
 std::string changes_as_csv(const NonlinearSweep& sweep);
 
 }  // namespace drev::app

@@ -19,7 +19,7 @@ double damping_ratio_of(std::complex<double> lambda) {
   return std::abs(lambda) > 0.0 ? -lambda.real() / std::abs(lambda) : 0.0;
 }
 
-/// The critical's amplitude beside the largest of all that are bounded; 1 of those that are not.
+/// Amplitude of a critical speed relative to the largest finite one [-]; 1 where it is infinite.
 double relative(const LinearSweep& sweep, const SweepCritical& critical) {
   double largest = 0.0;
   for (const SweepCritical& c : sweep.criticals)
@@ -28,7 +28,7 @@ double relative(const LinearSweep& sweep, const SweepCritical& critical) {
   return largest > 0.0 ? critical.amplitude / largest : 0.0;
 }
 
-/// Frequencies as a range, where they follow the speed.
+/// Frequencies as a range where they depend on the speed.
 std::string range_text(const Eigen::RowVectorXd& values, int significant) {
   const std::string low = digits(values.minCoeff(), significant),
                     high = digits(values.maxCoeff(), significant);

@@ -7,9 +7,9 @@
 namespace drev::app {
 
 std::string campbell_as_text(const SweepRequest& request, const LinearSweep& sweep);
-/// As docs/results.schema.json describes it, kind "campbell".
+/// The result as an object of kind "campbell" of docs/results.schema.json.
 Json campbell_object(const SweepRequest& request, const LinearSweep& sweep);
-/// A row a speed: frequency and damping ratio of each mode.
+/// One row for each speed: frequency and damping ratio of each mode.
 std::string campbell_modes_as_csv(const LinearSweep& sweep);
 
 }  // namespace drev::app

@@ -101,7 +101,7 @@ Json case_object(const ClassCase& c) {
           {"notes", c.notes}};
 }
 
-/// Contacts are taken as closed, or there are none.
+/// Whether contacts are treated as closed, or there are none.
 bool linear_contacts(const SweepRequest& request) {
   return request.options.close_contacts || request.model.system.scalars().empty();
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A sweep judged by what its sections may carry, as text and JSON.
+/// A sweep judged by the limits of its sections, as text and JSON.
 #include <drev/solvers/strength/class_judgement.hpp>
 
 #include <string>
@@ -15,15 +15,16 @@ struct ClassCase {
   SweepRequest request;
   LinearSweep sweep;
   ClassJudgement judgement;
-  std::vector<std::string> notes = {};  ///< how motions with contacts that open stand in the sweep
+  std::vector<std::string> notes = {};  ///< sentences on motions of the sweep whose contacts open
 };
 
 std::string class_as_text(const std::vector<ClassCase>& cases);
-/// As docs/results.schema.json describes it, kind "class". mass_elastic: nodes and joints (report_model.hpp).
+/// The result as an object of kind "class" of docs/results.schema.json. mass_elastic: nodes and joints
+/// (report_model.hpp).
 Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic);
-/// The rules that were used, and what is not judged.
+/// Sentences on the rules that were used and on what is not judged.
 std::vector<std::string> class_rules(const Strength& strength);
-/// closed: contacts are taken as closed.
+/// Sentences on the limits of the method. closed: contacts are treated as closed.
 std::vector<std::string> class_limits(bool closed);
 
 }  // namespace drev::app

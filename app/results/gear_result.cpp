@@ -16,7 +16,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kPerWidth = 1e9;  // N/(mm um) in N/m per m
+constexpr double kPerWidth = 1e9;  // 1 N/(mm um) in N/m per m of face width
 constexpr int kDrawnTeeth = 3, kHarmonics = 10;
 
 std::string in_mm(double metres, int significant = 6) {
@@ -48,7 +48,7 @@ Beside beside(const GearCase& c) {
 
 std::string per_width(double k) { return digits(k / kPerWidth, 4) + " N/(mm um)"; }
 
-/// What potential energy gives, up to the next method.
+/// Sentence on the stiffness by the potential energy method, up to the next method.
 std::string beside_energy(const GearPair& pair, const Beside& other) {
   if (pair.geometry().internal) return "";  // Sainsot's body is a disc
   const std::string method = " by potential energy with Sainsot's body";
@@ -57,8 +57,8 @@ std::string beside_energy(const GearPair& pair, const Beside& other) {
          " with Yang and Sun's contact), ";
 }
 
-/// Without loads the element has the stiffness of the mean load: how far its forces are off between half and twice of it.
-/// None where loads are given, or the teeth do not carry so much.
+/// Error of the forces between half and twice the mean load, for an element without given loads, which has
+/// the stiffness at the mean load. nullopt where loads are given, or where the teeth cannot carry that much.
 std::optional<LoadLawError> mean_load_error(const GearCase& c) {
   if (c.data.load_law || c.drawing.tangent) return std::nullopt;
   const double w = c.data.cycle.options().load;
@@ -115,7 +115,7 @@ Json gear_data(const GearCase& c, int gear) {
 
 Json law_error(const LoadLawError& e) { return {{"rms", number(e.rms)}, {"most", number(e.most)}}; }
 
-/// Null where the stiffness is that of the mean load alone.
+/// Stiffness over load; null where the stiffness is that at the mean load alone.
 Json load_law_data(const GearCase& c) {
   if (!c.data.load_law) return nullptr;
   const GearLoadLaw& law = *c.data.load_law;

@@ -9,7 +9,7 @@
 
 namespace drev::app {
 
-/// Closes what HDF5 has opened.
+/// Owns an HDF5 identifier and closes it.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -18,7 +18,7 @@ class Hdf5Handle {
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
   }
-  operator hid_t() const { return id_; }  // NOLINT: HDF5 wants the number
+  operator hid_t() const { return id_; }  // NOLINT: HDF5 takes the identifier as a number
   bool close() { return close_(std::exchange(id_, -1)) >= 0; }
 
  private:
@@ -28,7 +28,7 @@ class Hdf5Handle {
 
 namespace {
 
-constexpr hsize_t kGrow = 1024;  // rows by which a column grows
+constexpr hsize_t kGrow = 1024;  // number of rows by which a column grows
 
 Hdf5Handle text_type(std::size_t size) {
   Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -36,7 +36,7 @@ Hdf5Handle text_type(std::size_t size) {
   return type;
 }
 
-/// One byte with names; the bytes of a column without meanings are doubles.
+/// HDF5 type of a column: an enumeration of one byte for a column with meanings, doubles without.
 Hdf5Handle type_of(const Hdf5File::Column& column) {
   if (column.text_size > 0) return text_type(column.text_size);
   if (column.meanings.empty()) return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
@@ -64,10 +64,10 @@ struct Hdf5File::Opened {
 
 Hdf5File::Hdf5File(const std::string& path) : path_(path) {
   static_assert(sizeof(hid_t) == sizeof(std::int64_t));
-  H5dont_atexit();  // or HDF5 tries at the end to write what a full disk would not take, and crashes
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+  H5dont_atexit();  // otherwise HDF5 tries at exit to write what did not fit on a full disk, and crashes
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // drev reports errors itself
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, 0, 1);  // OutputFile has locked it
+  H5Pset_file_locking(access, 0, 1);  // OutputFile has locked the file
   file_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   check(file_ >= 0);
 }
@@ -96,7 +96,7 @@ void Hdf5File::add_column(const Column& column) {
       links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_obj_track_times(layout, false);
   if (rows == 0) H5Pset_chunk(layout, 1, &kGrow);
-  H5Pset_create_intermediate_group(links, 1);  // a name with a slash
+  H5Pset_create_intermediate_group(links, 1);  // for a name with a slash
   Hdf5Handle type = type_of(column);
   check(type >= 0);
   Hdf5Handle set(H5Dcreate2(file_, column.name.c_str(), type, space, links, layout, H5P_DEFAULT), H5Dclose);
@@ -151,7 +151,8 @@ void Hdf5File::check(bool good) const {
         return 0;
       },
       &reason);
-  // Of "file write failed: ..., errno = 28, error message = 'No space left on device', ..." what matters.
+  // Take the message out of "file write failed: ..., errno = 28, error message = 'No space left on device',
+  // ...".
   const std::string marker = "error message = '";
   if (const std::size_t at = reason.find(marker); at != std::string::npos)
     reason = reason.substr(at + marker.size(), reason.find('\'', at + marker.size()) - at - marker.size());

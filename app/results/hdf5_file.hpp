@@ -1,6 +1,6 @@
 #pragma once
 /// An HDF5 file of columns: datasets of one dimension, with their unit as an attribute. The same columns give the
-/// same bytes: no times are kept.
+/// same bytes, since no time stamps are stored.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,21 +10,21 @@ namespace drev::app {
 
 class Hdf5File {
  public:
-  /// Writes the file at path, which an OutputFile holds open. Throws OutputError, as all of this.
+  /// Writes the file at path, which an OutputFile holds open. Throws OutputError, like the other functions.
   explicit Hdf5File(const std::string& path);
   ~Hdf5File();
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
 
-  /// An attribute of the file.
+  /// Adds a text attribute of the file.
   void add_text(const std::string& name, const std::string& text);
 
   /// Columns have the numbers 0, 1, ... A name with a slash is in a group.
   struct Column {
     std::string name, unit = {};
-    std::uint64_t rows = 0;     ///< 0: it grows
-    std::size_t text_size = 0;  ///< of a column of texts: bytes of each; 0: numbers
-    /// Of whole numbers that mean these, from 0 on; empty: none.
+    std::uint64_t rows = 0;     ///< number of rows; 0: the column grows
+    std::size_t text_size = 0;  ///< bytes of each text in a column of texts; 0: a column of numbers
+    /// Meanings of the integers 0, 1, ... in the column; empty: the numbers have no meanings.
     std::vector<std::string> meanings = {};
   };
   void add_column(const Column& column);
@@ -45,10 +45,11 @@ class Hdf5File {
   std::vector<Opened> columns_;
 };
 
-/// A text attribute of an HDF5 file; nullopt: there is no such file, or attribute.
+/// A text attribute of an HDF5 file; nullopt: there is no such file or attribute.
 std::optional<std::string> hdf5_text(const std::string& path, const std::string& name);
 
-/// Rows of a column of numbers, or of the numbers of one with meanings; `rows` rising. Throws OutputError where they cannot be read.
+/// The given rows of a column of numbers, or of the integers of a column with meanings; `rows` must ascend.
+/// Throws OutputError where they cannot be read.
 std::vector<double> hdf5_numbers(const std::string& path, const std::string& column,
                                  const std::vector<std::uint64_t>& rows);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// history.csv: time_s and the recorded channels, one row each at k * every, k = 0, 1, 2, ...; 17
-/// significant digits, with which every double reads back as it was. Names as csv_cell() has them.
+/// history.csv: time_s and the recorded channels, one row at each time k * every, k = 0, 1, 2, ...; 17
+/// significant digits, from which every double is read back exactly. Names are written by csv_cell().
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ class HistoryFile : public RowFile {
   /// Opens the file and writes its header. Throws OutputError.
   HistoryFile(const std::string& directory, const std::vector<std::string>& channels, double every);
 
-  /// The next row.
+  /// Adds the next row.
   void add(const std::vector<double>& row);
 
  private:

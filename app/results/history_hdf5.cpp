@@ -18,7 +18,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // rows
+constexpr std::size_t kBlock = 1024;  // number of rows written at once
 
 /// The cells of a line of CSV as csv_cell() writes them; moves past its end.
 std::vector<std::string> cells_of(const std::string& csv, std::size_t& at) {
@@ -45,7 +45,7 @@ std::vector<std::string> cells_of(const std::string& csv, std::size_t& at) {
   return cells;
 }
 
-/// Numbers, if all cells are; an empty one is not a number.
+/// The cells as numbers if all of them are; an empty cell gives NaN.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& cells) {
   std::vector<double> numbers;
   for (const std::string& cell : cells) {

@@ -10,7 +10,7 @@ namespace drev::app {
 
 namespace {
 
-/// Figures of runs.csv, as in a summary's results.
+/// Names of the figures in runs.csv, as in the results of a summary.
 constexpr const char* kFigures[] = {"deflection_deg",        "deflection_m",     "max_torque_Nm",
                                     "max_force_N",           "static_torque_Nm", "static_force_N",
                                     "dynamic_amplification", "max_mesh_force_N", "front_contacts",
@@ -20,7 +20,7 @@ Json figure(const OneOfMany& run, const char* key) {
   return run.summary.is_object() ? run.summary.at("results").at(key) : Json();
 }
 
-/// The first of the keys that has a number, with its unit; empty: none.
+/// The figure of the first key that has a number, with its unit; empty: there is none.
 std::string shown(const OneOfMany& run, const std::vector<std::pair<const char*, const char*>>& keys) {
   for (const auto& [key, unit] : keys)
     if (const Json value = figure(run, key); value.is_number()) return digits(value, 5) + " " + unit;
@@ -92,7 +92,7 @@ std::string many_as_text(const ManyRuns& many) {
     columns[4].push_back(shown(run, {{"max_mesh_force_N", "N"}}));
     columns[5].push_back(run.summary.is_object() || run.status == "killed" ? run.folder : "");
   }
-  // What no run has is left out.
+  // Columns that are empty for all runs are left out.
   std::erase_if(columns, [](const std::vector<std::string>& column) {
     return std::all_of(column.begin() + 1, column.end(),
                        [](const std::string& cell) { return cell.empty(); });

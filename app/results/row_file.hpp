@@ -1,5 +1,6 @@
 #pragma once
-/// A file of rows that grows with the run: on disk within about a second, under its own name only once it is complete.
+/// A file of rows that grows with the run. Rows are on disk within about a second; the file gets its own name
+/// only when it is complete.
 #include <chrono>
 #include <string>
 
@@ -12,13 +13,14 @@ class RowFile {
   /// Opens DIR/NAME.csv and writes its first line. Throws OutputError.
   RowFile(const std::string& directory, const std::string& name, const std::string& header);
 
-  /// The next row, with its line end. After a failure nothing more is written.
+  /// Adds the next row, given with its line end. After a failure nothing more is written.
   void add(const std::string& line);
-  /// What went wrong; empty if nothing did.
+  /// Description of the failure; empty: there was none.
   const std::string& error() const { return error_; }
   long rows() const { return rows_; }
 
-  /// The run is over. complete: NAME.csv, otherwise NAME.partial.csv stays. Sets error().
+  /// To be called at the end of the run. complete: the file becomes NAME.csv, otherwise NAME.partial.csv
+  /// remains. Sets error().
   void close(bool complete);
   const std::string& path() const { return file_.path(); }
   const std::string& partial_path() const { return file_.partial_path(); }

@@ -12,7 +12,7 @@ namespace drev::app {
 
 namespace {
 
-/// Value of a quantity in one unit; null if the model gives it in another, or not at all.
+/// Value of a quantity in one unit; null if the model gives it in another unit, or not at all.
 Json in_unit(const std::optional<Largest>& largest, const std::string& unit, double factor = 1.0) {
   return largest && largest->unit == unit ? number(factor * largest->value) : Json(nullptr);
 }
@@ -39,7 +39,7 @@ Json flanks_object(const Distribution& front, const Distribution& back, const Di
           {"both", distribution_object(both)}};
 }
 
-/// Error of one figure of a contact; null: unchecked, or unknown.
+/// Error of one figure of a contact; null: not checked, or unknown.
 Json contact_error(const Contacts& c, Estimate ContactFigures::*figure) {
   return c.known ? number(((*c.known).*figure).error) : Json();
 }
@@ -68,7 +68,7 @@ Json contact_object(const Contacts& c, double duration) {
           {"rattle_index_W", number(c.record.rattle_index(duration))}};
 }
 
-/// Error of a largest value; null: unchecked.
+/// Error of a largest value; null: not checked.
 Json error_of(const std::optional<Largest>& largest) {
   if (!largest || !largest->error) return nullptr;
   return number((largest->unit == "rad" ? to_deg(1.0) : 1.0) * *largest->error);
@@ -206,7 +206,7 @@ Json run_up_object(const SpeedsPassed& up) {
           {"channels", std::move(channels)}};
 }
 
-/// Whether every largest value and every figure of contacts has an error that is known.
+/// Whether every largest value and every figure of contacts has a known error.
 bool all_checked(const RunResult& r) {
   bool any = !r.contacts.empty(), all = true;
   for (const auto* largest : {&r.force, &r.deflection, &r.mesh_force}) {
@@ -295,7 +295,7 @@ Json reduction_object(const std::optional<double>& within, const ReductionNote& 
           {"reason", r.reason}};
 }
 
-/// What every run has, ended or not.
+/// The part of the result that every run has, finished or not.
 Json head_object(const RunRequest& request, const std::string& scheme, const Method& method,
                  const std::string& status, const std::string& reason) {
   Json object = result_object("run");

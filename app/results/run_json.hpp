@@ -7,11 +7,12 @@
 
 namespace drev::app {
 
-/// With what all results have; kind: what the object is, of those that docs/results.schema.json lists.
+/// A JSON object with the members that all results share. kind: one of the kinds listed in
+/// docs/results.schema.json.
 Json result_object(const char* kind);
 Json run_object(const RunRequest& request, const RunResult& result);
 std::string run_as_json(const RunRequest& request, const RunResult& result);
-/// What is known before the run has begun: status "running", and no figures.
+/// The result before the run has begun: status "running", and no figures.
 std::string running_as_json(const RunRequest& request);
 
 }  // namespace drev::app

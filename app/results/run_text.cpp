@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kModesShown = 6;
 
-/// With the digits that its error leaves, and the error; unchecked, with the usual ones.
+/// A largest value with its significant digits and its error; with the usual digits if it was not checked.
 std::string value_text(const Largest& l) {
   const bool angle = l.unit == "rad";
   const double factor = angle ? to_deg(1.0) : 1.0;
@@ -26,7 +26,7 @@ std::string value_text(const Largest& l) {
 
 std::string speed_text(double rad_per_s) { return digits(to_rpm(rad_per_s), 5) + " rpm"; }
 
-/// The element, and between which nodes it is.
+/// The element and the nodes that it connects.
 std::string place_text(const Model& model, const Largest& l) {
   const std::string place = l.place();
   for (const ElementInstance& placement : model.element_instances()) {
@@ -80,7 +80,7 @@ std::string force_rows(const ModelCase& model_case, const RunResult& r) {
   return text;
 }
 
-/// What the figures are of, and what speaks for them.
+/// The row with the time span that the figures belong to, and the evidence for their accuracy.
 std::string span_row(const RunResult& r) {
   std::string text = r.span.from > 0.0 ? "of the run from " + short_digits(r.span.from, 6) + " s to " +
                                              short_digits(r.summary.t_end, 6) + " s"
@@ -91,7 +91,7 @@ std::string span_row(const RunResult& r) {
   return labelled("Figures", text);
 }
 
-/// Criticals passed, and where orders are largest.
+/// Rows of the critical speeds passed, and of the speeds at which orders are largest.
 std::string run_up_rows(const SpeedsPassed& up) {
   constexpr std::size_t kCriticalsShown = 5;
   std::string text = speed_text(up.range.first) + " to " + speed_text(up.range.last);
@@ -130,13 +130,13 @@ std::string contact_line(const std::string& name, long front, long back, const s
          pad_left(digits(100.0 * share, 3), 10) + pad_left(force, 18) + "\n";
 }
 
-/// "0.012, 0.045, 0.09 m/s"
+/// Quantiles of a distribution: "0.012, 0.045, 0.09 m/s".
 std::string quantiles_text(const Distribution& d, const std::string& unit) {
   return digits(d.quantile(0.5), 3) + ", " + digits(d.quantile(0.9), 3) + ", " + digits(d.quantile(0.99), 3) +
          " " + unit;
 }
 
-/// How hard the flanks meet; nothing without impacts.
+/// Rows on the severity of flank impacts; empty without impacts.
 std::string impact_rows(const RunResult& r, double duration) {
   std::string text;
   for (const Contacts& c : r.contacts) {
@@ -151,7 +151,7 @@ std::string impact_rows(const RunResult& r, double duration) {
   return labelled("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;
 }
 
-/// Errors of a contact's row, in its columns; a question mark: unknown. Nothing where they are unchecked.
+/// Errors of a contact's row, in its columns; a question mark: unknown. Empty where they were not checked.
 std::string contact_error_line(const Contacts& c, double duration) {
   if (!c.known) return {};
   const auto text = [](double error, int width, double factor = 1.0, const std::string& unit = "") {
@@ -164,7 +164,8 @@ std::string contact_error_line(const Contacts& c, double duration) {
          text(k.largest_force.error, 18, 1.0, " " + c.force_unit) + "\n";
 }
 
-/// With the digits that its error leaves, where that is known; else with the usual ones.
+/// A figure of a contact with its significant digits where its error is known, otherwise with the usual
+/// digits.
 std::string contact_digits(const Contacts& c, double value, Estimate ContactFigures::*figure, int usual) {
   if (!c.known || !std::isfinite(((*c.known).*figure).error)) return digits(value, usual);
   return earned_digits(value, ((*c.known).*figure).error);
@@ -221,7 +222,7 @@ std::string method_text(const RunResult& r) {
   return text;
 }
 
-/// What was done for it; beside the method's usual work only what there was.
+/// The effort of the run: the usual work of the method, and any other work that was done.
 std::string effort_text(const RunResult& r) {
   const RunSummary& s = r.summary;
   const bool exact = r.method.exact(), controlled = r.method.controlled();
@@ -241,7 +242,7 @@ std::string effort_text(const RunResult& r) {
   return join(items) + ", " + digits(r.run_time, 3) + " s";
 }
 
-/// A value with the digits that its error leaves, and the error.
+/// A value with the digits that its error leaves significant, and the error.
 std::string figure_text(const Figure& f) {
   const bool known = std::isfinite(f.error);
   return earned_digits(f.value, f.error) + " +- " +
@@ -264,7 +265,7 @@ std::string accuracy_rows(double asked, const AccuracyResult& a) {
   return text;
 }
 
-/// Load cycles, and Miner's sum where there is an S-N line.
+/// Rows of load cycles, with the damage by Miner's rule where there is an S-N line.
 std::string rainflow_rows(const RunResult& r) {
   std::string text;
   for (const RainflowWatch::Result& counted : r.rainflow) {
@@ -281,7 +282,7 @@ std::string rainflow_rows(const RunResult& r) {
   return text;
 }
 
-/// Work, heat and stored energy by element; those that lose most first.
+/// Rows of work, heat and stored energy of each element, by descending loss.
 std::string element_rows(const RunResult& r) {
   if (r.elements.empty()) return {};
   std::vector<ElementTotals::Row> rows = r.elements;
@@ -318,7 +319,7 @@ std::vector<std::string> notes_of(const RunResult& r) {
   return notes;
 }
 
-/// When contacts of dry friction stick and slide.
+/// Rows on sticking and sliding of contacts with dry friction.
 std::string friction_rows(const RunSummary& s) {
   constexpr std::size_t kEventsShown = 12;
   if (s.friction_changes == 0) return "";

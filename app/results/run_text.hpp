@@ -8,9 +8,9 @@
 namespace drev::app {
 
 std::string run_as_text(const RunRequest& request, const RunResult& result);
-/// What is said loudly, on stderr and before the table, when a run did not succeed; empty if it did.
+/// The warning on stderr and before the table when a run did not succeed; empty if it did.
 std::string warning_of(const RunResult& result);
-/// What is to be known before the figures are read, of a run that succeeded, too: sentences without full stop.
+/// Notes to be read before the figures, also for a run that succeeded: sentences without full stop.
 std::vector<std::string> notes_of(const RunResult& result);
 
 }  // namespace drev::app

@@ -18,7 +18,7 @@ std::string factor_text(const Estimate& factor) {
   return std::isinf(factor.value) ? "no limit" : earned_digits(factor.value, factor.error);
 }
 
-/// The upper half of the contour, and below it tau over its largest value in tenths; both over z.
+/// Drawing of the upper half of the contour over z, and below it tau over its largest value in tenths.
 std::string drawing(const ShaftSections& s) {
   const double length = s.outline_z.back(), most = *std::max_element(s.outline_r.begin(), s.outline_r.end());
   const double peak = *std::max_element(s.outline_stress.begin(), s.outline_stress.end());

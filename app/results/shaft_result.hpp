@@ -1,5 +1,5 @@
 #pragma once
-/// What follows from the contours of a model's shafts, as text and JSON.
+/// Results computed from the contours of a model's shafts, as text and JSON.
 #include <drev/models/shafts/contour_shaft.hpp>
 
 #include <string>
@@ -17,9 +17,9 @@ struct PlacedShaft {
 };
 std::vector<PlacedShaft> contour_shafts(const Model& model);
 
-/// With each contour drawn.
+/// The results as text, with a drawing of each contour.
 std::string shafts_as_text(const ModelRequest& request, const std::vector<PlacedShaft>& shafts);
-/// As docs/results.schema.json describes it, kind "shaft".
+/// The results as an object of kind "shaft" of docs/results.schema.json.
 Json shafts_object(const ModelRequest& request, const std::vector<PlacedShaft>& shafts);
 
 }  // namespace drev::app

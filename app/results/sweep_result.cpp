@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kDigits = 6;
 constexpr std::size_t kCriticalsShown = 20;
-constexpr double kRounding = 1e-12;  // of the largest mean
-constexpr double kBalanced = 1e-6;   // of the mean torques: what is left over is worth a word
+constexpr double kRounding = 1e-12;  // mean relative to the largest mean that is rounding [-]
+constexpr double kBalanced = 1e-6;   // unbalanced torque relative to the mean torques that is reported [-]
 
 Vector absolute_sum(const SweepSection& section) { return section.amplitude.cwiseAbs().colwise().sum(); }
 

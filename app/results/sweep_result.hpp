@@ -13,33 +13,33 @@ namespace drev::app {
 struct SweepRequest {
   ModelRequest model;
   LinearSweepOptions options;
-  std::vector<double> speeds_rpm;  ///< options.speeds as they were given
-  bool absolute_sum = false;       ///< the sum of the orders' amplitudes, too
+  std::vector<double> speeds_rpm;  ///< options.speeds as they were given [rpm]
+  bool absolute_sum = false;       ///< true: also gives the sum of the orders' amplitudes without phases
 };
 
-/// Mean torque of a part that floats, left over at some of the speeds [N m at the reference shaft].
+/// Unbalanced mean torque of a floating part at some of the speeds [N m at the reference shaft].
 struct LeftOver {
-  std::size_t count = 0, speeds = 0;  ///< at how many of how many speeds
+  std::size_t count = 0, speeds = 0;  ///< number of speeds with unbalanced torque, and of all speeds
   double most = 0.0, at_rpm = 0.0;
-  double of = 0.0;  ///< the mean torques that act on the part; 0: not known
-  /// Notes one of the speeds, where it is more than `little`.
+  double of = 0.0;  ///< sum of the absolute mean torques that act on the part; 0: unknown
+  /// Notes one of the speeds; it counts if the torque is more than `little`.
   void note(double left_over, double speed_rpm, double little);
 };
-/// The sentence on it; moving: what the figures are of where `balance` names no node that takes it up.
+/// The sentence on the unbalanced torque; moving: what the figures describe if `balance` names no node.
 std::string left_over_sentence(const LeftOver& left, const std::string& part, const std::string& moving,
                                const std::string& balance);
-/// Sentences on what a reader must know: mean torque that does not balance, orders left out, contacts that open.
+/// Sentences that a reader must know: unbalanced mean torque, orders left out, contacts that open.
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep);
 std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep);
-/// As docs/results.schema.json describes it, kind "sweep".
+/// The result as an object of kind "sweep" of docs/results.schema.json.
 Json sweep_object(const SweepRequest& request, const LinearSweep& sweep);
-/// One of the criticals, as it stands in that list.
+/// One critical speed, as in the list of that object.
 Json critical_object(const LinearSweep& sweep, const SweepCritical& critical);
-/// A row a speed: of each section half range, maximum, minimum, mean, heat, twist.
+/// One row for each speed: half range, maximum, minimum, mean, heat and twist of each section.
 std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep);
-/// A row a speed and order: of each section amplitude and phase.
+/// One row for each speed and order: amplitude and phase of each section.
 std::string orders_as_csv(const SweepRequest& request, const LinearSweep& sweep);
-/// A row a critical speed.
+/// One row for each critical speed.
 std::string criticals_as_csv(const LinearSweep& sweep);
 
 }  // namespace drev::app

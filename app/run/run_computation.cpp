@@ -1,12 +1,11 @@
 #include "app/run/run_computation.hpp"
 
 #include <drev/core/units.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/after_time.hpp>
-#include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
 
@@ -18,6 +17,7 @@
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/run/static_force.hpp"
+#include "solvers/run/mean_speed.hpp"
 
 namespace drev::app {
 

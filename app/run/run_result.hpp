@@ -5,7 +5,6 @@
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/element_totals.hpp>
-#include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peak.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 #include <drev/solvers/strength/rainflow.hpp>
@@ -18,6 +17,7 @@
 #include "app/run/figure_span.hpp"
 #include "app/run/run_request.hpp"
 #include "app/run/run_up.hpp"
+#include "solvers/run/mean_speed.hpp"
 
 namespace drev::app {
 

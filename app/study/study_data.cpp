@@ -1,8 +1,8 @@
 // Tables 3.1 to 3.3, 4.1 and 4.2: data, and what follows from them.
 #include <drev/core/units.hpp>
 #include <drev/elements/rayleigh_damping.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
 #include <drev/models/gears/gear_drawing.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Figures 5.16 to 5.18 and A.11 to A.13: run-up from 20 to 800 rpm.
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/models/model_case.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 

@@ -6,7 +6,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kShort = 0.1;  // s
+constexpr double kShort = 0.1;  // time of a block below which it is short [s]
 
 }  // namespace
 
@@ -16,7 +16,7 @@ BlockThreads::BlockThreads(const VariantStudy& study, int threads) : study_(stud
 
 BlockThreads::~BlockThreads() {
   {
-    const std::lock_guard lock(mutex_);  // or a thread that is about to wait would not hear of it
+    const std::lock_guard lock(mutex_);  // otherwise a thread that is about to wait would miss it
     stop_ = true;
   }
   given_.notify_all();

@@ -16,11 +16,11 @@ namespace drev::app {
 
 struct FoundBlock {
   std::uint64_t block = 0;
-  double seconds = 0.0;  ///< that it took
+  double seconds = 0.0;  ///< time that the block took [s]
   BlockRows rows = {};
 };
 
-/// Blocks first to first + count - 1.
+/// A task: blocks `first` to first + count - 1.
 struct BlockTask {
   std::uint64_t first = 0, count = 0;
 };
@@ -28,16 +28,17 @@ struct BlockTask {
 class BlockThreads {
  public:
   BlockThreads(const VariantStudy& study, int threads);
-  ~BlockThreads();  ///< ends what is in work
+  ~BlockThreads();  ///< ends the blocks in work
   BlockThreads(const BlockThreads&) = delete;
   BlockThreads& operator=(const BlockThreads&) = delete;
 
   void give(BlockTask task);
-  /// Whether more should be given: a block for each thread is wanted beside those in work where blocks are short, so
-  /// that none waits; none where they are long, so that another process may take them.
+  /// Whether more blocks should be given. Where blocks are short, one more for each thread is wanted besides
+  /// those in work, so that no thread waits; where they are long, none, so that another process may take
+  /// them.
   bool wants_more() const;
   bool idle() const;
-  /// Blocks found since it was asked last; waits so long for one. Throws what a thread threw.
+  /// Blocks computed since the last call; waits at most `wait` for one. Rethrows what a thread threw.
   std::vector<FoundBlock> take(std::chrono::milliseconds wait);
 
  private:
@@ -49,8 +50,8 @@ class BlockThreads {
   std::deque<BlockTask> tasks_;
   std::vector<FoundBlock> found_;
   std::exception_ptr failure_;
-  std::uint64_t waiting_ = 0, in_work_ = 0;  // blocks
-  double seconds_ = 0.0;                     // that blocks took, smoothed
+  std::uint64_t waiting_ = 0, in_work_ = 0;  // numbers of blocks
+  double seconds_ = 0.0;                     // time of a block, smoothed [s]
   std::atomic<bool> stop_ = false;
   std::vector<std::thread> threads_;
 };

@@ -16,12 +16,12 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kLastPart = 0.25;   // of the variants, for continuous parameters beside others
-constexpr double kNear = 1e-6;       // of a parameter's range: a local search ends there
-constexpr double kFirstStep = 0.1;   // of a parameter's range
-constexpr std::size_t kStarts = 16;  // local searches
-constexpr std::uint64_t kCallsPerVariant =
-    100;  // of NLopt: most points of values and orders have been computed before
+constexpr double kLastPart = 0.25;   // part of the variants for continuous parameters besides others [-]
+constexpr double kNear = 1e-6;       // tolerance of a local search relative to a parameter's range [-]
+constexpr double kFirstStep = 0.1;   // first step relative to a parameter's range [-]
+constexpr std::size_t kStarts = 16;  // largest number of local searches
+// Calls of NLopt allowed for each variant: most points of values and orders have been computed before.
+constexpr std::uint64_t kCallsPerVariant = 100;
 
 struct DestroyOpt {
   void operator()(nlopt_opt search) const { nlopt_destroy(search); }
@@ -49,7 +49,7 @@ class OptimumSearch {
   }
 
  private:
-  /// Whether a parameter is continuous (or is not).
+  /// Whether any parameter is continuous (or, for false, any is not).
   bool has(bool continuous) const {
     const auto& varied = study_.plan().varied();
     return std::any_of(varied.begin(), varied.end(),
@@ -74,7 +74,7 @@ class OptimumSearch {
     return key;
   }
 
-  /// All variants of the plan, over threads; entered in their order.
+  /// Computes all variants of the plan with threads, and enters them in their order.
   void compute_plan() {
     std::map<std::uint64_t, BlockRows> waiting;
     BlockThreads threads(study_, options_.threads);
@@ -128,7 +128,7 @@ class OptimumSearch {
     return values;
   }
 
-  /// A point whose values these are.
+  /// A point of the unit cube that has these values.
   std::vector<double> point_of(const ParameterValues& values) const {
     std::vector<double> u;
     for (std::size_t p = 0; p < values.size(); ++p) {
@@ -153,7 +153,7 @@ class OptimumSearch {
     return u;
   }
 
-  /// What a variant without a figure is taken for: worse than all others.
+  /// The value of a variant without a figure: worse than all others.
   double worst() const {
     double worst = -HUGE_VAL;
     for (const TriedVariant& tried : result_.tried)
@@ -178,7 +178,7 @@ class OptimumSearch {
     return std::isfinite(tried.figure) && tried.status == VariantStatus::success ? cost(tried) : worst();
   }
 
-  /// One search over some of the coordinates from a point; the others stay. Ends at limit_ variants.
+  /// One search over some of the coordinates from a point, with the others fixed. It ends at limit_ variants.
   void search(nlopt_algorithm algorithm, const std::vector<double>& from,
               const std::vector<std::size_t>& free) {
     point_ = from;
@@ -199,7 +199,7 @@ class OptimumSearch {
           try {
             return self.cost_at(self.point_.data());
           } catch (...) {
-            self.failure_ = std::current_exception();  // NLopt is C
+            self.failure_ = std::current_exception();  // no exception may pass through NLopt, which is C
             nlopt_force_stop(self.search_);
             return 0.0;
           }
@@ -247,7 +247,7 @@ class OptimumSearch {
   std::uint64_t most_, limit_ = 0;
   std::size_t coordinates_ = 0;
   Optimum result_;
-  std::map<std::string, std::size_t> known_;  // places in result_.tried
+  std::map<std::string, std::size_t> known_;  // numbers in result_.tried
   nlopt_opt search_ = nullptr;
   std::vector<double> point_;
   std::vector<std::size_t> free_;

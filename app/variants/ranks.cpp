@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Processes beside this one, as Open MPI, MPICH, Intel MPI, MVAPICH, and Slurm's srun tell.
+/// Environment variables with the number of processes: Open MPI, MPICH, Intel MPI, MVAPICH, and Slurm's srun.
 constexpr const char* kCounts[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE",
                                    "SLURM_STEP_NUM_TASKS"};
 
@@ -39,7 +39,7 @@ const DrevRankCalls* load() {
   for (const char* folder : {"../lib/drev-mpi", "../" DREV_MPI_FOLDER}) {
     const fs::path path = beside / folder / kLibrary;
     if (!fs::exists(path, none)) continue;
-    // MPI's own plugins look for its symbols among those of all.
+    // MPI's own plugins look for its symbols among the global ones.
     void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (library == nullptr) refuse("cannot be loaded: " + std::string(::dlerror()));
     const auto calls = reinterpret_cast<DrevRankCallsFunction>(::dlsym(library, "drev_rank_calls"));

@@ -1,5 +1,5 @@
 #pragma once
-/// The processes that share one study: this one alone, or the ranks of MPI where a launcher has started it.
+/// The processes that share one study: this one alone, or the ranks of MPI if a launcher has started it.
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -11,8 +11,9 @@ namespace drev::app {
 
 class Ranks {
  public:
-  /// MPI where the launcher's environment variables say that there are several processes, else this one alone.
-  /// Throws ModelError where there are several and drev has no MPI, or another one than the launcher's.
+  /// Uses MPI if the launcher's environment variables say that there are several processes, otherwise this
+  /// one alone. Throws ModelError if there are several and drev has no MPI, or a different one from the
+  /// launcher's.
   Ranks();
   ~Ranks();
   Ranks(const Ranks&) = delete;
@@ -27,15 +28,15 @@ class Ranks {
     std::string bytes;
   };
   void send(int to, const std::string& bytes) const;
-  std::optional<Message> receive() const;  ///< the next that has come
+  std::optional<Message> receive() const;  ///< the next message that has arrived
   [[noreturn]] void abort(int code) const;
 
  private:
-  const DrevRankCalls* calls_ = nullptr;  // null: alone
+  const DrevRankCalls* calls_ = nullptr;  // null: this process is alone
   int rank_ = 0, count_ = 1;
 };
 
-/// Whether a launcher (mpirun, srun) started this process beside others.
+/// Whether a launcher (mpirun, srun) started this process together with others.
 bool launched_beside_others();
 
 }  // namespace drev::app

@@ -16,7 +16,7 @@
 namespace drev::app {
 
 struct SobolIndex {
-  double first = 0.0, first_error = 0.0;  ///< of the standard deviation; 95 % interval: 1.96 times it
+  double first = 0.0, first_error = 0.0;  ///< index; its standard error (95 % interval: 1.96 times it)
   double total = 0.0, total_error = 0.0;
 };
 
@@ -24,7 +24,7 @@ class SobolIndices {
  public:
   SobolIndices(std::size_t parameters, std::uint64_t blocks) : parameters_(parameters), blocks_(blocks) {}
 
-  /// The values of block number `block`; one with a value that is not finite is left out.
+  /// Adds the values of block number `block`; a block with a value that is not finite is left out.
   void add(std::uint64_t block, const std::vector<double>& values) {
     for (const double value : values)
       if (!std::isfinite(value)) return;
@@ -43,7 +43,7 @@ class SobolIndices {
     }
   }
 
-  /// One for each parameter; empty: the figure does not vary, or there are fewer than two parts.
+  /// The indices of each parameter; empty: the figure does not vary, or there are fewer than two parts.
   std::vector<SobolIndex> indices() const {
     Sums all(parameters_);
     std::vector<const Sums*> filled;
@@ -103,7 +103,7 @@ class SobolIndices {
   std::size_t parameters_;
   std::uint64_t blocks_;
   bool begun_ = false;
-  double shift_ = 0.0;  // the first value, so that nothing cancels
+  double shift_ = 0.0;  // the first value, subtracted to avoid cancellation
   std::array<Sums, kParts> parts_;
 };
 

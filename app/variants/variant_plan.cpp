@@ -18,8 +18,8 @@ using Kind = Sampling::Kind;
 constexpr std::pair<const char*, Kind> kSamplings[] = {
     {"random", Kind::random}, {"lhs", Kind::lhs}, {"sobol", Kind::sobol}, {"saltelli", Kind::saltelli}};
 
-/// A one-to-one map of 0 ... count - 1 to itself that looks random: four Feistel rounds on the smallest even
-/// number of bits, gone through again until the value is below count.
+/// A pseudo-random permutation of 0 ... count - 1: four Feistel rounds on the smallest even number of bits,
+/// repeated until the value is below count.
 std::uint64_t shuffled(std::uint64_t i, std::uint64_t count, std::uint64_t key) {
   const auto half = std::max<unsigned>(1, (static_cast<unsigned>(std::bit_width(count - 1)) + 1) / 2);
   const std::uint64_t mask = (std::uint64_t{1} << half) - 1;

@@ -1,22 +1,23 @@
 #pragma once
-/// Which parameters each variant of a study has. Variant i is found from its number alone, so that memory does
-/// not grow with their count and every process finds the same.
+/// The parameters of each variant of a study. Variant i is computed from its number alone, so that memory
+/// does not grow with their count and every process gets the same variants.
 ///
 /// Without --sample: every combination of the values, the last parameter varying fastest. With --sample a point
-/// u of the unit cube gives each parameter the value of its distribution function F at u, x = F^-1(u); of values
-/// and orders, each as likely. u is
+/// u of the unit cube gives each parameter the value x = F^-1(u) of its distribution function F; values and
+/// orders are equally likely. u is
 ///
 ///   random    independent numbers
-///   lhs       Latin hypercube: of each parameter, one u in each of N equal parts of 0..1 (McKay, Beckman,
+///   lhs       Latin hypercube: for each parameter, one u in each of N equal parts of 0..1 (McKay, Beckman,
 ///             Conover, Technometrics 21, 1979)
 ///   sobol     Sobol sequence with the direction numbers of Joe and Kuo (Boost), every coordinate's digits
 ///             shifted by the seed (digital shift), so that each point by itself is uniform
 ///   saltelli  N blocks of k + 2 variants for k parameters: A, B, and A with parameter j from B, from a Sobol
-///             sequence in 2 k dimensions (Saltelli and others, Comput. Phys. Commun. 181, 2010): what Sobol
-///             indices are estimated from
+///             sequence in 2 k dimensions (Saltelli and others, Comput. Phys. Commun. 181, 2010), from which
+///             Sobol indices are estimated
 ///
-/// Correlated parameters: z = Phi^-1(u), z' = L z with L L' the matrix of correlations, u' = Phi(z') (a Gaussian
-/// copula): normal parameters have the correlations themselves, others those of the normal ones behind them.
+/// Correlated parameters: z = Phi^-1(u), z' = L z with L L' the correlation matrix, u' = Phi(z') (a Gaussian
+/// copula). Normal parameters have these correlations; for others they are those of the underlying normal
+/// variables.
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
@@ -36,14 +37,15 @@ struct Sampling {
 
 struct Correlation {
   std::string one, other;
-  double value = 0.0;  ///< > -1, < 1
+  double value = 0.0;  ///< correlation [-], > -1, < 1
 };
 
 class VariantPlan {
  public:
-  static constexpr double kMost = 1e12;  ///< variants
+  static constexpr double kMost = 1e12;  ///< largest number of variants
 
-  /// Without sampling, the values' combinations; a distribution among them is a finding.
+  /// Without sampling, the plan is all combinations of the values, and a distribution among them is a
+  /// finding.
   VariantPlan(std::vector<Varied> varied, std::optional<Sampling> sampling,
               std::vector<Correlation> correlations, std::vector<Finding>& findings);
 
@@ -65,11 +67,11 @@ class VariantPlan {
   std::uint64_t count_ = 0;
 };
 
-/// --sample KIND:N or KIND:N:SEED, --correlate A,B=VALUE. What is wrong goes to findings.
+/// Reads --sample KIND:N or KIND:N:SEED, --correlate A,B=VALUE. Faults are added to findings.
 std::optional<Sampling> read_sampling(const std::string& text, std::vector<Finding>& findings);
 std::vector<Correlation> read_correlations(const std::vector<std::string>& words,
                                            std::vector<Finding>& findings);
-/// As it was given.
+/// The sampling as it was given.
 std::string sampling_text(const Sampling& sampling);
 
 }  // namespace drev::app

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostNames = 12;
 
-/// Rising; all rows where there are no more than kMostPoints.
+/// The chosen rows, ascending; all rows if there are no more than kMostPoints.
 std::vector<std::uint64_t> chosen_rows(std::uint64_t rows) {
   const std::uint64_t count = std::min(rows, kMostPoints);
   std::vector<std::uint64_t> chosen;

@@ -62,7 +62,7 @@ void VariantStatistics::finish() {
     const auto n = static_cast<double>(s.count);
     if (s.count > 1) s.deviation = std::sqrt(squares_[f] / (n - 1.0));
     if (independent_) s.mean_error = kNormal95 * s.deviation / std::sqrt(n);
-    const auto at_rank = [&](double rank) {  // the value that so many do not exceed, within a bin
+    const auto at_rank = [&](double rank) {  // the value that `rank` values do not exceed, to within a bin
       double below = 0.0;
       std::size_t bin = 0;
       while (bin + 1 < kBins && below + static_cast<double>(bins_[f][bin]) < rank)

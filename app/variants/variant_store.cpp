@@ -19,7 +19,7 @@ namespace {
 constexpr char kMagic[9] = "drevVAR1";
 constexpr std::uint64_t kPage = 4096;
 
-/// Stands at the start of the file; the description follows it.
+/// Head at the start of the file; the description follows it.
 struct Head {
   char magic[8];
   std::uint64_t text, checksum;  // bytes of the description, and its checksum
@@ -28,7 +28,7 @@ struct Head {
 
 std::uint64_t up_to_page(std::uint64_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 
-/// Bytes read, fewer at the file's end; -1: an error.
+/// Reads `size` bytes. Returns the number of bytes read, fewer at the file's end; -1: an error.
 ssize_t read_all(int descriptor, char* to, std::size_t size, std::uint64_t at) {
   std::size_t done = 0;
   while (done < size) {
@@ -56,7 +56,7 @@ void write_all(int descriptor, const std::string& path, const std::string& bytes
   }
 }
 
-/// The head and the description of a store; false: there is none that is whole.
+/// Reads head and description of a store; false: they are missing or incomplete.
 bool read_head(int descriptor, Head& head, std::string& text) {
   if (read_all(descriptor, reinterpret_cast<char*>(&head), sizeof head, 0) != sizeof head) return false;
   if (std::memcmp(head.magic, kMagic, sizeof head.magic) != 0 || head.text > (std::uint64_t{1} << 28))
@@ -70,7 +70,7 @@ void append(std::string& bytes, const void* from, std::size_t size) {
   bytes.append(static_cast<const char*>(from), size);
 }
 
-/// Never 0, which is what a place holds that nothing was written to.
+/// Checksum of a place; never 0, which an unwritten place contains.
 std::uint64_t place_checksum(std::string_view bytes, std::uint64_t block, std::uint64_t key) {
   std::string numbers;
   append(numbers, &block, sizeof block);
@@ -150,7 +150,7 @@ VariantStore::VariantStore(const std::string& folder, const std::string& descrip
       write_all(descriptor_, path_, bytes + description, 0);
     }
     const std::uint64_t size = place(shape.blocks);
-    // Not posix_fallocate(), which writes everywhere where the file system cannot do it.
+    // Not posix_fallocate(), which writes all of the file if the file system does not support it.
     if (::fallocate(descriptor_, 0, 0, static_cast<off_t>(size)) != 0 &&
         (errno != EOPNOTSUPP || ::ftruncate(descriptor_, static_cast<off_t>(size)) != 0)) {
       const int error = errno;

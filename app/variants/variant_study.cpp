@@ -1,6 +1,6 @@
 #include "app/variants/variant_study.hpp"
 
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
 #include <drev/core/units.hpp>
@@ -25,7 +25,7 @@ namespace drev::app {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kKeptText = 1 << 20;  // bytes of a model file that the description keeps whole
+constexpr std::size_t kKeptText = 1 << 20;  // largest model file whose text the description keeps [bytes]
 
 TransientOptions stepping_options(const Method& method, double duration, const std::function<bool()>& go_on) {
   return {.scheme = step_scheme(method.name),
@@ -40,7 +40,7 @@ std::string content_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A file that the rows follow from. A model file's text is kept, so that a difference can be shown.
+/// A file that the rows depend on. The text of a model file is kept, so that a difference can be shown.
 Json file_object(const std::string& name, const std::string& content) {
   Json object{{"file", name}, {"checksum", checksum_text(checksum(content))}};
   if (name.ends_with(".toml") && content.size() <= kKeptText) object["text"] = content;
@@ -65,7 +65,7 @@ VariantStatus status_of(RunStatus status) {
   return VariantStatus::failed;
 }
 
-/// The first line in which two texts differ, as the end of a sentence.
+/// The first line in which two texts differ, as the last part of a sentence.
 std::string changed_line(const std::string& then, const std::string& now) {
   const std::vector<std::string> a = split(then, '\n'), b = split(now, '\n');
   std::size_t i = 0;
@@ -90,15 +90,15 @@ const char* status_text(VariantStatus status) {
 
 /// A variant, ready to be run.
 struct VariantStudy::Built {
-  std::optional<System> system;  // none: it cannot be built, or has no start
+  std::optional<System> system;  // nullopt: it cannot be built, or has no start
   VariantStatus status = VariantStatus::success;
   std::string reason;
   double duration = 0.0;
   std::shared_ptr<const Watched> watched = {};
 };
 
-/// The channels that figures are of; for variants that are built alike those of the first one, since to find them
-/// takes as long as to build the variant.
+/// The channels that the figures belong to. Variants with the same structure share those of the first one,
+/// since finding the channels takes as long as building the variant.
 struct VariantStudy::Watched {
   Watched(const ModelCase& model_case, const System& system, const std::vector<std::string>& asked)
       : deflection_name(model_case.deflection),
@@ -115,7 +115,7 @@ struct VariantStudy::Watched {
     return model_case.deflection == deflection_name && model_case.torques == torque_names &&
            build_of(system) == build;
   }
-  /// Elements, and which laws have gaps.
+  /// Structure of a system: its elements, and which laws have gaps.
   static std::vector<std::string> build_of(const System& system) {
     std::vector<std::string> parts;
     for (const ElementInstance& p : system.element_instances()) parts.push_back(p.name);
@@ -127,7 +127,7 @@ struct VariantStudy::Watched {
   std::string deflection_name;
   std::vector<std::string> torque_names, build;
   std::vector<Channel> deflection, torques, meshes, more;
-  std::vector<std::string> names;  ///< of all of them, in this order
+  std::vector<std::string> names;  ///< names of all channels, in this order
 };
 
 std::shared_ptr<const VariantStudy::Watched> VariantStudy::watched_by(const ModelCase& model_case,
@@ -204,7 +204,7 @@ void VariantStudy::describe() {
                   {"duration_s", request_.duration ? Json(*request_.duration) : Json()},
                   {"figures", std::move(columns)},
                   {"block", block_size_}};
-  // What is varied has no value of its own.
+  // A varied parameter has no value of its own.
   for (const Varied& v : plan_.varied()) description_["parameters"].erase(v.name);
 }
 
@@ -232,7 +232,8 @@ VariantStudy::Built VariantStudy::build(const ParameterValues& values) const {
   return built;
 }
 
-/// The row of a variant that ended; figures only where its run can be trusted, or at least came to its end.
+/// Enters the row of a finished variant, with figures only if its run can be trusted or at least reached its
+/// end.
 void VariantStudy::enter(const Built& built, const VariantResult& result, std::size_t place,
                          BlockRows& rows) const {
   VariantStatus status = built.status;
@@ -277,7 +278,7 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
     } else if (f.name.ends_with(".min")) {
       value = (peak++)->min;
     } else {
-      if (result.contacts.empty()) continue;  // it has no gap
+      if (result.contacts.empty()) continue;  // the variant has no gap
       value = 0.0;
       for (const ContactRecord& c : result.contacts)
         value += f.name == "front_contacts"  ? static_cast<double>(c.front_impacts)
@@ -287,7 +288,7 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
   }
 }
 
-/// Variants of a block that can be built. Where they are not of one topology, each by itself.
+/// Runs the variants of a block that can be built: together, or one by one if their topologies differ.
 void VariantStudy::run_together(std::vector<Built>& built, std::uint64_t block, std::size_t first,
                                 std::size_t count, const std::function<bool()>& go_on,
                                 BlockRows& rows) const {
@@ -326,7 +327,7 @@ void VariantStudy::run_together(std::vector<Built>& built, std::uint64_t block, 
       return;
     }
     for (const std::size_t i : places) {
-      built[i] = build(plan_.parameters(first_of(block) + i));  // its System has been taken
+      built[i] = build(plan_.parameters(first_of(block) + i));  // its System has been moved from
       run_together(built, block, i, 1, go_on, rows);
     }
   }

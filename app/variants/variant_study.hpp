@@ -1,10 +1,10 @@
 #pragma once
-/// A study of many variants of one model, of each of which a row of figures is kept: what is asked for, and the
-/// computation of a block of variants.
+/// A study of many variants of one model, with a row of figures kept for each variant: its description, and
+/// the computation of a block of variants.
 ///
-/// Blocks are the same however many processes and threads share the work, and so are their rows. Variants of a block
-/// with constant steps are made in lockstep (drev/solvers/batch/simulate_many.hpp) where they are of one topology
-/// and duration, else one by one.
+/// Blocks and their rows are the same for any number of processes and threads. The variants of a block with
+/// constant steps are computed in lockstep (drev/solvers/batch/simulate_many.hpp) if they have the same
+/// topology and duration, otherwise one by one.
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -32,7 +32,7 @@ enum class VariantStatus {
   no_convergence,
   not_finite,
   failed,
-  bad_input  ///< the parameters cannot be
+  bad_input  ///< the parameters are invalid
 };
 inline constexpr int kVariantStatuses = 7;
 const char* status_text(VariantStatus status);
@@ -43,19 +43,20 @@ struct FigureColumn {
 
 class VariantStudy {
  public:
-  /// request: of the first variant; record_asked: its recorded channels were asked for and have columns, too.
+  /// request: request for the first variant; record_asked: true if its recorded channels were requested and
+  /// so have columns.
   VariantStudy(RunRequest request, VariantPlan plan, bool record_asked);
 
   const RunRequest& request() const { return request_; }
   const VariantPlan& plan() const { return plan_; }
-  /// Behind the status, in the order of a row.
+  /// The figures in the order of a row, where they follow the status.
   const std::vector<FigureColumn>& figures() const { return figures_; }
   std::size_t row_size() const { return 1 + figures_.size(); }
 
-  std::uint64_t block_size() const { return block_size_; }  ///< variants
+  std::uint64_t block_size() const { return block_size_; }  ///< variants in a block
   std::uint64_t blocks() const { return (plan_.count() + block_size_ - 1) / block_size_; }
   std::uint64_t first_of(std::uint64_t block) const { return block * block_size_; }
-  /// Fewer in the last block.
+  /// Number of variants in a block; the last block may have fewer.
   std::uint64_t count_of(std::uint64_t block) const {
     return std::min(block_size_, plan_.count() - first_of(block));
   }
@@ -63,12 +64,13 @@ class VariantStudy {
   /// Why variants run one by one; empty: in lockstep.
   const std::string& why_not_lockstep() const { return why_not_lockstep_; }
 
-  /// Everything that its rows follow from, as JSON: model and files with checksums, parameters, method, and so on.
+  /// Everything that its rows depend on, as JSON: model and files with checksums, parameters, method, and so
+  /// on.
   const Json& description() const { return description_; }
 
-  /// The rows of a block; nothing where go_on said false. Called by several threads at once.
+  /// The rows of a block; nullopt if go_on returned false. May be called by several threads at once.
   std::optional<BlockRows> run(std::uint64_t block, const std::function<bool()>& go_on) const;
-  /// The row of a variant that the plan need not hold.
+  /// The row of a variant, which need not be in the plan.
   std::optional<BlockRows> run_one(const ParameterValues& values, const std::function<bool()>& go_on) const;
 
  private:
@@ -85,15 +87,15 @@ class VariantStudy {
 
   RunRequest request_;
   VariantPlan plan_;
-  std::shared_ptr<const Watched> watched_;  // of the first variant
-  std::vector<std::string> channels_;       // with columns of their own
+  std::shared_ptr<const Watched> watched_;  // channels of the first variant
+  std::vector<std::string> channels_;       // recorded channels that have columns
   std::vector<FigureColumn> figures_;
   std::uint64_t block_size_ = 1;
   std::string why_not_lockstep_;
   Json description_;
 };
 
-/// What differs between two descriptions, each as a sentence; none: nothing.
+/// The differences between two descriptions, one sentence each; empty: there are none.
 std::vector<std::string> differences(const Json& then, const Json& now);
 
 }  // namespace drev::app

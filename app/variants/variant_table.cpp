@@ -14,8 +14,8 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::uint64_t kRowsAtOnce = 65536;  // that are in memory at once
-constexpr std::size_t kFailuresTold = 20;     // failures, of all
+constexpr std::uint64_t kRowsAtOnce = 65536;  // rows in memory at once
+constexpr std::size_t kFailuresTold = 20;     // largest number of failures listed
 
 }  // namespace
 
@@ -91,7 +91,7 @@ struct Failure {
   std::string reason;
 };
 
-/// The first variants that failed, one a block, with the reason that its block keeps.
+/// The first failed variants, one for each block, with the reason kept in the block.
 std::vector<Failure> failures_of(const VariantStudy& study, const VariantStore& store) {
   std::vector<Failure> all;
   for (std::uint64_t block = 0; block < study.blocks() && all.size() < kFailuresTold; ++block) {

@@ -19,8 +19,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// The first byte of a message. Behind it: hello, the description's checksum and the host; found, a FoundRows, its numbers and reason;
-/// bye, why (empty: as was said); task, a BlockTask.
+/// The first byte of a message. It is followed, after hello, by the description's checksum and the host;
+/// after found, by a FoundRows, its numbers and reason; after bye, by the reason (empty: it was told to end);
+/// after task, by a BlockTask.
 enum : char { kHello = 'H', kAsk = 'A', kFound = 'F', kBye = 'B', kTask = 'T', kOver = 'O' };
 
 struct FoundRows {
@@ -28,7 +29,7 @@ struct FoundRows {
   double seconds;
 };
 
-constexpr double kTaskSeconds = 0.25;  // that a task should take
+constexpr double kTaskSeconds = 0.25;  // time that a task should take [s]
 constexpr auto kSyncEvery = milliseconds(500), kTellEvery = milliseconds(60000);
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -71,7 +72,7 @@ std::string host_name() {
 
 std::uint64_t identity(const VariantStudy& study) { return checksum(study.description().dump()); }
 
-/// The work of the first rank.
+/// The first rank, which hands out the work.
 class Leader {
  public:
   Leader(const VariantStudy& study, const Ranks& ranks, int threads, VariantStore& store)
@@ -121,8 +122,8 @@ class Leader {
     progress_.clear();
   }
 
-  /// The next blocks that are neither done nor given away; none: count is 0. Their number follows from what blocks
-  /// take, and from how many are left for all.
+  /// The next blocks that are neither done nor handed out; count 0: there are none. Their number follows from
+  /// the time of a block and from the number of blocks left for all.
   BlockTask next_task() {
     while (next_ < study_.blocks() && store_.done(next_)) ++next_;
     BlockTask task{next_, 0};
@@ -153,7 +154,7 @@ class Leader {
       case kAsk: {
         const BlockTask task = next_task();
         if (task.count > 0) ranks_.send(message.from, message_of(kTask, task));
-        return;  // else it hears of the end with all others
+        return;  // otherwise it is told of the end with all others
       }
       case kFound:
         return enter(found_in(message.bytes));
@@ -163,14 +164,14 @@ class Leader {
         if (message.bytes.size() > 1)
           outcome_.fault = "rank " + std::to_string(message.from) + ": " + message.bytes.substr(1);
         else
-          outcome_.interrupted = true;  // it was told before this one
+          outcome_.interrupted = true;  // it was told to end before this rank
         return;
       default:
         return;
     }
   }
 
-  /// All other ranks end; what they have found by then is kept, where it can be.
+  /// Ends all other ranks; the rows that they have computed by then are kept if possible.
   void end_others() {
     for (int rank = 1; rank < ranks_.count(); ++rank) ranks_.send(rank, std::string(1, kOver));
     bool writable = true;
@@ -198,7 +199,7 @@ class Leader {
     if (now > 0.0) text += ", " + rough_time(since(start_) / now * rest) + " left";
     progress_.show(text);
     if (::isatty(STDERR_FILENO) != 0 || Clock::now() - told_ < kTellEvery) return;
-    told_ = Clock::now();  // for the file that a batch system keeps
+    told_ = Clock::now();  // for the log file of a batch system
     std::fprintf(stderr, "drev: %s: %s\n", rough_time(since(start_)).c_str(), text.c_str());
   }
 
@@ -206,12 +207,12 @@ class Leader {
   const Ranks& ranks_;
   int threads_;
   VariantStore& store_;
-  std::size_t left_;          // ranks that have not said goodbye
-  std::uint64_t begun_ = 0;   // blocks that were there
-  std::uint64_t next_ = 0;    // block to give away
-  std::uint64_t failed_ = 0;  // variants, now
-  double seconds_ = 0.0;      // that a block takes, smoothed
-  bool ended_ = false;        // before all was done
+  std::size_t left_;          // number of ranks that have not ended
+  std::uint64_t begun_ = 0;   // number of blocks done at the start
+  std::uint64_t next_ = 0;    // next block to hand out
+  std::uint64_t failed_ = 0;  // number of variants that failed in this run
+  double seconds_ = 0.0;      // time of a block, smoothed [s]
+  bool ended_ = false;        // true: ended before all blocks were done
   WorkOutcome outcome_;
   Progress progress_;
   Clock::time_point start_ = Clock::now(), synced_ = start_, told_ = start_;

@@ -16,9 +16,9 @@ constexpr const char* kForm =
     "must be NAME=A,B,C, NAME=FIRST:STEP:LAST, or both mixed; NAME=orders(N), or with --sample "
     "NAME=uniform(LOW,HIGH) or NAME=normal(MEAN,DEVIATION)";
 constexpr int kMostItems = 20;       // 19! fits 64 bits
-constexpr double kMostValues = 1e7;  // of one word: they are kept in memory
+constexpr double kMostValues = 1e7;  // largest number of values of one word, which are kept in memory
 
-/// What is wrong with the values; empty: nothing.
+/// Reads values. Returns the fault; empty: there is none.
 std::string read_values(const std::string& text, double most, std::vector<std::string>& values) {
   std::set<std::string> known;
   for (const std::string& part : split(text, ',')) {
@@ -44,14 +44,14 @@ std::string read_values(const std::string& text, double most, std::vector<std::s
   return {};
 }
 
-/// "uniform(1,2)" is a call of "uniform" with "1" and "2".
+/// Whether the text is a call of `name`: "uniform(1,2)" calls "uniform" with "1" and "2".
 bool call_of(const std::string& text, const std::string& name, std::vector<std::string>& arguments) {
   if (!text.starts_with(name + "(") || !text.ends_with(')')) return false;
   arguments = split(text.substr(name.size() + 1, text.size() - name.size() - 2), ',');
   return true;
 }
 
-/// What is wrong with the word's values or distribution; empty: nothing.
+/// Reads the values or the distribution of a word. Returns the fault; empty: there is none.
 std::string read_one(Varied& varied, double most) {
   using enum Varied::Kind;
   std::vector<std::string> words;
@@ -96,7 +96,7 @@ std::string Varied::value(std::uint64_t i) const {
 std::string order_text(std::uint64_t i, int items) {
   std::vector<int> left;
   for (int k = 2; k <= items; ++k) left.push_back(k);
-  std::uint64_t block = 1;  // orders that share the items so far
+  std::uint64_t block = 1;  // number of orders that share the items so far
   for (int k = 2; k < items; ++k) block *= static_cast<std::uint64_t>(k);
   std::string text = "1";
   while (!left.empty()) {

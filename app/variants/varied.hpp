@@ -1,9 +1,9 @@
 #pragma once
-/// What one --vary gives to a parameter: values, or a distribution that --sample draws from.
+/// The argument of one --vary for a parameter: values, or a distribution that --sample draws from.
 ///
 ///   NAME=A,B,C   NAME=FIRST:STEP:LAST   both mixed    values, the last one included where the steps lead to it
 ///   NAME=orders(N)                                    every order 1-...-N that begins with 1: (N - 1)! of them
-///   NAME=uniform(LOW,HIGH)                            every value between them as likely
+///   NAME=uniform(LOW,HIGH)                            all values between them equally likely
 ///   NAME=normal(MEAN,DEVIATION)                       normally distributed, by mean and standard deviation > 0
 #include <drev/core/error.hpp>
 #include <drev/models/model_case.hpp>
@@ -16,18 +16,19 @@ namespace drev::app {
 
 struct Varied {
   enum class Kind { values, orders, uniform, normal };
-  std::string name, text;  ///< of the parameter; what was given behind it
+  std::string name, text;  ///< name of the parameter; text given after it
   Kind kind = Kind::values;
   std::vector<std::string> values = {};
-  int items = 0;                     ///< of orders
+  int items = 0;                     ///< number of items N of orders(N)
   double first = 0.0, second = 0.0;  ///< low and high, or mean and standard deviation
-  /// How many values there are; 0: a continuous distribution.
+  /// Number of values; 0: a continuous distribution.
   std::uint64_t count() const;
   /// Value number i < count().
   std::string value(std::uint64_t i) const;
 };
 
-/// most: so many combinations of all values at the most; 0: they are not combined. What is wrong goes to findings.
+/// most: largest number of combinations of all values; 0: they are not combined. Faults are added to
+/// findings.
 std::vector<Varied> read_varied(const std::vector<std::string>& words, double most,
                                 std::vector<Finding>& findings);
 

@@ -1,7 +1,8 @@
 #include <drev/core/control/sampled_controller.hpp>
-#include <drev/core/control/signal.hpp>
 #include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
+
+#include "core/control/signal.hpp"
 
 namespace drev {
 

@@ -1,5 +1,6 @@
+#include "core/control/signal.hpp"
+
 #include <drev/core/assembler.hpp>
-#include <drev/core/control/signal.hpp>
 
 #include <algorithm>
 

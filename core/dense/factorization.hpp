@@ -1,7 +1,7 @@
 #pragma once
 /// Linear equations with small dense matrices. Eigen's factorisations are compiled here once: their templates take seconds
-/// of compilation wherever they are used. Those with reflections are LAPACK's. Sizes that do not fit are errors of the
-/// caller, asserted by Eigen.
+/// of compilation wherever they are used. Those with reflections and that of complex matrices are LAPACK's. Sizes that do
+/// not fit are errors of the caller, asserted by Eigen.
 #include <drev/core/system.hpp>
 
 #include <Eigen/LU>

@@ -42,7 +42,7 @@ LocalResponse respond(const GeneralTerm& term, const Assembler& assembler, const
 
 std::vector<ElementEnergy> ElementEnergy::of_all(const System& system) {
   std::vector<ElementEnergy> all(system.element_instances().size());
-  double a = 0.0, b = 0.0;  // of Rayleigh damping
+  double a = 0.0, b = 0.0;  // coefficients of Rayleigh damping [1/s, s]
   for_each_stated(system, [&](int /*element*/, const Terms& terms, const std::vector<int>& /*nodes*/) {
     a += terms.rayleigh_a;
     b += terms.rayleigh_b;

@@ -25,6 +25,8 @@ class FrequencyStiffness {
                                                           const CarriedLoad& /*load*/) const {
     return std::nullopt;
   }
+  /// Whether beyond_held() does, at the load it is asked for.
+  virtual bool follows_frequency() const { return true; }
   virtual bool follows_mean_torque() const { return false; }
   virtual bool follows_amplitude() const { return false; }
   /// Of its own matrices: mean torque over mean deflection [N m/rad]. Asked where it follows the mean torque.

@@ -33,7 +33,7 @@ std::optional<double> shift_between(const KnottedLoad& first, const KnottedLoad&
       first.turns() != second.turns())
     return std::nullopt;
   constexpr int kAngles = 16;
-  constexpr double kSame = 1e-12;  // of the largest
+  constexpr double kSame = 1e-12;  // difference of equal curves over the largest
   const double shift = a->family().start - b->family().start;
   KnottedLoad::Curves largest, change;
   for (int i = 0; i < kAngles; ++i) {

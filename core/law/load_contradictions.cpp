@@ -77,7 +77,7 @@ void compare_load(const Load& load, std::span<const LoadInput> at, std::vector<C
       if (table) StretchComparison(load, "table", found).at(in, table->stretch(angle, direction), next_break);
       const std::optional<LoadStretch> s = load.stretch(in.t, angle, direction);
       if (s.has_value() != stretches)
-        found.push_back({"stretch", "is told at t = 0, angle = 0 or" + where(in) + ", but not at both"});
+        found.push_back({"stretch", "is stated at t = 0, angle = 0 or" + where(in) + ", but not at both"});
       else if (s)
         StretchComparison(load, "stretch", found).at(in, *s, next_break);
     }
@@ -157,7 +157,7 @@ class FormComparison {
   }
 
  private:
-  static constexpr double kRepeats = 1e-7;  // of a curve: rounding of the angle
+  static constexpr double kRepeats = 1e-7;  // of the curve's size a period later: rounding of the angle
   void repeats(const char* curve, double here, double later, double size, const LoadInput& in) {
     if (std::abs(here - later) > kRepeats * size)
       add("curves", std::string(curve) + " is " + to_text(here) + ", " + to_text(later) + " a period later",

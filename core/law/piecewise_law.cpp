@@ -12,7 +12,7 @@ namespace drev {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSameKink = 1e-14;  // relative: bounds that are one but for rounding
+constexpr double kSameKink = 1e-14;  // relative: bounds that are one except for rounding
 
 bool is_elastic(const LawPiece& p) { return p.elastic_0 != 0.0 || p.elastic_k != 0.0; }
 

@@ -96,7 +96,7 @@ class PiecewiseLaw {
   std::vector<double> edges_;    // the kinks, and infinity
   std::vector<int> zone_begin_;  // of candidates_; zone i lies below edge i
   std::vector<Candidate> candidates_;
-  std::vector<LawBound> bounds_;  // of the candidates
+  std::vector<LawBound> bounds_;  // bounds of the candidates
   std::optional<Gap> gap_;
   ScalarResponse closed_;
 };

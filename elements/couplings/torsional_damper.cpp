@@ -52,7 +52,7 @@ void TorsionalDamper::check(ParameterCheck& check) const {
     check.positive("natural_frequency", p.natural_frequency, "Hz");
     if (!std::isnan(p.spring.stiffness) || !p.spring.frequencies.empty())
       check.fail("natural_frequency", to_text(p.natural_frequency), "Hz",
-                 "must not be there beside a stiffness; give one of them");
+                 "must not be given together with a stiffness; give one of them");
   }
   const bool ratio = !std::isnan(p.damping_ratio);
   if (ratio) check.non_negative("damping_ratio", p.damping_ratio, "");

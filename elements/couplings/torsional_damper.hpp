@@ -48,7 +48,7 @@ class TorsionalDamper final : public Element {
     ViscoelasticStiffness::Params spring = {};  ///< k, loss factor; nothing of it: viscous damper
     double damping = 0.0;                       ///< c [N m s/rad], >= 0
     double damping_ratio = kNotGiven;           ///< zeta [-], >= 0; instead of c, with a spring
-    std::optional<FluidFilm> film = {};         ///< instead of c
+    std::optional<FluidFilm> film = {};         ///< a fluid film in place of c
   };
   explicit TorsionalDamper(Params params);
 

@@ -10,8 +10,8 @@ namespace drev {
 namespace {
 
 constexpr double kFastest = 8.0;  // c_j/m_j over the highest frequency of the fit
-constexpr int kPoints = 80;       // of the fit
-constexpr int kSweeps = 20000;    // of the coordinate descent, at most
+constexpr int kPoints = 80;       // frequencies of the fit
+constexpr int kSweeps = 20000;    // sweeps of the coordinate descent at most
 constexpr int kMostBranches = 12;
 
 double table_value(const std::vector<double>& at, const std::vector<double>& values, double x) {
@@ -111,7 +111,7 @@ void ViscoelasticStiffness::fit() {
       p.branches > 0 ? p.branches
                      : std::min(kMostBranches, 1 + static_cast<int>(std::ceil(2.0 * std::log10(high / low))));
   const double first = 0.5 / high, last = 2.0 / low;
-  std::vector<Branch> unit;  // of stiffness 1
+  std::vector<Branch> unit;  // branches for a stiffness of 1
   for (int j = 0; j < wanted; ++j) {
     const double place = wanted > 1 ? static_cast<double>(j) / (wanted - 1) : 0.5;
     const double tau = first * std::pow(last / first, place);
@@ -176,7 +176,7 @@ void ViscoelasticStiffness::check(ParameterCheck& check) const {
   check.within("loss_factor", p.loss_factor, 0.0, 2.0, "");
   if (!p.frequencies.empty() && (!std::isnan(p.stiffness) || p.loss_factor != 0.0))
     check.fail("stiffness", to_text(p.stiffness), "N m/rad",
-               "must not be there beside a table over the frequency");
+               "must not be given together with a table over the frequency");
   if (p.branches < 0 || p.branches > kMostBranches)
     check.fail("branches", std::to_string(p.branches), "", "must be 1 to 12, or 0 for two a decade");
   check.positive("permitted_error", p.permitted_error, "");

@@ -78,6 +78,7 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
   std::optional<std::complex<double>> beyond_held(double omega, const CarriedLoad& load) const override {
     return at(omega, load) - held_stiffness_;
   }
+  bool follows_frequency() const override { return params_.frequencies.size() > 1; }
   bool follows_mean_torque() const override { return !params_.by_mean_torque.at.empty(); }
   bool follows_amplitude() const override { return !params_.by_amplitude.at.empty(); }
   double static_stiffness() const override { return static_stiffness_; }  ///< k_0 [N m/rad]

@@ -73,7 +73,8 @@ void EngineCylinders::check(ParameterCheck& check) const {
     check.fail("varying_inertia", "true", "", "needs twist_feedback: it follows the actual angle");
   const bool tangential = !p.tangential_pressure.empty() || p.mean_tangential_pressure != 0.0;
   if (tangential && !gas_.empty())
-    check.fail("tangential_pressure", "given", "", "must not be there beside pressure; give one of them");
+    check.fail("tangential_pressure", "given", "",
+               "must not be given together with pressure; give one of them");
   const int count = static_cast<int>(p.firing_angles.size());
   if (p.misfiring_cylinder < 0 || p.misfiring_cylinder > count)
     check.fail("misfiring_cylinder", std::to_string(p.misfiring_cylinder), "",

@@ -134,7 +134,7 @@ CubicPiece GasPressure::piece(double angle, double direction, double speed, bool
 
 CubicPiece GasPressure::ungated_piece(double angle, double direction, const std::vector<double>& parts,
                                       bool misfires) const {
-  constexpr double kOnKnot = 1e-13;  // of the angle, at least of 1 rad
+  constexpr double kOnKnot = 1e-13;  // distance from a knot over the angle, or over 1 rad
   const bool up = direction > 0.0;
   double side = 1.0, at = angle;
   CubicPiece sum;
@@ -172,7 +172,7 @@ void GasPressure::check(ParameterCheck& check) const {
     check.fail("pressure", "speed and load", "",
                "curves are given over the speed or over the load, not both");
   if (!p.peak_speed.empty() && !p.speed.empty())
-    check.fail("peak_pressure", "given", "", "must not be there beside curves over the speed");
+    check.fail("peak_pressure", "given", "", "must not be given together with curves over the speed");
   check.all_finite("pressure.pressure", p.pressure, "Pa");
   for (const double pressure : p.pressure)
     if (pressure < -kAtmosphere) {

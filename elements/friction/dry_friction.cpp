@@ -50,7 +50,8 @@ void DryFriction::check(ParameterCheck& check) const {
   if (!(p.break_away_ratio >= 1.0) || std::isinf(p.break_away_ratio))
     check.fail("break_away_ratio", to_text(p.break_away_ratio), "", "must be finite and >= 1");
   if (p.engagement && p.engagement_formula)
-    check.fail("engagement_formula", "given", "", "must not be there beside engagement; give one of them");
+    check.fail("engagement_formula", "given", "",
+               "must not be given together with engagement; give one of them");
   if (p.engagement_formula) {
     p.engagement_formula->check(check, "engagement_formula");
     if (const double least = p.engagement_formula->smallest();

@@ -28,7 +28,7 @@ void LossyGear::check(ParameterCheck& check) const {
   const bool table = !p.speeds.empty() || !p.efficiencies_forward.empty();
   if (table && !(std::isnan(p.efficiency_forward) && std::isnan(p.efficiency_backward)))
     check.fail("efficiency_forward", to_text(p.efficiency_forward), "",
-               "is given beside a table of losses: give one of them");
+               "is given together with a table of losses: give one of them");
   if (table) {
     check.increasing("speeds", p.speeds, "rad/s");
     if (!p.speeds.empty() && p.speeds.front() != 0.0)

@@ -10,7 +10,7 @@ void PlanetarySet::check(ParameterCheck& check) const {
     check.fail("teeth_sun", std::to_string(p.teeth_sun) + ", teeth_ring " + std::to_string(p.teeth_ring), "",
                "must both be > 0");
   if (teeth && !std::isnan(p.ratio))
-    check.fail("ratio", to_text(p.ratio), "", "must not be there beside teeth; give one of them");
+    check.fail("ratio", to_text(p.ratio), "", "must not be given together with teeth; give one of them");
   if (!teeth) check.positive("ratio", p.ratio, "");
 }
 

@@ -13,7 +13,7 @@ void SpeedGovernor::check(ParameterCheck& check) const {
     check.non_negative("proportional_gain", p.proportional_gain, "N m s/rad");
     if (!std::isnan(p.droop))
       check.fail("droop", to_text(p.droop), "",
-                 "must not be there beside proportional_gain; give one of them");
+                 "must not be given together with proportional_gain; give one of them");
     return;
   }
   if (!(p.droop > 0.0 && p.droop <= 1.0))

@@ -1,7 +1,6 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +118,7 @@ const ModelEntry& camshaft_entry() {
                                        0,
                                        {"gears", "held", "free"},
                                        "gear drive with backlash, gear at constant speed, or nothing held"}};
-    for (Parameter& parameter : gear_drive_settings()) parameters.push_back(std::move(parameter));
+    for (Parameter& parameter : gear_drive_parameters()) parameters.push_back(std::move(parameter));
     parameters.push_back({"damping",
                           Kind::choice,
                           "case_1",

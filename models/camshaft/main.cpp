@@ -4,7 +4,7 @@
 // Read first: two_inertia.
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/statics.hpp>

@@ -4,8 +4,7 @@
 // Read first: gear_drive and camshaft.
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -3,10 +3,9 @@
 // Run:   build/release/bin/example_custom_element
 // Read first: two_inertia.
 #include <drev/core/channel.hpp>
-#include <drev/core/law/load_element.hpp>
-#include <drev/core/law_element.hpp>
 #include <drev/core/verify.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/elements/own_element.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 

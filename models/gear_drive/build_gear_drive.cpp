@@ -1,7 +1,7 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
 #include <drev/models/gears/gear_drawing.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +104,7 @@ void add_gear_drive(Model& m, const std::string& camshaft_gear, const GearDriveP
                    .mesh_phase = kSecondMeshPhase});
 }
 
-std::vector<Parameter> gear_drive_settings() {
+std::vector<Parameter> gear_drive_parameters() {
   using Kind = Parameter::Kind;
   return {{"backlash_mm",
            Kind::number,
@@ -176,7 +176,7 @@ ModelCase build_gear_drive(Parameters s) {
 const ModelEntry& gear_drive_entry() {
   using Kind = Parameter::Kind;
   static const ModelEntry entry = [] {
-    std::vector<Parameter> parameters = gear_drive_settings();
+    std::vector<Parameter> parameters = gear_drive_parameters();
     parameters.push_back({"engine_rpm", Kind::number, "750", "rpm", 1, 5000, {}, "crankshaft speed"});
     parameters.push_back({"torque_mean_Nm",
                           Kind::number,

@@ -3,7 +3,7 @@
 // Run:   build/release/bin/example_gear_drive
 // Read first: two_mass_backlash.
 #include <drev/core/system.hpp>
-#include <drev/models/gear_drive/build_gear_drive.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -24,7 +24,8 @@ MeshCycleOptions under_load(const GearDrawing& drawing, const GearPair& pair, co
   }
   check.within("backlash_percentile", drawing.backlash_percentile, 0.0, 1.0, "");
   if (drawing.tangent && !drawing.loads.empty())
-    check.fail("tangent", "true", "", "must not be there beside loads, whose law has its slope at each load");
+    check.fail("tangent", "true", "",
+               "must not be given together with loads, whose law has its slope at each load");
   if (!findings.empty()) throw ModelError(std::move(findings));
   return options;
 }

@@ -1,5 +1,5 @@
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include <algorithm>
 #include <cmath>

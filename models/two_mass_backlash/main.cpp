@@ -3,7 +3,7 @@
 // Run:   build/release/bin/example_two_mass_backlash
 // Read first: two_inertia.
 #include <drev/core/system.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>

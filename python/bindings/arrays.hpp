@@ -1,5 +1,5 @@
 #pragma once
-/// Arrays of C++ as NumPy's, without a copy: the array keeps the object alive that it is a part of.
+/// C++ arrays as NumPy arrays without a copy: the array keeps the object alive to which its memory belongs.
 #include <Eigen/Core>
 #include <complex>
 #include <nanobind/nanobind.h>
@@ -18,7 +18,7 @@ ReadOnly<T> array_of(const std::vector<T>& values, nb::handle owner) {
   return ReadOnly<T>(values.data(), {values.size()}, owner);
 }
 
-/// rows x columns, of which the first `columns` are shown.
+/// A matrix as an array of rows x columns, with its first `columns` columns.
 template <class T>
 ReadOnly<T> matrix_of(const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>& matrix, std::size_t columns,
                       nb::handle owner) {

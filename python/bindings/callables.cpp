@@ -1,6 +1,6 @@
 // Laws and loads that are Python callables, as types of elements of model files: python_law and python_load. A model
-// made in Python names its callables by number. Each call takes the interpreter's lock: about a thousand times what a
-// law of the catalogue costs.
+// made in Python names its callables by number. Each call takes the interpreter's lock, which makes it about
+// a thousand times as expensive as a law of the catalogue.
 #include <drev/app/model_file/element_table.hpp>
 #include <drev/core/element.hpp>
 #include <drev/core/load.hpp>
@@ -17,7 +17,7 @@ namespace drev::python {
 
 namespace {
 
-/// A callable, and what messages call it ("law 'coupling'").
+/// A callable, and its name in messages ("law 'coupling'").
 class Callable {
  public:
   Callable(nb::object function, nb::object energy, std::string label)
@@ -38,7 +38,7 @@ class Callable {
   bool has_energy() const { return !energy_.is_none(); }
   const std::string& label() const { return label_; }
 
-  /// A number, or three: the force and its two slopes. The lock must be held.
+  /// The answer of a callable: a number, or three: the force and its two slopes. The lock must be held.
   struct Answer {
     double force = 0.0, first_slope = 0.0, second_slope = 0.0;
     bool slopes = false;
@@ -89,7 +89,7 @@ class Callable {
   std::string label_;
 };
 
-/// The callables of the models that there are, by number.
+/// The callables of all existing models, by number.
 class Registry {
  public:
   int add(std::shared_ptr<const Callable> callable) {
@@ -103,7 +103,7 @@ class Registry {
     return found == all_.end() ? nullptr : found->second;
   }
   void remove(int number) {
-    std::shared_ptr<const Callable> last;  // ends behind the lock: it may take the interpreter's
+    std::shared_ptr<const Callable> last;  // destroyed after unlocking: it may take the interpreter's lock
     const std::lock_guard lock(mutex_);
     if (const auto found = all_.find(number); found != all_.end()) {
       last = std::move(found->second);
@@ -137,14 +137,15 @@ void check_callable(const std::shared_ptr<const Callable>& callable, int number,
     check.fail("callable", std::to_string(number), "", "must be a callable of a model that still exists");
 }
 
-const double kStep = std::cbrt(2.3e-16);  // of central differences, relative
+const double kStep = std::cbrt(2.3e-16);  // relative step of central differences [-]
 
 double central(const auto& f, double x, double least) {
   const double h = kStep * std::max(std::abs(x), least);
   return (f(x + h) - f(x - h)) / (2.0 * h);
 }
 
-/// y = f(x, x', t). Its work counts as dissipated, or, where the energy V(x) is given, y - y at rest.
+/// y = f(x, x', t). Its work counts as dissipated; if the energy V(x) is given, only the work of y - y at
+/// rest does.
 class PythonLaw final : public Element, public ScalarForce {
  public:
   explicit PythonLaw(int number) : number_(number), callable_(registry().find(number)) {}
@@ -178,7 +179,7 @@ class PythonLaw final : public Element, public ScalarForce {
   std::shared_ptr<const Callable> callable_;
 };
 
-/// p(t), or p(t, theta, theta') on the right side.
+/// A load p(t) or p(t, theta, theta') on the right side.
 class PythonLoad final : public Element, public Load {
  public:
   PythonLoad(int number, bool of_motion, std::vector<double> breakpoints)

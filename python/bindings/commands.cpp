@@ -1,7 +1,7 @@
 #include "app/commands/commands.hpp"
 
 #include <drev/app/model_file/element_table.hpp>
-#include <drev/app/model_file/load_plugin.hpp>
+#include <drev/app/model_file/model_file.hpp>
 #include <drev/core/version.hpp>
 #include <drev/models/model_case.hpp>
 
@@ -53,7 +53,7 @@ nb::list command_table() {
   return table;
 }
 
-/// What the command prints, with --json or without, and its exit code.
+/// The output of the command, with --json or without, and its exit code.
 nb::tuple execute(const Request& request, bool json) {
   app::CommandLine line = request.line();
   line.json = json;
@@ -71,7 +71,7 @@ nb::tuple execute(const Request& request, bool json) {
   return nb::make_tuple(code, text);
 }
 
-/// Python loads extensions so that no one sees their symbols: a plugin must.
+/// Loads plugins. Python loads extension modules with hidden symbols, which a plugin must see.
 void load_plugins(const std::vector<std::string>& files) {
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&word_of), &self) != 0)

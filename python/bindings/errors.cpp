@@ -7,7 +7,7 @@ namespace drev::python {
 
 namespace {
 
-/// Raises what a function of drev._errors makes of the arguments.
+/// Raises the exception that a function of drev._errors makes from the arguments.
 template <class... Arguments>
 void raise(const char* function, Arguments&&... arguments) {
   const nb::object error =

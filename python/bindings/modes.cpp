@@ -17,7 +17,7 @@ struct Modes {
   std::string model;
 };
 
-/// The damped modes that are shown, and their figures as arrays.
+/// The oscillating damped modes, and their figures as arrays.
 struct Damped {
   app::DampedModes found;
   std::vector<std::string> nodes;

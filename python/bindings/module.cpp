@@ -1,4 +1,5 @@
-// The extension module drev._drev: what the package's Python code (python/drev) is made on. Its own names are internal.
+// The extension module drev._drev, on which the package's Python code (python/drev) is built. Its names are
+// internal.
 #include "app/fmi/import/fmu.hpp"
 #include "python/bindings/request.hpp"
 

@@ -10,7 +10,7 @@ namespace {
 
 thread_local Watch* current = nullptr;
 
-constexpr auto kBetweenQuestions = std::chrono::milliseconds(20);  // Python's lock is taken no more often
+constexpr auto kBetweenQuestions = std::chrono::milliseconds(20);  // shortest time between lockings
 
 }  // namespace
 

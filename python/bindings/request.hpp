@@ -1,6 +1,6 @@
 #pragma once
-/// What Python asks of a command, and what stands between the two while it computes: the interpreter's lock is
-/// released, Ctrl-C ends the computation in order, and how far it is goes to a callable.
+/// The request of Python to a command, and the link between both during the computation: the interpreter's
+/// lock is released, Ctrl-C ends the computation in order, and progress is given to a callable.
 #include <atomic>
 #include <chrono>
 #include <future>
@@ -36,9 +36,9 @@ class Stop {
 };
 
 struct Request {
-  std::string command;              ///< as on the command line: "run"
-  std::string model = {};           ///< name or file; of a model made in Python, its name
-  std::optional<std::string> text;  ///< the model file of a model made in Python
+  std::string command;              ///< name of the command as on the command line: "run"
+  std::string model = {};           ///< name or file of the model; for a model made in Python its name
+  std::optional<std::string> text;  ///< text of the model file of a model made in Python
   std::vector<std::pair<std::string, std::string>> parameters = {};
   std::map<std::string, std::vector<std::string>> options = {};
   nb::object told = nb::none();  ///< called with (part, seconds left); none: progress goes to the terminal
@@ -47,7 +47,7 @@ struct Request {
   app::CommandLine line() const;
 };
 
-/// While it lives, computations of this thread ask Python for signals, and tell it how far they are.
+/// During its lifetime, computations of this thread ask Python for signals and report their progress to it.
 class Watch {
  public:
   explicit Watch(const Request& request);
@@ -76,9 +76,9 @@ class Watch {
   std::optional<app::ProgressListener> listener_;
 };
 
-/// compute() in a thread of its own while this one asks for signals: for what cannot be ended in its midst. Where it is to
-/// end, throws app::Interruption at once; the thread goes on to its end with what compute() holds, and its result is lost.
-/// To be called without Python's lock.
+/// Runs compute() in a separate thread while this one asks for signals, for computations that cannot be
+/// interrupted. On an interruption it throws app::Interruption at once; the thread continues to its end with
+/// the objects that compute() holds, and its result is lost. To be called without Python's lock.
 template <class Compute>
 auto answered(Compute compute) {
   std::packaged_task<decltype(compute())()> task(std::move(compute));
@@ -92,7 +92,7 @@ auto answered(Compute compute) {
 /// The undamped modes of a model that was built.
 nb::object modes_of(const System& system, std::optional<int> count, const std::string& contact);
 
-/// Errors of C++ as those of drev._errors.
+/// Translates C++ exceptions to those of drev._errors.
 void bind_errors(nb::module_& module);
 void bind_commands(nb::module_& module);
 void bind_run(nb::module_& module);

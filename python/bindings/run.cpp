@@ -12,11 +12,11 @@ namespace drev::python {
 
 namespace {
 
-/// What became of a run, with the channels that were recorded.
+/// The outcome of a run, with the recorded channels.
 struct Run {
   app::RunOutcome outcome;
   std::optional<Recorder> recorder;
-  std::vector<double> no_times = {};  ///< of a run that never began
+  std::vector<double> no_times = {};  ///< times of a run that never began
   bool stopped = false;
 
   const std::vector<double>& times() const { return recorder ? recorder->times() : no_times; }

@@ -1,4 +1,5 @@
-// Many variants with a row of figures each (app/variants): the rows of a range of blocks, for whoever shares the work out.
+// Many variants with a row of figures each (app/variants): the rows of a range of blocks, for Python code
+// that distributes the work.
 #include <limits>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -21,7 +22,7 @@ using app::VariantStudy;
 
 using GivenRows = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Rows of `count` blocks from `first` on, and of each block why its first variant that failed did.
+/// Rows of `count` blocks from `first` on, and for each block the reason of its first failed variant.
 struct Rows {
   std::vector<double> numbers;
   std::vector<std::string> reasons;
@@ -40,7 +41,8 @@ Rows rows_of(const VariantStudy& study, std::uint64_t first, std::uint64_t count
   return rows;
 }
 
-/// A study's store in a folder (app/variants/variant_store.hpp), for whoever computes its blocks.
+/// A study's store in a folder (app/variants/variant_store.hpp), for Python code that has its blocks
+/// computed.
 class StudyStore {
  public:
   StudyStore(const VariantStudy& study, const std::string& folder, bool resume)
@@ -52,7 +54,7 @@ class StudyStore {
   }
 
   bool complete() const { return complete_; }
-  /// The blocks that are not there yet, as (first, count).
+  /// The blocks that are not done yet, as (first, count).
   std::vector<std::pair<std::uint64_t, std::uint64_t>> missing() const {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
     for (std::uint64_t block = 0; block < study_.blocks() && !complete_; ++block) {
@@ -62,7 +64,7 @@ class StudyStore {
     }
     return parts;
   }
-  /// Rows as VariantStudy gives them, from a block on; they are on the disk after sync().
+  /// Stores rows as VariantStudy gives them, from a block on; they are on the disk after sync().
   void put(std::uint64_t first, const GivenRows& numbers, const std::vector<std::string>& reasons) {
     const double* next = numbers.data();
     const double* end = next + numbers.size();

@@ -18,7 +18,7 @@ namespace {
 using Given = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Taken = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// A model that was built, and what evaluates it at a state. One thread at a time: Python's lock is kept.
+/// A built model and its evaluation at a state. One thread at a time: Python's lock is kept.
 class BuiltModel {
  public:
   explicit BuiltModel(app::ModelRequest model)
@@ -32,13 +32,13 @@ class BuiltModel {
 
   const System& system() const { return model_.system; }
 
-  /// p - C v - K z - sum b y - f of general elements, into `out`.
+  /// Sets `out` to p - C v - K z - sum b y - f, with f of the general elements.
   void force(double t, const Given& z, const Given& v, const Taken& out) {
     take(t, z, v, out);
     find_force();
     Eigen::Map<Vector>(out.data(), force_.size()) = force_;
   }
-  /// M^-1 of that.
+  /// M^-1 times this force.
   void acceleration(double t, const Given& z, const Given& v, const Taken& out) {
     take(t, z, v, out);
     find_force();
@@ -82,7 +82,7 @@ class BuiltModel {
   SparseCholesky mass_;
 };
 
-/// A matrix as scipy.sparse.csc_matrix takes it: values, row indices, column starts.
+/// A matrix in the form that scipy.sparse.csc_matrix accepts: values, row indices, column starts.
 nb::tuple compressed(const Vector& values, nb::handle owner) {
   const SparseMatrix& pattern = nb::cast<const BuiltModel&>(owner).system().pattern();
   const auto entries = static_cast<std::size_t>(pattern.nonZeros());

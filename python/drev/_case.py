@@ -1,4 +1,4 @@
-"""A model and what can be computed of it: the commands of drev, one method each."""
+"""A model and the computations with it: the commands of drev, one method each."""
 import contextlib
 import json
 import os
@@ -19,7 +19,7 @@ _PROGRESS = ("progress", "True (default): a bar in a terminal or notebook; False
 
 
 def last_interrupted():
-    """What there is of the run that Ctrl-C ended last; None: there was none."""
+    """The partial result of the run that Ctrl-C ended last; None: there was none."""
     return _last_interrupted
 
 
@@ -37,12 +37,12 @@ class ModelCase:
         self._run = run
         self._parameters = dict(parameters or {})
 
-    # What the extension reads.
+    # Attributes that the extension module reads.
     def _text(self):
         return None
 
     def _keep(self):
-        """What must live as long as a result of this model."""
+        """The objects that must live as long as a result of this model."""
         return None
 
     def _request(self, command, keywords, function=None, progress=None, stop=None, name=None, words=None):
@@ -58,7 +58,7 @@ class ModelCase:
 
     @contextlib.contextmanager
     def _findings(self):
-        """Findings on a model made in Python name its elements, not lines of the text that it became."""
+        """Findings on a model made in Python name its elements, not lines of the text made from it."""
         try:
             yield
         except _errors.ModelError as error:
@@ -82,7 +82,7 @@ class ModelCase:
         return json.loads(text) if as_json else text
 
     def _report(self, command, keywords):
-        """The page that the command writes with --report."""
+        """The report page that the command writes with --report."""
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "report.html")
             self._execute(command, {**keywords, "report": path})
@@ -94,11 +94,11 @@ class ModelCase:
 
     @property
     def name(self):
-        """The model's name, or the file that it is read from."""
+        """The name of the model, or of the file that it is read from."""
         return self._model
 
     def set(self, **parameters):
-        """The same model with other values of its parameters, by their names (see `parameters`)."""
+        """The same model with other values of the named parameters (see `parameters`)."""
         case = type(self).__new__(type(self))
         case.__dict__.update(self.__dict__)
         case._parameters = {**self._parameters, **parameters}
@@ -216,25 +216,25 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
         return self.run(accuracy=accuracy, **options).figures
 
     def vary(self, values, *, jobs=None, progress=None, **options):
-        """A run for each combination of parameter values, side by side: drev.Variants.
+        """A run for each combination of parameter values, in parallel: drev.Variants.
 
         values: {name: values}, values a sequence, or a text such as "1:0.5:3" or "a,b,c".
-        jobs: so many runs at once; default: one a processor. Other arguments: those of run(); with out=DIR each
-        run writes its files to DIR/NAME=VALUE. A run that fails is among the results with its error.
+        jobs: number of parallel runs; default: one per processor. Other arguments: those of run(); with out=DIR each
+        run writes its files to DIR/NAME=VALUE. A failed run is among the results with its error.
         """
         return Variants._compute(self, values, jobs, progress, options)
 
     def study(
         self, values, *, sample=None, correlate=None, client=None, jobs=None, progress=None, out=None, resume=False, **options
     ):
-        """A row of figures of each of many variants, in lockstep where steps are constant: drev.Study (docs/reliability.md).
+        """A row of figures for each of many variants, in lockstep if steps are constant: drev.Study (docs/reliability.md).
 
         values: {name: values}, values a sequence, or a text: "1:0.5:3", "orders(9)", with a sample "uniform(1,2)",
         "normal(1,0.1)". sample: "lhs:1000", "sobol:1000", ...; correlate: {(name, name): correlation}. client: a
         dask.distributed.Client, or an executor of concurrent.futures, whose workers have drev; default: `jobs` threads.
-        out: a folder, in which each block of variants is on the disk before it counts, and in the end the table
-        variants.h5 and variants.json, as `drev run --table` leaves them; resume: goes on with the study in it, which
-        must be this one, or begins it. Other arguments: those of run(), such as step_s and duration_s.
+        out: a folder in which each block of variants is on the disk before it counts as done, and at the end the table
+        variants.h5 and variants.json, as `drev run --table` writes them; resume: continues the study in this folder,
+        which must be the same one, or begins it. Other arguments: those of run(), such as step_s and duration_s.
         """
         return _study.compute(self, values, sample, correlate, client, jobs, progress, out, resume, options)
 
@@ -257,7 +257,7 @@ must be given: a figure, such as "max_torque_Nm".""",
         return found
 
     def _study_request(self, keywords, words):
-        """What the study is asked for, and its picklable part."""
+        """The request for the study, and its picklable part."""
         options = {**_commands.options("run", dict(keywords), "run"), **words, "MODEL": [self._model]}
         if self._run is not None:
             options.setdefault("--run", [self._run])
@@ -266,22 +266,22 @@ must be given: a figure, such as "max_torque_Nm".""",
         return _drev.Request("run", *spec, None, None), spec
 
     def check(self):
-        """Everything that is wrong is raised as ModelError; else the counts of nodes and elements, and the runs."""
+        """Checks the model: the counts of nodes and elements, and the runs. Raises ModelError with all faults."""
         return self._execute("check", {})
 
     def build(self):
-        """The model's equation of motion, to be evaluated from Python: drev.System."""
+        """The equation of motion of the model for evaluation in Python: drev.System."""
         with self._findings():
             return System(_drev.build(self._request("list", {}, "build")), self._keep())
 
     def to_toml(self):
-        """The model as the text of a model file, as its parameters make it: every number with all digits."""
+        """The model as the text of a model file with its parameters evaluated: every number with all digits."""
         return self._execute("export", {}, as_json=False)
 
     def export_fmu(self, path, **options):
         """Writes the model as an FMU for co-simulation, `path`, which ends in .fmu (docs/fmi.md).
 
-        Options, as of the command: torque and speed (nodes whose torque [N m] or speed [rad/s] is an input), record
+        Options, as for the command: torque and speed (nodes whose torque [N m] or speed [rad/s] is an input), record
         (channels that are outputs), fmi ("3" or "2").
         """
         self._execute("export", {"fmu": path, **options}, "export_fmu", as_json=False)
@@ -296,10 +296,9 @@ must be given: a figure, such as "max_torque_Nm".""",
 
 
 def load(model, run=None, **parameters):
-    """A model file (FILE.toml) or a built-in model by its name (drev.models()), with values of its parameters.
+    """Loads a model file (FILE.toml) or a built-in model by its name (drev.models()), with values of its parameters.
 
-    run: the run of the file that is meant, [run.NAME]; default: its [run]. Raises ModelError with everything that is
-    wrong with it.
+    run: name of the run in the file, [run.NAME]; default: its [run]. Raises ModelError with all faults of the file.
     """
     case = ModelCase(model, run, parameters)
     case.info
@@ -312,7 +311,7 @@ def models():
 
 
 def import_model(file):
-    """An assembly of openTorsion (.json) or a mass-elastic table (.csv) as a model (docs/import.md)."""
+    """Imports an assembly of openTorsion (.json) or a mass-elastic table (.csv) as a model (docs/import.md)."""
     from ._model import Model
 
     name = os.path.splitext(os.path.basename(os.fspath(file)))[0]
@@ -321,19 +320,19 @@ def import_model(file):
 
 
 def source_study(only=None, out=None):
-    """The source's studies of the camshaft, repeated and judged, as `drev study` prints them. Takes about a minute."""
+    """Repeats and judges the studies of the camshaft in its source, as `drev study` does. Takes about a minute."""
     options = _commands.options("study", {"only": only, "out": out}, "source_study")
     return _drev.execute(_drev.Request("study", "", None, [], options, None, None), False)[1]
 
 
 def compare_reports(*runs, out):
-    """The report of a run once more, or of two runs compared: folders of run(out=...), or their report.html."""
+    """The report of one run again, or of two runs compared: folders of run(out=...), or their report.html."""
     options = {"RUN": [os.fspath(run) for run in runs], "--out": [os.fspath(out)]}
     return _drev.execute(_drev.Request("report", "", None, [], options, None, None), False)[1]
 
 
 def load_plugins(*files):
-    """Elements of one's own in C++, from shared libraries (docs/plugins.md). drev.Model has add_TYPE for each."""
+    """Loads user-defined C++ elements from shared libraries (docs/plugins.md). drev.Model has add_TYPE for each."""
     from ._elements import add_methods
     from ._model import Model
 

@@ -8,12 +8,12 @@ from . import _drev, _errors
 
 _SUFFIX = {"SECONDS": "_s", "RPM": "_rpm"}
 _NAMES = {"--for": "figure", "--only": "only"}
-#: Options that are other functions, or part of how a model is named.
+#: Options that are functions of their own, or part of the name of a model.
 _LEFT_OUT = {"--plugin", "--vary", "--jobs", "--damped", "--table", "--sample", "--correlate", "--resume"}
 
 
 class Option:
-    """One keyword of a function, and the option of the command that it stands for."""
+    """One keyword of a function, and the option of the command that it represents."""
 
     def __init__(self, row):
         self.flag, self.type, self.meaning, self.values, self.choices = row
@@ -21,7 +21,7 @@ class Option:
         self.meaning = _errors._in_python(self.meaning)
 
     def texts(self, value):
-        """What stands on the command line; None: nothing."""
+        """The texts on the command line; None: there are none."""
         if self.values == "flag":
             if not isinstance(value, (bool, type(None))):
                 raise TypeError(f"{self.keyword} must be True or False, not {value!r}")
@@ -63,7 +63,7 @@ TABLE = _table()
 
 
 def options(command, keywords, function=None):
-    """The command's options from the keywords of a function. TypeError for one that it does not have."""
+    """The command's options from the keywords of a function. Raises TypeError for an unknown keyword."""
     known = TABLE[command][1]
     found = {}
     for keyword, value in keywords.items():

@@ -49,7 +49,7 @@ def _method(element, docs):
     parameters = [inspect.Parameter(p, inspect.Parameter.POSITIONAL_OR_KEYWORD) for p in ("self", "name")]
     parameters += [nodes] if least > 0 else [nodes.replace(default=())]
     for key in sorted(keys, key=lambda k: not k["needed"]):
-        # Needed ones too: they may come in another unit, and what is missing is a finding.
+        # Required keys have a default, too: they may be given in another unit, and a missing one is a finding.
         parameters.append(inspect.Parameter(key["key"], place, default=None))
     parameters.append(inspect.Parameter("other_units", inspect.Parameter.VAR_KEYWORD))
     add.__name__ = add.__qualname__ = f"add_{kind}"

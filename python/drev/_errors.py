@@ -1,19 +1,19 @@
-"""Errors: everything that is wrong comes at once, each finding with its place, value, unit and admissible range."""
+"""Errors: all faults are reported together, each finding with its place, value, unit and admissible range."""
 import re
 from typing import NamedTuple
 
-#: What the command line calls an option, and Python a keyword: filled by _commands.
+#: Name of the Python keyword for each option of the command line; filled by _commands.
 keyword_of = {"MODEL": "model"}
 
 
 class Finding(NamedTuple):
-    """One thing that is wrong."""
+    """One fault of a model, a parameter or an argument."""
 
     place: str  #: model, node, element and key, or "arguments"
-    parameter: str  #: as it was spelled; "" where the place says it
-    value: str  #: as it was given
-    unit: str  #: "" if it has none
-    range: str  #: what is admissible, e.g. "must be >= 0"
+    parameter: str  #: name as it was given; "" if the place has it
+    value: str  #: value as it was given
+    unit: str  #: unit of the value; "" if it has none
+    range: str  #: admissible range, e.g. "must be >= 0"
 
     def __str__(self):
         value = f" = {self.value} {self.unit}".rstrip() if self.value else ""
@@ -22,7 +22,7 @@ class Finding(NamedTuple):
 
 
 class ModelError(ValueError):
-    """Bad input: a model, a parameter or an argument that cannot be. `findings` has everything that is wrong."""
+    """Bad input: an invalid model, parameter or argument. `findings` has all faults."""
 
     def __init__(self, findings):
         self.findings = list(findings)
@@ -34,7 +34,7 @@ class ModelError(ValueError):
 
 
 class SolverError(RuntimeError):
-    """A computation that could not do its job. `result` has what there is of a run; None: nothing."""
+    """A computation that failed. `result` has the partial result of a run; None: there is none."""
 
     def __init__(self, message, result=None):
         super().__init__(message)
@@ -46,7 +46,7 @@ class OutputError(OSError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a run. `result` has what there is of it, and drev.last_interrupted() too."""
+    """Ctrl-C ended a run. `result` and drev.last_interrupted() have its partial result."""
 
     def __init__(self, message, result=None):
         super().__init__(message)
@@ -54,11 +54,11 @@ class Interrupted(KeyboardInterrupt):
 
 
 class NotTrustedWarning(UserWarning):
-    """A run came to its end, but its energy balance is off."""
+    """A run reached its end, but the error of its energy balance is too large."""
 
 
 class SlowWarning(UserWarning):
-    """A law or load is a Python callable, which costs about a thousand times what one of the catalogue does."""
+    """A law or load is a Python callable, which is about a thousand times as expensive as one of the catalogue."""
 
 
 def _in_python(text):

@@ -11,7 +11,7 @@ _TOP = ("summary", "note")
 
 
 class Model(ModelCase):
-    """A model made in Python, node by node and element by element, with all that a ModelCase can do.
+    """A model made in Python, node by node and element by element, with all methods of a ModelCase.
 
         m = drev.Model("two masses")
         m.add_node("motor")
@@ -21,8 +21,8 @@ class Model(ModelCase):
         m.add_shaft_spring("shaft", ["motor", "load"], stiffness_Nm_per_rad=8500, damping_Nms_per_rad=0.5)
         print(m.modes())
 
-    Values are numbers, arrays, texts (expressions of parameters), and dicts for tables. Nothing is checked before the
-    model is built, which every method that computes does: then everything wrong is raised at once, as ModelError.
+    Values are numbers, arrays, texts (expressions of parameters), and dicts for tables. The model is checked when it is
+    built, which every method that computes does: all faults are then raised together as ModelError.
     """
 
     def __init__(self, name, summary="", note=""):
@@ -55,7 +55,7 @@ class Model(ModelCase):
             return name
         entries[name] = {k: v for k, v in values.items() if v is not None}
         for key, given in entries[name].items():
-            _toml.value(given, f"{name}.{key}")  # what no file can hold is refused where it is given
+            _toml.value(given, f"{name}.{key}")  # a value that no file can hold is refused at once
         return name
 
     def _change(self, section, name, values):
@@ -71,11 +71,11 @@ class Model(ModelCase):
         return self._enter("nodes", name, {"kind": kind, **keys})
 
     def add_nodes(self, *names):
-        """Adds several, and returns their names."""
+        """Adds several nodes, and returns their names."""
         return [self.add_node(name) for name in names]
 
     def hold(self, node):
-        """The node follows its nominal motion exactly; where there is none, it stands still."""
+        """The node follows its nominal motion exactly; without nominal motion it is at rest."""
         self._change("nodes", node, {"hold": True})
 
     def constant_speed(self, node, **speed):
@@ -87,7 +87,7 @@ class Model(ModelCase):
         self._change("nodes", node, {f"nominal_{key}": v for key, v in nominal.items()})
 
     def run_up(self, node, **keys):
-        """The same at constant acceleration: speed_0_rpm, speed_1_rpm, time_0_s, time_1_s."""
+        """The same with constant acceleration: speed_0_rpm, speed_1_rpm, time_0_s, time_1_s."""
         self._change("nodes", node, {"run_up": keys})
 
     def given_motion(self, node, **keys):
@@ -104,12 +104,12 @@ class Model(ModelCase):
         return self._enter("elements", name, {"type": kind, **given, **keys})
 
     def add_law(self, name, nodes, torque, *, energy=None, when=None):
-        """A spring, coupling or damper whose law is a Python callable. SLOW: about a microsecond a call, a thousand
-        times what an element of the catalogue costs; take add_polyline_spring or C++ where it can be.
+        """A spring, coupling or damper whose law is a Python callable. SLOW: about a microsecond per call, a thousand
+        times as much as an element of the catalogue; use add_polyline_spring or C++ where possible.
 
-        torque(x, rate, t): torque or force of the deflection x = q_b - q_a (of the node itself to ground) [rad or m],
-        its rate and the time [s]; positive opposes a positive x. It returns a number, or (torque, its slope by x, its
-        slope by rate), which spares four calls for differences. It must be pure: same input, same output.
+        torque(x, rate, t): torque or force for the deflection x = q_b - q_a (or of the node itself, to ground) [rad or
+        m], its rate and the time [s]; positive opposes a positive x. It returns a number, or (torque, its slope by x,
+        its slope by rate), which saves four calls for finite differences. It must be pure: same input, same output.
         energy(x): stored energy [J], whose derivative is torque(x, 0, t). Without it the law's work counts as
         dissipated in the energy balance.
         """
@@ -117,12 +117,13 @@ class Model(ModelCase):
         return self._add_callable("python_law", name, nodes, f"law '{name}'", torque, energy, {"when": when})
 
     def add_load(self, name, node, torque, *, breakpoints_s=None, when=None):
-        """A torque (or force) on a node that is a Python callable. SLOW, as add_law is; take add_applied_torque with
-        a table or harmonics where it can be.
+        """A torque (or force) on a node, given by a Python callable. SLOW, like add_law; use add_applied_torque with a
+        table or harmonics where possible.
 
         torque(t), or torque(t, angle, speed) with the node's actual angle and speed; positive drives the node
-        forward. It returns a number; of motion, (torque, slope by angle, slope by speed) spares four calls.
-        breakpoints_s: times at which it jumps or kinks; there it must give the value after the jump.
+        forward. It returns a number; if it depends on the motion, (torque, slope by angle, slope by speed) saves four
+        calls.
+        breakpoints_s: times at which it has a jump or a kink; there it must give the value after the jump.
         """
         self._slow()
         of_motion = _argument_count(torque) == 3
@@ -163,22 +164,22 @@ class Model(ModelCase):
         return self._enter("tables", name, {**(columns or {}), **more})
 
     def include(self, file):
-        """Lays this model over a model file: its nodes and elements come first, those of the same name give way."""
+        """Extends a model file: its nodes and elements come first; this model's replace those of the same names."""
         self._include.append(str(file))
 
     def set_run(self, name=None, **keys):
-        """What is run and recorded unless run() says otherwise: duration_s, record, deflection, torques, start, ...
-        (docs/model_file.md#runs). name: of a run of its own, for run(run=name)."""
+        """Defaults for run(): duration_s, record, deflection, torques, start, ...
+        (docs/model_file.md#runs). name: name of a separate run, for run(run=name)."""
         if name is None:
             self._sections["run"].update(keys)
         else:
             self._change("run", name, keys)
 
     def set_class(self, **keys):
-        """What sections may carry, for judge(): rated_speed_rpm, sections={name: {...}} (docs/class_report.md)."""
+        """Strength of the sections, for judge(): rated_speed_rpm, sections={name: {...}} (docs/class_report.md)."""
         self._sections["class"].update(keys)
 
-    # What the extension reads.
+    # Attributes that the extension module reads.
     def _text(self):
         if self._whole_text is not None:
             return self._whole_text
@@ -201,7 +202,7 @@ class Model(ModelCase):
         return request
 
     def _other_faults(self):
-        """What else is wrong."""
+        """Further faults of the model."""
         faults, self._faults = self._faults, []
         try:
             self.check()
@@ -213,7 +214,7 @@ class Model(ModelCase):
 
     @property
     def source(self):
-        """The model file that this model is, as it was given."""
+        """The text of the model file that describes this model, as it was given."""
         return self._text()
 
     def __repr__(self):

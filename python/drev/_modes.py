@@ -9,7 +9,7 @@ class _Table:
         raise NotImplementedError
 
     def to_pandas(self):
-        """A pandas.DataFrame, a row a mode."""
+        """A pandas.DataFrame with one row for each mode."""
         import pandas
 
         columns = self._columns()
@@ -40,27 +40,27 @@ class Modes(_Table):
     def __init__(self, handle):
         self._handle = handle
         self.model = handle.model
-        #: modes with 0 Hz, not among those below
+        #: number of modes with 0 Hz, which are not among those below
         self.rigid_modes = handle.rigid_modes
         self.contact = handle.contact
-        #: how they were found, in a line
+        #: how the modes were found, in one line
         self.how = handle.how
         #: rows of `shapes`
         self.nodes = handle.nodes
 
     @cached_property
     def frequency_Hz(self):
-        """Ascending."""
+        """Natural frequencies in ascending order [Hz]."""
         return self._handle.frequency_Hz
 
     @cached_property
     def error_Hz(self):
-        """What rounding leaves, of each."""
+        """Error of each frequency by rounding [Hz]."""
         return self._handle.error_Hz
 
     @cached_property
     def shapes(self):
-        """nodes x modes; x' M x = 1, the entry of largest magnitude is positive."""
+        """Mode shapes, nodes x modes; x' M x = 1, the entry of largest magnitude is positive."""
         return self._handle.shapes
 
     def _columns(self):
@@ -70,7 +70,7 @@ class Modes(_Table):
         return len(self.frequency_Hz)
 
     def plot(self, *modes, backend="matplotlib", **more):
-        """Shapes over the nodes; modes: numbers from 1, default: the first four."""
+        """Plots the shapes over the nodes; modes: numbers from 1, default: the first four."""
         from . import _plots
 
         return _plots.modes(self, modes, backend, **more)
@@ -80,7 +80,7 @@ class Modes(_Table):
 
 
 class DampedModes(_Table):
-    """Damped modes (lambda^2 M + lambda C + K) x = 0, those that swing."""
+    """Damped oscillating modes of (lambda^2 M + lambda C + K) x = 0."""
 
     def __init__(self, handle):
         self._handle = handle
@@ -94,32 +94,32 @@ class DampedModes(_Table):
 
     @cached_property
     def eigenvalues(self):
-        """lambda [1/s], Im > 0."""
+        """Eigenvalues lambda [1/s], Im > 0."""
         return self._handle.eigenvalues
 
     @cached_property
     def frequency_Hz(self):
-        """Im lambda / (2 pi)."""
+        """Damped natural frequencies Im lambda / (2 pi) [Hz]."""
         return self._handle.frequency_Hz
 
     @cached_property
     def natural_frequency_Hz(self):
-        """|lambda| / (2 pi)."""
+        """Natural frequencies |lambda| / (2 pi) [Hz]."""
         return self._handle.natural_frequency_Hz
 
     @cached_property
     def damping_ratio(self):
-        """-Re lambda / |lambda|."""
+        """Damping ratios -Re lambda / |lambda| [-]."""
         return self._handle.damping_ratio
 
     @cached_property
     def real_eigenvalues(self):
-        """Of rigid motions' speeds and overdamped modes [1/s]."""
+        """Real eigenvalues, of the speeds of rigid-body motions and of overdamped modes [1/s]."""
         return self._handle.real_eigenvalues
 
     @cached_property
     def shapes(self):
-        """nodes x modes, complex; the entry of largest magnitude is 1."""
+        """Complex mode shapes, nodes x modes; the entry of largest magnitude is 1."""
         return self._handle.shapes
 
     @property
@@ -129,12 +129,12 @@ class DampedModes(_Table):
 
     @property
     def elastic(self):
-        """Share in the elastic energy."""
+        """Share of each element in each mode's elastic energy: elements x modes."""
         return self._handle.energy("elastic")
 
     @property
     def dissipated(self):
-        """Share in the heat of a cycle."""
+        """Share of each element in the heat of a cycle of each mode: elements x modes."""
         return self._handle.energy("dissipated")
 
     def _columns(self):
@@ -148,7 +148,7 @@ class DampedModes(_Table):
         return len(self.frequency_Hz)
 
     def plot(self, *modes, backend="matplotlib", **more):
-        """Amplitudes of the shapes over the nodes; modes: numbers from 1, default: the first four."""
+        """Plots the amplitudes of the shapes over the nodes; modes: numbers from 1, default: the first four."""
         from . import _plots
 
         return _plots.modes(self, modes, backend, **more)

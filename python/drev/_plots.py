@@ -23,7 +23,7 @@ class Panel:
     y_label: str
     curves: list = field(default_factory=list)
     title: str = ""
-    x_names: object = None  #: ticks of places 0, 1, ...
+    x_names: object = None  #: names of the ticks at 0, 1, ...
     log: bool = False
 
 
@@ -108,7 +108,7 @@ def contacts(run, backend, **more):
     places = np.arange(len(names))
 
     def bars(y_label, *columns):
-        # Front and back stand beside each other.
+        # Bars of front and back are side by side.
         width = 0.8 / len(columns)
         curves = [
             Curve(places + (i - 0.5 * (len(columns) - 1)) * width, [np.nan if v is None else v for v in values], name, "bar")

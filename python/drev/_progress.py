@@ -1,9 +1,9 @@
-"""How far a computation is: in a terminal drev's own line on stderr, in a notebook a bar, else nothing."""
+"""Progress of a computation: in a terminal drev's own line on stderr, in a notebook a bar, otherwise nothing."""
 import sys
 
 
 def in_notebook():
-    """Whether a notebook's kernel shows what is returned. IPython in a terminal is none."""
+    """Whether a notebook's kernel shows the results. IPython in a terminal is not a notebook."""
     module = sys.modules.get("IPython")
     shell = module.get_ipython() if module else None
     return shell is not None and hasattr(shell, "kernel")
@@ -16,7 +16,7 @@ def _left(seconds):
 
 
 class NotebookBar:
-    """A bar that goes away when the computation has ended."""
+    """A progress bar that disappears when the computation has ended."""
 
     def __init__(self):
         self._handle = None
@@ -45,7 +45,7 @@ class _Nothing:
 
 
 def told(progress):
-    """What the extension calls; None: it draws its own line, where stderr is a terminal."""
+    """The callable that the extension module calls; None: it draws its own line if stderr is a terminal."""
     if callable(progress):
         return progress
     if progress is False:

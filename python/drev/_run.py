@@ -1,4 +1,4 @@
-"""What a run found: figures with their errors, and the recorded channels as NumPy arrays on drev's own memory."""
+"""Results of a run: figures with their errors, and the recorded channels as NumPy arrays on drev's own memory."""
 import html as _html
 import json
 from functools import cached_property
@@ -6,12 +6,12 @@ from typing import NamedTuple, Optional
 
 
 class Figure(NamedTuple):
-    """A figure of a run. error: absolute, in the same unit; None: unchecked (see run(accuracy=...))."""
+    """A figure of a run. error: absolute error in the same unit; None: not checked (see run(accuracy=...))."""
 
     value: float
     error: Optional[float] = None
     unit: str = ""
-    of: str = ""  #: element or channel
+    of: str = ""  #: element or channel that the figure belongs to
 
     def __float__(self):
         return float(self.value)
@@ -43,7 +43,7 @@ _CONTACT_FIGURES = {
 
 
 def report_frame(page, height=760):
-    """The page in a frame of its own, for notebooks."""
+    """The report page in a separate frame, for notebooks."""
     return (
         f'<iframe srcdoc="{_html.escape(page, quote=True)}" style="width:100%;height:{height}px;border:1px solid #ccc">'
         "</iframe>"
@@ -56,9 +56,9 @@ class Run:
     def __init__(self, handle, report_html=None, keep=None):
         self._handle = handle
         self._keep = keep
-        #: the report as a page of HTML; None: it was not asked for
+        #: the report as an HTML page; None: it was not requested
         self.report_html = report_html
-        #: "success", or what went wrong in a word (docs/results.md)
+        #: "success", or the kind of failure in one word (docs/results.md)
         self.status = handle.status
         self._column = {name: i for i, (name, _) in enumerate(handle.channels)}
         #: unit of each channel
@@ -71,7 +71,7 @@ class Run:
 
     @cached_property
     def summary(self):
-        """Everything that was found, as summary.json has it (docs/results.md)."""
+        """All results, as in summary.json (docs/results.md)."""
         return json.loads(self._handle.json)
 
     @property
@@ -86,7 +86,7 @@ class Run:
 
     @property
     def t_end(self):
-        """Time that the run came to [s]."""
+        """Time that the run reached [s]."""
         return self.summary["t_end_s"] if "t_end_s" in self.summary else 0.0
 
     @cached_property
@@ -112,7 +112,7 @@ class Run:
 
     @cached_property
     def figures(self):
-        """name -> Figure(value, error, unit, of): largest values, contacts, and those of run(accuracy=...)."""
+        """Figures, name -> Figure(value, error, unit, of): largest values, contacts, and those of run(accuracy=...)."""
         results = self.summary["results"]
         found = {}
         for key, (error, unit, of) in _FIGURES.items():
@@ -130,11 +130,11 @@ class Run:
 
     @property
     def contacts(self):
-        """What each contact did: impacts, time separated, forces and speeds with their distributions."""
+        """Statistics of each contact: impacts, time separated, forces and speeds with their distributions."""
         return self.summary["results"]["contacts"]
 
     def to_pandas(self):
-        """A pandas.DataFrame: a column a channel, over time_s."""
+        """A pandas.DataFrame with one column for each channel, over time_s."""
         import pandas
 
         return pandas.DataFrame(
@@ -142,7 +142,7 @@ class Run:
         )
 
     def to_xarray(self):
-        """An xarray.Dataset: a variable a channel with its unit, over time_s."""
+        """An xarray.Dataset with one variable for each channel, with its unit, over time_s."""
         import xarray
 
         return xarray.Dataset(
@@ -152,13 +152,13 @@ class Run:
         )
 
     def plot(self, *channels, backend="matplotlib", **more):
-        """The channels over time, units beside each other; default: all. backend: "matplotlib" or "plotly"."""
+        """Plots channels over time, one panel for each unit; default: all. backend: "matplotlib" or "plotly"."""
         from . import _plots
 
         return _plots.history(self, channels or self.channels, backend, **more)
 
     def plot_contacts(self, backend="matplotlib", **more):
-        """Of each contact the impacts and their speeds."""
+        """Plots the impacts of each contact and their speeds."""
         from . import _plots
 
         return _plots.contacts(self, backend, **more)

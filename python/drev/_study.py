@@ -1,4 +1,4 @@
-"""Many variants of one model, a row of figures each: in lockstep here, or over whatever runs tasks (Dask)."""
+"""Many variants of one model, with one row of figures each: in lockstep here, or by an executor of tasks (Dask)."""
 import json
 import os
 import threading
@@ -10,13 +10,13 @@ import numpy as np
 from . import _drev, _errors, _progress
 from ._variants import _word
 
-_TASK_SECONDS = 0.5  # that a task should take
-_SYNC_SECONDS = 0.5  # at most between a row that is there and a row that a power cut would leave
-_known = threading.local()  # the study that a worker's thread had last
+_TASK_SECONDS = 0.5  # time that a task should take [s]
+_SYNC_SECONDS = 0.5  # longest time until a computed row would survive a power failure [s]
+_known = threading.local()  # the last study of each worker thread
 
 
 def _distribution(given):
-    """What stands behind NAME= : a text as the command takes it, or a sequence of values."""
+    """The text after NAME= : a text as the command accepts it, or a sequence of values."""
     return _word("", given)[1:]
 
 
@@ -25,7 +25,7 @@ def _request_of(spec):
 
 
 def _rows(spec, first, count, stop=None):
-    """Rows of blocks [first, first + count) as numbers, what failed, and the seconds that they took. Called by workers."""
+    """Rows of blocks [first, first + count), their failures, and their computing time [s]. Called by workers."""
     began = time.perf_counter()
     if getattr(_known, "spec", None) != spec:
         _known.study, _known.spec = _drev.Study(_request_of(spec)), spec
@@ -61,7 +61,7 @@ class Study:
         return len(self.status)
 
     def to_pandas(self):
-        """A row a variant: parameters, status, figures."""
+        """A pandas.DataFrame with one row for each variant: parameters, status, figures."""
         import pandas
 
         return pandas.DataFrame({**self.columns, "status": self.status})

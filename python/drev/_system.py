@@ -5,7 +5,7 @@ from ._modes import Modes
 
 
 class System:
-    """M z'' = force(t, z, z'): what Model.build() gives.
+    """The equation of motion M z'' = force(t, z, z'), as Model.build() returns it.
 
     z are deviations from the nominal motion [rad or m] of the unknowns, in the order of `unknowns`; prescribed nodes
     and ideal gears are eliminated. One thread at a time may evaluate one System.
@@ -19,7 +19,7 @@ class System:
 
     @property
     def unknowns(self):
-        """A node that stands for each unknown."""
+        """Names of the nodes that represent the unknowns."""
         return self._handle.unknowns
 
     @property
@@ -34,7 +34,7 @@ class System:
 
     @property
     def breakpoints(self):
-        """Times at which a load or known motion jumps or kinks [s]: integrate from one to the next."""
+        """Times at which a load or prescribed motion has a jump or a kink [s]: integrate from one to the next."""
         return self._handle.breakpoints
 
     @property
@@ -43,7 +43,7 @@ class System:
         return self._handle.initial
 
     def force(self, t, deviations, rates, out=None):
-        """p - C z' - K z less the laws' forces [N m or N], at time t [s]. float64 arrays of `size` entries; `out` is
+        """p - C z' - K z minus the forces of the laws [N m or N] at time t [s]. float64 arrays of `size` entries; `out` is
         filled and returned."""
         if out is None:
             out = np.empty(self.size)
@@ -51,14 +51,14 @@ class System:
         return out
 
     def acceleration(self, t, deviations, rates, out=None):
-        """z'' = M^-1 force [rad/s2 or m/s2]. Raises SolverError where a node has no inertia."""
+        """Acceleration z'' = M^-1 force [rad/s2 or m/s2]. Raises SolverError if a node has no inertia."""
         if out is None:
             out = np.empty(self.size)
         self._handle.acceleration(t, deviations, rates, out)
         return out
 
     def modes(self, count=None, contact="closed"):
-        """Undamped modes, as ModelCase.modes() gives them: drev.Modes. The model is not built anew."""
+        """Undamped modes as from ModelCase.modes(): drev.Modes. The model is not built again."""
         return Modes(self._handle.modes(count, contact))
 
     def matrix(self, which, sparse=None):

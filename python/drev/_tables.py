@@ -1,4 +1,4 @@
-"""Results of sweeps, Campbell diagrams, judgements, advice and charts: the command's JSON, with arrays where they serve."""
+"""Results of sweeps, Campbell diagrams, judgements, advice and charts: the command's JSON, with arrays where useful."""
 import html as _html
 from functools import cached_property
 
@@ -8,7 +8,7 @@ from ._run import report_frame
 
 
 def _array(values):
-    """null (not finite) is nan."""
+    """The values as an array, with NaN for null (not finite)."""
     return np.array([np.nan if v is None else v for v in values], dtype=float)
 
 
@@ -51,7 +51,7 @@ class Section:
         for key in ("half_range", "maximum", "minimum", "mean", "heat_W"):
             setattr(self, key, _array(data[key]))
         rows = zip(data["amplitude"], data["phase_deg"])
-        #: complex, of exp(i order phi)
+        #: complex amplitudes of exp(i order phi)
         self.amplitude = np.array([_array(a) * np.exp(1j * np.deg2rad(_array(p))) for a, p in rows])
         self.twist_half_range = _array(data["twist"]["half_range"]) if data.get("twist") else None
 
@@ -93,27 +93,27 @@ class Sweep(Result):
 
     @cached_property
     def sections(self):
-        """name -> Section; of branches their names and units only (`data`)."""
+        """Sections, name -> Section; for branches only their names and units (`data`)."""
         return {s["name"]: Section(s) for s in self.data["sections"]} if self.is_linear else {}
 
     @cached_property
     def branches(self):
-        """Curves of periodic motions of a train with contacts; none of a linear one."""
+        """Curves of periodic motions of a train with contacts; empty for a linear train."""
         names = [s["name"] for s in self.data["sections"]]
         return [Branch(b, names) for b in self.data.get("branches", [])]
 
     @property
     def criticals(self):
-        """Speeds at which an order meets a natural frequency, with what it does there."""
+        """Speeds at which an order meets a natural frequency, with the amplitudes there."""
         return self.data.get("criticals", [])
 
     @property
     def changes(self):
-        """Folds, doublings of the period, openings of contacts."""
+        """Folds, period doublings, openings of contacts."""
         return self.data.get("changes", [])
 
     def to_pandas(self):
-        """Half ranges: a row a speed, a column a section; of branches a row a motion, with its curve."""
+        """Half ranges: one row for each speed (for branches: each motion), one column for each section."""
         import pandas
 
         if self.is_linear:
@@ -128,7 +128,7 @@ class Sweep(Result):
         return pandas.concat(parts, ignore_index=True)
 
     def plot(self, *sections, backend="matplotlib", **more):
-        """Half ranges over speed; default: every section."""
+        """Plots half ranges over speed; default: every section."""
         from . import _plots
 
         return _plots.sweep(self, sections, backend, **more)
@@ -139,17 +139,17 @@ class Campbell(Result):
 
     @cached_property
     def speeds_rpm(self):
-        """Where the frequencies are given; one where nothing follows the speed."""
+        """Speeds at which the frequencies are given; a single one if nothing depends on the speed."""
         return _array(self.data["mode_speeds_rpm"])
 
     @cached_property
     def frequency_Hz(self):
-        """modes x speeds."""
+        """Damped natural frequencies, modes x speeds [Hz]."""
         return np.array([_array(m["frequency_Hz"]) for m in self.data["modes"]])
 
     @cached_property
     def damping_ratio(self):
-        """modes x speeds."""
+        """Damping ratios, modes x speeds [-]."""
         return np.array([_array(m["damping_ratio"]) for m in self.data["modes"]])
 
     @property
@@ -157,30 +157,30 @@ class Campbell(Result):
         return self.data["criticals"]
 
     def to_pandas(self):
-        """The criticals, a row each."""
+        """The critical speeds, one row each."""
         import pandas
 
         return pandas.DataFrame(self.criticals)
 
     def plot(self, backend="matplotlib", **more):
-        """The Campbell diagram: frequencies, orders, and where they meet."""
+        """Plots the Campbell diagram: frequencies, orders, and the speeds at which they meet."""
         from . import _plots
 
         return _plots.campbell(self, backend, **more)
 
 
 class Judgement(Result):
-    """A sweep judged by what sections may carry (docs/class_report.md)."""
+    """A sweep judged by the limits of its sections (docs/class_report.md)."""
 
 
 class Advice(Result):
-    """The cheapest model that finds a figure well enough."""
+    """The cheapest model that gives a figure accurately enough."""
 
     _report_keyword = False
 
     @property
     def chosen(self):
-        """The name of that model."""
+        """The name of the chosen model."""
         return self.data["chosen"]
 
     @property
@@ -188,7 +188,7 @@ class Advice(Result):
         return self.data["advice"]
 
     def to_pandas(self):
-        """A row a model that was tried."""
+        """A table with one row for each model that was tried."""
         import pandas
 
         return pandas.DataFrame(self.data["rungs"])
@@ -198,23 +198,23 @@ class Advice(Result):
 
 
 class Optimum(Result):
-    """The parameters at which a figure is least or largest."""
+    """The parameters at which a figure is smallest or largest."""
 
     _report_keyword = False
 
     @property
     def value(self):
-        """Of the figure at its best."""
+        """The best value of the figure."""
         return self.data["best"][0]["value"]
 
     @property
     def parameters(self):
-        """Those that differ, at the best: name -> value."""
+        """The varied parameters at the best variant: name -> value."""
         return self.data["best"][0]["varied"]
 
     @property
     def certain(self):
-        """Whether every combination was computed; a search proves nothing."""
+        """Whether every combination was computed; the result of a search is not proven."""
         return self.data["all_combinations"]
 
     @property
@@ -223,7 +223,7 @@ class Optimum(Result):
         return f"{self.data['goal']} {self.data['figure']}: {self.value:.8g} {self.data['unit']} at {where}"
 
     def to_pandas(self):
-        """The best variants, a row each."""
+        """The best variants, one row each."""
         import pandas
 
         return pandas.DataFrame([{**best["varied"], self.data["figure"]: best["value"]} for best in self.data["best"]])
@@ -235,7 +235,7 @@ class Chart(Result):
     _report_keyword = False
 
     def plot(self, backend="matplotlib", **more):
-        """Error over processor time, both logarithmic."""
+        """Plots error over processor time, both logarithmic."""
         from . import _plots
 
         return _plots.chart(self, backend, **more)

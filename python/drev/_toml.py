@@ -1,4 +1,4 @@
-"""Values of Python as those of a model file (TOML)."""
+"""Conversion of Python values to those of a model file (TOML)."""
 import math
 import numbers
 
@@ -22,7 +22,7 @@ def number(value):
 
 
 def value(given, where=""):
-    """TypeError for what a model file cannot hold."""
+    """The value as TOML text. Raises TypeError for a value that a model file cannot hold."""
     if isinstance(given, (bool, np.bool_)):
         return "true" if given else "false"
     if isinstance(given, str):

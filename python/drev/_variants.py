@@ -1,4 +1,4 @@
-"""A run for each combination of parameter values, side by side: drev's runs hold no lock of Python."""
+"""A run for each combination of parameter values, in parallel: drev's runs release Python's lock."""
 import os
 import threading
 import time
@@ -15,7 +15,7 @@ def _word(name, values):
 
 
 class Variant:
-    """One of them: `parameters`, and `run`, or `error` where it failed."""
+    """One variant: `parameters`, and `run`, or `error` if it failed."""
 
     def __init__(self, parameters):
         self.parameters = parameters
@@ -31,7 +31,7 @@ class Variant:
 
 
 class Variants(list):
-    """drev.Variant after drev.Variant, in the order of the values."""
+    """A sequence of drev.Variant, in the order of the values."""
 
     @classmethod
     def _compute(cls, case, values, jobs, progress, options):
@@ -54,7 +54,7 @@ class Variants(list):
             except _errors.Interrupted as error:
                 variant.run = error.result
 
-        if variants:  # What is wrong with all of them is said once.
+        if variants:  # A fault that all variants share is reported once.
             case.set(**variants[0].parameters).check()
         began = time.monotonic()
         with ThreadPoolExecutor(jobs, thread_name_prefix="drev") as pool:
@@ -83,7 +83,7 @@ class Variants(list):
         return variants
 
     def to_pandas(self):
-        """A row a variant: its parameters, status, and the value of each figure."""
+        """A pandas.DataFrame with one row for each variant: its parameters, status, and the value of each figure."""
         import pandas
 
         rows = []
@@ -103,7 +103,7 @@ def _numbers(column):
 
 
 class _Line:
-    """One line on stderr, where that is a terminal."""
+    """A progress line on stderr, if that is a terminal."""
 
     def __init__(self):
         import sys

@@ -1,7 +1,7 @@
-"""What the headers of elements say, for docstrings: python element_docs.py FOLDER_OR_HEADER... element_docs.json
+"""The comments in headers of elements, for docstrings: python element_docs.py FOLDER_OR_HEADER... element_docs.json
 
-Of each header the comment above its class (equation, sign, limits, source), and of each field of its Params, and of
-the structs beside it, the comment with unit and range.
+For each header the comment above its class (equation, sign, limits, source), and for each field of its Params and of
+the structs next to it the comment with unit and range.
 """
 import json
 import pathlib

@@ -1,4 +1,4 @@
-"""Writes the stubs of the package: python stubs.py FOLDER, which holds the package as it is installed."""
+"""Writes the stubs of the package: python stubs.py FOLDER, where FOLDER contains the package as installed."""
 import inspect
 import pathlib
 import sys

@@ -19,14 +19,14 @@ namespace drev {
 namespace {
 
 constexpr double kSafety = 3.0;           // on the difference of two runs: accelerations were 2.6 of them off
-constexpr double kFolded = 3.0;           // on what folds back more with half the samples
-constexpr double kLeastOrder = 0.25;      // of a difference over the one before: second order
+constexpr double kFolded = 3.0;           // error over what more folds back with half the samples
+constexpr double kLeastOrder = 0.25;      // a difference over the one before: second order
 constexpr double kRounding = 1e-14;       // relative, before growth
-constexpr double kFirstTolerance = 1e-2;  // of exact propagation, over the accuracy
-constexpr double kTightening = 1e-3;      // of its tolerance from run to run
+constexpr double kFirstTolerance = 1e-2;  // first tolerance of exact propagation over the accuracy
+constexpr double kTightening = 1e-3;      // factor of its tolerance from run to run
 constexpr double kLeastTolerance = 1e-14, kLargestTolerance = 1e-4;
-constexpr double kTighteningSteps = 0.1;  // of the tolerance of controlled steps from run to run
-constexpr double kLeastOfSteps = 1e-12;   // of their tolerance
+constexpr double kTighteningSteps = 0.1;  // factor of the tolerance of controlled steps from run to run
+constexpr double kLeastOfSteps = 1e-12;   // least tolerance of controlled steps
 constexpr double kChaos = 1e6;            // growth past which tightening moves the horizon only
 constexpr int kOrders = 5;
 constexpr double kLeastOfCycle = 1024.0;  // samples: kinks fold back into the orders
@@ -177,7 +177,7 @@ class AccurateRun {
                                   [&](const ContactFigures& c) { return keeps(c); });
   }
 
-  /// Rounding, which shakes stiff elements in each run anew, is a part of its error that no finer run takes away.
+  /// Rounding, which shakes stiff elements in each run again, is a part of its error that no finer run takes away.
   void add_peak_torque(const Watched& a, const Watched& b) {
     const Channel& channel = b.torque.channel();
     add("peak torque", channel.unit(), a.torque.value(), b.torque.value(), b.torque.value(), b.torque.time());
@@ -349,7 +349,7 @@ class AccurateRun {
   std::string followed_;
   double every_ = 0.0;
   AccuracyResult result_;
-  std::map<std::string, double> differences_;  // of the last two runs with constant steps, by figure
+  std::map<std::string, double> differences_;  // between the last two runs with constant steps, by figure
   OrderLines orders_;
 };
 

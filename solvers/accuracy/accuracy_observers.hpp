@@ -4,7 +4,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/accuracy/accuracy.hpp>
 #include <drev/solvers/run/after_time.hpp>
-#include <drev/solvers/run/contact_events.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>

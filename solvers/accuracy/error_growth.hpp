@@ -10,7 +10,7 @@
 /// Source: G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Lyapunov characteristic exponents for
 /// smooth dynamical systems and for Hamiltonian systems, Meccanica 15, 1980, doi:10.1007/BF02128236.
 #include <drev/core/state.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/estimate.hpp>
 
 namespace drev {

@@ -1,5 +1,6 @@
+#include "solvers/accuracy/work_precision.hpp"
+
 #include <drev/core/error.hpp>
-#include <drev/solvers/accuracy/work_precision.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/step_scheme.hpp>
@@ -15,11 +16,11 @@ namespace {
 
 constexpr std::string_view kControlled = "@tolerance";
 constexpr double kReferenceTolerance = 1e-13;
-constexpr double kReferenceTime = 4.0;  // of the most that a drawn run may take
-constexpr double kGivenUp = 10.0;       // the same: a run that goes on for longer is stopped
+constexpr double kReferenceTime = 4.0;  // time of the reference over the most that a drawn run may take
+constexpr double kGivenUp = 10.0;       // the same ratio, beyond which a run is stopped
 constexpr double kLeastGivenUp = 1.0;   // s: what the same run takes varies by more than the shortest limits
-constexpr int kMostDigits = 12;         // of the tolerance of controlled steps
-constexpr int kMostHalvings = 24;       // of the sample interval
+constexpr int kMostDigits = 12;         // decimal digits of the tolerance of controlled steps
+constexpr int kMostHalvings = 24;       // halvings of the sample interval
 constexpr double kShortRun = 0.05;      // s: shorter ones are timed several times
 constexpr int kRepetitions = 5;
 constexpr double kHopeless = 10.0;  // relative error: nothing of the motion is left
@@ -27,7 +28,7 @@ constexpr double kHopeless = 10.0;  // relative error: nothing of the motion is 
 struct Samples {
   RunSummary summary;
   std::vector<std::vector<double>> rows;  ///< a channel each
-  double seconds = 0.0;                   ///< with the recorder
+  double seconds = 0.0;                   ///< processor time, the recorder's included
 };
 
 double largest(const std::vector<std::vector<double>>& rows) {

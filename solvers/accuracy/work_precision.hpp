@@ -11,7 +11,7 @@
 /// while the time is measured. Time: processor time without observers, the least of several runs where a run
 /// is short. Work: linear solves (RunSummary.solves).
 #include <drev/core/system.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <optional>
 #include <string>

@@ -16,7 +16,7 @@ class LaneFactor {
   /// neighbours, whole, of three rows at least.
   LaneFactor(const SparseMatrix& pattern, bool chain);
 
-  /// values: on the pattern's slots. Lanes whose matrix is not positive definite, or singular but for
+  /// values: on the pattern's slots. Lanes whose matrix is not positive definite, or singular except for
   /// rounding, are not ok().
   void factorize(const LaneArray& values);
   bool ok(int lane) const { return ok_[lane]; }

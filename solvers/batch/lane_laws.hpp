@@ -71,7 +71,7 @@ class LaneLaws {
   };
   struct Law {
     std::array<const ScalarTerm*, kLanes> terms = {};
-    std::vector<int> unknowns, places;  // in rows_
+    std::vector<int> unknowns, places;  // places of the law's unknowns in rows_
     LaneArray coefficients;
     bool in_pieces = false, has_known = false, varies = false;
     Piece piece;
@@ -86,7 +86,7 @@ class LaneLaws {
                        LaneRow& y, LaneRow& dy_dx, LaneRow& dy_dx_dot);
 
   std::vector<Law> laws_;
-  std::vector<int> rows_;  // with laws, ascending
+  std::vector<int> rows_;  // unknowns that laws act on, ascending
   bool phased_ = false, has_known_ = false, varies_ = false;
   LaneArray compliance_;  // row by row
   double kappa_x_ = 0.0, kappa_v_ = 0.0;

@@ -3,7 +3,7 @@
 ///
 /// Periodic tables of even spacing keep, in each lane, the knot nearest to their angle, as TableLoads does.
 /// It serves as far as the next knot: a lane that has come nearer to another one takes that for the next
-/// evaluation, and only where a step leaps over it is the sum made anew. Other loads are evaluated lane by
+/// evaluation, and only where a step leaps over it is the sum made again. Other loads are evaluated lane by
 /// lane, in each pass or, where they do not depend on motion, once a step.
 #include <drev/core/assembler.hpp>
 #include <drev/core/table_loads.hpp>

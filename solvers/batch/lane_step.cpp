@@ -80,7 +80,7 @@ LaneMatrices::LaneMatrices(const std::array<const System*, kLanes>& systems) : n
   const SparseMatrix& full = systems[0]->pattern();
   std::vector<Eigen::Triplet<double>> kept;
   std::vector<int> slots;
-  std::vector<std::size_t> diagonal;  // of the slots kept
+  std::vector<std::size_t> diagonal;  // places of the diagonal among the slots kept
   const int *outer = full.outerIndexPtr(), *inner = full.innerIndexPtr();
   const auto filled = [&](int s) {
     return std::any_of(systems.begin(), systems.end(), [s](const System* system) {

@@ -36,10 +36,10 @@ class LaneWatch {
     int law = 0;
     LaneRow low, high;
     ContactTotals<LaneRow> totals;
-    LaneRow largest;  // of the contact at hand
+    LaneRow largest;  // largest force of the contact at hand
     std::array<bool, kLanes> met{};
     std::array<double, kLanes> masses{};
-    std::array<ContactRecord, kLanes> records;  // of the impacts
+    std::array<ContactRecord, kLanes> records;  // what is recorded of the impacts
   };
   friend struct LaneWatchKernels;
   void value(const Watched& c, const std::vector<Assembler>& assemblers, const LanePoint& point, double t,

@@ -69,7 +69,7 @@ class Topology {
 
   std::vector<std::string> nodes_, elements_;
   std::vector<int> outer_, inner_;
-  std::multimap<int, std::vector<int>> terms_;  // by element
+  std::multimap<int, std::vector<int>> terms_;  // terms of each element
   std::vector<std::pair<int, int>> places_;
 };
 
@@ -210,7 +210,7 @@ class Many {
   std::optional<System> first_;
   std::optional<Topology> topology_;
   ManyResult result_;
-  std::vector<std::atomic<double>> parts_;  // of the variants that each thread runs, how many are done
+  std::vector<std::atomic<double>> parts_;  // variants done by each thread, their parts among them
   std::atomic<std::size_t> finished_ = 0;
   std::atomic<bool> stop_ = false;
   std::mutex mutex_;

@@ -69,7 +69,7 @@ class ContactNewton {
     double x, x_dot;  // free
     double lambda;    // where the laws were evaluated last
   };
-  std::vector<Last> last_;  // of the solve() before
+  std::vector<Last> last_;  // what the solve() before ended with
   bool converged_ = false;  // that one; residual_ and slopes_ are of its end
   Vector residual_, direction_, g_direction_, trial_;
 };

@@ -11,7 +11,7 @@ namespace drev {
 
 namespace {
 
-constexpr double kRounding = 1e-13;  // of the terms of a sum
+constexpr double kRounding = 1e-13;  // rounding of a sum over the largest of its terms
 
 /// A quantity over the variables z >= 0 and the free torques f.
 struct Affine {

@@ -7,9 +7,9 @@ namespace drev {
 
 namespace {
 
-constexpr double kPivot = 1e-11;  // of the largest entry of M: smaller ones are rounding
-constexpr double kSame = 1e-12;   // relative: ratios that are equal but for rounding
-constexpr int kTries = 4;         // with other artificial columns
+constexpr double kPivot = 1e-11;  // smallest pivot over the largest entry of M: smaller ones are rounding
+constexpr double kSame = 1e-12;   // relative difference of ratios that are equal except for rounding
+constexpr int kTries = 4;         // tries with other artificial columns
 
 /// Rows w - M z - 1 z_0 = q; columns w, z, z_0, q.
 class Lemke {

@@ -7,7 +7,7 @@
 ///   has no root                if |g(c)| > |g'(c)| r + B r^2/2,
 ///   is monotone                if |g'(c)| > B r: its ends tell; safeguarded Newton finds it,
 ///   is halved                  otherwise, the left half first.
-/// At the smallest radius g and g' both vanish but for rounding (a graze): it crosses if g < 0
+/// At the smallest radius g and g' both vanish except for rounding (a graze): it crosses if g < 0
 /// behind. Source: interval Newton isolation with a centred second-order form, R. E. Moore, R. B.
 /// Kearfott, M. J. Cloud, Introduction to Interval Analysis, SIAM, 2009.
 #include <optional>

@@ -33,7 +33,7 @@ double SparseNewton::residual(const Assembler& assembler, const SparseNewtonProb
   const SparseMatrix& pattern = system_.pattern();
   const Vector& stiffness = system_.stiffness_values();
   r_.resize(z_.size());
-  double largest = 0.0;  // of the products in K z
+  double largest = 0.0;  // largest product in K z
   for (int row = 0; row < pattern.cols(); ++row) {
     double sum = 0.0;
     for (int s = pattern.outerIndexPtr()[row]; s < pattern.outerIndexPtr()[row + 1]; ++s) {

@@ -5,7 +5,7 @@
 ///   z = z_0 + kappa_z w,   v = v_0 + kappa_v w
 ///
 /// Tangent mu M + phi (kappa_v C + kappa_z K + slopes), by Cholesky, or by KLU if an element says its
-/// tangent is unsymmetric. Factored anew where a law's slope is not that of the factor at hand: laws that are
+/// tangent is unsymmetric. Factored again where a law's slope is not that of the factor at hand: laws that are
 /// linear in pieces keep it until a contact changes. A rank-one update for a single change (CHOLMOD's takes
 /// 3.5 ns an unknown of the model) would save half a factorisation (8 ns), and from two on nothing. The same
 /// exact line search as on the contact forces.
@@ -63,7 +63,7 @@ class SparseNewton {
   std::vector<ScalarInput> inputs_;  // and responses: of the last residual, unless handed over
   std::vector<ScalarResponse> responses_;
   std::vector<double> slopes_, kinks_;
-  Weights weights_;  // of the tangent, as slopes_ and shift_
+  Weights weights_;  // weights of the tangent, slopes_ and shift_
   double shift_ = 0.0;
   bool tangent_kept_ = false;
   double scale_ = 0.0, rounding_ = 0.0;

@@ -9,6 +9,7 @@
 
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/step_expansion.hpp"
+#include "solvers/linear/matrix_product.hpp"
 #include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
@@ -19,15 +20,19 @@ namespace drev {
 
 namespace {
 
-constexpr double kWatchedAngle = 0.3;  // omega h between points that observers see
-constexpr double kGrowth = 1.5;        // of the step after one that had to be shortened
+constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
+constexpr double kGrowth = 1.5;  // most of a step's length over that of the one before, which was shortened
 constexpr int kMaxCuts = 20;
-constexpr double kShortest = 1e-6;    // of the largest step
-constexpr double kKnotWidth = 4e-15;  // of the time: rounding of an angle that is looked up
-constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;  // of the step
-constexpr double kRetreat = 1.0 / 16.0;                         // of the step where the series overflowed
-constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;      // of the time; of the run's times
-constexpr double kEnergyTolerance = 1e-6, kNoProgress = 1e-12;  // the latter relative to the largest step
+// A shorter step, relative to the largest one, is not shortened for what projection leaves.
+constexpr double kShortest = 1e-6;
+constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
+// Distances from a step's ends, relative to the step's length.
+constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
+constexpr double kRetreat = 1.0 / 16.0;  // length of the next attempt over that of a step with overflow
+// Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
+constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
+constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
+constexpr double kNoProgress = 1e-12;      // least advance of a step, relative to the largest step
 
 class ExactRun final : public StepMotion {
  public:
@@ -38,6 +43,7 @@ class ExactRun final : public StepMotion {
         observers_(observers),
         assembler_(system),
         inside_assembler_(system),
+        stiffness_(system.pattern(), system.stiffness_values()),
         expansion_(system),
         series_(expansion_.series),
         known_(expansion_.known),
@@ -87,7 +93,7 @@ class ExactRun final : public StepMotion {
     return summary_;
   }
 
-  /// With its acceleration, which steps that nobody watches do without.
+  /// The last state with its acceleration, which steps that nobody watches do not compute.
   State take_state() {
     if (!whole_ && now_.state.z.allFinite()) evaluate(assembler_, now_, now_.state.t);
     return std::move(now_.state);
@@ -95,10 +101,13 @@ class ExactRun final : public StepMotion {
 
   Point at(double t) override {
     move_inside(t, look_);
-    evaluate(inside_assembler_, look_, t);
+    evaluate_wanted(inside_assembler_, look_, t);
     return {inside_assembler_, look_};
   }
   std::optional<int> side(int law) const override { return laws_.side(law); }
+  std::optional<DeflectionRange> deflection_range(int law) override {
+    return expansion_.deflection_range(laws_, system_.scalars()[idx(law)], law, step_.s);
+  }
 
  private:
   bool running() const { return summary_.status == RunStatus::success; }
@@ -120,7 +129,7 @@ class ExactRun final : public StepMotion {
     if (running() && now_.state.t < options_.t_end) restart();
   }
 
-  /// Behind a breakpoint or communication point: forces and known motions have their new values.
+  /// Goes on behind a breakpoint or communication point, where forces and known motions have their new values.
   void restart() {
     next_ = now_;
     controls_.sample(assembler_, now_.state);
@@ -131,7 +140,7 @@ class ExactRun final : public StepMotion {
     for (Observer* o : observers_) o->restart(assembler_, now_);
   }
 
-  /// What sticks and what slides, by the forces and speeds of now_.
+  /// Finds which contacts stick and which slide, by the forces and speeds of now_.
   void locate_friction() {
     if (friction_.empty()) return;
     friction_.locate(assembler_, now_);
@@ -144,7 +153,7 @@ class ExactRun final : public StepMotion {
     double s = 1.0;
     std::optional<LawSeries::Change> change = {};
     bool at_knot = false;      // of a load
-    bool at_law_knot = false;  // of a law's phase, where its stiffness may jump
+    bool at_law_knot = false;  // the step ends at a knot of a law's phase, where its stiffness may jump
     std::optional<FrictionSeries::Change> friction = {};
     bool at_change() const { return change || friction; }
   };
@@ -168,10 +177,7 @@ class ExactRun final : public StepMotion {
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
     const bool whole = forces_ || t_new == stop.t || end.friction;
-    if (whole)
-      evaluate(assembler_, next_, evaluated_at);
-    else
-      evaluate_energies(next_, evaluated_at);
+    whole ? evaluate(assembler_, next_, evaluated_at) : evaluate_motion(assembler_, next_, evaluated_at);
     const LawWork work = expansion_.work(laws_, s, next_);
     const EvaluatedState& before = watch(t_new, end);
     if (&before != &now_) assembler_.set_time(evaluated_at);
@@ -295,7 +301,7 @@ class ExactRun final : public StepMotion {
     bool inside = false;
     const double* beyond_cubic = expansion_.beyond_cubic(end.s);
     for (Observer* o : observers_) inside |= o->looks_inside(now_, next_, beyond_cubic);
-    // What projection holds swings faster.
+    // Projected forces swing faster.
     const double parts = inside ? std::max(std::ceil(fastest_ * length / kWatchedAngle),
                                            known_.projected() ? kProjectionDegree : 0.0)
                                 : 1.0;
@@ -328,14 +334,8 @@ class ExactRun final : public StepMotion {
       if (!(t < t_new - (t == ahead ? 0.0 : same))) return *last;
       if (t == part) i += 1.0;
       EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      if (exactly)
-        move_inside(t, point);
-      else
-        move_along(t, point);
-      if (forces_)
-        evaluate(assembler_, point, t);
-      else
-        evaluate_motion(point, t);
+      exactly ? move_inside(t, point) : move_along(t, point);
+      evaluate_wanted(assembler_, point, t);
       for (Observer* o : observers_) o->step(assembler_, *last, point);
       last = &point;
     }
@@ -419,17 +419,16 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
-  /// Motion, laws and what energies need.
-  void evaluate_energies(EvaluatedState& point, double t) {
-    evaluate_motion(point, t);
-    assembler_.multiply_stiffness(point.state.z, point.kz);
-  }
-
-  /// Motion and laws only.
-  void evaluate_motion(EvaluatedState& point, double t) {
-    assembler_.set_time(t);
-    evaluate_laws(assembler_, point);
+  /// Motion and what energies need alone.
+  void evaluate_motion(Assembler& assembler, EvaluatedState& point, double t) {
+    assembler.set_time(t);
+    evaluate_laws(assembler, point);
+    stiffness_.multiply(1.0, point.state.z, point.kz);
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  /// What observers want of a point inside a step.
+  void evaluate_wanted(Assembler& assembler, EvaluatedState& point, double t) {
+    forces_ ? evaluate(assembler, point, t) : evaluate_motion(assembler, point, t);
   }
 
   void evaluate(Assembler& assembler, EvaluatedState& point, double t) {
@@ -437,7 +436,7 @@ class ExactRun final : public StepMotion {
     assembler.set_time(t);
     evaluate_laws(assembler, point);
     assembler.external(s.z, s.v, point.p);
-    assembler.multiply_stiffness(s.z, point.kz);
+    stiffness_.multiply(1.0, s.z, point.kz);
     assembler.multiply_damping(s.v, point.cv);
     point.total = point.kz + point.cv - point.p;
     add_law_forces(system_, point, 1.0, point.total);
@@ -450,6 +449,7 @@ class ExactRun final : public StepMotion {
   const ExactOptions& options_;
   const std::vector<Observer*>& observers_;
   Assembler assembler_, inside_assembler_;
+  MatrixProduct stiffness_;
   StepExpansion expansion_;
   TaylorSeries& series_;  // its parts
   LoadSeries& known_;

@@ -4,19 +4,22 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
-#include "solvers/exact/lane_pair.hpp"
 #include "solvers/exact/law_offsets.hpp"
 #include "solvers/exact/law_series.hpp"
-#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/load_series.hpp"
+#include "solvers/linear/lane_pair.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr double kClearOfKnot = 2e-15;  // of an angle, at least of 1 rad: beside a knot
-constexpr double kLeastRate = 1e-6;     // at a knot, of the mean rate to it
-constexpr double kOnLawKnot = 1e-12;    // of the angle, at least of 1 rad
+// An angle is clear of a knot, relative to the angle and to 1 rad at least.
+constexpr double kClearOfKnot = 2e-15;
+// Least rate of an angle at a knot, relative to its mean rate up to there.
+constexpr double kLeastRate = 1e-6;
+// An angle stands on a knot, relative to the angle and to 1 rad at least.
+constexpr double kOnLawKnot = 1e-12;
 
 std::size_t capacity() { return static_cast<std::size_t>(TaylorSeries::kMaxDegree) + 1; }
 

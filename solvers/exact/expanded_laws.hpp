@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "solvers/exact/law_work.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -70,7 +70,7 @@ class ExpandedLaws final : public TermForces {
   /// An angle at rest on a knot goes the other way than was assumed: expand anew.
   bool turns_back(const TaylorSeries& series);
 
-  /// After the series was expanded: all series of the laws, which what follows reads.
+  /// Finds all series of the laws, once the motion's series was expanded; what follows reads them.
   void expand(const TaylorSeries& series);
   /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
   bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale) const;
@@ -79,7 +79,7 @@ class ExpandedLaws final : public TermForces {
   std::optional<double> first_knot(const TaylorSeries& series, double end);
   /// Whether, at s up to which a motion was swept, an angle is behind a knot that it is not on the series' path: the knot found.
   bool passes_knot(const TaylorSeries& series, double s);
-  /// By how much of the step the knot last found is later than s, up to which a motion was swept: a step of Newton's rule.
+  /// Part of the step by which the knot last found is later than s, up to which a motion was swept: a step of Newton's rule.
   double knot_later(const TaylorSeries& series, double s) const;
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
@@ -98,7 +98,7 @@ class ExpandedLaws final : public TermForces {
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
     int known_to = -1;  // degree of r so far, of x and theta one more
-    // Of the step: the piece about `origin`, where its elastic force is zero.
+    // The step's piece about `origin`, where its elastic force is zero.
     bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, stored = 0.0;
@@ -106,7 +106,7 @@ class ExpandedLaws final : public TermForces {
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
     std::vector<double> turn, by_phase_terms;  // series of s theta' and dr/dtheta
-    // Of use_slopes(), with two derivatives by s.
+    // Slopes of use_slopes(), with two derivatives by s.
     std::array<double, 3> slope{}, by_speed{}, by_phase{};
     // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
     std::vector<double> orders, cosine, sine;
@@ -124,7 +124,7 @@ class ExpandedLaws final : public TermForces {
   std::vector<Law> laws_;
   std::vector<SlopeChange> changes_;
   bool active_ = false, sweeps_ = false;
-  const Law* knot_law_ = nullptr;  // of the knot last found
+  const Law* knot_law_ = nullptr;  // law of the knot that was found last
   int known_degree_ = 0;
   double t_ = 0.0, h_ = 0.0, knot_ = 0.0, knot_clearance_ = 0.0;
 };

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/exact/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr double kFurther = 1.25;    // what an angle may come in a step, over what it did at the rate before
-constexpr double kOfTorque = 1e-18;  // terms of P and G below that are left out
-constexpr double kNearEdge = 0.95;   // of the way to where a cell ends
+// Turn allowed for in a step, relative to the turn at the rate of the step before.
+constexpr double kFurther = 1.25;
+constexpr double kOfTorque = 1e-18;  // terms of P and G that are left out, relative to the torque
+constexpr double kNearEdge = 0.95;   // largest part of the way to the end of a cell that a step takes
 constexpr double kOnes[kLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
 
 }  // namespace

@@ -37,7 +37,7 @@ class ExpandedLoads final : public TermForces {
   struct Load : TangentLoad, KnottedPlace {  // of knots: P is a cubic times a curve
     using TangentLoad::TangentLoad;
     std::shared_ptr<HarmonicCells> cells = {};      // of a sum of harmonics
-    std::shared_ptr<const CurveCells> curves = {};  // of knots
+    std::shared_ptr<const CurveCells> curves = {};  // cells of a load that says its knots
     std::vector<Entry> gain;                        // M^-1 b over unknowns
     bool acts = false;                              // it holds under the nominal motion at hand
   };
@@ -49,7 +49,7 @@ class ExpandedLoads final : public TermForces {
   /// Whether some load that acts says knots.
   bool knotted() const { return knotted_; }
 
-  /// Where the loads stand at a state, at the assembler's time.
+  /// Finds where the loads stand at a state, at the assembler's time.
   void move(const Assembler& assembler, const Vector& z, const Vector& v);
   void move_as(const ExpandedLoads& other);
   /// The piece ahead of a knot in the direction of the angle, where the load stands.
@@ -61,7 +61,7 @@ class ExpandedLoads final : public TermForces {
   /// The part of the step over which the loads' polynomials hold, <= 1.
   double part_held() const { return part_held_; }
   double add(const TaylorSeries& series, int k, double factor, double* term) override;
-  /// After the series was expanded: an angle came further than was reckoned with; expand anew.
+  /// Whether, in the expanded series, an angle came further than was allowed for: the step is to be expanded again.
   bool came_further(const TaylorSeries& series);
 
   /// The polynomial sum_q d_q (theta - knot)^q, q = 1 ... size, by which a load differs behind a knot, where `next` follows on
@@ -79,14 +79,14 @@ class ExpandedLoads final : public TermForces {
 
   /// Work on the unknowns from 0 to s along the series [J].
   double work(const TaylorSeries& series, double s);
-  /// After work(), of a step that was swept: what the motion added up to s changes of it [J].
+  /// Change of work() by the motion that a sweep adds up to s [J]; called after work().
   double swept_work(const TaylorSeries& series, double s) const;
 
   static constexpr int kTerms = 24;  ///< of P and G in x at most
   static_assert(HarmonicCells::kTerms <= kTerms && CurveCells::kTerms + 3 <= kTerms);
 
  private:
-  static constexpr std::size_t kOrders = TaylorSeries::kMaxDegree + 2;  // of a series
+  static constexpr std::size_t kOrders = TaylorSeries::kMaxDegree + 2;  // terms of a series
   using TermLanes = std::array<double, std::size_t{kTerms} * kLanes>;
   using SeriesLanes = std::array<double, kOrders * kLanes>;
   using OneLanes = std::array<double, kLanes>;
@@ -96,13 +96,13 @@ class ExpandedLoads final : public TermForces {
     // Whose terms are in the lanes.
     std::array<const void*, kLanes> cell{};
     OneLanes centre{};
-    int cell_terms = 0, top = 0;  // of the cells; power of x up to which P and G matter in this step
+    int cell_terms = 0, top = 0;  // terms of the cells; power of x up to which P and G matter in this step
     bool speeds = false;          // G is not 0
     OneLanes distance{}, from_about{}, speed{}, slope{}, speed_slope{};
     OneLanes more_slope{}, more_by_speed{};  // use_slopes()
     OneLanes reach{},
         came{};  // rad that x may come in the step; rad/s that it came on the way in the last one
-    TermLanes factor{}, by_speed{};  // of the cells
+    TermLanes factor{}, by_speed{};  // terms of the cells
     std::array<double, std::size_t{4} * kLanes> cubic{};
     TermLanes p{}, g{};
     // Series of the row's motion, of x and w; of G(x) and w^2; and of the powers of x from the second on.

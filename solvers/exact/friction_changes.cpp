@@ -13,11 +13,12 @@ namespace drev {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNothing = 1e-13;   // of the terms that a coefficient is summed from: rounding
-constexpr double kOnBound = 1e-11;   // of what a contact can hold
-constexpr double kSameSlope = 1e-9;  // of derivatives: rounding
-constexpr double kSlack = 4.0;    // of the difference between two forces that are the same but for rounding
-constexpr double kLeast = 4e-15;  // of a bound's own terms at s = 0, for its higher coefficients
+constexpr double kNothing = 1e-13;  // rounding of a coefficient, relative to the terms that it is summed from
+constexpr double kOnBound = 1e-11;  // a torque stands on its bound, relative to what the contact can hold
+constexpr double kSameSlope = 1e-9;  // rounding of a derivative, relative to the derivative
+constexpr double kSlack = 4.0;       // factor on the difference of two forces that differ by rounding alone
+// Rounding of a bound's higher coefficients, relative to its own terms at s = 0.
+constexpr double kLeast = 4e-15;
 
 /// int_0^s a(s) b(s) ds.
 double integral_of_product(const std::vector<double>& a, const double* b, std::size_t terms_b, double s) {
@@ -215,7 +216,7 @@ std::optional<FrictionSeries::Change> FrictionSeries::first_change(double end) c
 }
 
 double FrictionSeries::beyond_end(const Change& change) const {
-  const Bound* nearest = nullptr;  // of a gear's two lines, that which holds longer
+  const Bound* nearest = nullptr;  // of a gear's two lines, the one that holds longer
   for (const Bound& b : contacts_[idx(change.contact)].bounds)
     if (b.what == change.what && (!nearest || polynomial_value(b.g, 1.0) > polynomial_value(nearest->g, 1.0)))
       nearest = &b;
@@ -246,7 +247,7 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
     std::vector<char> rested(contacts_.size(), 0);
     for (std::size_t i = 0; i < contacts_.size(); ++i) rested[i] = contacts_[i].stuck || contacts_[i].tied;
     pass_derivative(change, order, point);
-    Contact* first = nullptr;  // of those that break away; the others are asked again
+    Contact* first = nullptr;  // the contact that breaks away first; the others are asked again
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Contact& other = contacts_[i];
       if (!rested[i] || other.stuck || other.tied || law(i).one_way() || law(i).break_away() == 1.0) continue;
@@ -287,7 +288,7 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
         if (zero) near |= b.what == Change::What::bound_high ? 1 : 2;
       }
     } else {
-      const std::vector<double>& g = c.bounds.front().g;  // of the slip speed
+      const std::vector<double>& g = c.bounds.front().g;  // series of the slip speed
       const bool zero = std::all_of(g.begin(), g.begin() + order + 1, [](double x) { return x == 0.0; });
       if (!chosen && !zero) continue;
       near = c.sign > 0 ? 1 : 2;

@@ -13,10 +13,12 @@ namespace drev {
 
 namespace {
 
-constexpr double kClosesLoop = 1e-10;   // of W_ii: what the other ties leave of a tie
-constexpr double kFits = 1e-9;          // relative, of the speeds at the start
-constexpr double kOnGearBound = 1e-11;  // of the torques that a bound is summed from
-constexpr double kSameBound = 1e-9;     // the same of two lines that meet
+// What the other ties leave of a tie that closes a loop, relative to W_ii.
+constexpr double kClosesLoop = 1e-10;
+constexpr double kFits = 1e-9;  // relative error with which the speeds at the start fit the ties
+// A torque stands on its bound, relative to the torques that the bound is summed from.
+constexpr double kOnGearBound = 1e-11;
+constexpr double kSameBound = 1e-9;  // two lines meet, relative to the torques that the bound is summed from
 
 /// Coefficient d of the product of two series.
 double product_at(const std::vector<double>& a, const std::vector<double>& b, std::size_t d,
@@ -183,7 +185,7 @@ void FrictionSeries::add_gear(const TaylorSeries& series, std::size_t i, int k, 
     c.bearing[d] += sign * v.bearing.slope * slip;
   }
   const double efficiency = c.efficiency[0];
-  double products = 0.0;  // of lower degrees
+  double products = 0.0;  // sum of the products of lower degrees
   if (c.line == 0) {
     for (std::size_t j = 1; j <= d; ++j) products += c.efficiency[j] * (tie.torque[d - j] + c.torque[d - j]);
     c.unit_tie = efficiency;

@@ -15,12 +15,16 @@ namespace drev {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kAtRest = 1e-13;  // of the speeds that a slip speed is summed from, or the largest so far
-constexpr double kLocked = 1e-9;   // the same of a freewheel that rounding turns backward
-constexpr double kNoAcceleration = 1e-12;  // of the terms that a slip acceleration is summed from
-constexpr double kSumRounding = 1e-14;     // of a sum, relative to its terms
-constexpr double kGrowing = 4.0;           // torque inside a step over that at its start
-constexpr double kDependent = 1e-10;       // of W_ii: what the stuck contacts leave of it
+// A slip speed is zero, relative to the speeds it is summed from or to the largest so far.
+constexpr double kAtRest = 1e-13;
+// Rounding that turns a locked freewheel backward, relative to the same speeds.
+constexpr double kLocked = 1e-9;
+// A slip acceleration is zero, relative to the terms that it is summed from.
+constexpr double kNoAcceleration = 1e-12;
+constexpr double kSumRounding = 1e-14;  // rounding of a sum, relative to its terms
+constexpr double kGrowing = 4.0;        // largest torque inside a step over the torque at its start
+// What the stuck contacts leave of a contact that depends on them, relative to W_ii.
+constexpr double kDependent = 1e-10;
 
 double size_of(const std::vector<Entry>& row, const double* x) {
   double sum = 0.0;
@@ -322,7 +326,7 @@ void FrictionSeries::add_to(TaylorSeries& series, const LoadSeries& known, doubl
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
     const Friction::Engagement g = law(i).engagement(t);
-    double power = 1.0, largest = 0.0;  // of g over the step, at most
+    double power = 1.0, largest = 0.0;  // bound of g over the step
     for (std::size_t d = 0; d < g.terms.size(); ++d, power *= h) {
       c.capacity[d] = d == 0 ? std::max(0.0, g.terms[d]) : g.terms[d] * power;
       largest += std::abs(c.capacity[d]);

@@ -28,7 +28,7 @@
 #include <optional>
 
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -126,9 +126,9 @@ class FrictionSeries final : public TermForces {
     bool loose = false;  // it broke away at this instant
     double bound = 0.0;  // what a tied one carries, per engagement
     bool root = false;   // a slip speed, or the torque's distance to a bound, is zero at s = 0
-    int root_bound = 0;  // of the torque: 1 high, -1 low
+    int root_bound = 0;  // bound at which the torque stands: 1 high, -1 low
     double speed_rounding = 0.0, torque_rounding = 0.0;
-    double acceleration_slack = 0.0;  // of the step's first slip acceleration
+    double acceleration_slack = 0.0;  // rounding of the step's first slip acceleration
     // Along the step.
     std::array<double, 4> capacity{};  // g(s)
     std::array<double, 2> known{};     // part of w
@@ -139,9 +139,10 @@ class FrictionSeries final : public TermForces {
     int tie = -1, loss = -1;
     int line = 0;            // that its loss is on where it is not stuck: 0 shaft 1 drives, 1 shaft 2
     bool line_root = false;  // it is where the two lines meet at s = 0
-    double unit_tie = 1.0, unit_loss = 0.0;   // torques per unit of the gear's unknown
-    double rest_tie = 0.0, rest_loss = 0.0;   // and without it, of the degree that is worked at
-    std::vector<double> efficiency, bearing;  // of that line, along the step
+    double unit_tie = 1.0, unit_loss = 0.0;  // torques per unit of the gear's unknown
+    double rest_tie = 0.0, rest_loss = 0.0;  // and without it, of the degree that is worked at
+    // Series of that line's efficiency and bearing torque along the step.
+    std::vector<double> efficiency, bearing;
   };
   /// A value of a gear's losses over |w|, on a segment.
   struct LossLine {
@@ -195,7 +196,7 @@ class FrictionSeries final : public TermForces {
   Eigen::MatrixXd w_, stuck_inverse_, series_inverse_;  // the last: with the gears' directions
   std::vector<std::size_t> stuck_;
   double h_ = 1.0;
-  int known_degree_ = 0;  // of the engagements over the step
+  int known_degree_ = 0;  // degree of the engagements over the step
   bool gears_ = false, any_on_line_ = false, located_ = false;
   double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to

@@ -8,7 +8,7 @@
 namespace drev {
 
 namespace {
-constexpr double kCell = 1.1, kReach = 2.2;  // times the highest order
+constexpr double kCell = 1.1, kReach = 2.2;  // width and reach of a cell, times the highest order [rad]
 constexpr int kMostTurns = 8, kMostCells = 8192;
 constexpr double kTwoPiRest = 2.4492935982947064e-16;  // 2 pi less its double
 }  // namespace

@@ -37,7 +37,7 @@ class HarmonicCells {
 
   LoadOrders orders_;
   double reach_ = 0.0, width_ = 0.0;
-  double turns_ = 0.0;  // of the common period; 0: none
+  double turns_ = 0.0;  // turns of the common period; 0: there is none
   std::vector<Cell> cells_;
 };
 

@@ -3,22 +3,33 @@
 #include <algorithm>
 #include <array>
 
-#include "solvers/exact/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 
 namespace {
 
 constexpr int kMomentNodes = 10;
-constexpr int kSweepNodes = 8;
 constexpr int kMaxNewton = 30;
-constexpr double kSettled = 1e-8;       // last Newton step in s
-constexpr double kSweepSettled = 1e-5;  // the same where a force is continuous, so that its square counts
+constexpr double kSettled = 1e-8;  // Newton's rule ends below this last step in s
+// The same where the force is continuous, so that the square of the place's error counts.
+constexpr double kSweepSettled = 1e-5;
+constexpr int kFewRows = 8;  // rows of a column of as many lanes as are cleared one by one in the time of all
 
-/// s where theta = target, from the line between 0 and `end`, where theta is at_end. By Newton's rule, within [0, end].
+/// Ones in so many lanes, zeros behind them.
+constexpr auto kFirstLanes = [] {
+  std::array<double, 2 * kLanes> ones{};
+  for (std::size_t i = 0; i < kLanes; ++i) ones[i] = 1.0;
+  return ones;
+}();
+const double* first_lanes(int count) { return kFirstLanes.data() + kLanes - std::min(count, kLanes); }
+
+/// s where theta = target, from the line between 0 and `end`, where theta is at_end. By Newton's rule, within [0, end], until
+/// `lanes` of them settle.
 template <class L>
-[[gnu::always_inline]] inline void find_place(const double* theta, std::size_t terms, const L& target,
-                                              const L& at_end, double end, double settled, L& s) {
+[[gnu::always_inline]] inline void find_place(const double* theta, std::size_t terms, const double* lanes,
+                                              const L& target, const L& at_end, double end, double settled,
+                                              L& s) {
   L x;
   load(theta, x);
   s = end * (target - x) / (at_end - x);
@@ -36,6 +47,8 @@ template <class L>
     for (double& at : places) at = at < 0.0 ? 0.0 : at > end ? end : at;
     load(places, s);
     magnitude(step);
+    load(lanes, x);
+    step *= x;
     if (largest_of(step) < settled) break;  // the next step would be its square
   }
 }
@@ -70,14 +83,14 @@ template <class L>
 /// kMomentNodes nodes between s and 1: exact where f is of degree 11 in s there.
 struct Moments {
   template <class L>
-  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
-                                         const double* force, std::size_t powers, const double* end,
-                                         const double* nodes, const double* weights, double* place,
-                                         double* moments) {
+  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* lanes,
+                                         const double* knot, const double* force, std::size_t powers,
+                                         const double* end, const double* nodes, const double* weights,
+                                         double* place, double* moments) {
     L target, at_end, s;
     load(knot, target);
     load(end, at_end);
-    find_place(theta, terms, target, at_end, 1.0, kSettled, s);
+    find_place(theta, terms, lanes, target, at_end, 1.0, kSettled, s);
     store(s, place);
     L sum[kProjectionTerms];
     clear(sum);
@@ -109,16 +122,18 @@ struct Moments {
 };
 
 /// Moments int_s^e (e - s)^j/j! f(theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes.
+template <int kSweepNodes>
 struct SweepMoments {
   template <class L>
-  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, const double* knot,
-                                         const double* force, std::size_t powers, const double* end,
-                                         double s_end, const double* nodes, const double* weights, int degree,
+  [[gnu::always_inline]] static void run(const double* theta, std::size_t terms, std::size_t place_terms,
+                                         const double* lanes, const double* knot, const double* force,
+                                         std::size_t powers, const double* end, double s_end,
+                                         const double* nodes, const double* weights, int degree,
                                          double* place, double* moments) {
     L target, at_end, s;
     load(knot, target);
     load(end, at_end);
-    find_place(theta, terms, target, at_end, s_end, kSweepSettled, s);
+    find_place(theta, place_terms, lanes, target, at_end, s_end, kSweepSettled, s);
     store(s, place);
     const L rest = s_end - s;
     L f[kSweepNodes];
@@ -154,19 +169,21 @@ struct NodesAndWeights {
 double* KinkMoments::add(int row, double knot, std::span<const double> force, double end, std::size_t terms) {
   const auto i = static_cast<std::size_t>(count_++);
   terms_ = terms;
-  powers_ = std::max(powers_, force.size());
   const auto room = static_cast<std::size_t>(whole_lanes(count_));
   if (row_.size() < room) {
     row_.resize(room);
     for (auto* list : {&knot_, &end_, &place_}) list->resize(room);
     theta_.resize(room * kMostTerms);
     force_.resize(room * kMostPowers);
+    std::fill_n(theta_.end() - kGroup + kLanes, kLanes, 1.0);  // lanes without a kink have a place, too
   }
   row_[i] = row;
   knot_[i] = knot;
   end_[i] = end;
+  for (; powers_ < force.size(); ++powers_)  // those before have none of this power
+    for (std::size_t k = 0; k < i; ++k) force_[k / kLanes * kForce + powers_ * kLanes + k % kLanes] = 0.0;
   double* own = force_.data() + i / kLanes * kForce + i % kLanes;
-  for (std::size_t q = 0; q < kMostPowers; ++q) own[q * kLanes] = q < force.size() ? force[q] : 0.0;
+  for (std::size_t q = 0; q < powers_; ++q) own[q * kLanes] = q < force.size() ? force[q] : 0.0;
   return theta_.data() + i / kLanes * kGroup + i % kLanes;
 }
 
@@ -184,28 +201,14 @@ KinkMoments::Force KinkMoments::force(int i, double behind) const {
   return f;
 }
 
-/// The lanes behind the last kink repeat it; what they give is not used.
-void KinkMoments::fill_lanes() {
-  for (auto lane = static_cast<std::size_t>(count_); lane % kLanes != 0; ++lane) {
-    for (auto* list : {&knot_, &end_}) (*list)[lane] = (*list)[lane - 1];
-    const auto repeat = [&](std::vector<double>& list, std::size_t group, std::size_t rows) {
-      double* own = list.data() + lane / kLanes * group + lane % kLanes;
-      for (std::size_t k = 0; k < rows; ++k) own[k * kLanes] = own[k * kLanes - 1];
-    };
-    repeat(theta_, kGroup, terms_);
-    repeat(force_, kForce, powers_);
-  }
-}
-
 void KinkMoments::add_to(LegendreProjection& projection) {
   if (count_ == 0) return;
   static const NodesAndWeights<kMomentNodes> rule;
   moments_.resize(kProjectionTerms * kLanes);
-  fill_lanes();
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
     run_widest<Moments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
-                        static_cast<const double*>(knot_.data() + at),
+                        first_lanes(count_ - first), static_cast<const double*>(knot_.data() + at),
                         static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
                         static_cast<const double*>(end_.data() + at), rule.nodes.data(), rule.weights.data(),
                         place_.data() + at, moments_.data());
@@ -217,26 +220,45 @@ void KinkMoments::add_to(LegendreProjection& projection) {
   }
 }
 
-void KinkMoments::add_to_sweep(double end, int degree, int stride, double* columns) {
-  degree_ = degree;
-  if (count_ == 0) return;
-  static const NodesAndWeights<kSweepNodes> rule;
-  const auto terms = idx_of(degree + 1);
-  sweep_moments_.resize(terms * idx_of(whole_lanes(count_)));
-  fill_lanes();
+template <int kNodes>
+void KinkMoments::find_sweep_moments(double end, std::size_t place_terms) {
+  static const NodesAndWeights<kNodes> rule;
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
-    double* moments = sweep_moments_.data() + at * terms;
-    run_widest<SweepMoments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
-                             static_cast<const double*>(knot_.data() + at),
-                             static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
-                             static_cast<const double*>(end_.data() + at), end, rule.nodes.data(),
-                             rule.weights.data(), degree, place_.data() + at, moments);
-    const int lanes = std::min(kLanes, count_ - first);
-    for (int l = 0; l < lanes; ++l) {
-      double* column = columns + row_[idx_of(first + l)];
-      for (int j = degree; j >= 0; --j, column += stride) *column += moments[j * kLanes + l];
-    }
+    run_widest<SweepMoments<kNodes>>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
+                                     std::min(place_terms, terms_), first_lanes(count_ - first),
+                                     static_cast<const double*>(knot_.data() + at),
+                                     static_cast<const double*>(force_.data() + at / kLanes * kForce),
+                                     powers_, static_cast<const double*>(end_.data() + at), end,
+                                     rule.nodes.data(), rule.weights.data(), degree_, place_.data() + at,
+                                     sweep_moments_.data() + at * idx_of(degree_ + 1));
+  }
+}
+
+void KinkMoments::add_to_sweep(double end, int degree, int nodes, std::size_t place_terms, int stride,
+                               double* columns) {
+  degree_ = degree;
+  if (count_ == 0) return;
+  sweep_moments_.resize(idx_of(degree + 1) * idx_of(whole_lanes(count_)));
+  nodes == kSweepRules[0]   ? find_sweep_moments<kSweepRules[0]>(end, place_terms)
+  : nodes == kSweepRules[1] ? find_sweep_moments<kSweepRules[1]>(end, place_terms)
+                            : find_sweep_moments<kSweepRules[2]>(end, place_terms);
+  for (int i = 0; i < count_; ++i) {
+    const double* moments =
+        sweep_moments_.data() + idx_of(i) / kLanes * kLanes * idx_of(degree + 1) + lane_of(i);
+    double* column = columns + row_[idx_of(i)];
+    for (int j = degree; j >= 0; --j, column += stride) *column += moments[j * kLanes];
+  }
+}
+
+void KinkMoments::clear_rows(int degree, int stride, double* columns) const {
+  if (kFewRows * count_ > stride) {
+    for (int j = degree; j >= 0; --j, columns += stride) std::fill_n(columns, stride, 0.0);
+    return;
+  }
+  for (int i = 0; i < count_; ++i) {
+    double* column = columns + row_[idx_of(i)];
+    for (int j = degree; j >= 0; --j, column += stride) *column = 0.0;
   }
 }
 

@@ -4,11 +4,12 @@
 /// once, in lanes; integrals by Gauss's nodes between there and the end.
 #include <drev/core/lanes.hpp>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
-#include "solvers/exact/legendre_projection.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 namespace drev {
 
@@ -20,6 +21,8 @@ class KinkMoments {
     powers_ = 1;
   }
   int count() const { return count_; }
+  /// All forces are straight.
+  bool straight() const { return powers_ == 1; }
   /// A kink whose theta has so many terms, as all listed with it, at most kMostTerms; theta passes `knot` once before the
   /// end of the step, or of the part of it that is looked at, and monotonously, and stands at `end` there. Its terms are to be
   /// written to the place returned, kLanes apart, before the next one is added.
@@ -28,20 +31,26 @@ class KinkMoments {
   /// Adds the moments of all kinks over the whole step.
   void add_to(LegendreProjection& projection);
   /// Adds W_j = int_s^e (e - s)^j/j! f(theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.
-  void add_to_sweep(double end, int degree, int stride, double* columns);
-  /// After either: the s at which theta passes the knot of kink i.
+  /// nodes: of Gauss's rule, one of kSweepRules; place_terms: so many of theta's terms tell where it passes the knot.
+  void add_to_sweep(double end, int degree, int nodes, std::size_t place_terms, int stride, double* columns);
+  static constexpr std::array<int, 3> kSweepRules{4, 6, 8};
+  /// Zeros to where add_to_sweep() added.
+  void clear_rows(int degree, int stride, double* columns) const;
+  /// Only so many of theta's terms count from here on.
+  void use_terms(std::size_t terms) { terms_ = std::min(terms_, terms); }
+  /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
   int row(int i) const { return row_[static_cast<std::size_t>(i)]; }
   double knot(int i) const { return knot_[static_cast<std::size_t>(i)]; }
   double end(int i) const { return end_[static_cast<std::size_t>(i)]; }
-  /// Of the slope at the knot.
+  /// Jump of the slope at the knot.
   double jump(int i) const { return force_[static_cast<std::size_t>(i) / kLanes * kForce + lane_of(i)]; }
   /// f, its slope, and its integral from the knot on, at an angle of kink i behind its knot.
   struct Force {
     double value = 0.0, slope = 0.0, integral = 0.0;
   };
   Force force(int i, double behind) const;
-  /// After add_to_sweep(): W_j of kink i alone.
+  /// W_j of kink i alone, as add_to_sweep() found it.
   double moment(int i, int j) const {
     const auto at = static_cast<std::size_t>(i);
     return sweep_moments_[(at / kLanes * idx_of(degree_ + 1) + idx_of(j)) * kLanes + at % kLanes];
@@ -50,14 +59,15 @@ class KinkMoments {
  private:
   static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
   static std::size_t lane_of(int i) { return static_cast<std::size_t>(i) % kLanes; }
-  void fill_lanes();
+  template <int kNodes>
+  void find_sweep_moments(double end, std::size_t place_terms);
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
   static constexpr std::size_t kForce = kMostPowers * kLanes;
   int count_ = 0, degree_ = 0;
-  std::size_t terms_ = 0, powers_ = 1;  // of the angles; of the forces
+  std::size_t terms_ = 0, powers_ = 1;  // terms of the angles; powers of the forces
   std::vector<int> row_;
   std::vector<double> knot_, end_, place_;
-  std::vector<double> theta_, force_;  // by group of lanes, degree, lane
+  std::vector<double> theta_, force_;  // terms by group of lanes, then degree, then lane
   std::vector<double> moments_, sweep_moments_;
 };
 

@@ -1,17 +1,24 @@
 #include "solvers/exact/kink_response.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace drev {
 
 namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
-constexpr int kMostKinks = 1000;    // in a step; what they do to each other is bounded pair by pair
-constexpr double kLittle = 0.1;     // of what is allowed, by pairs that are not looked at
-constexpr double kOfShare = 0.1;    // what a sweep of finite degree leaves out
-constexpr double kShortened = 0.9;  // of the part behind a kink over which slopes change little enough
+constexpr int kMostKinks = 1000;  // kinks in a step; what they do to each other is bounded pair by pair
+// Part of what is allowed that pairs of kinks may add up to by their bound.
+constexpr double kMostRowsApart = 0.5;
+constexpr double kOfShare = 0.1;      // part of a step's share that a sweep of finite degree may leave out
+constexpr double kRuleMargin = 10.0;  // margin on what Gauss's rule leaves out, since angles bend, too
+constexpr double kOfRule = 0.1;       // part of what a sweep may leave out that cut series of angles may take
+constexpr double kPlace = 1e-4;       // largest error of a knot's place, relative to the step
+// Factor on the part of the step behind a kink over which slopes change little enough.
+constexpr double kShortened = 0.9;
 
 }  // namespace
 
@@ -48,6 +55,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) rest = std::max(rest, kink.pull);
   if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
   rest *= 0.5 * scale * end * end;
+  const double response = rest;
   int degree = 0;
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
     rest *= growth / (++degree + 2.0);
@@ -56,17 +64,50 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int stride = series_.stride();
-  moments_.assign(idx((degree + 1) * stride), 0.0);
-  kinks.add_to_sweep(end, degree, stride, moments_.data());
+  moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
+                  0.0);  // zeros but for what a sweep at hand adds
+  const Rule rule = rule_for(response, growth, kOfShare * share, scale, end);
+  kinks.use_terms(rule.terms);
+  kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
   series_.sweep(moments_.data(), degree);
-  if (end == 1.0 && !find_limit(share - rest, scale)) return false;
-  if (!corrects_) return found_ = true;
+  const bool holds = end != 1.0 || find_limit(share - rest, scale);
+  if (!holds || !corrects_) {
+    kinks.clear_rows(degree, stride, moments_.data());
+    return found_ = holds;
+  }
   laws_.add_changes(series_, degree, moments_.data());
   series_.sweep(moments_.data(), degree);
+  std::fill(moments_.begin(), moments_.end(), 0.0);
   return found_ = true;
 }
 
-/// Where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
+/// The rule for kinks that respond by no more than `response` of the motion, with an error of `allowed`: n nodes of Gauss leave
+/// (n!)^4/((2 n + 1) (2 n)!^3) growth^(2 n) of an integral with exp(rate h s); so many terms of the angles that the force behind
+/// the knot is right; and so many that its place is, of whose error the square counts.
+KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double allowed, double scale,
+                                          double end) const {
+  Rule rule;
+  const KinkMoments& kinks = loads_.kinks();
+  if (!kinks.straight()) return rule;
+  constexpr std::array<double, 2> kLeaves{5.6e-10, 1.9e-16};
+  for (std::size_t i = 0; i < kLeaves.size(); ++i)
+    if (kRuleMargin * response * kLeaves[i] * std::pow(growth, 2 * KinkMoments::kSweepRules[i]) <= allowed) {
+      rule.nodes = KinkMoments::kSweepRules[i];
+      break;
+    }
+  double gain = 0.0, rate = std::numeric_limits<double>::infinity();
+  for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) {
+    gain = std::max(gain, kink.gain);
+    rate = std::min(rate, kink.rate);
+  }
+  const double z = std::max(series_.z_scale()[0], series_.z_scale()[1]);
+  rule.terms = idx(series_.terms_within(kOfRule * allowed / (gain * scale * end * z)));
+  const double place = std::min(kPlace, end * std::sqrt(kOfRule * allowed / response));
+  rule.place_terms = idx(series_.terms_within(place * rate / z));
+  return rule;
+}
+
+/// Finds where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
 bool KinkResponse::find_limit(double allowed, double scale) {
   const double most = allowed / scale;
   const bool slopes = loads_.expanded().active() || laws_.active();
@@ -134,18 +175,20 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
 
 /// What kinks add to rows of later kinks ahead of these, and what these make of it, up to s = end: of a kink ahead by d in
 /// the same row pull d^3/6, one row away k/m h^2 pull d^5/120, two rows away about (rate h)^4/16 pull d^7/5040, three or more
-/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2. Pairs that would
-/// add up to little of what is allowed as neighbours with the largest coupling are taken for such.
+/// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2.
 KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) const {
   const KinkMoments& kinks = loads_.kinks();
   const std::vector<LoadSeries::KinkSize>& sizes = loads_.kink_sizes();
   const double h = series_.step(), square = h * h;
   // (2 j + 4)! of rows j apart.
-  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), two = quarter * quarter / 40320.0,
-               more = quarter * quarter * quarter / 3628800.0;
-  const double neighbours = square * series_.largest_coupling() / 720.0 + std::max(two, more);
-  const double little = kLittle * allowed / (kinks.count() * static_cast<double>(kinks.count()));
+  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), beside = square / 720.0,
+               two = quarter * quarter / 40320.0, more = quarter * quarter * quarter / 3628800.0;
   Others others;
+  if (!loads_.kinks_share_rows()) {
+    others.error = square * bound_of_rows_apart(end, beside, std::max(two, more));
+    if (others.error <= kMostRowsApart * allowed) return others;
+    others.error = 0.0;
+  }
   double most = 0.0;
   for (int i = 0; i < kinks.count(); ++i) {
     if (kinks.place(i) >= end) continue;
@@ -157,10 +200,8 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) c
       const int row = kinks.row(i), other = kinks.row(k);
       if (row == other)
         error /= 24.0;
-      else if (const double at_most = error * d_2 * neighbours; at_most <= little)
-        error = at_most;
-      else if (const double beside = series_.coupling(row, other); beside > 0.0)
-        error *= d_2 * (square * beside / 720.0 + two * d_2);
+      else if (const double coupling = series_.coupling(row, other); coupling > 0.0)
+        error *= d_2 * (beside * coupling + two * d_2);
       else
         error *= d_4 * (series_.share_neighbour(row, other) ? two : more * d_2);
       others.error += error;
@@ -171,6 +212,31 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) c
     }
   }
   return others;
+}
+
+/// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, and all as if they
+/// were two rows apart.
+double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) const {
+  const KinkMoments& kinks = loads_.kinks();
+  const LoadSeries::KinkSize* sizes = loads_.kink_sizes().data();
+  double sum = 0.0;
+  for (int i = 0; i < kinks.count(); ++i) {
+    const double place = kinks.place(i);
+    if (place >= end) continue;
+    double of_all = 0.0, of_neighbours = 0.0;
+    for (int k = 0; k < kinks.count(); ++k) {
+      const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d, d_4 = d_2 * d_2;
+      of_all += sizes[k].pull * (d_4 * d_4);
+    }
+    series_.for_coupled(kinks.row(i), [&](int row, double coupling) {
+      const int k = loads_.kink_on(row);
+      if (k < 0) return;
+      const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d;
+      of_neighbours += coupling * sizes[k].pull * (d_2 * d_2 * d_2);
+    });
+    sum += sizes[i].gain * (apart * of_all + beside * of_neighbours);
+  }
+  return sum;
 }
 
 }  // namespace drev

@@ -13,7 +13,7 @@
 
 #include "solvers/exact/expanded_laws.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -28,16 +28,13 @@ class KinkResponse {
   /// Finds y up to s = end, where the series stands at z_end; the whole step first. share: of the motion, what may be
   /// left out. False: some load's kinks are none of this kind.
   bool find(double end, const double* z_end, double share);
-  /// Back to the loads' slopes at the step's start.
+  /// Returns to the loads' slopes at the step's start.
   void undo();
   bool found() const { return found_; }
   /// s to which y was found.
   double end() const { return end_; }
-  /// Whether there are kinks up to there: else y = 0.
+  /// Whether there are kinks up to there: then TaylorSeries::swept() has y and its rate; else y = 0.
   bool any() const { return found_ && loads_.kinks().count() > 0; }
-  double y(int row) const { return series_.swept(0)[row]; }
-  /// By s.
-  double rate(int row) const { return series_.swept(-1)[row]; }
   /// s up to which the step holds: beyond, more would be left out than its share.
   double limit() const { return limit_; }
   /// Work of loads beyond what they do along the series [J].
@@ -50,11 +47,18 @@ class KinkResponse {
 
  private:
   void return_slopes();
+  /// Nodes and terms by which moments are taken.
+  struct Rule {
+    int nodes = KinkMoments::kSweepRules.back();
+    std::size_t terms = TaylorSeries::kMaxDegree + 1, place_terms = terms;
+  };
+  Rule rule_for(double response, double growth, double allowed, double scale, double end) const;
   struct Others {
     double error = 0.0;    // of the motion by the scale
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed) const;
+  double bound_of_rows_apart(double end, double beside, double apart) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double allowed, double scale);
@@ -63,7 +67,7 @@ class KinkResponse {
   LoadSeries& loads_;
   ExpandedLaws& laws_;
   bool found_ = false, slopes_changed_ = false;
-  bool corrects_ = false;  // in this step, what slopes of laws change towards the end
+  bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
   std::vector<double> moments_;
 };

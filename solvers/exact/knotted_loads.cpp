@@ -2,16 +2,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/exact/smooth_loads.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
 namespace {
 
 constexpr std::size_t kNodes = GaussRule::kNodes, kRoom = whole_lanes(GaussRule::kNodes);
-constexpr int kMostKnots = 64;         // of a load in a step; more end it
-constexpr double kNearSpanEnd = 1e-6;  // of the step: a knot so close to its ends need not end it
+constexpr int kMostKnots = 64;  // knots of one load in a step; more of them end the step
+// A knot so close to the step's ends need not end it, relative to the step.
+constexpr double kNearSpanEnd = 1e-6;
 constexpr int kMaxKnotNewton = 20;
 
 struct Cubic {
@@ -167,7 +168,8 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   low -= 0.02 * std::max(0.0, -slowest);
   high += 0.02 * std::max(0.0, fastest);
   const bool rises = slowest > 0.0, monotone = rises || fastest < 0.0;
-  const double ahead = (rises ? l.piece.high : l.piece.low) - l.angle;  // of a monotone path
+  // Turn to the next knot on a monotone path [rad].
+  const double ahead = (rises ? l.piece.high : l.piece.low) - l.angle;
   bool knots = !(l.angle + high < l.piece.high && l.angle + low > l.piece.low);
   double end = 0.0;
   if (knots && monotone) {

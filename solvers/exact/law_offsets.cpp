@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
-#include "solvers/exact/legendre_projection.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

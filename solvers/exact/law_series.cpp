@@ -1,12 +1,15 @@
 #include "solvers/exact/law_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "solvers/contact/pieces.hpp"
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/expanded_laws.hpp"
+#include "solvers/run/cubic_peak.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
@@ -17,11 +20,12 @@ constexpr double kZero = 1e-13;
 // The same for higher ones, relative to the bound's own terms at s = 0 (their cancellation is not
 // seen).
 constexpr double kFloor = 4e-15;
-constexpr double kClear = 1e-14;     // of the terms that a deflection is summed from
-constexpr double kMostClear = 1e-3;  // of the step
+// A deflection is clear of a bound, relative to the terms that it is summed from.
+constexpr double kClear = 1e-14;
+constexpr double kMostClear = 1e-3;  // largest distance from a change, relative to the step
 // A crossing that a motion beside the series moves by no more of the step, with slopes that differ by no more, is one.
 constexpr double kNearCrossing = 0.05, kAlike = 3.0;
-constexpr double kParallel = 1e-9;  // bounds that are one line but for rounding
+constexpr double kParallel = 1e-9;  // two bounds are one line, relative to their coefficients
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
 double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {
@@ -50,6 +54,16 @@ bool opposite(const LawBound& a, const LawBound& b) {
   return cancels(a.a, b.a) && cancels(a.b_x, b.b_x) && cancels(a.b_v, b.b_v);
 }
 
+/// On which side of the gap a piece lies: 1, 0, -1; none: on several, or there is no gap.
+std::optional<int> side_of(const LawPiece& piece, const std::optional<Gap>& gap) {
+  if (!gap) return std::nullopt;
+  const Interval x = piece.x_range();
+  if (x.low >= gap->high) return 1;
+  if (x.high <= gap->low) return -1;
+  if (x.low >= gap->low && x.high <= gap->high) return 0;
+  return std::nullopt;
+}
+
 }  // namespace
 
 LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scalars().size()) {
@@ -62,6 +76,7 @@ LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scala
       for (std::size_t i = 0; i < law.pieces.size(); ++i)
         if (const LawPiece& piece = term.force->pieces()[i]; ExpandedLaws::is_linear(term, piece))
           law.pieces[i] = piece;
+    for (const LawPiece& p : law.pieces) law.sides.push_back(side_of(p, term.force->gap()));
     if (!term.force->varies() || term.phase_node < 0) continue;
     for (const LawPiece& p : law.pieces)
       for (const LawBound& b : p.bounds) law.scaled |= b.b_v != 0.0;
@@ -75,16 +90,6 @@ void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
     laws_[j].piece = piece_at(laws_[j].pieces, in.x, in.x_dot / r);
     laws_[j].root = -1;
   }
-}
-
-std::optional<int> LawSeries::side(int law) const {
-  const std::optional<Gap> gap = system_.scalars()[idx(law)].force->gap();
-  if (!gap) return std::nullopt;
-  const Interval x = current(idx(law)).x_range();
-  if (x.low >= gap->high) return 1;
-  if (x.high <= gap->low) return -1;
-  if (x.low >= gap->low && x.high <= gap->high) return 0;
-  return std::nullopt;
 }
 
 void LawSeries::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
@@ -141,12 +146,16 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
     law.x.assign(std::max(terms, offset.size()), 0.0);
     law.x_size.assign(law.x.size(), 0.0);
     law.known.assign(3, 0.0);
-    for (const Entry& e : term.z)
-      for (std::size_t k = 0; k < terms; ++k) {
-        const double part = e.coeff * series.coefficient(static_cast<int>(k), e.index);
-        law.x[k] += part;
-        law.x_size[k] += std::abs(part);
+    double *x = law.x.data(), *size = law.x_size.data();
+    const auto stride = static_cast<std::size_t>(series.stride());
+    for (const Entry& e : term.z) {
+      const double coeff = e.coeff, *z = series.coefficients(0) + e.index;
+      for (std::size_t k = 0; k < terms; ++k, z += stride) {
+        const double part = coeff * *z;
+        x[k] += part;
+        size[k] += std::abs(part);
       }
+    }
     for (const Entry& e : term.u)
       for (std::size_t k = 0; k < 3; ++k) {
         const double part = e.coeff * known.prescribed(e.index)[k];
@@ -201,6 +210,23 @@ LawSeries::Start LawSeries::start_of(Law& law, const LawBound& b, int index) {
     g[k] = 0.0;
   }
   return Start::holds;
+}
+
+Interval LawSeries::range(int law, double end) const {
+  constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
+  const std::vector<double>& x = laws_[idx(law)].x;
+  std::array<double, kParts> s, value, slope;
+  for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
+  polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
+  Interval range{x[0], x[0]};
+  const auto take = [&range](double y) { range = {std::min(range.low, y), std::max(range.high, y)}; };
+  double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
+  for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
+    take(value[i]);
+    const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
+    if (inside) take(polynomial_value(x, s[i] - end / kParts * (1.0 - inside->s)));
+  }
+  return range;
 }
 
 std::optional<LawSeries::Change> LawSeries::change_at_once() {

@@ -33,7 +33,13 @@ class LawSeries {
   void locate(const std::vector<ScalarInput>& inputs);
   int piece(int law) const { return laws_[idx(law)].piece; }
   /// StepMotion::side() of the pieces that hold.
-  std::optional<int> side(int law) const;
+  std::optional<int> side(int law) const {
+    const Law& l = laws_[idx(law)];
+    return l.sides[idx(l.piece)];
+  }
+
+  /// The smallest and the largest value of a law's deflection on its series in [0, end].
+  Interval range(int law, double end) const;
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
@@ -58,7 +64,7 @@ class LawSeries {
     bool unsure = false;
   };
   Beside first_change_beside(const TaylorSeries& series, double push);
-  /// By how much of the step a change is later where these motions y and rates y' (by s) add to the series at its s.
+  /// Part of the step by which a change is later where these motions y and rates y' (by s) add to the series at its s.
   double later(const Change& change, const double* y, const double* rate) const;
   /// The s nearest to a change, behind it at the start (s = 0) or ahead of it at s > 0, at which the law's
   /// deflection is clear of the bound by more than rounding.
@@ -70,15 +76,16 @@ class LawSeries {
   /// The step was accepted and no bound is known to be at zero any more.
   void forget_roots();
 
-  /// From 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
+  /// Energies from 0 to s of the step [J]: energy dissipated in the laws, and put in by their prescribed
   /// ends.
   double dissipated(double s) const;
   double input(double s) const;
 
  private:
   struct Law {
-    std::vector<LawPiece> pieces;  // the law's own; of a projected one its bounds, without forces
-    bool scaled = false;           // by its angle, where that matters to a bound
+    std::vector<LawPiece> pieces;           // the law's own; of a projected one its bounds, without forces
+    bool scaled = false;                    // by its angle, where that matters to a bound
+    std::vector<std::optional<int>> sides;  // StepMotion::side() of each piece
     int piece = 0;
     int root = -1;                            // bound of the piece that is zero at s = 0
     std::vector<double> x, known;             // series of x, and of its known part

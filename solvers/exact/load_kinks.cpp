@@ -1,35 +1,38 @@
 // LoadSeries: the knots of tables that angles pass inside a step.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/load_series.hpp"
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr double kMonotone = 0.25;  // of the first rate, what the others may be
-// Of the motion inside a step, by the rest of a kink in it: of jump h |theta'| h^2/(2 m), at most.
+constexpr double kMonotone = StraightLoads::kMonotone;
+// Error of the motion inside a step by the rest of a kink in it, relative to jump h |theta'| h^2/(2 m), at most.
 constexpr double kKinkInside = 1e-4;
+constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before their count starts again
 
 }  // namespace
 
 /// The terms of the load's angle, kLanes apart.
 void LoadSeries::expand_angle(const PlacedLoad& l, const TaylorSeries& series, std::size_t terms,
                               double* theta) const {
-  const auto known = idx(series.degree()) + 1;
   const double* z = series.coefficients(0) + l.row;
-  const double coeff = l.feedback ? l.coeff : 0.0;
+  const std::size_t known = l.feedback ? std::min(terms, idx(series.degree()) + 1) : 1, stride = idx(stride_);
   theta[0] = l.angle;
-  for (std::size_t k = 1; k < terms; ++k) theta[k * kLanes] = k < known ? coeff * z[k * idx(stride_)] : 0.0;
+  for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = l.coeff * z[k * stride];
+  for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
   for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
 }
 
 double LoadSeries::find_kinks(TaylorSeries& series) {
   of_kinks_.clear();
-  if (loads_.empty() && !expanded_.knotted()) return 0.0;
+  if (straight_.empty() && !expanded_.knotted()) return 0.0;
   find_ranges(series);
   list_kinks(series, 1.0, true);
   kinks_.add_to(of_kinks_);
@@ -41,7 +44,7 @@ double LoadSeries::find_kinks(TaylorSeries& series) {
 
 void LoadSeries::find_ranges(TaylorSeries& series) {
   ranges_.resize(idx(3 * stride_));
-  series.ranges(ranges_.data(), ranges_.data() + stride_, ranges_.data() + 2 * stride_);
+  series.ranges(ranges_.data(), ranges_.data() + stride_);
 }
 
 bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double* z_end) {
@@ -50,6 +53,7 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
   else
     for (int i = 0; i < system_.size(); ++i) ranges_[idx(i)] = z_end[i] - series.coefficient(0, i);
   if (!list_kinks(series, end, false)) return false;
+  if (!given_kinks_) return true;
   // The work of a load whose angle follows no motion is known where its row is not moved by another kink before.
   for (int i = 0; i < kinks_.count(); ++i)
     for (int k = 0; k < kinks_.count(); ++k)
@@ -85,7 +89,7 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const Tay
     if (rises ? end <= bound : end >= bound) break;
     const double turn = std::abs(end - bound);
     const std::optional<Behind> behind = next(bound, rises, turn);
-    // Of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
+    // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
     double chord = 0.0, slope = 0.0, power = 1.0;
     if (behind)
       for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {
@@ -99,12 +103,16 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const Tay
       break;
     }
     kinks_inside_ = std::max(kinks_inside_, inside);
+    given_kinks_ |= !l.feedback;
     force_.assign(behind->force.begin(), behind->force.end());
     for (double& term : force_) term *= l.coeff;
     expand_angle(l, series, terms, kinks_.add(l.row, bound, force_, end, terms));
     const double size = std::abs(l.coeff) * series.reach(l.row);
-    kink_sizes_.push_back(
-        {&l, size * chord * std::abs(first), l.feedback ? size * slope * std::abs(l.coeff) : 0.0});
+    kink_sizes_.push_back({&l, size * chord * std::abs(first),
+                           l.feedback ? size * slope * std::abs(l.coeff) : 0.0,
+                           l.feedback ? (1.0 - kMonotone) * std::abs(first / l.coeff)
+                                      : std::numeric_limits<double>::infinity()});
+    shared_rows_ |= std::exchange(last_kink_[row], listed_before_ + kinks_.count()) > listed_before_;
     steepest += slope;
     kink_push_ +=
         (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first) * slope * std::sqrt(series.mobility(l.row));
@@ -118,11 +126,18 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const Tay
 /// Lists the kinks that loads pass up to s = to in kinks_; ranges_ holds how far the unknowns come. projected: a kink
 /// that leaves too much inside the step ends it. False: some angle may turn back in the step, or leave it at such a kink.
 bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projected) {
+  listed_before_ += kinks_.count();
+  if (listed_before_ > kMostListed) {
+    std::fill(last_kink_.begin(), last_kink_.end(), 0);
+    listed_before_ = 0;
+  }
   kinks_.clear();
   kink_sizes_.clear();
   kinks_inside_ = kink_push_ = 0.0;
+  given_kinks_ = shared_rows_ = false;
   bool all = true;
-  for (Linear& l : loads_) {
+  for (StraightLoads::Load* near : straight_.near_knots(series, to, phi_, ranges_.data())) {
+    StraightLoads::Load& l = *near;
     l.ahead = l.stretch;
     l.ahead_angle_0 = l.angle_0;
     bool first = true;
@@ -212,7 +227,7 @@ double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
   return sum;
 }
 
-const LoadStretch& LoadSeries::beyond(Linear& l, double bound, bool rises) const {
+const LoadStretch& LoadSeries::beyond(StraightLoads::Load& l, double bound, bool rises) const {
   const int direction = rises ? 1 : -1;
   if (l.next_direction != direction || l.next_bound != bound || l.next_t != t_) {
     l.next = l.term->load->stretch(t_, bound, direction).value_or(LoadStretch{});

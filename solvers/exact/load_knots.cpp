@@ -8,8 +8,9 @@ namespace drev {
 
 namespace {
 
-constexpr double kOfKnotForce = 1e-17;  // of what a load differs behind a knot: terms that are left out
-constexpr double kJumpsBy = 1e-9;       // of the torque at a knot
+// Terms that are left out, relative to the force by which a load differs behind a knot.
+constexpr double kOfKnotForce = 1e-17;
+constexpr double kJumpsBy = 1e-9;  // a load jumps at a knot, relative to its torque there
 
 using CubicTerms = std::array<double, 4>;
 /// The terms about a place further on.

@@ -9,18 +9,19 @@ namespace drev {
 
 namespace {
 
-constexpr double kOnKnot = 1e-13;        // relative to the angle, at least to 1 rad
-constexpr double kTermRounding = 1e-13;  // of the largest term of an angle's series
-// What the path inside a step is off by, of the rest that the projection leaves: 1/(4 D^2).
+// Rounding of a term, relative to the largest term of an angle's series.
+constexpr double kTermRounding = 1e-13;
+// Error of the path inside a step, relative to the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
-// What the step's end is off by, of the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
+// Error of the step's end, relative to the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
 constexpr double kEndRest = 1e-6;
-// By the last coefficients: so many that a force which is even or odd by chance is not taken for a smooth one.
+// Coefficients that tell the rest: so many that a force which is even or odd by chance is not taken for a smooth one.
 constexpr int kTail = 4;
-constexpr int kAnalyticTail = 2;  // of a sum of harmonics, and of a law between the bounds of its pieces
+// The same for a sum of harmonics, and for a law between the bounds of its pieces.
+constexpr int kAnalyticTail = 2;
 // The same behind a kink, times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
-// Of the largest force so far: rounding of the projection's coefficients.
+// Rounding of the projection's coefficients, relative to the largest force so far.
 constexpr double kForceRounding = 4e-15;
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
@@ -32,6 +33,7 @@ std::array<double, 3> over_step(const MotionPoint& m, double h) {
 LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
     : system_(system),
       assembler_(system),
+      straight_(system),
       expanded_(system),
       smooth_(system),
       stride_(TaylorSeries::stride(system)),
@@ -43,6 +45,7 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
       of_kinks_(stride_),
       largest_force_(idx(stride_)),
       changes_(idx(stride_)),
+      last_kink_(idx(stride_)),
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
     const NodeMap& map = system.node_map(term.node);
@@ -51,7 +54,7 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
       continue;
     }
     if (term.load->stretch(0.0, 0.0, 1.0)) {
-      loads_.emplace_back(system, term);
+      straight_.add(term);
       continue;
     }
     const bool expanded = ExpandedLoads::takes(system, term);
@@ -63,50 +66,32 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
 void LoadSeries::move(double t, const Vector& z, const Vector& v) {
   t_ = t;
   assembler_.set_time(t);
-  const MotionPoint& nominal = assembler_.nominal();
-  for (Linear& l : loads_) l.move(system_, nominal, z, v);
+  straight_.move(assembler_.nominal(), z, v);
   expanded_.move(assembler_, z, v);
   smooth_.move(assembler_, z, v);
 }
 
-void LoadSeries::look_up(Linear& l, double direction) {
-  l.stretch = l.term->load->stretch(t_, l.angle, direction).value_or(LoadStretch{});
-  l.t_0 = t_;
-  l.angle_0 = l.angle;
-}
-
 void LoadSeries::locate(double t, const Vector& z, const Vector& v) {
   move(t, z, v);
-  for (Linear& l : loads_) look_up(l, l.speed);
+  straight_.locate(t);
 }
 
 void LoadSeries::locate_as(const LoadSeries& other) {
   t_ = other.t_;
   assembler_.set_time(t_);
-  loads_ = other.loads_;
+  straight_.move_as(other.straight_);
   expanded_.move_as(other.expanded_);
   smooth_.move_as(other.smooth_);
 }
 
 void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole) {
   move(t, z, v);
-  for (Linear& l : loads_) {
-    if (whole && !l.watched) {
-      l.stretch = l.ahead;
-      l.angle_0 = l.ahead_angle_0;
-    }
-    const double near = kOnKnot * std::max(1.0, std::abs(l.angle));
-    const double above = l.angle - l.stretch.low, below = l.stretch.high - l.angle;
-    if (l.speed > 0.0 ? below > near : above > near) continue;
-    if (l.speed == 0.0 && above >= -near && below >= -near)
-      continue;  // pass_knot() knows where it goes from rest
-    look_up(l, l.speed);
-  }
+  straight_.advance(t, whole);
 }
 
 void LoadSeries::pass_knot() {
-  for (Linear& l : loads_)
-    if (&l == leaving_) look_up(l, leaving_direction_);
+  for (StraightLoads::Load& l : straight_.loads())
+    if (&l == leaving_) straight_.look_up(l, t_, leaving_direction_);
   for (ExpandedLoads::Load& l : expanded_.loads())
     if (&l == leaving_) expanded_.look_up(l, leaving_direction_);
 }
@@ -141,23 +126,10 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
         for (int i = 0; i < 3; ++i) p(i, static_cast<int>(it.row())) -= it.value() * u_[idx(k)][idx(i)];
     }
   }
-  for (const Linear& l : loads_) {
-    const LoadStretch& s = l.stretch;
-    p(0, l.row) += l.coeff * (s.torque + s.time_slope * (t_ - l.t_0) + s.angle_slope * (l.angle - l.angle_0));
-    p(1, l.row) += l.coeff * (s.time_slope * h + s.angle_slope * l.ratio * phi_[1]);
-    p(2, l.row) += l.coeff * s.angle_slope * l.ratio * phi_[2];
-  }
+  straight_.add_to(series, t_, h, phi_, p_.data());
   smooth_.add_to(h, phi_, p_.data());
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < stride_; ++i) series.right_side(k)[i] += p(k, i);
-  for (const Linear& l : loads_) {
-    if (!l.feedback || l.stretch.angle_slope == 0.0) continue;
-    const double slope = l.coeff * l.coeff * l.stretch.angle_slope;
-    series.add_row_stiffness(l.row, -slope);
-    series.widen(l.row, slope, 0.0);
-    // The slope acts on the change of the deviation over the step.
-    series.right_side(0)[l.row] -= l.coeff * l.stretch.angle_slope * l.deviation;
-  }
   smooth_.add_slopes(series);
   expanded_.add_to(series, h, phi_);
 }
@@ -167,7 +139,7 @@ double LoadSeries::angle_term(const PlacedLoad& l, const TaylorSeries& series, i
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-/// Of the largest force on the row so far, what a held contact's torque is off by. Coefficients of smooth forces fall
+/// Error of a held contact's torque, relative to the largest force on the row so far. Coefficients of smooth forces fall
 /// from degree to degree at an even rate: the next one tells, where the tail would ask for far shorter steps.
 double LoadSeries::held_rest(const LegendreProjection& forces, int row) const {
   const auto larger = [&](int j) {
@@ -308,13 +280,8 @@ double LoadSeries::work(TaylorSeries& series, double s, const Vector& end) {
     (with_laws_ ? of_loads_ : projection_).add_powers(3, p_.data());
     projected_ = false;
   }
-  double sum = series.work(p_.data(), degree_, s) + expanded_.work(series, s);
-  for (const Linear& l : loads_)
-    if (l.feedback && l.stretch.angle_slope != 0.0) {
-      const double turn = l.coeff * (l.along(system_, end) - series.coefficient(0, l.row));
-      sum += 0.5 * l.stretch.angle_slope * turn * turn;
-    }
-  return sum + smooth_.slope_work(series, end);
+  const double sum = series.work(p_.data(), degree_, s) + expanded_.work(series, s);
+  return sum + straight_.slope_work(series, end) + smooth_.slope_work(series, end);
 }
 
 }  // namespace drev

@@ -11,10 +11,11 @@
 
 #include "solvers/exact/expanded_loads.hpp"
 #include "solvers/exact/kink_moments.hpp"
-#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/projected_laws.hpp"
 #include "solvers/exact/smooth_loads.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/exact/straight_loads.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -39,7 +40,7 @@ class LoadSeries {
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
   /// False: no load can differ from what add_to() adds.
-  bool projects() const { return !loads_.empty() || !smooth_.empty() || expanded_.knotted(); }
+  bool projects() const { return !straight_.empty() || !smooth_.empty() || expanded_.knotted(); }
   /// The part of the step for which the loads' polynomials hold, <= 1; and whether, along the series, some angle came
   /// further than was reckoned with: then the step is to be expanded anew.
   double part_held() const { return expanded_.part_held(); }
@@ -48,18 +49,18 @@ class LoadSeries {
   /// One pass of the fixed-point iteration between the forces' projection and the path that they lead to.
   /// Relative to the largest deflection and speed [-].
   struct Pass {
-    /// Of the motion, by what this pass changed of the forces' projection; 0: nothing to project.
+    /// Change of the motion by what this pass changed of the forces' projection; 0: nothing to project.
     double change = 0.0;
     /// Contraction factor: of a change of the motion, the part that the next pass changes again, estimated
     /// from the forces' slopes, h^2/2 |df/dx| / m. The iteration settles where it is below 1.
     double contraction = 0.0;
-    /// Of the motion at the step's end, by what no polynomial of the projection's degree holds of the forces.
+    /// Error of the motion at the step's end by what no polynomial of the projection's degree holds of the forces.
     double residual = 0.0;
     /// The same inside the step, of smooth forces.
     double inside = 0.0;
     /// s of a knot that leaves too much of the motion inside the step: the step should end there.
     std::optional<double> cut = {};
-    /// Where friction holds: of the largest force on a row so far, what the projection lacks of it. It tells when
+    /// Where friction holds: what the projection lacks of a force, relative to the largest force on its row so far. It tells when
     /// a contact lets go, also where nothing moves.
     double torque = 0.0;
   };
@@ -82,25 +83,29 @@ class LoadSeries {
     add_kink_slopes(series, -1.0);
   }
   /// Of each: |d/ds| of the acceleration that sets in [1/s^2], and of what a motion of its row turns, the acceleration that
-  /// comes back [1/s^2].
+  /// comes back [1/s^2]; and how fast the row turns the angle at least, by s [rad or m]: infinity where it does not.
   struct KinkSize {
     const PlacedLoad* load;
-    double pull, gain;
+    double pull, gain, rate;
   };
+  /// Some of them are on one row.
+  bool kinks_share_rows() const { return shared_rows_; }
   const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
+  /// The kink listed last on a row; -1: none.
+  int kink_on(int row) const { return std::max(last_kink_[idx(row)] - listed_before_, 0) - 1; }
   /// Bound of the accelerations of all of them, sum |jump theta'| h^2/sqrt(m): energies tell that they move an unknown of
   /// mass m over s by no more than this s^3/(6 sqrt(m)).
   double kink_push() const { return kink_push_; }
   /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
   double kink_work(const TaylorSeries& series, double s) const;
   /// Kinks are all that bends loads beyond the series.
-  bool kinks_alone() const { return (!loads_.empty() || expanded_.knotted()) && smooth_.empty(); }
+  bool kinks_alone() const { return (!straight_.empty() || expanded_.knotted()) && smooth_.empty(); }
   /// Whether the right side holds a projection, for this step and no shorter one.
   bool projected() const { return projected_; }
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
-  /// Of the motion, what kinks leave inside the step at most.
+  /// Bound of what kinks leave inside the step, relative to the motion.
   double kinks_inside() const { return smooth_.kinked() ? kMostInside : kinks_inside_; }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;
@@ -116,7 +121,7 @@ class LoadSeries {
   /// First s in (0, end] (0 for a load about to leave backwards) at which a load whose angle may turn back
   /// leaves its stretch: the step must end there.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
-  /// After first_knot() and advance() to it: that load goes on to the next stretch.
+  /// The load found by first_knot() goes on to the next stretch, once advance() has come to the knot.
   void pass_knot();
   ElementId knot_element() const { return leaving_->term->element; }
 
@@ -125,17 +130,7 @@ class LoadSeries {
 
  private:
   void add_kink_slopes(TaylorSeries& series, double factor) const;
-  struct Linear : PlacedLoad {
-    using PlacedLoad::PlacedLoad;
-    LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;  // where `stretch` gives its torque
-    double ahead_angle_0 = 0.0;       // the same of `ahead`
-    LoadStretch next = {};            // behind this bound, at this time
-    double next_bound = 0.0, next_t = 0.0;
-    int next_direction = 0;  // 0: none is known
-  };
   void move(double t, const Vector& z, const Vector& v);
-  void look_up(Linear& load, double direction);
   double angle_term(const PlacedLoad& load, const TaylorSeries& series, int k) const;
   void expand_angle(const PlacedLoad& load, const TaylorSeries& series, std::size_t terms,
                     double* theta) const;
@@ -154,12 +149,12 @@ class LoadSeries {
   /// Calls with every load that says knots, and the bounds that hold for it.
   template <class Each>
   void for_knotted(const Each& each) {
-    for (Linear& l : loads_) each(l, l.stretch.low, l.stretch.high);
+    for (StraightLoads::Load& l : straight_.loads()) each(l, l.stretch.low, l.stretch.high);
     for (ExpandedLoads::Load& l : expanded_.loads())
       if (l.acts && l.knots != nullptr) each(l, l.piece.low, l.piece.high);
   }
   /// The stretch behind this bound of a load's stretch, asked for once a step.
-  const LoadStretch& beyond(Linear& load, double bound, bool rises) const;
+  const LoadStretch& beyond(StraightLoads::Load& load, double bound, bool rises) const;
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const {
@@ -170,15 +165,15 @@ class LoadSeries {
 
   const System& system_;
   Assembler assembler_;
-  std::vector<Linear> loads_;
+  StraightLoads straight_;
   ExpandedLoads expanded_;
   SmoothLoads smooth_;
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
   std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
-  std::vector<double> base_;  // of the series' right side, degrees 0 to 2, before projection
+  std::vector<double> base_;  // the series' right side, degrees 0 to 2, before projection
   int degree_ = 2;            // of p_
-  LegendreProjection projection_, last_;  // of this pass, and the last
+  LegendreProjection projection_, last_;  // projection of this pass, and of the pass before
   LegendreProjection of_loads_;           // of this pass, where there are laws too
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
   std::vector<double> largest_force_;     // by row, of steps in which friction held
@@ -187,14 +182,18 @@ class LoadSeries {
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.
   static constexpr double kMostInside = 1e-6;
-  double kinks_inside_ = 0.0;  // by tables
+  double kinks_inside_ = 0.0;  // what kinks of tables leave inside the step, relative to the motion
   double kink_push_ = 0.0;
+  std::vector<int> last_kink_;  // by row, the kink listed last, counted from 1 over all listings
+  int listed_before_ = 0;       // in listings before this one
+  bool shared_rows_ = false;
+  bool given_kinks_ = false;  // some of a load whose angle follows no motion
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
   std::vector<double> power_, force_;
-  std::vector<double> ranges_;  // by row: how far it comes, and what its terms and their slopes add up to
-  std::vector<KinkSize> kink_sizes_;  // of each of kinks_
+  std::vector<double> ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
+  std::vector<KinkSize> kink_sizes_;  // sizes of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
   const PlacedLoad* leaving_ = nullptr;

@@ -9,8 +9,9 @@
 namespace drev {
 
 namespace {
-constexpr double kRounding = 2e-14;    // of the last coefficients
-constexpr double kAngleClear = 2e-15;  // of an angle, at least of 1 rad: beside a knot
+constexpr double kRounding = 2e-14;  // rounding of the last coefficients, relative to the largest
+// An angle is clear of a knot, relative to the angle and to 1 rad at least.
+constexpr double kAngleClear = 2e-15;
 }  // namespace
 
 ProjectedLaws::ProjectedLaws(const System& system)

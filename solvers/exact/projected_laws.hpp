@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "solvers/exact/law_work.hpp"
-#include "solvers/exact/legendre_projection.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

@@ -14,8 +14,8 @@
 
 #include <vector>
 
-#include "solvers/exact/legendre_projection.hpp"
 #include "solvers/exact/tangent_load.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 namespace drev {
 
@@ -65,7 +65,7 @@ class SmoothLoads {
  private:
   struct Place : TangentLoad, KnottedPlace {
     using TangentLoad::TangentLoad;
-    bool kinked = false, unfinished = false, monotone = true;  // in this pass
+    bool kinked = false, unfinished = false, monotone = true;  // what this pass found of the load
     double strongest = 1.0;                                    // of the knots passed
   };
   struct Samples;

@@ -7,21 +7,24 @@ namespace drev {
 
 namespace {
 
-constexpr double kShorten = 0.9;  // of the step at which the loads' rest is just small enough
+constexpr double kShorten = 0.9;  // factor on the step at which the rest of the loads is just small enough
 constexpr double kOfFirstChange =
     0.03;                          // of what the last step's first pass changed: tolerance of this step's
 constexpr double kLoosest = 1e-3;  // tolerance of a pass that is not the last
-constexpr double kPassesAgree = 1e-15;  // of the motion: rounding of what is projected
-constexpr double kInside = 0.01;        // of the tolerance: what the motion inside the step may be off by
-constexpr double kTorqueRest = 1e-10;   // of the forces on a train that friction holds
-constexpr double kJump = 1e-4;          // of the tolerance: error allowed per undeclared discontinuity
-constexpr double kBehindKnot = 1e-3;    // of the step to it: behind the last node of Gauss' rule
-constexpr double kBeforeEnd = 0.98;     // of the step: a knot that its nodes see
-constexpr double kNearStart = 1e-8;     // of the step
+constexpr double kPassesAgree = 1e-15;  // rounding of what is projected, relative to the motion
+constexpr double kInside = 0.01;        // error of the motion inside a step, relative to the tolerance
+// Error of a held torque, relative to the forces on a train that friction holds.
+constexpr double kTorqueRest = 1e-10;
+constexpr double kJump = 1e-4;  // error allowed per undeclared discontinuity, relative to the tolerance
+// How far behind a knot a step ends, relative to the step to it: behind the last node of Gauss's rule.
+constexpr double kBehindKnot = 1e-3;
+constexpr double kBeforeEnd = 0.98;  // last place in a step at which the nodes of Gauss's rule see a knot
+constexpr double kNearStart = 1e-8;  // a knot so close to the start does not end a step, relative to the step
 constexpr int kMostNewton = 10;
-constexpr double kAlong = 1e-9;  // of the motion: what points on the way of a swept step may be off by
-constexpr double kAtChange = 1e-12, kRoundingOfTime = 4e-16;  // of the step; of the time
-constexpr int kMaxPasses = 20;                                // of projected loads
+constexpr double kAlong = 1e-9;  // error of points on the way of a swept step, relative to the motion
+// A place is settled, relative to the step; rounding of a time, relative to the time.
+constexpr double kAtChange = 1e-12, kRoundingOfTime = 4e-16;
+constexpr int kMaxPasses = 20;  // passes of projected loads in one step
 // How far a kink's response, between s^3 and s^7 from somewhere on, lies from the cubic through its ends: of y and y' there,
 // twice the most.
 constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
@@ -55,10 +58,11 @@ bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
     if (!kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong))) return false;
   }
   if (!kinks.any()) return true;
-  const double per_time = 1.0 / series.step();
+  const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
+  double *to_z = z.data(), *to_v = v.data();
   for (int i = 0; i < series.size(); ++i) {
-    z[i] += kinks.y(i);
-    v[i] += per_time * kinks.rate(i);
+    to_z[i] += y[i];
+    to_v[i] += per_time * rate[i];
   }
   return true;
 }
@@ -108,22 +112,23 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     contraction_ = std::max(made.contraction, 1e-300);
     if (pass == 0) first_change_ = made.change;
-    // What this pass was off by comes back in the next one times the contraction factor.
+    // The error of this pass comes back in the next one times the contraction factor.
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
     tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
   }
 }
 
 const double* StepExpansion::beyond_cubic(double s) {
-  const int n = series.size();
-  beyond_cubic_.resize(idx(2 * n));
+  const int n = series.size(), stride = series.stride();
+  beyond_cubic_.resize(idx(2 * stride));
   series.beyond_cubic(s, beyond_cubic_.data());
+  if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
   if (sweeps_ && kinks.any()) {
-    const double per_time = 1.0 / series.step();
+    const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
+    double *of_value = beyond_cubic_.data(), *of_rate = of_value + n;
     for (int i = 0; i < n; ++i) {
-      const double y = std::abs(kinks.y(i)), rate = std::abs(kinks.rate(i));
-      beyond_cubic_[idx(i)] += kOfKinks * y + kOfKinkRates * rate;
-      beyond_cubic_[idx(n + i)] += 10.0 * kOfKinkRates * per_time * rate;
+      of_value[i] += kOfKinks * std::abs(y[i]) + kOfKinkRates * std::abs(rate[i]);
+      of_rate[i] += 10.0 * kOfKinkRates * per_time * std::abs(rate[i]);
     }
   } else if (known.kinked())
     for (int i = 0; i < n; ++i) {
@@ -131,6 +136,19 @@ const double* StepExpansion::beyond_cubic(double s) {
       beyond_cubic_[idx(n + i)] += known.kinks_inside() * series.v_scale()[idx(series.kind(i))];
     }
   return beyond_cubic_.data();
+}
+
+StepMotion::DeflectionRange StepExpansion::deflection_range(const LawSeries& laws, const ScalarTerm& term,
+                                                            int law, double s) const {
+  const Interval range = laws.range(law, s);
+  double error = 0.0;
+  for (const Entry& e : term.z)
+    if (sweeps_ && kinks.any())  // from zero at rest, |y| <= |y_1| + 4/27 |y'_1| on the cubic
+      error += std::abs(e.coeff) * ((1.0 + kOfKinks) * std::abs(series.swept(0)[e.index]) +
+                                    (4.0 / 27.0 + kOfKinkRates) * std::abs(series.swept(-1)[e.index]));
+    else if (known.kinked())
+      error += std::abs(e.coeff) * known.kinks_inside() * series.z_scale()[idx(series.kind(e.index))];
+  return {range.low, range.high, error};
 }
 
 std::optional<double> StepExpansion::first_knot(double end) {

@@ -13,7 +13,8 @@
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/projected_laws.hpp"
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/run/observer.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -68,7 +69,7 @@ class StepExpansion {
   /// The unknowns and their rates at s of the step; not exactly: to 1e-9 of the motion, where it is swept. False: no
   /// response to kinks is found there.
   bool evaluate(double s, Vector& z, Vector& v, bool exactly = true);
-  /// Back to s after a look elsewhere in the step: where loads are then. room: for a state.
+  /// Returns to s after a look elsewhere in the step, so that loads stand where they are at s. room: for a state.
   void return_to(double s, State& room) {
     if (sweeps_ && kinks.end() != s) evaluate(s, room.z, room.v);
   }
@@ -77,6 +78,9 @@ class StepExpansion {
 
   /// Observer::looks_inside() over the step up to s.
   const double* beyond_cubic(double s);
+  /// StepMotion::deflection_range() up to s: of the series; what kinks add is within the error.
+  StepMotion::DeflectionRange deflection_range(const LawSeries& laws, const ScalarTerm& term, int law,
+                                               double s) const;
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
@@ -85,9 +89,9 @@ class StepExpansion {
   bool shortens() const {
     return !known.projects() && !known.expanded().active() && smooth.empty() && expanded.empty();
   }
-  /// Of all that acts, from 0 to s; end: what was evaluated at s.
+  /// Work of all that acts, from 0 to s; end: what was evaluated at s.
   LawWork work(const LawSeries& laws, double s, const EvaluatedState& end);
-  /// Of a step that is swept: its first change, and the s where it ends. None: passes have to tell. t: time at its start;
+  /// First change of a step that is swept, and the s where the step ends. None: passes have to tell. t: time at its start;
   /// `at` is room for a state.
   struct SweptEnd {
     double s = 1.0;
@@ -115,8 +119,9 @@ class StepExpansion {
   double share_ = 0.0;
   Vector z_end_;
   double knot_clearance_ = 0.0;
-  double contraction_ = 1.0;   // of the last step: how the projection's change came back
-  double first_change_ = 0.0;  // of the motion, by the last step's first projection
+  double contraction_ = 1.0;  // of the last step: how the projection's change came back
+  // Change of the motion by the last step's first projection, relative to the motion.
+  double first_change_ = 0.0;
 };
 
 /// The least tolerance of a step: below it is rounding.

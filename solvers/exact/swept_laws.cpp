@@ -115,7 +115,7 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
   std::array<double, TaylorSeries::kMostSwept> y, turned;
   for (const Law& law : laws_) {
     if (!law.active) continue;
-    const auto last = idx(degree - 1);  // of the moments of y that a sweep has
+    const auto last = idx(degree - 1);  // the last moment of y that a sweep has
     for (std::size_t i = 1; i < last; ++i) {
       y[i] = value_along(law.term->z, series.swept(static_cast<int>(i)));
       turned[i] = law.varies ? value_along(law.phase_row, series.swept(static_cast<int>(i))) : 0.0;

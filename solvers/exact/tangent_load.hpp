@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 

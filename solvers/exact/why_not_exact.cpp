@@ -1,4 +1,4 @@
-// What of a system forbids exact propagation: one sentence each, with what to use instead. And what of its options.
+// What in a system, or in the options, forbids exact propagation: one sentence each, with what to use instead.
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 

@@ -10,7 +10,7 @@ std::vector<double> graded_division(double length, const Grading& grading) {
                      grading.last + grading.growth * std::max(length - x, 0.0)});
   };
   std::vector<double> ends{0.0};
-  // A last piece of less than a quarter of a cell is spread over the others.
+  // A remainder of less than a quarter of a cell is distributed over the other cells.
   for (double x = 0.0; length - x > 0.25 * size(x);) {
     x += size(x + 0.5 * size(x));
     ends.push_back(x);

@@ -17,9 +17,10 @@ Moduli moduli(const PlaneMaterial& m) {
   return {e * nu / (m.plane_stress ? 1.0 - nu * nu : (1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * e / (1.0 + nu)};
 }
 
-using CellMatrix = std::array<double, 81 * 4>;  // by pairs of nodes, 2 x 2 each
+using CellMatrix = std::array<double, 81 * 4>;  // a block of 2 x 2 for each pair of nodes
 
-/// K_ij = integral of lambda g_i g_j' + mu (g_j g_i' + (g_i . g_j) I), g the gradients.
+/// Stiffness of a cell: K_ij = integral of lambda g_i g_j' + mu (g_j g_i' + (g_i . g_j) I), with the
+/// gradients g.
 CellMatrix cell_stiffness(const QuadraticMesh& mesh, int cell, const Moduli& m) {
   CellMatrix k{};
   for (const CellPoint& p : gauss_points(mesh, cell)) {
@@ -44,7 +45,7 @@ CellMatrix cell_stiffness(const QuadraticMesh& mesh, int cell, const Moduli& m) 
 
 SparseMatrix plane_stiffness(const QuadraticMesh& mesh, const std::vector<PlaneMaterial>& material) {
   const int nodes = static_cast<int>(mesh.nodes.size());
-  // Neighbours of each node, ascending: cells at a node, then their nodes without repeats.
+  // Neighbours of each node in ascending order: the cells at the node, then their nodes without repetition.
   std::vector<int> begin(mesh.nodes.size() + 1, 0), cells;
   for (const auto& cell : mesh.cells)
     for (const int node : cell) ++begin[static_cast<std::size_t>(node) + 1];

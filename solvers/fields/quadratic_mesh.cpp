@@ -12,7 +12,7 @@ namespace {
 std::array<double, 3> lagrange(double u) { return {0.5 * u * (u - 1.0), 1.0 - u * u, 0.5 * u * (u + 1.0)}; }
 std::array<double, 3> lagrange_slope(double u) { return {u - 0.5, -2.0 * u, u + 0.5}; }
 
-/// Numbers of the squares of a grid, one key each.
+/// Key of the square (i, j) of a grid.
 std::uint64_t square_key(std::int64_t i, std::int64_t j) {
   return static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ULL ^
          static_cast<std::uint64_t>(j) * 0xc2b2ae3d27d4eb4fULL;
@@ -83,7 +83,7 @@ std::vector<int> add_block(QuadraticMesh& mesh, int columns, int rows,
 }
 
 std::vector<int> join_nodes(QuadraticMesh& mesh, double distance) {
-  // A node looks for another in its square of the grid and in the eight around it.
+  // For each node search its square of the grid and the eight around it.
   std::unordered_multimap<std::uint64_t, int> squares;
   std::vector<PlanePoint> kept;
   std::vector<int> renumbered;

@@ -2,7 +2,7 @@
 /// Plane meshes of biquadratic Lagrange quadrilaterals (nine nodes), the finite elements with which gear bodies
 /// (plane elasticity) and shaft sections and contours (torsion) are solved.
 ///
-/// Nodes of a cell over its own coordinates -1 <= u, v <= 1, node 3 j + i at (i - 1, j - 1):
+/// Nodes of a cell in its local coordinates -1 <= u, v <= 1, with node 3 j + i at (i - 1, j - 1):
 ///
 ///   6 7 8
 ///   3 4 5      v up, u to the right
@@ -24,31 +24,33 @@ struct QuadraticMesh {
   std::vector<std::array<int, 9>> cells;
 };
 
-/// What one cell has at one place: N_k, their gradients (1/unit of length) and the place itself.
+/// Values of one cell at one place: shape functions N_k, their gradients [1/unit of length] and the place
+/// itself.
 struct CellPoint {
   PlanePoint position{};
   std::array<double, 9> value{};         ///< N_k
   std::array<PlanePoint, 9> gradient{};  ///< dN_k/dx, dN_k/dy
   double jacobian = 0.0;                 ///< det d(x, y)/d(u, v), > 0 in a valid cell
-  double weight = 0.0;                   ///< of the Gauss rule times the Jacobian; 0 from cell_point()
+  double weight = 0.0;                   ///< weight of the Gauss rule times the Jacobian; 0 from cell_point()
 };
 
-/// At the cell's own coordinates u, v in [-1, 1]. A degenerate place has a Jacobian <= 0 and gradients of 0.
+/// Values at the cell's local coordinates u, v in [-1, 1]. A degenerate place has a Jacobian <= 0 and
+/// gradients of 0.
 CellPoint cell_point(const QuadraticMesh& mesh, int cell, double u, double v);
 
 /// The nine points of the Gauss rule that integrates polynomials of degree 5 in u and v exactly: sum of weight
 /// times f is the integral of f over the cell. Throws SolverError, naming the place, where a Jacobian is <= 0.
 std::array<CellPoint, 9> gauss_points(const QuadraticMesh& mesh, int cell);
 
-/// Adds columns x rows cells over the map (s, t) in [0, 1]^2 -> the plane, which must not turn over (Jacobian > 0).
-/// The map is called at multiples of half a cell; grading is the map's own. Gives the block's nodes by
-/// row of t: node (i, j), 0 <= i <= 2 columns, 0 <= j <= 2 rows, stands at [j * (2 columns + 1) + i]. Blocks that touch
-/// keep nodes of their own there until join_nodes().
+/// Adds columns x rows cells over the map of (s, t) in [0, 1]^2 to the plane, whose Jacobian must be > 0. The
+/// map is called at multiples of half a cell and contains any grading. Returns the nodes of the block row by
+/// row in t: node (i, j), 0 <= i <= 2 columns, 0 <= j <= 2 rows, is at [j * (2 columns + 1) + i]. Blocks that
+/// touch have separate nodes there until join_nodes().
 std::vector<int> add_block(QuadraticMesh& mesh, int columns, int rows,
                            const std::function<PlanePoint(double s, double t)>& map);
 
-/// Makes one node of those closer than `distance` (unit of the coordinates, > 0, below half of the smallest distance
-/// of different nodes) and gives each former number's new one.
+/// Joins nodes closer than `distance` (in the unit of the coordinates, > 0, below half of the smallest
+/// distance of different nodes) and returns the new number for each old one.
 std::vector<int> join_nodes(QuadraticMesh& mesh, double distance);
 
 }  // namespace drev

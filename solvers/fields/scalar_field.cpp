@@ -9,7 +9,7 @@
 namespace drev {
 namespace {
 
-/// Unknowns of a cell; -1: none.
+/// Numbers of the unknowns of a cell; -1: none.
 std::array<int, 9> cell_unknowns(const QuadraticMesh& mesh, const FieldUnknowns& unknowns, std::size_t cell) {
   std::array<int, 9> local;
   for (std::size_t k = 0; k < 9; ++k)

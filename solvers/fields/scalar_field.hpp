@@ -17,21 +17,21 @@ namespace drev {
 
 using FieldCoefficient = std::function<double(const PlanePoint&)>;
 
-/// Unknown of each node: its number from 0 on, or -1 where u = 0. Nodes with one number share one value.
+/// Unknown of each node: its number from 0 on, or -1 where u = 0. Nodes with the same number share one value.
 struct FieldUnknowns {
   std::vector<int> of_node;
   int count = 0;
 };
-/// One unknown each node, in the order of nodes, but none where zero says so.
+/// One unknown for each node in the order of nodes, except where `zero` is true.
 FieldUnknowns field_unknowns(const QuadraticMesh& mesh, const std::vector<bool>& zero);
 
-/// The matrices over the unknowns, of one pattern, and the load.
+/// The matrices over the unknowns, with one pattern, and the load vector.
 struct FieldMatrices {
   SparseMatrix stiffness;  ///< int c grad N_i . grad N_j
   Vector mass;             ///< int m N_i N_j, values on the pattern of stiffness; empty without m
   Vector load;             ///< int f N_i
 };
-/// source (f) and mass (m) may be empty. Throws SolverError for cells that turn over.
+/// source (f) and mass (m) may be empty. Throws SolverError for inverted cells (Jacobian <= 0).
 FieldMatrices assemble_field(const QuadraticMesh& mesh, const FieldUnknowns& unknowns,
                              const FieldCoefficient& conductivity, const FieldCoefficient& source,
                              const FieldCoefficient& mass = {});

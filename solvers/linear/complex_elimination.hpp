@@ -44,9 +44,9 @@ class ComplexElimination {
   bool factorize_pivoted(const Vector& m, const Vector& c, const Vector& k, Complex s);
 
   int n_ = 0;
-  std::vector<bool> held_;          // of each unknown of the pattern
+  std::vector<bool> held_;          // whether each unknown of the pattern is held
   std::vector<int> order_;          // order_[j]: unknown eliminated as number j
-  std::vector<int> diagonal_slot_;  // of the pattern, by number
+  std::vector<int> diagonal_slot_;  // slot of each diagonal entry in the pattern
   std::vector<int> begin_;          // of column j of L in row_; n_ + 1
   std::vector<int> row_, slot_;     // of each entry of L: its number, its place in the pattern or -1
   std::vector<int> target_;  // of each update, in the order in which they are made: < 0: diagonal -1 - j

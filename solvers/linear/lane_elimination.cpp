@@ -1,5 +1,7 @@
 #include "solvers/linear/lane_elimination.hpp"
 
+#include "solvers/linear/lane_pair.hpp"
+
 namespace drev {
 
 /// What the loops read and write.
@@ -13,77 +15,100 @@ namespace {
 
 using Work = LaneElimination::Work;
 
+/// With one C and K for all lanes (Value double), or for each (LaneRow).
 template <class Value>
-[[gnu::always_inline]] inline void eliminate(const Work& a, const double* m, const Value* c, const Value* k,
-                                             const Lanes& w, Lanes& lost) {
-  const Lanes w_2 = w * w;
-  const auto entries = a.begin[a.n];
-  for (int e = 0; e < entries; ++e) {
-    const int slot = a.slot[e];
-    a.w_re[e].v = slot < 0 ? Lanes{} : each(k[slot]) - w_2 * m[slot];
-    a.w_im[e].v = slot < 0 ? Lanes{} : w * each(c[slot]);
-  }
-  for (int j = 0; j < a.n; ++j) {
-    const int slot = a.diagonal_slot[j], unknown = a.order[j];
-    a.d_re[j].v = slot < 0 ? Lanes{} : each(k[slot]) - w_2 * m[slot];
-    a.d_im[j].v = slot < 0 ? Lanes{} : w * each(c[slot]);
-    a.x_re[j] = a.re[unknown];
-    a.x_im[j] = a.im[unknown];
-  }
-  const double least = ComplexElimination::kLostPivot * ComplexElimination::kLostPivot;
-  int update = 0;
-  for (int j = 0; j < a.n; ++j) {
-    const Lanes p_re = a.d_re[j].v, p_im = a.d_im[j].v;
-    Lanes terms{};
-    if (const int slot = a.diagonal_slot[j]; slot >= 0) {
-      Lanes of_k = Lanes{} + each(k[slot]), of_c = w * each(c[slot]), of_m = w_2 * m[slot];
-      magnitude(of_k), magnitude(of_c), magnitude(of_m);
-      terms = of_k + of_c + of_m;
-    }
-    const Lanes size = p_re * p_re + p_im * p_im;
-    // Choices between doubles: GCC 12 takes masks of lanes to pieces.
-    const Lanes one = Lanes{} + 1.0, most = Lanes{} + std::numeric_limits<double>::max();
-    lost = size > least * terms * terms ? lost : one;
-    lost = size <= most ? lost : one;
-    const Lanes over = 1.0 / size, i_re = p_re * over, i_im = -p_im * over;
-    const Lanes known_re = a.x_re[j].v, known_im = a.x_im[j].v;
-    for (int e = a.begin[j]; e < a.begin[j + 1]; ++e) {
-      const Lanes re = a.w_re[e].v * i_re - a.w_im[e].v * i_im, im = a.w_re[e].v * i_im + a.w_im[e].v * i_re;
-      a.l_re[e].v = re;
-      a.l_im[e].v = im;
-      for (int f = e; f < a.begin[j + 1]; ++f) {
-        const int target = a.target[update++];
-        LaneRow& to_re = target < 0 ? a.d_re[-1 - target] : a.w_re[target];
-        LaneRow& to_im = target < 0 ? a.d_im[-1 - target] : a.w_im[target];
-        to_re.v -= re * a.w_re[f].v - im * a.w_im[f].v;
-        to_im.v -= re * a.w_im[f].v + im * a.w_re[f].v;
+struct Eliminate {
+  template <class L>
+  [[gnu::always_inline]] static void run(const Work* work, const double* m, const Value* c, const Value* k,
+                                         const LaneRow* frequencies, LaneRow* result) {
+    const Work& a = *work;
+    L w, lost{};
+    take(*frequencies, w);
+    const L w_2 = w * w;
+    const auto dynamic = [&](int slot, LaneRow& to_re, LaneRow& to_im) __attribute__((always_inline)) {
+      L re{}, im{};
+      if (slot >= 0) {
+        take(k[slot], re), take(c[slot], im);
+        re -= w_2 * m[slot];
+        im *= w;
       }
-      const int row = a.row[e];
-      a.x_re[row].v -= re * known_re - im * known_im;
-      a.x_im[row].v -= re * known_im + im * known_re;
+      put(re, to_re), put(im, to_im);
+    };
+    const auto entries = a.begin[a.n];
+    for (int e = 0; e < entries; ++e) dynamic(a.slot[e], a.w_re[e], a.w_im[e]);
+    for (int j = 0; j < a.n; ++j) {
+      dynamic(a.diagonal_slot[j], a.d_re[j], a.d_im[j]);
+      a.x_re[j] = a.re[a.order[j]];
+      a.x_im[j] = a.im[a.order[j]];
     }
-    a.x_re[j].v = known_re * i_re - known_im * i_im;
-    a.x_im[j].v = known_re * i_im + known_im * i_re;
-  }
-  for (int j = a.n - 1; j >= 0; --j) {
-    Lanes re = a.x_re[j].v, im = a.x_im[j].v;
-    for (int e = a.begin[j]; e < a.begin[j + 1]; ++e) {
-      const int row = a.row[e];
-      re -= a.l_re[e].v * a.x_re[row].v - a.l_im[e].v * a.x_im[row].v;
-      im -= a.l_re[e].v * a.x_im[row].v + a.l_im[e].v * a.x_re[row].v;
+    const double least = ComplexElimination::kLostPivot * ComplexElimination::kLostPivot;
+    const L one = L{} + 1.0, most = L{} + std::numeric_limits<double>::max();
+    int update = 0;
+    for (int j = 0; j < a.n; ++j) {
+      L p_re, p_im, terms{};
+      take(a.d_re[j], p_re), take(a.d_im[j], p_im);
+      if (const int slot = a.diagonal_slot[j]; slot >= 0) {
+        L of_c, of_m = w_2 * m[slot];
+        take(k[slot], terms), take(c[slot], of_c);
+        of_c *= w;
+        magnitude(terms), magnitude(of_c), magnitude(of_m);
+        terms += of_c + of_m;
+      }
+      const L size = p_re * p_re + p_im * p_im;
+      keep_where_not_below(size, L{} + std::numeric_limits<double>::min(), one, lost);
+      keep_where_not_below(size, least * terms * terms, one, lost);
+      keep_where_not_below(most, size, one, lost);
+      const L over = 1.0 / size, i_re = p_re * over, i_im = (-1.0 * p_im) * over;
+      L known_re, known_im;
+      take(a.x_re[j], known_re), take(a.x_im[j], known_im);
+      for (int e = a.begin[j]; e < a.begin[j + 1]; ++e) {
+        L of_re, of_im;
+        take(a.w_re[e], of_re), take(a.w_im[e], of_im);
+        const L re = of_re * i_re - of_im * i_im, im = of_re * i_im + of_im * i_re;
+        put(re, a.l_re[e]), put(im, a.l_im[e]);
+        for (int f = e; f < a.begin[j + 1]; ++f) {
+          const int target = a.target[update++];
+          LaneRow& to_re = target < 0 ? a.d_re[-1 - target] : a.w_re[target];
+          LaneRow& to_im = target < 0 ? a.d_im[-1 - target] : a.w_im[target];
+          L other_re, other_im, sum_re, sum_im;
+          take(a.w_re[f], other_re), take(a.w_im[f], other_im);
+          take(to_re, sum_re), take(to_im, sum_im);
+          put(sum_re - (re * other_re - im * other_im), to_re);
+          put(sum_im - (re * other_im + im * other_re), to_im);
+        }
+        const int row = a.row[e];
+        L x_re, x_im;
+        take(a.x_re[row], x_re), take(a.x_im[row], x_im);
+        put(x_re - (re * known_re - im * known_im), a.x_re[row]);
+        put(x_im - (re * known_im + im * known_re), a.x_im[row]);
+      }
+      put(known_re * i_re - known_im * i_im, a.x_re[j]);
+      put(known_re * i_im + known_im * i_re, a.x_im[j]);
     }
-    a.x_re[j].v = a.re[a.order[j]].v = re;
-    a.x_im[j].v = a.im[a.order[j]].v = im;
+    for (int j = a.n - 1; j >= 0; --j) {
+      L re, im;
+      take(a.x_re[j], re), take(a.x_im[j], im);
+      for (int e = a.begin[j]; e < a.begin[j + 1]; ++e) {
+        const int row = a.row[e];
+        L l_re, l_im, x_re, x_im;
+        take(a.l_re[e], l_re), take(a.l_im[e], l_im), take(a.x_re[row], x_re), take(a.x_im[row], x_im);
+        re -= l_re * x_re - l_im * x_im;
+        im -= l_re * x_im + l_im * x_re;
+      }
+      put(re, a.x_re[j]), put(re, a.re[a.order[j]]);
+      put(im, a.x_im[j]), put(im, a.im[a.order[j]]);
+    }
+    put(lost, *result);
   }
-}
+};
 
-DREV_WIDEST void eliminate_common(const Work& a, const double* m, const double* c, const double* k,
-                                  const Lanes& w, Lanes& lost) {
-  eliminate(a, m, c, k, w, lost);
-}
-DREV_WIDEST void eliminate_each(const Work& a, const double* m, const LaneRow* c, const LaneRow* k,
-                                const Lanes& w, Lanes& lost) {
-  eliminate(a, m, c, k, w, lost);
+template <class Value>
+void eliminate(const Work& work, const double* m, const Value* c, const Value* k, const Lanes& w,
+               Lanes& lost) {
+  const LaneRow frequencies{w};
+  LaneRow result;
+  run_widest<Eliminate<Value>>(&work, m, c, k, &frequencies, &result);
+  lost = result.v;
 }
 
 }  // namespace
@@ -121,14 +146,12 @@ LaneElimination::Work LaneElimination::work(LaneArray& re, LaneArray& im) {
 
 void LaneElimination::solve(const double* m, const double* c, const double* k, const Lanes& w, LaneArray& re,
                             LaneArray& im, Lanes& lost) {
-  lost = Lanes{};
-  eliminate_common(work(re, im), m, c, k, w, lost);
+  eliminate(work(re, im), m, c, k, w, lost);
 }
 
 void LaneElimination::solve(const double* m, const LaneRow* c, const LaneRow* k, const Lanes& w,
                             LaneArray& re, LaneArray& im, Lanes& lost) {
-  lost = Lanes{};
-  eliminate_each(work(re, im), m, c, k, w, lost);
+  eliminate(work(re, im), m, c, k, w, lost);
 }
 
 }  // namespace drev

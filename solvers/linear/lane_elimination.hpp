@@ -24,7 +24,7 @@ class LaneElimination {
   /// The same with a C and a K for each lane.
   void solve(const double* m, const LaneRow* c, const LaneRow* k, const Lanes& w, LaneArray& re,
              LaneArray& im, Lanes& lost);
-  struct Work;  // of its loops
+  struct Work;  // arrays of its loops
 
  private:
   Work work(LaneArray& re, LaneArray& im);

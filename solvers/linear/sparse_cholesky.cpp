@@ -34,7 +34,7 @@ const char* to_text(FactorStatus status) {
 }
 
 struct SparseCholesky::Impl {
-  Vector inverse_diagonal;  // of a diagonal matrix, which is not analysed
+  Vector inverse_diagonal;  // of a diagonal matrix; such a one is not analysed
   std::optional<LowFillFactor> flat;
   std::unique_ptr<CholmodFactor> cholmod;  // where L fills too much for flat arrays
   FactorStatus status = FactorStatus::not_computed;

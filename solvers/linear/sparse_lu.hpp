@@ -24,7 +24,7 @@ class SparseLu {
 
   /// Factors A. pattern: compressed, square; values: of A on that pattern, both triangles read. The
   /// first call analyses; later calls must bring the same pattern. They keep the pivot order of the
-  /// first as long as pivot growth allows, and pivot anew where it does not. Prints nothing, throws
+  /// first as long as pivot growth allows, and pivot again where it does not. Prints nothing, throws
   /// nothing.
   FactorStatus factorize(const SparseMatrix& pattern, const Vector& values);
   FactorStatus status() const;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kBetweenChecks = 3;
-constexpr double kApart = 1e-5;  // of the largest: eigenvalues of T whose vectors come out orthogonal
+constexpr double kApart = 1e-5;  // distance over the largest eigenvalue of T: vectors are orthogonal
 // Rows of a strip: two vectors that stay in the cache while the basis streams by, or all of the basis.
 constexpr int kLongStrip = 4096, kShortStrip = 512;
 constexpr Eigen::Index kKept = 1 << 22;  // doubles: no more than malloc keeps for the next call

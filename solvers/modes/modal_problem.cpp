@@ -19,7 +19,7 @@ namespace drev {
 namespace {
 
 constexpr int kStrip = 2048;     // rows whose matrix entries stay in the cache for all vectors
-constexpr int kStripRows = 512;  // of which all vectors do
+constexpr int kStripRows = 512;  // rows whose entries of all vectors stay in the cache
 // Times epsilon |x|' |K| |x|: the error of lambda that rounding of K leaves.
 constexpr double kRoundings = 16.0;
 constexpr double kOfResidual =

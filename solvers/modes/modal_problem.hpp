@@ -83,7 +83,7 @@ class ModalProblem {
   std::unique_ptr<ShiftInvertLanczos> lanczos_;  // begun with the shift, which it is to go on with
   InertiaCounter sturm_;
   ModalPairs dense_pairs_;
-  double dense_shift_ = 0.0;  // that dense_pairs_ belong to
+  double dense_shift_ = 0.0;  // shift of dense_pairs_
 };
 
 }  // namespace drev

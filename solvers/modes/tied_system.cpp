@@ -11,7 +11,7 @@ namespace drev {
 
 std::optional<TiedSystem> tied_system(const System& system) {
   const auto rigid = [](const FrictionTerm& term) { return term.friction->rigid(); };
-  constexpr double kNothing = 1e-12;  // of a tie's entries: it is eliminated already
+  constexpr double kNothing = 1e-12;  // largest entry of a tie that is eliminated already
   const auto row_of = [&](const FrictionTerm& term) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(system.size());
     for (const Entry& e : term.nodes)

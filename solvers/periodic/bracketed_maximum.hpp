@@ -1,6 +1,7 @@
 #pragma once
-/// The largest value of a function of one variable between two bounds, by parabolas through three points with
-/// golden section where they do not close in. Of several local maxima one is found.
+/// The largest value of a function of one variable between two bounds: parabolic interpolation through three
+/// points, with golden section steps where it does not converge. If there are several local maxima, one is
+/// found.
 ///
 /// Source: R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall, 1973, chapter 5
 /// (procedure localmin).
@@ -13,8 +14,9 @@ struct BracketedMaximum {
   double at = 0.0, value = 0.0;
 };
 
-/// look(t): the function, taken for t in [low, high]. start: where to begin, best a point above both ends; at
-/// or outside the bounds: golden section chooses. width: of the place, absolute; no less than rounding allows.
+/// look(t): the function, evaluated for t in [low, high]. start: first point, best one whose value is above
+/// both ends; if it is at or outside the bounds, golden section chooses it. width: absolute tolerance of the
+/// place, in the unit of t; the place is never located more closely than rounding allows.
 template <class Look>
 BracketedMaximum bracketed_maximum(double low, double start, double high, double width, const Look& look) {
   const double golden = 0.5 * (3.0 - std::sqrt(5.0));

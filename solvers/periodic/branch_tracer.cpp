@@ -11,16 +11,17 @@ namespace drev {
 namespace {
 
 constexpr int kMostIterations = 12;
-constexpr double kSolved = 1e-10;    // of X and w: the last step of Newton's method
-constexpr double kFirstStep = 5e-3;  // along the arc, of the size of X and w
-constexpr double kLongest = 0.05;
+constexpr double kSolved = 1e-10;    // last step of Newton's method relative to X and w [-]
+constexpr double kFirstStep = 5e-3;  // first step along the arc relative to the size of X and w [-]
+constexpr double kLongest = 0.05;    // longest step, likewise [-]
 constexpr double kShortest = 1e-7;
-constexpr double kLeastCosine = 0.95;  // between neighbouring tangents
-constexpr int kLocations = 40;
-constexpr double kJoined =
-    0.02;  // of X: what a single cycle does not have, where a curve ends on one that has
-constexpr double kUpright =
-    1e-8;  // of the speed: curves that are straight up turn back and forth by rounding
+constexpr double kLeastCosine = 0.95;  // smallest cosine of the angle between neighbouring tangents [-]
+constexpr int kLocations = 40;         // largest number of iterations that locate a change
+// Subharmonic part relative to X at which a curve has ended on the curve of a single cycle [-].
+constexpr double kJoined = 0.02;
+// Relative change of speed up to which an extremum is no fold [-]: vertical curves turn to and fro by
+// rounding.
+constexpr double kUpright = 1e-8;
 
 }  // namespace
 
@@ -62,7 +63,7 @@ bool BranchTracer::solve(double speed, Vector& x) {
       if (balance_.residual(next, speed, next_r) &&
           (next_r.norm() <= (1.0 - 1e-2 * part) * left || d.norm() <= 1e-12 * x.norm()))
         break;
-      // At the bottom of rounding nothing falls any more.
+      // At the level of rounding the residual no longer decreases.
       if (d.norm() <= kSolved * x.norm()) return true;
     }
     x = next;
@@ -93,7 +94,7 @@ BranchPoint BranchTracer::judged(double speed, Vector x) {
 
 BranchPoint BranchTracer::point_at(const Vector& u) { return judged(u[u.size() - 1], u.head(u.size() - 1)); }
 
-/// The matrix of both equations at u, slope_ as it was last found, and R.
+/// The matrix of both equations at u, with slope_ as last evaluated, and R.
 bool BranchTracer::linearize(const Vector& u, const Vector& normal, Eigen::MatrixXd& matrix, Vector& r) {
   const Eigen::Index n = u.size() - 1;
   if (!(u[n] > 0.0) || !balance_.residual(u.head(n), u[n], r)) return false;
@@ -135,7 +136,7 @@ bool BranchTracer::tangent(const Vector& u, const Vector& along, Vector& t) {
   return t.allFinite();
 }
 
-/// The sizes that steps are measured by, where the motion has grown.
+/// Updates the sizes that steps are measured by where the motion has grown.
 void BranchTracer::rescale(const Vector& x) {
   const Eigen::Index block = 2 * balance_.harmonics() + 1;
   for (int i = 0; i < balance_.inputs(); ++i) {
@@ -174,7 +175,7 @@ std::vector<BranchPoint> BranchTracer::follow(double speed, const Vector& x, dou
     }
     const double w = next[n];
     if (w <= options_.low || w >= options_.high) {
-      // The last point stands at the end of the speeds.
+      // The last point is at the end of the speed range.
       const double end = w <= options_.low ? options_.low : options_.high;
       const BranchPoint beyond = {.speed = w, .x = next.head(n), .harmonics = balance_.harmonics()};
       if (auto last = between(points.back(), beyond, end)) {
@@ -189,11 +190,11 @@ std::vector<BranchPoint> BranchTracer::follow(double speed, const Vector& x, dou
     if (const Vector before = subharmonic(u), after = subharmonic(next);
         options_.cycles > 1 && (dot(before, after) < 0.0 || (dot(after, after) < kJoined * kJoined &&
                                                              dot(after, after) < dot(before, before)))) {
-      // The curve of fewer cycles; beyond stands the same motion, shifted by a cycle.
+      // The curve has met that of fewer cycles; beyond it the same motion follows, shifted by a cycle.
       whole = true;
       return points;
     }
-    // Has the start been passed?
+    // Check whether the curve has passed its start.
     const Vector chord = next - u, gap = start - u;
     const double part = dot(gap, chord) / dot(chord, chord);
     const Vector beside = gap - part * chord;
@@ -294,7 +295,7 @@ void BranchTracer::find_fold(const BranchPoint& from, const BranchPoint& to, dou
   BranchEvent event{BranchEvent::Kind::fold, u[u.size() - 1], NAN, point_at(u)};
   branch.points.push_back(event.point);
   while (2 * balance_.size() <= options_.most_rows) {
-    // Between nearby points about it, with twice the harmonics.
+    // Locate the fold between two nearby points on either side, with twice the harmonics.
     constexpr double kNear = 0.05;
     Vector low, high;
     if (!across(a, b, std::max(0.0, *part - kNear), low) || !across(a, b, std::min(1.0, *part + kNear), high))
@@ -352,7 +353,7 @@ void BranchTracer::bisect(const BranchPoint& from, const BranchPoint& to, Branch
   branch.events.push_back({kind, here.speed, std::abs(to.speed - from.speed) * (high - low), here});
 }
 
-/// Where the product of the 1 + multiplier is 0, by Illinois's rule.
+/// Locates the point where the product of all 1 + multiplier is 0, by the Illinois method.
 void BranchTracer::find_doubling(const BranchPoint& from, const BranchPoint& to, Branch& branch) {
   const Vector a = joined(from.speed, from.x), b = joined(to.speed, to.x);
   double low = 0.0, high = 1.0, f = from.at_minus_one, g = to.at_minus_one, root = 0.0, last = 0.0;

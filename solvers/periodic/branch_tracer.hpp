@@ -1,12 +1,14 @@
 #pragma once
-/// BranchTracer: the curve of periodic motions over speed, through its folds, by steps along its arc.
+/// BranchTracer: the curve of periodic motions over speed, traced through its folds by arc-length
+/// continuation.
 ///
 ///   R(X, w) = 0,   t' D (u - u_0) = s,   u = (X, w),   D = 1/size^2 of each entry
 ///
-/// Predictor: the tangent t, from [R_X R_w; t_last' D] t = (0, 1); corrector: Newton on both equations; s follows
-/// the number of iterations and the turn of the tangent. Where two points differ in what is looked for (the sign
-/// of dw/ds, contact, multipliers) it is located between them, on planes across their chord; folds as the
-/// extremum of the speed, once more with twice the harmonics until their speed is settled.
+/// Predictor: the tangent t, from [R_X R_w; t_last' D] t = (0, 1). Corrector: Newton's method on both
+/// equations. The step s follows the number of iterations and the turn of the tangent. Where two neighbouring
+/// points differ in the sign of dw/ds, in contact or in their multipliers, the change is located between
+/// them, on planes across their chord. A fold is located as the extremum of the speed, repeatedly with twice
+/// the harmonics until its speed has converged.
 ///
 /// Source: R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., Springer, 2010, chapter 4.
 #include <optional>
@@ -18,13 +20,13 @@ namespace drev {
 
 struct BranchPoint {
   double speed = 0.0;  ///< rad/s
-  Vector x;            ///< of LawBalance
+  Vector x;            ///< unknowns X of LawBalance
   int harmonics = 0;
-  bool closed = true;         ///< no contact opens
-  double multiplier = 0.0;    ///< largest |Floquet multiplier|; 0: not judged
-  bool stable = false;        ///< multiplier <= 1 but for rounding
-  double at_minus_one = 0.0;  ///< FloquetMultipliers
-  int outside = 0;
+  bool closed = true;         ///< true: no contact opens in the cycle
+  double multiplier = 0.0;    ///< largest |Floquet multiplier| [-]; 0: stability not computed
+  bool stable = false;        ///< multiplier <= 1 within rounding
+  double at_minus_one = 0.0;  ///< FloquetMultipliers::at_minus_one
+  int outside = 0;            ///< FloquetMultipliers::outside
   bool complex_outside = false;
 };
 
@@ -32,46 +34,47 @@ struct BranchEvent {
   enum class Kind {
     fold,             ///< the branch turns back: stable motions end there, and the train jumps
     contact,          ///< teeth begin to separate
-    period_doubling,  ///< a multiplier passes -1: motions of twice the period branch off
+    period_doubling,  ///< a Floquet multiplier passes -1: motions of twice the period branch off
     torus             ///< a complex pair of multipliers leaves the unit circle: motions that are not periodic
   };
   Kind kind = Kind::fold;
   double speed = 0.0;
-  double error = 0.0;  ///< of the speed [rad/s]: difference from that with half the harmonics
+  double error = 0.0;  ///< error of the speed [rad/s]: its difference from the speed with half the harmonics
   BranchPoint point;
 };
 
 struct Branch {
-  std::vector<BranchPoint> points;  ///< along the arc, folds among them
+  std::vector<BranchPoint> points;  ///< points in the order of the arc, folds included
   std::vector<BranchEvent> events;
-  bool whole = false;  ///< both ends are at the first or last speed, or on another curve; or it is closed
+  /// True: both ends are at the first or last speed, or on another curve, or the curve is closed.
+  bool whole = false;
 };
 
 class BranchTracer {
  public:
   struct Options {
-    double low = 0.0, high = 0.0;  ///< rad/s
-    int most_points = 1500;        ///< on a branch
-    int cycles = 1;                ///< > 1: the curve ends where the motion repeats in a part of them
-    int most_rows = 1100;          ///< of Newton's matrix, when folds are located
-    double fold_tolerance = 1e-9;  ///< of a fold's speed
+    double low = 0.0, high = 0.0;  ///< lowest and highest speed [rad/s]
+    int most_points = 1500;        ///< largest number of points on a branch
+    int cycles = 1;                ///< cycles in a period; > 1: the curve ends where fewer cycles repeat
+    int most_rows = 1100;          ///< largest number of rows of Newton's matrix when folds are located
+    double fold_tolerance = 1e-9;  ///< tolerance of a fold's speed, relative to it [-]
   };
-  /// stability: null: not judged.
+  /// stability: null if the stability of the motions is not computed.
   BranchTracer(LawBalance& balance, const FloquetProduct* stability, const Options& options);
 
-  /// X at a fixed speed, from a start. False: no convergence.
+  /// Solves for X at a fixed speed, from the start in x. False: no convergence.
   bool solve(double speed, Vector& x);
   BranchPoint judged(double speed, Vector x);
   /// The branch through a solution, in both directions.
   Branch trace(double speed, const Vector& x);
-  /// The motion at a speed between two neighbours on a branch; none: no convergence.
+  /// The motion at a speed between two neighbouring points of a branch; nullopt: no convergence.
   std::optional<BranchPoint> between(const BranchPoint& from, const BranchPoint& to, double speed);
 
  private:
   struct Way;
   void rescale(const Vector& x);
   Vector joined(double speed, const Vector& x) const;
-  /// Of X and w the harmonics that a motion of a single cycle does not have.
+  /// The harmonics in (X, w) that a motion that repeats in a single cycle does not have.
   Vector subharmonic(const Vector& u) const;
   double dot(const Vector& a, const Vector& b) const;
   bool linearize(const Vector& u, const Vector& normal, Eigen::MatrixXd& matrix, Vector& r);
@@ -91,9 +94,9 @@ class BranchTracer {
   LawBalance& balance_;
   const FloquetProduct* stability_;
   Options options_;
-  Vector scale_;               // 1/size^2 of X and w
-  Vector slope_;               // dR/dw where it was last found
-  std::vector<double> turns_;  // dw/ds of the points of the branch in hand
+  Vector scale_;               // D: 1/size^2 of each entry of X and w
+  Vector slope_;               // dR/dw at the point where it was last evaluated
+  std::vector<double> turns_;  // dw/ds at the points of the branch being traced
 };
 
 }  // namespace drev

@@ -11,9 +11,9 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 25;
-constexpr double kPairSettled = 1e-12;  // of lambda
+constexpr double kPairSettled = 1e-12;  // last change of lambda relative to lambda [-]
 
-/// A x, A's values on the pattern.
+/// The product A x, with A given by its values on the pattern.
 Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
   Eigen::VectorXcd y = Eigen::VectorXcd::Zero(x.size());
   const int *outer = pattern.outerIndexPtr(), *inner = pattern.innerIndexPtr();
@@ -32,7 +32,7 @@ DampedPairs::DampedPairs(const System& system) : pattern_(system.pattern()), eli
 }
 
 bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXcd& shape) {
-  Complex at = lambda;  // where S is factored: off a mode that is met exactly
+  Complex at = lambda;  // value of s at which S is factored, moved off an exact eigenvalue
   for (int step = 0; step < kMostSteps; ++step) {
     if (!elimination_.factorize(mass_, damping, stiffness_, at)) {
       if (at != lambda) return false;

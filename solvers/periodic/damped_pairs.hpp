@@ -1,14 +1,15 @@
 #pragma once
-/// DampedPairs: damped modes of large systems, one by one, each from a guess (the undamped mode, or itself at a
-/// neighbouring speed):
+/// DampedPairs: damped modes of large systems, one by one, each from a guess (the undamped mode, or the same
+/// mode at a neighbouring speed):
 ///
 ///   S(s) x = 0,  S(s) = K + s C + s^2 M
 ///   x <- S(s)^-1 (C + 2 s M) x,   s <- the root of x' S(s) x = 0 next to s       (x' without conjugation)
 ///
-/// one complex elimination a step, which on chains and trees of shafts grows with the number of nodes. As the matrices are
-/// symmetric x' S x is stationary at a mode, and s closes in cubically. Which mode is found is that of the guess where
-/// damping is light; strong damping between modes may lead two guesses to one mode, which the caller sees by lambda.
-/// Complex stiffnesses are those of their chains, as in damped_modes.hpp.
+/// Each step takes one complex elimination, whose cost on chains and trees of shafts is proportional to the
+/// number of nodes. Since the matrices are symmetric, x' S x is stationary at a mode and s converges
+/// cubically. Where damping is light, the mode found is that of the guess; strong damping between modes may
+/// lead two guesses to one mode, which the caller detects by lambda. Complex stiffnesses are those of their
+/// Maxwell chains, as in damped_modes.hpp.
 /// Source: P. Lancaster, Lambda-matrices and Vibrating Systems, Pergamon, 1966, section 7.3 (generalised Rayleigh
 /// quotients).
 #include <drev/core/system.hpp>
@@ -21,10 +22,10 @@ namespace drev {
 
 class DampedPairs {
  public:
-  /// Contacts closed.
+  /// The matrices are those with every contact closed.
   explicit DampedPairs(const System& system);
-  /// damping: values on System::pattern(). lambda [1/s], shape over the unknowns: a guess -> a mode. False: it did not
-  /// close in, and both are as the last step left them.
+  /// damping: values on System::pattern(). lambda [1/s] and shape over the unknowns: a guess in, the mode
+  /// out. False: no convergence, and both are as the last step left them.
   bool refine(const Vector& damping, std::complex<double>& lambda, Eigen::VectorXcd& shape);
   const Vector& damping() const { return damping_; }
 

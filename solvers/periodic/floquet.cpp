@@ -32,10 +32,10 @@ double largest_floquet_exponent(const System& system, double period, int pieces)
   const Eigen::MatrixXd stiffness = dense(assembler, {.k = 1.0});
   const CholeskyFactor mass(dense(assembler, {.m = 1.0}));
   const Eigen::MatrixXd drag = mass.solve(dense(assembler, {.c = 1.0}));
-  // Rates in units of a frequency of the train, so that z and v/w are of one size.
+  // Rates are in units of a frequency w of the train, so that z and v/w have the same magnitude.
   const double w = std::sqrt(mass.solve(stiffness).cwiseAbs().rowwise().sum().maxCoeff());
   const Vector rest = Vector::Zero(n);
-  std::map<std::vector<double>, Eigen::MatrixXd> turns;  // by the meshes' stiffnesses
+  std::map<std::vector<double>, Eigen::MatrixXd> turns;  // exponentials by the stiffnesses of the meshes
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(2 * n, 2 * n);
   for (int p = 0; p < pieces; ++p) {
     assembler.set_time((p + 0.5) * period / pieces);
@@ -72,7 +72,8 @@ FloquetProduct::FloquetProduct(const System& system) : system_(system) {
   if (!(w_ > 0.0)) w_ = 1.0;
 }
 
-/// d(z, z'/w)/dt over a panel with the slopes that are constant there; varying: receives those that are not.
+/// Matrix of d(z, z'/w)/dt over a panel, with the slopes that are constant there; varying: receives the other
+/// slopes.
 Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t panel,
                                       std::vector<Varying>* varying) const {
   const Eigen::Index n = system_.size();
@@ -111,12 +112,12 @@ Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t pan
 namespace {
 
 constexpr int kOrder = LawBalance::kPoints;
-constexpr int kDegree = 30;       // of the series of a step
-constexpr double kRadians = 4.0;  // that the rates may turn in a step: 4^30 / 30! = 4e-15
+constexpr int kDegree = 30;       // degree of the Taylor series in a step
+constexpr double kRadians = 4.0;  // largest norm of rates times step [rad]: 4^30 / 30! = 4e-15
 using Polynomials =
-    Eigen::Matrix<double, kOrder, 3>;  // in the part of a panel, -1 to 1, or of a step, 0 to 1
+    Eigen::Matrix<double, kOrder, 3>;  // over a panel from -1 to 1, or over a step from 0 to 1
 
-/// Coefficients from the values at the points of Gauss's rule on -1 to 1.
+/// Matrix that gives the coefficients from the values at the Gauss points on [-1, 1].
 const Eigen::MatrixXd& coefficients_of_points() {
   static const Eigen::MatrixXd inverse = [] {
     Eigen::MatrixXd powers(kOrder, kOrder);
@@ -130,23 +131,24 @@ const Eigen::MatrixXd& coefficients_of_points() {
 
 /// q(t) = p(a + b t), column by column.
 Polynomials shifted(Polynomials p, double a, double b) {
-  for (int low = 0; low < kOrder; ++low)  // Horner's rule, once a degree
+  for (int low = 0; low < kOrder; ++low)  // Horner's rule, once for each degree
     for (int j = kOrder - 2; j >= low; --j) p.row(j) += a * p.row(j + 1);
   for (int j = 1; j < kOrder; ++j) p.bottomRows(kOrder - j) *= b;
   return p;
 }
 
-/// Of a law with varying slopes, in a step: q = M^-1 b, and the last terms of x, x' and the angle, a column each.
+/// A law with varying slopes in a step: q = M^-1 b, and the latest terms of x, x' and the angle, one column
+/// each.
 struct VaryingLaw {
   Vector q;
-  Polynomials slopes = Polynomials::Zero(), here = Polynomials::Zero();  // of the panel, of the step
+  Polynomials slopes = Polynomials::Zero(), here = Polynomials::Zero();  // over panel, over step
   std::array<Eigen::MatrixXd, 3> last;
 };
 
 }  // namespace
 
-/// (z, z'/w) from the start to the end of a panel in which slopes vary, that lasts so long. Transposed inside, so that
-/// products with rows of terms run over columns.
+/// Transition matrix of (z, z'/w) over a panel in which slopes vary; lasts: its duration [s]. The computation
+/// is transposed, so that products with rows of terms run over columns.
 Eigen::MatrixXd FloquetProduct::varying_turn(const LawBalance& balance, std::size_t panel,
                                              double lasts) const {
   const Eigen::Index n = system_.size(), rows = 2 * n;
@@ -215,7 +217,7 @@ Eigen::MatrixXd FloquetProduct::varying_turn(const LawBalance& balance, std::siz
 FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double speed) const {
   const auto& panels = balance.panels();
   const Eigen::Index n = system_.size();
-  const double time = balance.turns() / speed;  // of a radian of the cycle
+  const double time = balance.turns() / speed;  // time of one radian of the cycle [s/rad]
   const auto same = [&](std::size_t a, std::size_t b) {
     if (!panels[a].constant || !panels[b].constant) return false;
     for (std::size_t t = 0; t < balance.terms().size(); ++t)

@@ -18,10 +18,11 @@ using Complex = std::complex<double>;
 constexpr int kMaxNewton = 40;
 constexpr int kMaxGmres = 60;
 constexpr double kGmresTolerance = 1e-3;
-/// Of K |z| + w^2 M |z| beside the load that makes it: beyond, cancellation leaves fewer than 5 digits.
+/// Largest ratio of K |z| + w^2 M |z| to the load that causes z [-]; above it, cancellation leaves fewer than
+/// 5 digits.
 constexpr double kResonance = 1e10;
 
-/// Each entry (a + i b) of a pattern as [a -b; b a].
+/// The pattern with each entry (a + i b) replaced by [a -b; b a].
 SparseMatrix real_pattern(const SparseMatrix& p) {
   const auto n = static_cast<int>(p.cols());
   SparseMatrix real(2 * n, 2 * n);
@@ -170,7 +171,7 @@ bool HarmonicBalance::solve_stiffness(Harmonics& right) {
     const bool factored = factor_.factorize(pattern_, values) == FactorStatus::success;
     if (factored) factor_.solve(x, x);
     of_n = x;
-    double inside = 0.0;  // the forces that all but cancel
+    double inside = 0.0;  // sum of the forces, which nearly cancel
     for (int column = 0; column < p.cols(); ++column) {
       double sum = 0.0;
       for (int s = p.outerIndexPtr()[column]; s < p.outerIndexPtr()[column + 1]; ++s)
@@ -188,7 +189,8 @@ bool HarmonicBalance::solve_stiffness(Harmonics& right) {
 
 bool HarmonicBalance::correction(const Harmonics& z, int samples, Harmonics& out) {
   out = force_harmonics(z, samples);
-  // The closed slopes stand on both sides: S_n Z_n on the left is exact whatever the contacts do.
+  // The closed slopes are on both sides of the equation: S_n Z_n on the left is exact whatever the contacts
+  // do.
   Vector dk = closed_k_ - system_.stiffness_values(), dc = closed_c_ - system_.damping_values();
   Vector re, im, k_re, k_im, c_re, c_im;
   for (Eigen::Index n = 0; n < z.cols(); ++n) {
@@ -312,7 +314,7 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
     const double largest = size(z);
     const bool linear = slopes_.empty() && feedback_.empty();
     outcome.residual = left > 0.0 ? left / largest : 0.0;
-    // The last correction is made all the same: in the highest harmonics it is small as an angle only.
+    // The last correction is applied even so: in the highest harmonics it is small in the norm only.
     if (left == 0.0 || (linear && left <= tolerance * largest)) {
       z += error;
       return outcome;
@@ -323,7 +325,7 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
       find_slopes(z, samples);
       if (!direction(error, samples, d)) return {.reason = singular()};
     }
-    // S^-1 R is the error only where the slopes are the closed ones; Newton's own step is it everywhere.
+    // S^-1 R estimates the error only where the slopes are the closed ones; Newton's step does so everywhere.
     const double step = size(d);
     outcome.residual = step / largest;
     if (step <= tolerance * largest) {

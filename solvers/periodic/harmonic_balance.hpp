@@ -3,15 +3,15 @@
 ///
 ///   (K + i n w C - (n w)^2 M) Z_n + F_n[B y + g - p] = 0
 ///
-/// F_n: harmonic n of forces at N = 4 H even times of the period (alternating frequency and time:
-/// T. M. Cameron, J. H. Griffin, J. Appl. Mech. 56, 1989, doi:10.1115/1.3176036); of tables without the error
-/// of sampling (load_harmonics.hpp). Solved by Newton's method behind the inverse S_n^-1 of the dynamic
-/// stiffness with every contact closed:
+/// F_n: harmonic n of forces sampled at N = 4 H equidistant times of the period (alternating frequency/time
+/// method: T. M. Cameron, J. H. Griffin, J. Appl. Mech. 56, 1989, doi:10.1115/1.3176036); harmonics of tables
+/// have no sampling error (load_harmonics.hpp). The equations are solved by Newton's method, preconditioned
+/// by the inverse S_n^-1 of the dynamic stiffness with every contact closed:
 ///
 ///   d + S^-1 F[(dK(t) + dC(t) d/dt) d] = -S^-1 R,     dK, dC: slopes at each time less the closed ones
 ///
-/// by GMRES, d without a matrix. Linear systems need one solve a harmonic. How a law follows its phase node's
-/// deviation is left out of the slopes.
+/// d is found by matrix-free GMRES. Linear systems need one solve for each harmonic. The slopes leave out how
+/// a law follows the deviation of its phase node.
 #include <drev/core/assembler.hpp>
 
 #include <Eigen/Core>
@@ -26,17 +26,18 @@ namespace drev {
 class HarmonicBalance {
  public:
   using Harmonics = Eigen::MatrixXcd;  ///< unknowns x (H + 1)
-  using Samples = Eigen::MatrixXd;     ///< unknowns x N, evenly over the period from t = 0
+  using Samples = Eigen::MatrixXd;     ///< unknowns x N, at equidistant times from t = 0
 
   /// period: s, > 0.
   HarmonicBalance(const System& system, double period);
 
   struct Outcome {
-    std::string reason;     ///< why not; empty: converged
-    int iterations = 0;     ///< of Newton's method
-    double residual = 0.0;  ///< size of the step that is left to Newton's method beside that of Z
+    std::string reason;     ///< why there is no solution; empty: converged
+    int iterations = 0;     ///< iterations of Newton's method
+    double residual = 0.0;  ///< size of the next Newton step relative to the size of Z [-]
   };
-  /// The start: every contact closed on the flank that the mean load asks for, loads where nothing deviates.
+  /// The start: every contact closed on the flank that the mean load presses on, loads evaluated without
+  /// deviations.
   Outcome start(int harmonics, int samples, Harmonics& z);
   /// z: start in (of any number of harmonics up to H), solution out.
   Outcome solve(int harmonics, int samples, double tolerance, Harmonics& z);
@@ -44,14 +45,14 @@ class HarmonicBalance {
   /// The derivative-th derivative of the motion in time.
   Samples motion(const Harmonics& z, int derivative, int samples) const;
   static Harmonics to_harmonics(const Samples& samples, int harmonics);
-  /// Largest change of a force from t to t + T in the motion, beside the largest force [-]: rounding where
-  /// all that acts has the period.
+  /// Largest change of a force from t to t + T in the motion, relative to the largest force [-]. It is
+  /// rounding where all loads have the period.
   double aperiodicity(const Harmonics& z, int samples);
-  /// Size of a motion: root of the mean over time of sum K_ii z_i^2, contacts closed.
+  /// Size of a motion: square root of the time average of sum K_ii z_i^2, with contacts closed.
   double size(const Harmonics& z) const;
 
  private:
-  struct Slope {  // an entry of the matrix that may vary
+  struct Slope {  // an entry of the stiffness and damping matrices that may vary over the period
     int row = 0, column = 0, slot = 0;
   };
   struct Feedback {  // a load that follows the motion, and its node over the unknowns
@@ -59,12 +60,12 @@ class HarmonicBalance {
     std::vector<Entry> row;
   };
   double inner(const Harmonics& a, const Harmonics& b) const;
-  /// p - B y - g in the motion, at `later` periods: of all loads, or without those of loads_.
+  /// p - B y - g in the motion, `later` periods after the first, with all loads or without those of loads_.
   Samples forces(const Samples& q, const Samples& v, double later, bool all_loads);
   Harmonics force_harmonics(const Harmonics& z, int samples);
-  /// right -> S^-1 right. False: singular, singular_harmonic_ says where.
+  /// right -> S^-1 right. False: S is singular at harmonic singular_harmonic_.
   bool solve_stiffness(Harmonics& right);
-  /// -S^-1 R.
+  /// Sets out to -S^-1 R.
   bool correction(const Harmonics& z, int samples, Harmonics& out);
   void find_slopes(const Harmonics& z, int samples);
   bool apply(const Harmonics& d, int samples, Harmonics& out);
@@ -76,13 +77,13 @@ class HarmonicBalance {
   LoadHarmonics loads_;
   double w_;
   Vector closed_k_, closed_c_;
-  Vector scale_;  // of Re and Im of each unknown in inner()
+  Vector scale_;  // weights of Re and Im of each unknown in inner()
   Vector history_;
-  SparseMatrix pattern_;  // of S as a real matrix, (Re, Im) of each unknown together
+  SparseMatrix pattern_;  // pattern of S as a real matrix, with (Re, Im) of each unknown side by side
   SparseLu factor_;
   std::vector<Slope> slopes_;
   std::vector<Feedback> feedback_;
-  Eigen::MatrixXd dk_, dc_;  // of slopes_, then feedback_, x N
+  Eigen::MatrixXd dk_, dc_;  // dK and dC at the N times: rows of slopes_, then of feedback_
   int singular_harmonic_ = 0;
 };
 

@@ -1,54 +1,121 @@
 #include "solvers/periodic/lane_sections.hpp"
 
+#include "solvers/linear/lane_pair.hpp"
+
 namespace drev {
 
 namespace {
 
-DREV_WIDEST void row_sums(int rows, const int* begin, const int* index, const double* coeff, const LaneRow* z,
-                          LaneRow* sums) {
-  for (int r = 0; r < rows; ++r) {
-    Lanes sum{};
-    for (int e = begin[r]; e < begin[r + 1]; ++e) sum += coeff[e] * z[index[e]].v;
-    sums[r].v = sum;
-  }
-}
-
-template <class Value>
-[[gnu::always_inline]] inline void powers(int n, const int* outer, const int* inner, const Value* damping,
-                                          const Lanes& w, const LaneRow* p_re, const LaneRow* p_im,
-                                          const LaneRow* re, const LaneRow* im, Lanes& input,
-                                          Lanes& dissipated) {
-  Lanes in{}, lost{};
-  for (int j = 0; j < n; ++j) {
-    in += re[j].v * p_im[j].v - im[j].v * p_re[j].v;
-    Lanes force_re{}, force_im{};
-    for (int e = outer[j]; e < outer[j + 1]; ++e) {
-      force_re += each(damping[e]) * re[inner[e]].v;
-      force_im += each(damping[e]) * im[inner[e]].v;
+/// Computes the products of rows with z.
+struct RowSums {
+  template <class L>
+  [[gnu::always_inline]] static void run(int rows, const int* begin, const int* index, const double* coeff,
+                                         const LaneRow* re, const LaneRow* im, LaneRow* sums_re,
+                                         LaneRow* sums_im) {
+    for (int r = 0; r < rows; ++r) {
+      L sum_re{}, sum_im{}, x;
+      for (int e = begin[r]; e < begin[r + 1]; ++e) {
+        take(re[index[e]], x), sum_re += coeff[e] * x;
+        take(im[index[e]], x), sum_im += coeff[e] * x;
+      }
+      put(sum_re, sums_re[r]), put(sum_im, sums_im[r]);
     }
-    lost += re[j].v * force_re + im[j].v * force_im;
   }
-  input = 0.5 * w * in;
-  dissipated = 0.5 * w * w * lost;
-}
+};
 
-DREV_WIDEST void powers_common(int n, const int* outer, const int* inner, const double* damping,
-                               const Lanes& w, const LaneRow* p_re, const LaneRow* p_im, const LaneRow* re,
-                               const LaneRow* im, Lanes& input, Lanes& dissipated) {
-  powers(n, outer, inner, damping, w, p_re, p_im, re, im, input, dissipated);
-}
-DREV_WIDEST void powers_each(int n, const int* outer, const int* inner, const LaneRow* damping,
-                             const Lanes& w, const LaneRow* p_re, const LaneRow* p_im, const LaneRow* re,
-                             const LaneRow* im, Lanes& input, Lanes& dissipated) {
-  powers(n, outer, inner, damping, w, p_re, p_im, re, im, input, dissipated);
-}
+/// Powers with damping values common to all lanes (Value: double), or with those of each lane (LaneRow).
+template <class Value>
+struct FindPowersOf {
+  template <class L>
+  [[gnu::always_inline]] static void run(int columns, const int* unknowns, const int* outer, const int* inner,
+                                         const int* slots, const Value* damping, const LaneRow* frequencies,
+                                         const LaneRow* p_re, const LaneRow* p_im, const LaneRow* re,
+                                         const LaneRow* im, LaneSections::Powers* found) {
+    L in{}, lost{}, w;
+    for (int j = 0; j < columns; ++j) {
+      const int unknown = unknowns[j];
+      L x_re, x_im, of_re, of_im, c, force_re{}, force_im{};
+      take(re[unknown], x_re), take(im[unknown], x_im);
+      take(p_re[unknown], of_re), take(p_im[unknown], of_im);
+      in += x_re * of_im - x_im * of_re;
+      for (int e = outer[j]; e < outer[j + 1]; ++e) {
+        take(damping[slots[e]], c), take(re[inner[e]], of_re), take(im[inner[e]], of_im);
+        force_re += c * of_re;
+        force_im += c * of_im;
+      }
+      lost += x_re * force_re + x_im * force_im;
+    }
+    take(*frequencies, w);
+    put(0.5 * w * in, found->input);
+    put(0.5 * w * w * lost, found->dissipated);
+  }
+};
+
+/// Torques, twists and heat from the products of rows with z. Rates are i w times the deflections. With a
+/// frequency term, the torque is that of the matrices plus the part beyond them, and heat = w/2 Im(T conj x).
+struct Torques {
+  template <class L>
+  [[gnu::always_inline]] static void run(int sections, const int* term, const LaneRow* re, const LaneRow* im,
+                                         const LaneRow* frequencies, const LaneRow* k_re, const LaneRow* k_im,
+                                         LaneSections::Result* results) {
+    using Rows = LaneSections;
+    L w;
+    take(*frequencies, w);
+    for (int s = 0; s < sections; ++s, re += Rows::kRows, im += Rows::kRows) {
+      L twist_re, twist_im, torque_re, torque_im, row_re, row_im;
+      take(re[Rows::twist], twist_re), take(im[Rows::twist], twist_im);
+      take(re[Rows::stiffness], torque_re), take(im[Rows::stiffness], torque_im);
+      take(re[Rows::damping], row_re), take(im[Rows::damping], row_im);
+      torque_re -= w * row_im;
+      torque_im += w * row_re;
+      take(re[Rows::damper], row_re), take(im[Rows::damper], row_im);
+      L heat = 0.5 * w * w * (row_re * twist_re + row_im * twist_im);
+      if (term[s] >= 0) {
+        L a, b;
+        take(k_re[term[s]], a), take(k_im[term[s]], b);
+        take(re[Rows::beyond], row_re), take(im[Rows::beyond], row_im);
+        torque_re += a * row_re - b * row_im;
+        torque_im += a * row_im + b * row_re;
+        heat = 0.5 * w * (torque_im * twist_re - torque_re * twist_im);
+      }
+      put(torque_re, results[s].torque.re), put(torque_im, results[s].torque.im);
+      put(twist_re, results[s].twist.re), put(twist_im, results[s].twist.im);
+      put(heat, results[s].heat);
+    }
+  }
+};
+
+struct AddAtSlots {
+  template <class L>
+  [[gnu::always_inline]] static void run(int count, const int* slots, const int* terms, const double* times,
+                                         const LaneRow* additions, const double* common, LaneRow* values) {
+    L x, sum;
+    for (int i = 0; i < count; ++i) take(common[slots[i]], x), put(x, values[slots[i]]);
+    for (int i = 0; i < count; ++i) {
+      take(additions[terms[i]], x), take(values[slots[i]], sum);
+      put(sum + times[i] * x, values[slots[i]]);
+    }
+  }
+};
 
 }  // namespace
 
-LaneSections::LaneSections(const System& system, const std::vector<SectionRows>& sections) {
+LaneSections::LaneSections(const System& system, const std::vector<SectionRows>& sections,
+                           const std::vector<bool>& held) {
+  const SparseMatrix& pattern = system.pattern();
+  outer_.push_back(0);
+  for (int j = 0; j < system.size(); ++j) {
+    if (held[idx(j)]) continue;
+    unknowns_.push_back(j);
+    for (int slot = pattern.outerIndexPtr()[j]; slot < pattern.outerIndexPtr()[j + 1]; ++slot)
+      if (const int row = pattern.innerIndexPtr()[slot]; !held[idx(row)])
+        inner_.push_back(row), slots_.push_back(slot);
+    outer_.push_back(static_cast<int>(inner_.size()));
+  }
   begin_.push_back(0);
-  const auto add = [this](const std::vector<Entry>& row) {
+  const auto add = [&](const std::vector<Entry>& row) {
     for (const Entry& e : row) {
+      if (held[idx(e.index)]) continue;
       index_.push_back(e.index);
       coeff_.push_back(e.coeff);
     }
@@ -67,65 +134,43 @@ LaneSections::LaneSections(const System& system, const std::vector<SectionRows>&
   results_.resize(sections.size());
 }
 
-namespace {
-
-/// i w times a number turns it. With a frequency term: the matrices' torque and what is beyond them; heat = w/2 Im(T conj x).
-DREV_WIDEST void torques(int sections, const int* term, const LaneRow* re, const LaneRow* im, const Lanes& w,
-                         const LaneRow* k_re, const LaneRow* k_im, LaneSections::Result* results) {
-  using Rows = LaneSections;
-  for (int s = 0; s < sections; ++s, re += Rows::kRows, im += Rows::kRows) {
-    const Lanes twist_re = re[Rows::twist].v, twist_im = im[Rows::twist].v;
-    Lanes torque_re = re[Rows::stiffness].v - w * im[Rows::damping].v,
-          torque_im = im[Rows::stiffness].v + w * re[Rows::damping].v;
-    Lanes heat = 0.5 * w * w * (re[Rows::damper].v * twist_re + im[Rows::damper].v * twist_im);
-    if (term[s] >= 0) {
-      const Lanes a = k_re[term[s]].v, b = k_im[term[s]].v;
-      torque_re += a * re[Rows::beyond].v - b * im[Rows::beyond].v;
-      torque_im += a * im[Rows::beyond].v + b * re[Rows::beyond].v;
-      heat = 0.5 * w * (torque_im * twist_re - torque_re * twist_im);
-    }
-    results[s].torque.re = torque_re, results[s].torque.im = torque_im;
-    results[s].twist.re = twist_re, results[s].twist.im = twist_im;
-    results[s].heat = heat;
-  }
-}
-
-DREV_WIDEST void add_rows(int count, const int* slots, const int* terms, const double* times,
-                          const LaneRow* additions, const double* common, LaneRow* values) {
-  for (int i = 0; i < count; ++i) values[slots[i]].v = Lanes{} + common[slots[i]];
-  for (int i = 0; i < count; ++i) values[slots[i]].v += times[i] * additions[terms[i]].v;
-}
-
-}  // namespace
-
 void add_at_slots(const std::vector<int>& slots, const std::vector<int>& terms,
                   const std::vector<double>& times, const LaneArray& additions, const double* common,
                   LaneRow* values) {
-  add_rows(static_cast<int>(slots.size()), slots.data(), terms.data(), times.data(), additions.data(), common,
-           values);
+  run_widest<AddAtSlots>(static_cast<int>(slots.size()), slots.data(), terms.data(), times.data(),
+                         additions.data(), common, values);
 }
 
 void LaneSections::find(const LaneArray& re, const LaneArray& im, const Lanes& w, const LaneArray& k_re,
                         const LaneArray& k_im) {
   const auto rows = static_cast<int>(re_.size());
-  row_sums(rows, begin_.data(), index_.data(), coeff_.data(), re.data(), re_.data());
-  row_sums(rows, begin_.data(), index_.data(), coeff_.data(), im.data(), im_.data());
-  torques(static_cast<int>(term_.size()), term_.data(), re_.data(), im_.data(), w, k_re.data(), k_im.data(),
-          results_.data());
+  const LaneRow frequencies{w};
+  run_widest<RowSums>(rows, begin_.data(), index_.data(), coeff_.data(), re.data(), im.data(), re_.data(),
+                      im_.data());
+  run_widest<Torques>(static_cast<int>(term_.size()), term_.data(), re_.data(), im_.data(), &frequencies,
+                      k_re.data(), k_im.data(), results_.data());
 }
 
-void lane_powers(const SparseMatrix& pattern, const double* damping, const Lanes& w, const LaneArray& p_re,
-                 const LaneArray& p_im, const LaneArray& re, const LaneArray& im, Lanes& input,
-                 Lanes& dissipated) {
-  powers_common(static_cast<int>(pattern.cols()), pattern.outerIndexPtr(), pattern.innerIndexPtr(), damping,
-                w, p_re.data(), p_im.data(), re.data(), im.data(), input, dissipated);
+LaneSections::Powers LaneSections::powers(const double* damping, const Lanes& w, const LaneArray& p_re,
+                                          const LaneArray& p_im, const LaneArray& re,
+                                          const LaneArray& im) const {
+  const LaneRow frequencies{w};
+  Powers found;
+  run_widest<FindPowersOf<double>>(static_cast<int>(unknowns_.size()), unknowns_.data(), outer_.data(),
+                                   inner_.data(), slots_.data(), damping, &frequencies, p_re.data(),
+                                   p_im.data(), re.data(), im.data(), &found);
+  return found;
 }
 
-void lane_powers(const SparseMatrix& pattern, const LaneRow* damping, const Lanes& w, const LaneArray& p_re,
-                 const LaneArray& p_im, const LaneArray& re, const LaneArray& im, Lanes& input,
-                 Lanes& dissipated) {
-  powers_each(static_cast<int>(pattern.cols()), pattern.outerIndexPtr(), pattern.innerIndexPtr(), damping, w,
-              p_re.data(), p_im.data(), re.data(), im.data(), input, dissipated);
+LaneSections::Powers LaneSections::powers(const LaneRow* damping, const Lanes& w, const LaneArray& p_re,
+                                          const LaneArray& p_im, const LaneArray& re,
+                                          const LaneArray& im) const {
+  const LaneRow frequencies{w};
+  Powers found;
+  run_widest<FindPowersOf<LaneRow>>(static_cast<int>(unknowns_.size()), unknowns_.data(), outer_.data(),
+                                    inner_.data(), slots_.data(), damping, &frequencies, p_re.data(),
+                                    p_im.data(), re.data(), im.data(), &found);
+  return found;
 }
 
 }  // namespace drev

@@ -17,9 +17,9 @@ namespace {
 
 using BalanceComplex = LawBalance::Complex;
 
-constexpr double kNoBalanceDrag = 1e-13;  // of the largest damping: ratios to rounding leave it
-constexpr int kMostCorrections = 8;       // of a solution with twice the harmonics
-constexpr double kCorrected = 1e-3;       // of the first correction: the last one
+constexpr double kNoBalanceDrag = 1e-13;  // drag relative to speed times largest damping that is rounding [-]
+constexpr int kMostCorrections = 8;       // largest number of corrections after doubling the harmonics
+constexpr double kCorrected = 1e-3;       // last correction relative to the first one [-]
 
 bool same_row(const std::vector<Entry>& a, const std::vector<Entry>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -108,7 +108,7 @@ void LawBalance::set_harmonics(int harmonics) {
   for (int n = 1; n <= harmonics; ++n) orders.push_back(n / turns_);
   std::vector<Finding> none;
   content_.emplace(system_, orders, none);
-  // Gauss's rule over panels of 10/(2 H) takes products of two harmonics to 1e-7 of the highest.
+  // Gauss's rule over panels of 10/(2 H) integrates products of two harmonics to 1e-7, even for the highest.
   even_ = std::max(16, static_cast<int>(std::ceil(1.3 * harmonics)));
   table_.resize(static_cast<Eigen::Index>(even_) * kPoints, 2 * harmonics + 1);
   for (Eigen::Index i = 0; i < table_.rows(); ++i) {
@@ -264,7 +264,8 @@ bool LawBalance::speed_slope(const Vector& x, double speed, Vector& r_w) {
   return residual(x, speed, low);
 }
 
-/// E_n of each term's offset e, n = 0..H, by sums over equal parts of the cycle: a start needs no more.
+/// Harmonics E_n of each term's offset e, n = 0..H, by sums over equal parts of the cycle, which suffice for
+/// a start.
 Eigen::MatrixXcd LawBalance::offset_lines() const {
   Eigen::MatrixXcd lines = Eigen::MatrixXcd::Zero(harmonics_ + 1, static_cast<Eigen::Index>(terms_.size()));
   const int parts = 4 * (harmonics_ + 1);

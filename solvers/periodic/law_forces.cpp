@@ -1,4 +1,4 @@
-// Forces and slopes of the laws over a cycle: what LawBalance integrates.
+// Forces and slopes of the laws over a cycle, which LawBalance integrates.
 #include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
@@ -95,7 +95,7 @@ void LawBalance::add_kinks(const Vector& x, double speed, std::vector<double>& c
         const Eigen::Index next = i + 1 < points ? i + 1 : 0;
         double f = values[i] - kink, g = values[next] - kink;
         if ((f < 0.0) == (g < 0.0)) continue;
-        // Illinois's rule between the two points.
+        // Illinois method between the two points.
         double low = at[static_cast<std::size_t>(i)], high = at[static_cast<std::size_t>(next)];
         if (high < low) high += kTwoPi;
         double root = low;
@@ -191,8 +191,8 @@ void LawBalance::find_forces(const Vector& x, double speed) {
   struct Least {
     double margin = std::numeric_limits<double>::infinity(), psi = 0.0;
   };
-  std::vector<Least> least(terms_.size());  // how far each closed contact is from its gap
-  Eigen::MatrixXd weighted = Eigen::MatrixXd::Zero(points, count);  // at points of panels that are whole
+  std::vector<Least> least(terms_.size());  // smallest margin of each closed contact from its gap
+  Eigen::MatrixXd weighted = Eigen::MatrixXd::Zero(points, count);  // values at undivided panels
   for (std::size_t p = 0, even = 0; p < panels_.size(); ++p) {
     Panel& panel = panels_[p];
     while (kTwoPi / even_ * static_cast<double>(even + 1) <= panel.from + 1e-14) ++even;
@@ -241,7 +241,7 @@ void LawBalance::find_forces(const Vector& x, double speed) {
       }
     }
   }
-  // A contact may open between two points.
+  // A contact may also open between two points.
   for (std::size_t t = 0; t < terms_.size() && closed_; ++t) {
     const Term& term = terms_[t];
     if (!term.gap) continue;
@@ -263,12 +263,12 @@ void LawBalance::find_forces(const Vector& x, double speed) {
   }
 }
 
-/// 1/(2 pi) int slope exp(-i l psi) dpsi, l = 0..2H, of the slopes of a term: rows x, rate, angle.
+/// Harmonics 1/(2 pi) int slope exp(-i l psi) dpsi, l = 0..2H, of the slopes of a term; rows: x, rate, angle.
 void LawBalance::law_slopes_over(std::size_t term, Eigen::MatrixXcd& lines) const {
   const int most = 2 * harmonics_;
   lines.setZero(3, most + 1);
   const auto add = [&](const Slopes& s, double psi, double factor, bool integral) {
-    // Of a jump by s at psi, integrated by parts; or of a value at a point of Gauss's.
+    // Adds a jump by s at psi (integrated by parts), or a value at a Gauss point.
     const Complex one = std::polar(1.0, -psi);
     Complex power = factor / kTwoPi;
     for (int l = 0; l <= most; ++l, power *= one) {

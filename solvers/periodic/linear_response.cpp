@@ -19,8 +19,8 @@ namespace {
 using Complex = std::complex<double>;
 using Section = LinearResponse::Section;
 
-constexpr double kNoDrag = 1e-13;    // of the largest damping
-constexpr double kSameChain = 1e-9;  // rounding of an element's chain
+constexpr double kNoDrag = 1e-13;    // drag relative to speed times largest damping that is rounding [-]
+constexpr double kSameChain = 1e-9;  // relative rounding of the stiffness of an element's Maxwell chain [-]
 
 template <class Values>
 auto product(const std::vector<Entry>& row, const Values& z) {
@@ -47,15 +47,18 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   sections_ = find_section_rows(system, options.sections, findings);
   direction_ = reference_direction(system_);
   if (findings.empty()) mean_.emplace(system_, damping_, stiffness_, options.balance, findings);
-  elimination_.emplace(system.pattern(), find_held());
+  const std::vector<bool> held = find_held();
+  elimination_.emplace(system.pattern(), held);
   lanes_.emplace(*elimination_);
-  rows_.emplace(system_, sections_);
+  rows_.emplace(system_, sections_, held);
   z_.resize(idx(system.size()));
   carried_.resize(system.frequency_terms().size());
   for (const FrequencyTerm& term : system.frequency_terms()) {
     follows_mean_ |= term.stiffness->follows_mean_torque();
     follows_amplitude_ |= term.stiffness->follows_amplitude();
   }
+  all_constant_ = !follows_mean_ && !follows_amplitude_ &&
+                  std::find(term_constant_.begin(), term_constant_.end(), false) == term_constant_.end();
   for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()));
 }
 
@@ -106,7 +109,8 @@ void LinearResponse::add_frequency_terms(double omega) {
 }
 
 void LinearResponse::spread_frequency_terms(const Lanes& w) {
-  if (!spread_) {
+  const bool anew = !spread_;
+  if (anew) {
     damping_lanes_.resize(static_cast<std::size_t>(damping_here_.size()));
     stiffness_lanes_.resize(damping_lanes_.size());
     for (std::size_t e = 0; e < damping_lanes_.size(); ++e) {
@@ -115,18 +119,21 @@ void LinearResponse::spread_frequency_terms(const Lanes& w) {
     }
     spread_ = true;
   }
+  const Lanes size = w[0] < 0.0 ? -w : w;
   for (std::size_t t = 0; t < beyond_re_.size(); ++t) {
-    Lanes re{}, im{}, over{};
+    Lanes re{}, im{};
     for (int lane = 0; lane < kLanes; ++lane) {
-      const double omega = std::abs(w[lane]);
-      const Complex k = beyond(t, omega);
+      const Complex k = term_constant_[t] && lane > 0 ? Complex(re[0], im[0]) : beyond(t, size[lane]);
       re[lane] = k.real();
-      im[lane] = w[lane] > 0.0 ? k.imag() : -k.imag();  // at a negative w k* is conjugate
-      over[lane] = k.imag() / omega;
+      im[lane] = k.imag();
     }
-    beyond_re_[t].v = re, beyond_im_[t].v = im, beyond_over_[t].v = over;
+    beyond_re_[t].v = re;
+    beyond_im_[t].v = w[0] < 0.0 ? -im : im;  // at a negative w, k* is the complex conjugate
+    beyond_over_[t].v = im / size;
   }
-  add_at_slots(slots_, slot_terms_, slot_times_, beyond_re_, stiffness_here_.data(), stiffness_lanes_.data());
+  if (anew || !all_constant_)
+    add_at_slots(slots_, slot_terms_, slot_times_, beyond_re_, stiffness_here_.data(),
+                 stiffness_lanes_.data());
   add_at_slots(slots_, slot_terms_, slot_times_, beyond_over_, damping_here_.data(), damping_lanes_.data());
 }
 
@@ -141,6 +148,7 @@ std::vector<bool> LinearResponse::find_held() {
   const auto terms = system_.frequency_terms();
   std::vector<bool> held(idx(system_.size()), false), used(idx(system_.size()), false);
   term_held_.assign(terms.size(), false);
+  term_constant_.assign(terms.size(), false);
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Entry& c : terms[t].z)
       for (const Entry& r : terms[t].z) {
@@ -170,7 +178,7 @@ std::vector<bool> LinearResponse::find_held() {
       if (row.size() == 1 && row[0].coeff == 1.0 && !used[idx(row[0].index)]) inner.push_back(row[0].index);
     }
     if (static_cast<int>(inner.size()) != internal.count) continue;
-    // Nothing else may act on them: they must give, condensed, what the element says that they do.
+    // No other element may act on them: condensed, they must give the stiffness that the element states.
     bool alone = true;
     for (const double omega : {10.0, 1000.0}) {
       Complex given = 0.0;
@@ -199,49 +207,96 @@ std::vector<bool> LinearResponse::find_held() {
     }
     if (!alone) continue;
     term_held_[t] = true;
+    term_constant_[t] = !term.stiffness->follows_frequency();
     for (const int unknown : inner) held[idx(unknown)] = true;
   }
   return held;
 }
 
 const Vector& LinearResponse::damping_at(double speed) {
+  const auto& contents = content_->at(direction_ * speed);
+  const bool plain = std::all_of(contents.begin(), contents.end(), [](const OrderContent::Content& c) {
+    return c.speed_slope == 0.0 && c.angle_slope == 0.0;
+  });
+  if (plain && plain_) return damping_here_;
+  plain_ = plain;
   std::swap(damping_here_, damping_before_);
   std::swap(stiffness_here_, stiffness_before_);
   damping_here_ = damping_;
   stiffness_here_ = stiffness_;
   content_->add_slopes(direction_ * speed, &damping_here_, &stiffness_here_);
-  // Most loads that follow the speed have no slope of their own.
+  // Most loads that depend on the speed have no slope of their own.
   spread_ = spread_ && damping_here_ == damping_before_ && stiffness_here_ == stiffness_before_;
   return damping_here_;
 }
 
-std::vector<double> LinearResponse::mean_motion(double speed, Vector& unbalanced, Vector& load_sum) {
-  const auto& contents = content_->at(direction_ * speed);
+std::vector<double> LinearResponse::load_means(double speed) {
+  std::vector<double> means;
+  for (const OrderContent::Content& load : content_->at(direction_ * speed)) means.push_back(load.mean);
+  return means;
+}
+
+std::vector<double> LinearResponse::mean_motion(double speed, const std::vector<double>& means,
+                                                Vector& unbalanced, Vector& load_sum) {
   Vector p = -direction_ * speed * system_.nominal_drag().head(system_.size());
-  // Ratios to rounding leave that of the dampers between nodes of one speed.
+  // Rounding of the ratios leaves a drag of dampers between nodes of equal speed.
   if (p.cwiseAbs().maxCoeff() <= kNoDrag * speed * damping_.cwiseAbs().maxCoeff()) p.setZero();
   const std::vector<Vector>& rigid = mean_->rigid();
   load_sum = Vector::Zero(static_cast<Eigen::Index>(rigid.size()));
   for (std::size_t f = 0; f < rigid.size(); ++f)
     load_sum[static_cast<Eigen::Index>(f)] += rigid[f].cwiseProduct(p).cwiseAbs().sum();
-  for (std::size_t l = 0; l < contents.size(); ++l) {
-    for (const Entry& e : load_rows_[l]) p[e.index] += e.coeff * contents[l].mean;
+  for (std::size_t l = 0; l < means.size(); ++l) {
+    for (const Entry& e : load_rows_[l]) p[e.index] += e.coeff * means[l];
     for (std::size_t f = 0; f < rigid.size(); ++f)
-      load_sum[static_cast<Eigen::Index>(f)] += std::abs(product(load_rows_[l], rigid[f]) * contents[l].mean);
+      load_sum[static_cast<Eigen::Index>(f)] += std::abs(product(load_rows_[l], rigid[f]) * means[l]);
   }
   mean_->solve(p, &unbalanced);
   return {p.begin(), p.end()};
 }
 
 void LinearResponse::mean(double speed, Point& point) {
-  const std::vector<double> z = mean_motion(speed, point.unbalanced, point.load_sum);
+  const auto& contents = content_->at(direction_ * speed);
+  const auto count = static_cast<Eigen::Index>(sections_.size()),
+             loads = static_cast<Eigen::Index>(contents.size());
+  // All means are linear in the speed and in the means of the loads.
+  constexpr Eigen::Index kFewLoads = 64;
+  if (loads <= kFewLoads) {
+    if (mean_of_parts_.size() == 0) find_mean_of_parts(loads);
+    given_means_.resize(loads + 1);
+    for (Eigen::Index l = 0; l < loads; ++l) given_means_[l] = contents[static_cast<std::size_t>(l)].mean;
+    given_means_[loads] = speed;
+    mean_figures_.noalias() = mean_of_parts_ * given_means_;
+    point.mean = mean_figures_.head(count), point.twist_mean = mean_figures_.segment(count, count);
+    point.unbalanced = mean_figures_.tail(mean_figures_.size() - 2 * count);
+    point.load_sum.noalias() = sum_of_parts_ * given_means_.cwiseAbs();
+    return;
+  }
+  find_means(mean_motion(speed, load_means(speed), point.unbalanced, point.load_sum), point);
+}
+
+void LinearResponse::find_means(const std::vector<double>& z, Point& point) const {
   const auto count = static_cast<Eigen::Index>(sections_.size());
-  point.mean.resize(count);
-  point.twist_mean.resize(count);
+  point.mean.resize(count), point.twist_mean.resize(count);
   for (Eigen::Index s = 0; s < count; ++s) {
     const Section& section = sections_[static_cast<std::size_t>(s)];
     point.mean[s] = product(section.stiffness, z);
     point.twist_mean[s] = product(section.twist, z);
+  }
+}
+
+void LinearResponse::find_mean_of_parts(Eigen::Index loads) {
+  Point part;
+  const auto count = static_cast<Eigen::Index>(sections_.size());
+  for (Eigen::Index l = 0; l <= loads; ++l) {
+    std::vector<double> means(static_cast<std::size_t>(loads), 0.0);
+    if (l < loads) means[static_cast<std::size_t>(l)] = 1.0;
+    find_means(mean_motion(l < loads ? 0.0 : 1.0, means, part.unbalanced, part.load_sum), part);
+    if (l == 0) {
+      mean_of_parts_.resize(2 * count + part.unbalanced.size(), loads + 1);
+      sum_of_parts_.resize(part.load_sum.size(), loads + 1);
+    }
+    mean_of_parts_.col(l) << part.mean, part.twist_mean, part.unbalanced;
+    sum_of_parts_.col(l) = part.load_sum;
   }
 }
 
@@ -264,12 +319,12 @@ double LinearResponse::amplitude_of(std::size_t t, double speed) {
 }
 
 void LinearResponse::find_carried_loads(double speed) {
-  constexpr double kClose = 1e-12;  // relative, of amplitudes
+  constexpr double kClose = 1e-12;  // relative tolerance of amplitudes [-]
   constexpr int kMostRounds = 100, kMostSteps = 200;
   const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
   if (follows_mean_) {
     Vector unbalanced, sums;
-    const std::vector<double> z = mean_motion(speed, unbalanced, sums);
+    const std::vector<double> z = mean_motion(speed, load_means(speed), unbalanced, sums);
     for (std::size_t t = 0; t < terms.size(); ++t)
       carried_[t].mean_torque = terms[t].stiffness->static_stiffness() * product(terms[t].z, z);
   }
@@ -294,11 +349,11 @@ void LinearResponse::find_carried_loads(double speed) {
       if (!terms[t].stiffness->follows_amplitude()) continue;
       several = number++ > 0;
       const double before = carried_[t].amplitude;
-      const auto beyond = [&](double a) {  // of the response over what was assumed
+      const auto beyond = [&](double a) {  // amplitude of the response minus the assumed amplitude
         carried_[t].amplitude = a;
         return amplitude_of(t, speed) - a;
       };
-      // Illinois' variant of the false position between 0 and an amplitude that the response does not reach.
+      // Illinois method between 0 and an amplitude that the response does not reach.
       double low = 0.0, at_low = beyond(0.0), high = at_low, at_high = 0.0;
       if (!std::isfinite(at_low)) refuse(t);
       int steps = 0;
@@ -338,11 +393,13 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
   if (follows_mean_ || follows_amplitude_) find_carried_loads(speed);
   const auto orders = static_cast<Eigen::Index>(orders_.size()),
              count = static_cast<Eigen::Index>(sections_.size());
-  point.amplitude.setZero(orders, count);
-  point.twist.setZero(orders, count);
+  find_active(speed, only);
+  for (Eigen::MatrixXcd* values : {&point.amplitude, &point.twist}) {
+    values->resize(orders, count);
+    if (active_.size() < orders_.size()) values->setZero();
+  }
   point.heat.setZero(count);
   point.input_power = point.dissipated_power = 0.0;
-  find_active(speed, only);
   for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, point);
 }
 
@@ -367,24 +424,28 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   const auto& contents = content_->at(direction_ * speed);
   const int used = static_cast<int>(std::min<std::size_t>(kLanes, active_.size() - first));
   Lanes w{};
-  // Lanes that are not needed repeat the first.
+  // Unused lanes repeat the first.
   for (int lane = 0; lane < kLanes; ++lane)
     w[lane] = direction_ * orders_[idx(active_[first + idx(lane < used ? lane : 0)])] * speed;
   std::fill(p_re_.begin(), p_re_.end(), LaneRow{});
   std::fill(p_im_.begin(), p_im_.end(), LaneRow{});
-  for (int lane = 0; lane < used; ++lane)
-    for (std::size_t l = 0; l < contents.size(); ++l) {
+  for (std::size_t l = 0; l < contents.size(); ++l) {
+    LaneRow re, im;
+    for (int lane = 0; lane < used; ++lane) {
       const Complex c = contents[l].amplitudes[idx(active_[first + idx(lane)])];
-      for (const Entry& e : load_rows_[l]) {
-        p_re_[idx(e.index)].v[lane] += e.coeff * c.real();
-        p_im_[idx(e.index)].v[lane] += e.coeff * c.imag();
-      }
+      re.v[lane] = c.real();
+      im.v[lane] = c.imag();
     }
+    for (const Entry& e : load_rows_[l]) {
+      p_re_[idx(e.index)].v += e.coeff * re.v;
+      p_im_[idx(e.index)].v += e.coeff * im.v;
+    }
+  }
   re_ = p_re_;
   im_ = p_im_;
   const bool own = !system_.frequency_terms().empty();
   if (own) spread_frequency_terms(w);
-  // One or two frequencies are not worth the lanes.
+  // For one or two frequencies lanes are slower than scalars.
   constexpr int kWorthLanes = 3;
   Lanes lost = Lanes{} + 1.0;
   if (used >= kWorthLanes && own)
@@ -414,21 +475,21 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   for (std::size_t s = 0; s < sections_.size(); ++s) {
     const LaneSections::Result& found = rows_->of(s);
     const auto c = static_cast<Eigen::Index>(s);
+    Complex *amplitude = point.amplitude.col(c).data(), *twist = point.twist.col(c).data();
+    double heat = 0.0;
     each_lane([&](int lane, Eigen::Index k) {
-      point.amplitude(k, c) = {found.torque.re[lane], found.torque.im[lane]};
-      point.twist(k, c) = {found.twist.re[lane], found.twist.im[lane]};
-      point.heat[c] += found.heat[lane];
+      amplitude[k] = {found.torque.re.v[lane], found.torque.im.v[lane]};
+      twist[k] = {found.twist.re.v[lane], found.twist.im.v[lane]};
+      heat += found.heat.v[lane];
     });
+    point.heat[c] += heat;
   }
-  Lanes input{}, dissipated{};
-  if (own)
-    lane_powers(system_.pattern(), damping_lanes_.data(), w, p_re_, p_im_, re_, im_, input, dissipated);
-  else
-    lane_powers(system_.pattern(), damping_here_.data(), w, p_re_, p_im_, re_, im_, input, dissipated);
+  const LaneSections::Powers powers = own ? rows_->powers(damping_lanes_.data(), w, p_re_, p_im_, re_, im_)
+                                          : rows_->powers(damping_here_.data(), w, p_re_, p_im_, re_, im_);
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   each_lane([&](int lane, Eigen::Index k) {
-    point.input_power += input[lane];
-    point.dissipated_power += dissipated[lane];
+    point.input_power += powers.input.v[lane];
+    point.dissipated_power += powers.dissipated.v[lane];
     if (!singular[idx(lane)]) return;
     point.amplitude.row(k).setConstant(kInfinite);
     point.twist.row(k).setConstant(kInfinite);

@@ -1,6 +1,6 @@
 #pragma once
-/// The steady vibration of a linear system at one speed: what sweep_linear() calls at every speed, on its grid
-/// and between. Equations: linear_sweep.hpp.
+/// The steady vibration of a linear system at one speed. sweep_linear() calls it at every speed of its grid
+/// and between them. Equations: linear_sweep.hpp.
 #include <drev/core/assembler.hpp>
 #include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
@@ -20,17 +20,18 @@ class LinearResponse {
   using Section = SectionRows;
   struct Point {
     Eigen::MatrixXcd amplitude;  ///< orders x sections
-    Eigen::MatrixXcd twist;      ///< the same
+    Eigen::MatrixXcd twist;      ///< orders x sections
     Vector mean, twist_mean, heat;
-    Vector unbalanced, load_sum;  ///< of each floating part: left over; sum of |mean torque|
+    Vector unbalanced, load_sum;  ///< for each floating part: unbalanced mean torque; sum of |mean torque|
     double input_power = 0.0, dissipated_power = 0.0;
   };
 
-  /// Everything wrong goes to findings; the object is of no use then.
+  /// All faults are added to findings; if there are any, the object must not be used.
   LinearResponse(const System& system, const LinearSweepOptions& options, const std::vector<double>& orders,
                  std::vector<Finding>& findings);
 
-  /// speed: > 0, of the reference shaft [rad/s]. only: >= 0: number of the one order that is wanted.
+  /// speed: speed of the reference shaft [rad/s], > 0. only: number of the one order to be solved; -1: all
+  /// orders.
   void vibration(double speed, Point& point, int only = -1);
   /// Throws SolverError where the static stiffness is singular although no part floats.
   void mean(double speed, Point& point);
@@ -38,31 +39,39 @@ class LinearResponse {
   const std::vector<Section>& sections() const { return sections_; }
   const std::vector<std::string>& floating() const { return mean_->floating(); }
   OrderContent& content() { return *content_; }
-  /// Damping with the loads' mean slopes at the speed, on the pattern.
+  /// Damping values on the pattern, with the loads' mean slopes at the speed.
   const Vector& damping_at(double speed);
 
  private:
   void check_model(bool close_contacts, std::vector<Finding>& findings) const;
-  /// Adds the complex stiffnesses at a frequency [rad/s], > 0, to what it factors: Re k* b b' to the stiffness,
-  /// Im k*/omega b b' to the damping.
+  /// Adds the complex stiffnesses at a frequency omega > 0 [rad/s] to the matrices to be factored: Re k* b b'
+  /// to the stiffness, Im k*/omega b b' to the damping.
   void add_frequency_terms(double omega);
-  /// What the complex stiffnesses carry at the speed, where they follow it: the mean torque from the equilibrium, the
-  /// amplitude by solving A = A(response under A) of each, one after the other until all hold. Throws SolverError.
+  /// Finds the loads that the complex stiffnesses carry at the speed, where they depend on them: the mean
+  /// torque from the static equilibrium; the amplitude by solving A = A(response under A) for one after the
+  /// other until all are satisfied. Throws SolverError.
   void find_carried_loads(double speed);
   /// sqrt(sum |X_h|^2) of term t in the response under the loads that are set.
   double amplitude_of(std::size_t t, double speed);
-  /// Deviations under the mean loads at the speed; unbalanced and load_sum are those of a Point.
-  std::vector<double> mean_motion(double speed, Vector& unbalanced, Vector& load_sum);
+  std::vector<double> load_means(double speed);
+  /// Deviations under mean loads at the speed, >= 0; unbalanced and load_sum are those of a Point.
+  std::vector<double> mean_motion(double speed, const std::vector<double>& means, Vector& unbalanced,
+                                  Vector& load_sum);
+  /// Finds the means of the sections from the mean deviations z.
+  void find_means(const std::vector<double>& z, Point& point) const;
+  /// Finds the mean results of each load alone, at a mean of 1, and those of the drag at a speed of 1 rad/s.
+  void find_mean_of_parts(Eigen::Index loads);
   void find_active(double speed, int only);
-  /// The same at the frequencies of all lanes, to damping_lanes_ and stiffness_lanes_.
+  /// Adds the complex stiffnesses at the frequencies of all lanes to damping_lanes_ and stiffness_lanes_.
   void spread_frequency_terms(const Lanes& w);
-  /// Of a frequency term beside what the matrices give, with the internal nodes that are held at rest.
+  /// Complex stiffness of a frequency term beyond that of the matrices, with the held internal nodes at rest.
   std::complex<double> beyond(std::size_t term, double omega) const;
-  /// Internal nodes of elements that know their complex stiffness without them, which nothing else touches.
+  /// Finds the internal nodes to hold at 0: those of elements that know their complex stiffness without them,
+  /// if no other element acts on these nodes.
   std::vector<bool> find_held();
-  /// The amplitudes at up to kLanes orders of those numbered in active_, from place `first` on.
+  /// Solves for the amplitudes at up to kLanes of the orders numbered in active_, from place `first` on.
   void solve_orders(double speed, std::size_t first, Point& point);
-  /// One lane by the elimination with pivots, b -> x; false: singular, and x = 0.
+  /// Solves one lane by the elimination with pivoting, b -> x; false: the matrix is singular, and x = 0.
   bool solve_lane(int lane, double omega);
 
   const System& system_;
@@ -72,26 +81,35 @@ class LinearResponse {
   std::optional<OrderContent> content_;
   double direction_ = 1.0;  // sign of the reference shaft's speed
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
-  Vector damping_before_, stiffness_before_;      // of the last speed
-  Vector damping_at_omega_, stiffness_at_omega_;  // with complex stiffnesses; unused without
-  /// Places of the pattern that frequency terms add to, which term each, and how often.
+  Vector damping_before_, stiffness_before_;      // values of the last speed
+  bool plain_ = false;                            // nothing was added to the values of the last speed
+  Vector damping_at_omega_, stiffness_at_omega_;  // values with complex stiffnesses; unused without them
+  /// Slots of the pattern to which frequency terms contribute; for each its term and its factor.
   std::vector<int> slots_, slot_terms_;
   std::vector<double> slot_times_;
-  std::vector<bool> term_held_;  // of each frequency term: its element's internal nodes are
+  std::vector<bool> term_held_;      // for each frequency term: the internal nodes of its element are held
+  std::vector<bool> term_constant_;  // for each: its stiffness beyond the matrices is constant over frequency
+  bool all_constant_ = false;        // true: that is so for every term, whatever loads they carry
   std::optional<ComplexElimination> elimination_;
   std::optional<LaneElimination> lanes_;
-  bool follows_mean_ = false, follows_amplitude_ = false;  // some complex stiffness
-  std::vector<CarriedLoad> carried_;                       // of each frequency term
-  std::vector<double> twist_squares_;  // |X_h|^2 of each, summed over the orders that were solved
+  // True: some complex stiffness depends on the mean torque, or on the amplitude.
+  bool follows_mean_ = false, follows_amplitude_ = false;
+  std::vector<CarriedLoad> carried_;   // load that each frequency term carries
+  std::vector<double> twist_squares_;  // |X_h|^2 of each term, summed over the orders that were solved
   Point trial_;
   std::optional<LaneSections> rows_;
-  std::vector<int> active_;                        // numbers of the orders that any load has
-  LaneArray damping_lanes_, stiffness_lanes_;      // with complex stiffnesses, of each lane; unused without
-  bool spread_ = false;                            // they hold the values of this speed
-  LaneArray beyond_re_, beyond_im_, beyond_over_;  // of each frequency term; Im over |w|
-  LaneArray re_, im_, p_re_, p_im_;                // the solution, and its right side
+  std::vector<int> active_;  // numbers of the orders in which any load has content
+  LaneArray damping_lanes_,
+      stiffness_lanes_;                            // values of each lane with complex stiffnesses, if any
+  bool spread_ = false;                            // true: these hold the values of this speed
+  LaneArray beyond_re_, beyond_im_, beyond_over_;  // beyond() of each frequency term: Re, Im, Im over |w|
+  LaneArray re_, im_, p_re_, p_im_;                // the solution, and the right side
   std::optional<MeanEquilibrium> mean_;
-  std::vector<std::vector<Entry>> load_rows_;  // of each of content()'s loads
+  /// One column for each load and one for the speed. mean_of_parts_: means of the sections, of their twists,
+  /// and Point::unbalanced; sum_of_parts_: Point::load_sum.
+  Eigen::MatrixXd mean_of_parts_, sum_of_parts_;
+  Vector given_means_, mean_figures_;
+  std::vector<std::vector<Entry>> load_rows_;  // row of each load of content() over the unknowns
   std::vector<std::complex<double>> z_;
 };
 

@@ -18,8 +18,8 @@ namespace drev {
 
 namespace {
 
-constexpr double kMostNumbers = 1e8;  // sections x speeds x orders: 3.2 GB with twists
-constexpr double kLeftOut = 1e-3;     // share of a load that is worth a word
+constexpr double kMostNumbers = 1e8;  // largest sections x speeds x orders: 3.2 GB with twists
+constexpr double kLeftOut = 1e-3;     // share of a load left out of the orders above which it is reported [-]
 constexpr double kHalf = 0.5;
 constexpr int kHalfOrders = 24;
 
@@ -34,7 +34,7 @@ void check_options(const System& system, const LinearSweepOptions& options, std:
   if (options.speeds.empty()) check.fail("speeds", "none", "", "must be at least one");
 }
 
-/// Space for what is found at every speed.
+/// Allocates the results of a section at every speed.
 SweepSection to_section(const LinearResponse::Section& given, Eigen::Index orders, Eigen::Index speeds) {
   SweepSection section;
   section.name = given.name;
@@ -71,9 +71,9 @@ void put(const LinearResponse::Point& point, const std::vector<SumExtremes>& ext
   }
 }
 
-/// Sections whose torque is their twist times one number need no sum of their own for the twist.
+/// Sections whose torque is their twist times one factor need no separate sum for the twist.
 struct TwistSums {
-  std::vector<double> factor;  // half range of the twist over that of the section; 0: to be summed up
+  std::vector<double> factor;  // half range of the twist over that of the section; 0: summed separately
   std::vector<Eigen::Index> columns;
 
   explicit TwistSums(const std::vector<LinearResponse::Section>& sections) {
@@ -97,7 +97,7 @@ struct TwistSums {
   }
 };
 
-/// What a thread needs of its own.
+/// Data that each thread has separately.
 struct Worker {
   explicit Worker(const TrigonometricSum& given) : sum(given) {}
   TrigonometricSum sum;
@@ -105,9 +105,9 @@ struct Worker {
   std::vector<SumExtremes> extremes, twists;
 };
 
-/// A thread has to build the equations anew, which is worth it for many speeds.
+/// Number of threads. Each thread has to build the equations again, which pays off for many speeds only.
 std::size_t threads_for(const System& system, const LinearSweepOptions& options, std::size_t orders) {
-  constexpr double kWorth = 2e5;  // unknowns times frequencies a thread, some 10 ms
+  constexpr double kWorth = 2e5;  // least unknowns times frequencies for a thread: about 10 ms
   const double work = static_cast<double>(options.speeds.size() * orders) * system.size();
   const auto most = static_cast<std::size_t>(work / kWorth) + 1;
   return thread_count(std::min(most, options.speeds.size()), options.threads);

@@ -13,9 +13,9 @@ namespace drev {
 namespace {
 
 constexpr int kMoments = 12;
-constexpr int kMostStretches = 1000;  // in a cell
+constexpr int kMostStretches = 1000;  // largest number of stretches in a cell
 constexpr int kBisections = 50;
-/// Gauss's rule of 8 points on [-1, 1].
+/// Points of the 8-point Gauss rule on [-1, 1].
 constexpr std::array<double, 8> kPoints{-kGaussPoints[3], -kGaussPoints[2], -kGaussPoints[1],
                                         -kGaussPoints[0], kGaussPoints[0],  kGaussPoints[1],
                                         kGaussPoints[2],  kGaussPoints[3]};
@@ -23,7 +23,7 @@ constexpr std::array<double, 8> kWeights{kGaussWeights[3], kGaussWeights[2], kGa
                                          kGaussWeights[0], kGaussWeights[0], kGaussWeights[1],
                                          kGaussWeights[2], kGaussWeights[3]};
 
-/// Spherical Bessel function by its power series; 0 <= x < 1.
+/// Spherical Bessel function j_m(x) by its power series; 0 <= x < 1.
 double spherical_bessel(int m, double x) {
   double factor = 1.0, sum = 1.0, term = 1.0;
   for (int k = 1; k <= m; ++k) factor *= x / (2 * k + 1);
@@ -33,7 +33,7 @@ double spherical_bessel(int m, double x) {
 
 using Moments = Eigen::Matrix<double, kMoments, 1>;
 
-/// P_0 ... of xi.
+/// Legendre polynomials P_0, P_1, ... at xi.
 Moments legendre(double xi) {
   Moments p;
   p[0] = 1.0;
@@ -42,7 +42,7 @@ Moments legendre(double xi) {
   return p;
 }
 
-/// At Gauss's points of a cell that is not split, as nearly all are.
+/// Legendre polynomials at the Gauss points of an undivided cell; almost all cells are undivided.
 const std::array<Moments, kPoints.size()>& whole_cell() {
   static const auto all = [] {
     std::array<Moments, kPoints.size()> p;
@@ -52,7 +52,7 @@ const std::array<Moments, kPoints.size()>& whole_cell() {
   return all;
 }
 
-/// An angle over a cell: the cubic through values and rates (per half cell) at xi = -1 and 1.
+/// An angle over a cell: the cubic through its values and rates (per half cell) at xi = -1 and 1.
 struct CellAngle {
   double a, b, c, d;
   CellAngle(double y_0, double r_0, double y_1, double r_1)
@@ -101,7 +101,7 @@ void LoadHarmonics::moments(int load, double w, const Eigen::MatrixXd& q, const 
     const CellAngle theta(left.value, 0.5 * dt * left.rate, right.value, 0.5 * dt * right.rate);
     double from = -1.0;
     for (int count = 1; from < 1.0; ++count) {
-      // The end of the stretch, on the side to which the angle goes.
+      // The end of the stretch in the direction in which the angle changes.
       double to = 1.0, edge = right.value;
       if (right.value > stretch.high) edge = stretch.high, direction = 1.0;
       if (right.value < stretch.low) edge = stretch.low, direction = -1.0;

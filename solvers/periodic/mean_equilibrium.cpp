@@ -8,7 +8,7 @@ namespace drev {
 
 namespace {
 
-constexpr double kNoPart = 1e-9;  // of a rigid motion's largest ratio: the node has no part in it
+constexpr double kNoPart = 1e-9;  // ratio relative to the largest of a rigid-body motion that counts as 0 [-]
 
 }  // namespace
 
@@ -20,8 +20,8 @@ MeanEquilibrium::MeanEquilibrium(const System& system, const Vector& damping, co
       elimination_(system.pattern()),
       floating_(system.floating_parts(Contact::closed)),
       z_(idx(system.size())) {
-  // A part that floats is held at one node, so that it can be eliminated: a balanced load leaves that node
-  // where it is, and the hold without force.
+  // A floating part is held at one node, so that it can be eliminated: under balanced loads that node does
+  // not move, and the hold carries no force.
   Vector held = stiffness;
   const Vector none = Vector::Zero(stiffness.size());
   std::vector<int> holds;
@@ -64,7 +64,7 @@ MeanEquilibrium::MeanEquilibrium(const System& system, const Vector& damping, co
   }
 }
 
-/// p -= C R v, R' (p - C R v) = 0.
+/// Sets p to p - C R v, with v from R' (p - C R v) = 0.
 void MeanEquilibrium::drag_along(Vector& p) const {
   if (dragged_.empty()) return;
   const auto count = static_cast<Eigen::Index>(dragged_.size());

@@ -1,5 +1,5 @@
 #pragma once
-/// MotionFigures: what one periodic motion comes to, over the sections of a sweep.
+/// MotionFigures: results of one periodic motion, in vectors over the sections of a sweep.
 #include <drev/core/system.hpp>
 
 #include <complex>
@@ -7,13 +7,13 @@
 namespace drev {
 
 struct MotionFigures {
-  bool separates = false;                           ///< a contact opens in the cycle
-  Vector maximum, minimum, mean;                    ///< maximum and minimum with the mean
-  Vector twist_mean, twist_maximum, twist_minimum;  ///< a law's: of its deflection
-  Vector heat;                                      ///< W
-  Eigen::MatrixXcd amplitude;                       ///< orders x sections, of exp(i order phi)
-  Vector z, v;                                      ///< unknowns and rates where phi = 0, to start a run from
-  Vector left_over;  ///< mean torque, of each part that floats [N m at the reference shaft]
+  bool separates = false;                           ///< true: a contact opens in the cycle
+  Vector maximum, minimum, mean;                    ///< maximum and minimum include the mean
+  Vector twist_mean, twist_maximum, twist_minimum;  ///< twist of the element; of a law its deflection
+  Vector heat;                                      ///< mean heat of each section [W]
+  Eigen::MatrixXcd amplitude;                       ///< amplitudes of exp(i order phi), orders x sections
+  Vector z, v;                                      ///< unknowns and rates at phi = 0: start of a run
+  Vector left_over;  ///< unbalanced mean torque of each floating part [N m at the reference shaft]
 };
 
 }  // namespace drev

@@ -13,8 +13,8 @@ namespace {
 
 using Lines = Eigen::VectorXcd;
 
-constexpr double kBesideTop = 0.02;  // of the range: how far a maximum may rise above the samples beside it
-constexpr double kTopWidth = 1e-7;   // of a sample's distance
+constexpr double kBesideTop = 0.02;  // largest rise of a maximum above its samples over the range [-]
+constexpr double kTopWidth = 1e-7;   // tolerance of its place relative to the distance of samples [-]
 
 Lines lines_of(const std::vector<Entry>& row, const Eigen::MatrixXcd& z) {
   Lines sum = Lines::Zero(z.cols());
@@ -32,7 +32,7 @@ double sum_at(const Lines& lines, double psi) {
   return sum.real();
 }
 
-/// The largest value over the cycle: of even samples, and between those beside the tops.
+/// The largest value over the cycle: of equidistant samples, refined between the neighbours of local maxima.
 double largest_of(const std::function<double(double)>& look, const Vector& samples, double sign) {
   const Eigen::Index count = samples.size();
   const double top = (sign * samples).maxCoeff(), range = samples.maxCoeff() - samples.minCoeff();

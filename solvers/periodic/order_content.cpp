@@ -18,11 +18,13 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kWholeLine = 1e-9;
-constexpr double kSettled = 1e-9;  // of the largest amplitude
-constexpr double kSame = 1e-12;    // of the largest torque: the load is one and the same
-constexpr double kNoLine = 1e-13;  // of the rms: rounding of the transform
-constexpr int kProbes = 24;        // angles at which a load is asked whether time, speed and turns matter
-constexpr double kWidestPanel = 0.35, kPanelPhase = 2.5;  // rad of the node, of the highest order
+constexpr double kSettled = 1e-9;  // error relative to the largest amplitude (or slope) [-]
+constexpr double kSame = 1e-12;    // difference over the largest torque up to which loads are equal [-]
+constexpr double kNoLine = 1e-13;  // amplitude relative to the rms that is rounding of the transform [-]
+constexpr int kProbes = 24;        // number of angles at which dependence on time, speed and turns is tested
+// Widest panel of the quadrature [rad of the node], and largest phase of the highest order over a panel
+// [rad].
+constexpr double kWidestPanel = 0.35, kPanelPhase = 2.5;
 constexpr int kFewestSamples = 256, kMostSamples = 1 << 16;
 
 LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0,
@@ -31,10 +33,10 @@ LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t
       {.t = t, .nominal_angle = angle, .deviation = deviation, .speed = speed, .nominal_speed = speed});
 }
 
-/// Angles that no even division of a turn hits.
+/// Angles that no division of a turn into equal parts hits [rad].
 double probe_angle(int i) { return 0.37 + 0.911 * i; }
 
-/// Largest difference between two ways to ask a load, over its largest torque; slopes count too.
+/// Whether two ways to evaluate a load agree: compares torques and slopes, relative to the largest.
 template <class First, class Second>
 bool same_everywhere(const First& first, const Second& second) {
   double size = 0.0, difference = 0.0;
@@ -51,7 +53,7 @@ bool same_everywhere(const First& first, const Second& second) {
 OrderContent::OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings)
     : system_(system), orders_(std::move(orders)) {
   for (const LoadTerm& term : system.loads()) {
-    if (system.node_map(term.node).prescribed >= 0) continue;  // carried by the reaction
+    if (system.node_map(term.node).prescribed >= 0) continue;  // the reaction carries it
     Source source;
     if (const Source* relative = family_source(term))
       (source = *relative).scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
@@ -113,7 +115,7 @@ bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Fin
     bool repeats = false;
     for (const int turns : {1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns}) {
       repeats = same_everywhere(now, [&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
-      // Rounding of the angle itself moves a steep load by more than its own rounding.
+      // Rounding of the angle changes a steep load by more than the rounding of its torque.
       if (!repeats) continue;
       source.turns = turns;
       break;
@@ -127,7 +129,8 @@ bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Fin
   return true;
 }
 
-/// lines: of the node's own angle, forward; spacing: order of line 1 a turn of the reference shaft.
+/// Takes the orders out of all lines. lines: harmonics over the node's own angle, counted forward; spacing:
+/// order of line 1 per turn of the reference shaft.
 void OrderContent::pick(const std::vector<Complex>& lines, double spacing, bool forward,
                         Content& content) const {
   double taken = 0.0;
@@ -182,7 +185,7 @@ OrderContent::Content OrderContent::of_table(const LoadTerm& term) const {
     square += length[i] * (a * a + a * b + b * b) / (3.0 * table.period);
   }
   content.rms = std::sqrt(square);
-  // Only the lines that are asked for.
+  // Only the lines of the orders given.
   std::vector<Complex> lines;
   for (const double order : orders_) {
     const double line = std::round(order / spacing);
@@ -201,7 +204,8 @@ OrderContent::Content OrderContent::of_table(const LoadTerm& term) const {
   return content;
 }
 
-/// By the load's actual or nominal angle alike: a slope that repeats with the angle has no mean.
+/// The same for the actual and the nominal angle of the load: a slope that repeats with the angle has no
+/// mean.
 OrderContent::Content OrderContent::of_harmonics(const LoadTerm& term) const {
   const LoadOrders given = dynamic_cast<const HarmonicLoad&>(*term.load).orders();
   const double ratio = system_.ratio(term.node);
@@ -250,13 +254,13 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
       content.speed_slope += r.dtorque_dspeed / samples;
       steepest = std::max(steepest, std::abs(r.dtorque_dangle));
     }
-    // What repeats with the angle itself, nominal and deviation alike, has no mean slope; samples of a curve with
-    // kinks have.
+    // A load that repeats with the angle, nominal angle and deviation alike, has no mean slope, but the
+    // samples of a curve with kinks have one.
     if (source.by_angle || std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
     for (const double value : torque) square += (value - content.mean) * (value - content.mean) / samples;
     content.rms = std::sqrt(square);
     fft.fwd(lines, torque);
-    lines.resize(static_cast<std::size_t>(samples) / 2);  // without the one at half of the sampling rate
+    lines.resize(static_cast<std::size_t>(samples) / 2);  // without the Nyquist line
     for (Complex& line : lines) line *= 2.0 / samples;
     pick(lines, spacing, ratio > 0.0, content);
     return content;
@@ -274,8 +278,8 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
   return content;
 }
 
-/// The curves of a load that says its torque as curves scaled by the speed: those of another one of its family turned,
-/// integrated between their knots, or from samples.
+/// Finds the curves of a load whose torque is a sum of curves scaled by the speed: from another load of its
+/// family by rotation, by integration between their knots, or from samples.
 void OrderContent::find_curves(std::size_t load, double speed) {
   Source& source = sources_[load];
   if (!source.curves.empty()) return;
@@ -306,7 +310,7 @@ bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double
   const double ratio = system_.ratio(term.node), period = source.turns * kTwoPi;
   const double highest = orders_.empty() ? 0.0 : orders_.back() / std::abs(ratio);
   const double widest = std::min(kWidestPanel, kPanelPhase / std::max(highest, kPanelPhase));
-  // Waves of whole numbers of periods only: the others are in no load that repeats.
+  // Only waves with a whole number of periods: a load that repeats contains no others.
   std::vector<std::pair<std::size_t, double>> waves;  // number of the order, order of the node's angle
   for (std::size_t k = 0; k < orders_.size(); ++k) {
     const double order = orders_[k] / std::abs(ratio), line = std::round(order * source.turns);
@@ -334,7 +338,7 @@ bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double
         sums(k, static_cast<Eigen::Index>(i)) += weight * values[k] * wave;
     }
   };
-  constexpr double kAhead = 1e-9;  // rad: past a knot that was found
+  constexpr double kAhead = 1e-9;  // step past a knot that was found [rad]
   for (double at = 0.0; at < period * (1.0 - kWholeLine);) {
     const double knot = std::max(knotted->piece(at, 1.0, speed).high, at + kAhead);
     const double next = knot < period * (1.0 - kWholeLine) ? knot : period;
@@ -367,26 +371,32 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
   const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  Eigen::MatrixXd values;
   const auto curves_with = [&](int samples) {
     std::vector<Content> curves;
     std::vector<Complex> lines;
     std::vector<double> column(static_cast<std::size_t>(samples));
-    Eigen::MatrixXd values(samples, count);
+    const Eigen::MatrixXd half = std::move(values);  // every second new sample, except the first time
+    values.resize(samples, count);
+    for (Eigen::Index k = 0; k < count; ++k)
+      for (int i = 0; i < samples; ++i)
+        values(i, k) = half.size() > 0 && i % 2 == 0
+                           ? half(i / 2, k)
+                           : load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
+    const Eigen::RowVectorXd means = values.colwise().mean();
+    const Eigen::MatrixXd vary = values.rowwise() - means;
     for (Eigen::Index k = 0; k < count; ++k) {
       Content content;
-      for (int i = 0; i < samples; ++i)
-        values(i, k) = load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
-      content.mean = values.col(k).mean();
-      values.col(k).array() -= content.mean;
-      content.rms = std::sqrt(values.col(k).squaredNorm() / samples);
-      std::copy_n(values.col(k).data(), samples, column.begin());
+      content.mean = means[k];
+      content.rms = std::sqrt(vary.col(k).squaredNorm() / samples);
+      std::copy_n(vary.col(k).data(), samples, column.begin());
       fft.fwd(lines, column);
       lines.resize(static_cast<std::size_t>(samples) / 2);
       for (Complex& line : lines) line *= 2.0 / samples;
       pick(lines, spacing, ratio > 0.0, content);
       curves.push_back(std::move(content));
     }
-    source.products = values.transpose() * values / samples;
+    source.products = vary.transpose() * vary / samples;
     return curves;
   };
   int samples = fewest_samples(spacing);
@@ -402,21 +412,26 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
   }
 }
 
-/// The load at a speed, put into its place.
+/// The content of the load at a speed: the sum of its scaled curves.
 void OrderContent::sum_curves(const LoadTerm& term, const Source& source, double speed, Content& sum) const {
   const std::vector<double> factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
   const Eigen::Map<const Vector> f(factors.data(), static_cast<Eigen::Index>(factors.size()));
   sum.node = term.node;
   sum.mean = 0.0;
-  sum.amplitudes.assign(orders_.size(), 0.0);
+  sum.amplitudes.resize(orders_.size());
   sum.rms = std::sqrt(std::max(0.0, f.dot(source.products * f)));
-  double taken = 0.0;
+  const auto orders = static_cast<Eigen::Index>(orders_.size());
+  Eigen::Map<Eigen::VectorXcd> amplitudes(sum.amplitudes.data(), orders);
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const Content& curve = source.curves[k];
+    const Eigen::Map<const Eigen::VectorXcd> part(curve.amplitudes.data(), orders);
     sum.mean += factors[k] * curve.mean;
-    for (std::size_t o = 0; o < orders_.size(); ++o) sum.amplitudes[o] += factors[k] * curve.amplitudes[o];
+    if (k == 0)
+      amplitudes = factors[k] * part;
+    else
+      amplitudes += factors[k] * part;
   }
-  for (const Complex& c : sum.amplitudes) taken += 0.5 * std::norm(c);
+  const double taken = 0.5 * amplitudes.squaredNorm();
   sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - taken));
   if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
 }
@@ -462,7 +477,7 @@ void OrderContent::add_slopes(double speed, Vector* damping, Vector* stiffness) 
 double reference_direction(const System& system) {
   if (!system.reference()) return 1.0;
   const double rate = system.reference()->at(0.0).rate;
-  constexpr double kLater = 1e9;  // s: a run-up from rest has ended
+  constexpr double kLater = 1e9;  // time at which a run-up from rest has ended [s]
   return rate < 0.0 || (rate == 0.0 && system.reference()->at(kLater).rate < 0.0) ? -1.0 : 1.0;
 }
 

@@ -3,17 +3,20 @@
 ///
 ///   p(phi) = mean + Re sum_o c_o exp(i o phi),   c_o = (2 / P) int p exp(-i o phi) dphi over its period P
 ///
-/// phi: angle of the reference shaft; o: per revolution of it. A load of a node of the ratio n that repeats
-/// with the angle T of its node has the orders m 2 pi |n| / T. Tables are integrated exactly (they are straight
-/// between knots: c_o = -(2 / (P o^2)) sum of the changes of slope times exp(-i o phi) at the knots), harmonics taken
-/// as they are, curves with known knots integrated between them (Gauss, Legendre); others are taken at N even angles,
-/// N doubled until the content settles. A load that does not follow the speed is evaluated once.
+/// phi: angle of the reference shaft; o: order per revolution of it. A load on a node of the ratio n that
+/// repeats with the angle T of its node has the orders m 2 pi |n| / T. Tables are integrated exactly (they
+/// are piecewise linear: c_o = -(2 / (P o^2)) sum of the changes of slope times exp(-i o phi) at the knots).
+/// Harmonics are used as they are given. Curves with known knots are integrated between them
+/// (Gauss-Legendre). Other loads are sampled at N equidistant angles, with N doubled until the content has
+/// converged. A load that does not depend on the speed is evaluated once.
 ///
-/// With it the means of the load's slopes, by which it acts as a spring and a damper: dp/dtheta, dp/dtheta'.
-/// How the slopes vary over the cycle is left out (tables: their mean slope is 0).
+/// The class also gives the means of the load's slopes dp/dtheta and dp/dtheta', by which the load acts as a
+/// spring and a damper. The variation of the slopes over the cycle is left out (tables: their mean slope is
+/// 0).
 ///
-/// Refused, all at once: loads that depend on the time beside the angle, and loads that do not repeat within
-/// kMostTurns turns of their node. LoadHarmonics does what this does about a motion that deviates.
+/// Refused, with all findings together: loads that depend on time besides the angle, and loads that do not
+/// repeat within kMostTurns turns of their node. LoadHarmonics is the counterpart for a motion with
+/// deviations.
 #include <drev/core/error.hpp>
 #include <drev/core/system.hpp>
 
@@ -31,47 +34,47 @@ class OrderContent {
   struct Content {
     int node = 0;
     double mean = 0.0;                             ///< N m (or N)
-    double angle_slope = 0.0, speed_slope = 0.0;   ///< means over the cycle [N m/rad], [N m s/rad]
-    std::vector<std::complex<double>> amplitudes;  ///< of the orders asked for
-    double rms = 0.0;                              ///< of all that alternates
-    double left_out = 0.0;                         ///< rms of what is in none of the orders
+    double angle_slope = 0.0, speed_slope = 0.0;   ///< mean slopes over the cycle [N m/rad], [N m s/rad]
+    std::vector<std::complex<double>> amplitudes;  ///< complex amplitudes of the orders given
+    double rms = 0.0;                              ///< rms of the alternating torque
+    double left_out = 0.0;                         ///< rms of the part of it that is in none of the orders
   };
 
-  /// orders: > 0, ascending. What cannot be taken goes to findings.
+  /// orders: > 0, ascending. Loads that are refused are added to findings.
   OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings);
-  /// One for each load on an unknown. speed: of the reference shaft, with its sign [rad/s].
+  /// The content of each load on an unknown. speed: signed speed of the reference shaft [rad/s].
   const std::vector<Content>& at(double speed);
-  /// damping -= mean dp/dtheta', stiffness -= mean dp/dtheta of all loads at the speed, on the pattern; null: not
-  /// wanted.
+  /// damping -= mean dp/dtheta', stiffness -= mean dp/dtheta of all loads at the speed, as values on the
+  /// pattern; null if not wanted.
   void add_slopes(double speed, Vector* damping, Vector* stiffness);
   const std::vector<const LoadTerm*>& loads() const { return loads_; }
   bool follows_speed() const { return follows_speed_; }
 
  private:
   struct Source {
-    double turns = 1.0;  // of its node, in which it repeats
+    double turns = 1.0;  // turns of its node in which the load repeats
     bool constant = false, follows_speed = false, known = false;
-    bool harmonics = false, table = false;  // it says itself as such
+    bool harmonics = false, table = false;  // true: the load gives its harmonics, or its table
     const SpeedScaledLoad* scaled = nullptr;
-    bool by_angle = false;  // a deviation acts as the nominal angle does
-    int samples = 0;        // that its content has settled with; 0: not known yet
-    /// Of each curve of a load that says its torque as curves scaled by the speed (SpeedScaledLoad), once found.
+    bool by_angle = false;  // true: a deviation acts in the same way as the nominal angle
+    int samples = 0;        // number of samples with which its content has converged; 0: not known yet
+    /// Content of each curve of a load whose torque is a sum of curves scaled by the speed (SpeedScaledLoad).
     std::vector<Content> curves;
     Eigen::MatrixXd products;  // means of the products of two curves, without their means
   };
-  /// Of the first load of its family on a node of the same ratio; null: none.
+  /// The source of the first load of the same family on a node of the same ratio; null: none.
   const Source* family_source(const LoadTerm& term) const;
-  /// What its place and its answers say of a load; false: refused, which findings say.
+  /// Finds the properties of a load from its place and by evaluating it; false: refused, with findings.
   bool inspect(const LoadTerm& term, Source& source, std::vector<Finding>& findings) const;
   Content of_table(const LoadTerm& term) const;
   Content of_harmonics(const LoadTerm& term) const;
   Content of_samples(const LoadTerm& term, Source& source, double speed) const;
   void find_curves(std::size_t load, double speed);
-  /// The curves between their knots; false: it says none.
+  /// Integrates the curves between their knots; false: the load does not give any knots.
   bool integrate_curves(const LoadTerm& term, Source& source, double speed, Eigen::Index count) const;
-  /// Of a load of this spacing of its lines, to begin with.
+  /// The number of samples to begin with, for a load whose lines have this spacing [order].
   int fewest_samples(double spacing) const;
-  /// Largest difference of mean and amplitudes, of the largest of them in `fine`.
+  /// Largest difference of mean and amplitudes, relative to the largest of them in `fine` [-].
   static double difference(const Content& coarse, const Content& fine);
   void sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const;
   void sum_curves(const LoadTerm& term, const Source& source, double speed, Content& sum) const;
@@ -83,7 +86,7 @@ class OrderContent {
   std::vector<const LoadTerm*> loads_;
   std::vector<Source> sources_;
   std::vector<Content> content_;
-  double speed_ = 0.0;  // of content_; 0: none yet
+  double speed_ = 0.0;  // speed that content_ belongs to [rad/s]; 0: none yet
   bool follows_speed_ = false;
 };
 

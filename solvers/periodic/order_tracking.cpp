@@ -10,9 +10,11 @@
 namespace drev {
 
 namespace {
-constexpr double kPointsOfPeriod = 16.0;  // of the highest order
-constexpr double kSameTime = 1e-6;        // of an interval
-constexpr double kGrowth = 0.1;           // of an interval from point to point at most, and of the first
+constexpr double kPointsOfPeriod = 16.0;  // points in a period of the highest order
+constexpr double kSameTime = 1e-6;        // difference of equal times over the interval of points [-]
+// Largest relative growth of the interval from one point to the next, and first interval relative to the time
+// since the start [-].
+constexpr double kGrowth = 0.1;
 }  // namespace
 
 OrderTracking::OrderTracking(const System& system, const std::vector<std::string>& channels,
@@ -41,7 +43,7 @@ OrderTracking::OrderTracking(const System& system, const std::vector<std::string
 void OrderTracking::look(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c)
     values_[c] = channels_[c].evaluate(assembler, point.state);
-  // Orders of even spacing are a rotation each.
+  // Evenly spaced orders follow from each other by one rotation.
   Complex wave = 1.0, rotation = 1.0;
   double before = 0.0, spacing = 0.0;
   for (std::size_t k = 0; k < turns_.size(); ++k) {
@@ -57,7 +59,8 @@ void OrderTracking::look(const Assembler& assembler, const EvaluatedState& point
   time_ = point.state.t;
   angle_ = angle;
   interval_ = speed > 0.0 && highest_ > 0.0 ? kTwoPi / (kPointsOfPeriod * highest_ * speed) : 0.0;
-  // At rest, or where an oscillation stops it for a moment, the speed tells little of the next points.
+  // At rest, or where an oscillation stops the shaft for a moment, the speed does not predict the next
+  // points.
   if (time_ > first_time_ && (interval_ > 0.0 || last > 0.0)) {
     const double longest = last > 0.0 ? (1.0 + kGrowth) * last : kGrowth * (time_ - first_time_);
     interval_ = interval_ > 0.0 ? std::min(interval_, longest) : longest;
@@ -73,7 +76,7 @@ std::pair<double, double> OrderTracking::turning(const Assembler& assembler,
   return {ratio * phi.value + own.value, ratio * phi.rate + own.rate};
 }
 
-/// Whether the sense of the actual angle is known; begins where it has become so.
+/// Whether the sense of the actual angle is known; starts the first window when it becomes known.
 bool OrderTracking::has_begun(double angle) {
   if (sense_ != 0.0) return true;
   if (std::abs(angle - first_angle_) < kBegun * kTwoPi) return false;
@@ -105,7 +108,8 @@ void OrderTracking::start(const Assembler& assembler, const EvaluatedState& poin
 
 void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*from*/,
                          const EvaluatedState& to) {
-  // Points that others asked for would make the spacing uneven, and the trapezoidal rule far worse.
+  // Points that other observers requested would make the spacing uneven and the trapezoidal rule far less
+  // accurate.
   if (own_times_ && interval_ > 0.0 && to.state.t < next_stop(0.0) - kSameTime * interval_) return;
   const double before = turned_, t_before = time_, angle = turning(assembler, to).first;
   if (!has_begun(angle)) {
@@ -114,7 +118,7 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
     if (sense_ != 0.0) open(turned_);
     return;
   }
-  // Of a nominal angle the sense at the start need not be known.
+  // For a nominal angle the sense at the start need not be known.
   turned_ += node_ < 0 ? std::abs(angle - angle_) : sense_ * (angle - angle_);
   std::swap(values_, last_values_);
   std::swap(turns_, last_turns_);
@@ -162,12 +166,12 @@ void OrderTracking::add_trends(Window& window, double w0, double w1, double t_be
   }
 }
 
-/// Least squares of a parabola and one order: A exp(i p) from sum = int w y exp(-i o phi) dphi.
+/// Least-squares fit of a parabola and one order: A exp(i p) from sum = int w y exp(-i o phi) dphi.
 OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::size_t trend, std::size_t order,
                                                    Complex sum) const {
   Eigen::Matrix3d m;
   Eigen::Vector3d y;
-  Eigen::Matrix<double, 3, 2> v;  // of the cosine and the sine
+  Eigen::Matrix<double, 3, 2> v;  // moments of the cosine and of the sine
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     for (int j = 0; j < 3; ++j) m(i, j) = window.moments[at + static_cast<std::size_t>(j)];
@@ -198,7 +202,7 @@ void OrderTracking::close(const Window& window) {
   if (tracks_.time.size() > kMostWindows) thin();
 }
 
-/// Every second window, of too many.
+/// Drops every second window if there are too many.
 void OrderTracking::thin() {
   spacing_ *= 2.0;
   const auto halve = [](std::vector<double>& values) {

@@ -18,21 +18,21 @@ namespace {
 using Harmonics = HarmonicBalance::Harmonics;
 
 constexpr int kFewest = 16, kMost = 4096;
-constexpr double kLargestSize = 2e7;  // unknowns x harmonics: 320 MB a motion
-constexpr double kFirstTail = 1e-3;
+constexpr double kLargestSize = 2e7;  // largest unknowns x harmonics: 320 MB for each motion
+constexpr double kFirstTail = 1e-3;   // part of the motion beyond the first number of harmonics [-]
 constexpr double kPeriodicity = 1e-8;
-constexpr double kUneven = 10.0;   // kinks fall between the samples of each level differently: measured 7.5
-constexpr double kSwing = 0.02;    // of the range: how far an extremum may rise above the samples beside it
-constexpr double kLoosest = 1e-2;  // error at the most harmonics; beyond, it is another motion
-constexpr double kNewtonTolerance = 1e-2;  // of the tolerance
+constexpr double kUneven = 10.0;           // factor of the error [-]: kinks between samples; 7.5 was measured
+constexpr double kSwing = 0.02;            // largest rise of an extremum above its samples over the range [-]
+constexpr double kLoosest = 1e-2;          // largest error accepted with the most harmonics [-]
+constexpr double kNewtonTolerance = 1e-2;  // tolerance of Newton's method over that of the response [-]
 
-/// What a level of harmonics gives.
+/// Results with one number of harmonics.
 struct Level {
-  Eigen::MatrixXd values;  // channels (unknowns, without any) x samples
+  Eigen::MatrixXd values;  // channels (or unknowns, without channels) x samples
   bool closed = true;
 };
 
-/// Channels and contacts over the period.
+/// Evaluates channels and contacts over the period.
 Level evaluate(const System& system, HarmonicBalance& balance, const Harmonics& z, int samples, double period,
                const std::vector<Channel>& channels) {
   const auto q = balance.motion(z, 0, samples), v = balance.motion(z, 1, samples);
@@ -95,8 +95,8 @@ class SeriesMotion {
   double w_;
 };
 
-/// Largest and smallest value of a channel over the period: at even times `h` apart, and beside those that are
-/// extreme on the motion itself.
+/// Largest and smallest value of a channel over the period: at equidistant times `h` apart, refined on the
+/// motion itself next to those that are extreme.
 Peak peak_of(const Channel& channel, const Eigen::RowVectorXd& y, double h, SeriesMotion& motion) {
   Peak p{{y[0], 0.0, y[0], 0.0}};
   for (Eigen::Index s = 1; s < y.size(); ++s) p.note(y[s], h * static_cast<double>(s));
@@ -115,7 +115,8 @@ Peak peak_of(const Channel& channel, const Eigen::RowVectorXd& y, double h, Seri
   return p;
 }
 
-/// The harmonics to start with, no more than `most`: beyond them the motion has kFirstTail of itself or less.
+/// The number of harmonics to start with, at most `most`: the part of the motion beyond them is kFirstTail of
+/// it or less.
 int first_level(const HarmonicBalance& balance, const Harmonics& z, int most) {
   const double limit = kFirstTail * balance.size(z);
   Harmonics tail = Harmonics::Zero(z.rows(), z.cols());
@@ -129,7 +130,7 @@ int first_level(const HarmonicBalance& balance, const Harmonics& z, int most) {
   return std::min(level, most);
 }
 
-/// Largest difference of a channel between two levels, over its largest value.
+/// Largest difference of a channel between two levels, relative to its largest value [-].
 double difference(const Level& coarse, const Level& fine) {
   double largest = 0.0;
   for (Eigen::Index c = 0; c < fine.values.rows(); ++c) {
@@ -141,8 +142,9 @@ double difference(const Level& coarse, const Level& fine) {
   return largest;
 }
 
-/// Largest part of a channel that its series leaves out, over its largest value. A channel that follows the time (a load at
-/// the nominal angle) is the same with any number of harmonics, and its series is not.
+/// Largest truncation error of a channel's series, relative to its largest value [-]. A channel that depends
+/// on time (a load at the nominal angle) has the same values with any number of harmonics, while its series
+/// has not.
 double truncated(const HarmonicBalance& balance, const Level& level, const Harmonics& amplitudes) {
   const Eigen::MatrixXd series = balance.motion(amplitudes, 0, static_cast<int>(level.values.cols()));
   double largest = 0.0;
@@ -194,7 +196,7 @@ PeriodicResponse solve_periodic(const System& system, const PeriodicOptions& opt
   const auto most = static_cast<int>(std::clamp<double>(kLargestSize / system.size(), 2 * kFewest, kMost));
   const bool given = options.harmonics > 0;
 
-  // Each level has twice the harmonics of the one before it, whose samples are every other one of its own.
+  // Each level has twice the harmonics of the last one, whose samples are every second one of its own.
   HarmonicBalance balance(system, period);
   Harmonics z;
   int harmonics = given ? (options.harmonics + 1) / 2 : most / 2;

@@ -24,7 +24,7 @@ double largest_coefficient(const std::vector<Entry>& row) {
   return largest;
 }
 
-/// Sections of the elements whose terms stand in the matrices, by channel.
+/// Sections of the elements whose terms are in the matrices, by channel name.
 std::map<std::string, SectionRows> element_sections(const System& system,
                                                     std::vector<std::string>& in_order) {
   std::map<std::string, SectionRows> sections;

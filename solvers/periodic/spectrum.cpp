@@ -11,7 +11,7 @@ namespace drev {
 
 namespace {
 
-/// Periodic form: w_j = sum_m a_m cos(2 pi m j / N).
+/// Coefficients a_m of a window in its periodic form: w_j = sum_m a_m cos(2 pi m j / N).
 std::vector<double> window_terms(Window window) {
   switch (window) {
     case Window::rectangular:
@@ -26,7 +26,7 @@ std::vector<double> window_terms(Window window) {
   return {1.0};
 }
 
-/// What a tone x lines beside a line shows there, tone = 1 (N large):
+/// Amplitude that a tone of amplitude 1 shows at a line x lines away from it (N large):
 ///   R(x) = |sin(pi x) / (pi x) sum_m a_m x^2 / (x^2 - m^2)| / a_0,  R(m) = |a_m| / (2 a_0)
 double window_response(const std::vector<double>& terms, double x) {
   const auto nearest = static_cast<std::size_t>(std::lround(std::abs(x)));
@@ -38,7 +38,8 @@ double window_response(const std::vector<double>& terms, double x) {
   return std::abs(std::sin(kPi * x) / (kPi * x) * sum) / terms[0];
 }
 
-/// Distance of the tone from its largest line, 0 to 0.5 lines, from the larger neighbour's share.
+/// Distance of the tone from its largest line, 0 to 0.5 lines, from the ratio of the larger neighbour to that
+/// line.
 double distance_from_line(const std::vector<double>& terms, double neighbour_share) {
   double low = 0.0, high = 0.5;
   for (int i = 0; i < 50; ++i) {

@@ -1,5 +1,5 @@
 #include <drev/core/error.hpp>
-#include <drev/solvers/periodic/speed_sweep.hpp>
+#include <drev/solvers/periodic/periodic_response.hpp>
 
 #include <algorithm>
 #include <map>
@@ -9,7 +9,7 @@
 namespace drev {
 
 namespace {
-constexpr double kWidth = 1e-4;  // of the search, beside the grid
+constexpr double kWidth = 1e-4;  // tolerance of the search relative to its interval [-]
 }
 
 SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::vector<double>& speeds,
@@ -24,7 +24,7 @@ SpeedSweep sweep_speeds(const std::function<System(double)>& build, const std::v
   if (!findings.empty()) throw ModelError(findings);
 
   SpeedSweep sweep;
-  std::map<double, std::vector<double>> amplitudes;  // of all channels, by speed; none without a response
+  std::map<double, std::vector<double>> amplitudes;  // of all channels by speed; empty: no response
   const auto solve = [&](double speed) {
     PeriodicResponse response = solve_periodic(build(speed), options);
     std::vector<double>& here = amplitudes[speed];

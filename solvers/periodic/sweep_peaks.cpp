@@ -19,19 +19,20 @@ namespace drev {
 
 namespace {
 
-constexpr int kMostUnknowns = 400;      // of damped modes, dense; of more they are followed one by one
-constexpr int kFirstModes = 16;         // of these, sought first, and
-constexpr int kMostModes = 128;         // at the most
-constexpr double kSameMode = 1e-9;      // of lambda
-constexpr int kModeSpeeds = 9;          // at which the modes are sought where loads follow the speed
-constexpr double kUndamped = 1e-9;      // damping ratio that is rounding
-constexpr double kTooDamped = 0.7;      // beyond it an order has no resonance
-constexpr std::size_t kMostPeaks = 10;  // a section
-constexpr double kSmallPeak = 1e-3;     // of the section's largest
-constexpr double kPeakSpeed = 1e-7;     // of a peak's speed
+constexpr int kMostUnknowns = 400;      // unknowns up to which damped modes are dense; beyond, one by one
+constexpr int kFirstModes = 16;         // number of undamped modes that are found first
+constexpr int kMostModes = 128;         // largest number of undamped modes that are found
+constexpr double kSameMode = 1e-9;      // relative difference of lambda of one and the same mode [-]
+constexpr int kModeSpeeds = 9;          // number of speeds for modes if loads depend on the speed
+constexpr double kUndamped = 1e-9;      // damping ratio that is rounding [-]
+constexpr double kTooDamped = 0.7;      // damping ratio above which an order has no resonance [-]
+constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
+constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
+constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// Which mode of `next` each of `last` has become, by its shape: largest |x' y| / (|x| |y|) first.
+/// For each mode of `last` the number of the mode of `next` it has become, by shape: largest |x' y| / (|x|
+/// |y|) first.
 std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::MatrixXcd& next) {
   struct Pair {
     double likeness;
@@ -54,7 +55,7 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::Mat
   return to;
 }
 
-/// Whether the loads damp otherwise at another of the speeds.
+/// Whether the damping of the loads differs between the speeds.
 bool damping_follows(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
   if (!response.content().follows_speed() || speeds.size() < 2) return false;
   const Vector first = load_damping(system, speeds.front());
@@ -89,8 +90,9 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
   return modes;
 }
 
-/// The same for systems of many unknowns: the undamped modes up to the highest frequency of an order, each followed
-/// to its damped mode (damped_pairs.hpp). Those that do not close in, or on one that is there already, are 0.
+/// The modes of systems with many unknowns: undamped modes up to the highest frequency of an order, each
+/// iterated to its damped mode (damped_pairs.hpp). Modes that do not converge, or that converge to one
+/// already found, are 0.
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         double highest, const std::function<void()>& pause) {
   const bool follows = damping_follows(system, response, speeds);
@@ -222,14 +224,14 @@ class Search {
   }
 
  private:
-  /// Orders in which any load has content, at any end of the speeds.
+  /// Finds the orders in which any load has content, at either end of the speed range.
   void find_content() {
     has_content_.assign(sweep_.orders.size(), false);
     for (const SweepSection& section : sweep_.sections)
       for (std::size_t k = 0; k < has_content_.size(); ++k)
         has_content_[k] = has_content_[k] || !section.amplitude.row(static_cast<Eigen::Index>(k)).isZero(0.0);
   }
-  /// The speed at which an order meets the mode, within those of the sweep; 0: none.
+  /// The speed of the sweep at which an order meets the mode's frequency; 0: none.
   double meets(Eigen::Index mode, double order) const {
     const auto above = [&](double speed) { return order * speed - sweep_.modes.at(mode, speed).imag(); };
     if (!(above(low_) <= 0.0) || !(above(high_) >= 0.0)) return 0.0;
@@ -257,7 +259,8 @@ class Search {
     sum_.extremes(point_.amplitude.col(static_cast<Eigen::Index>(section)), extremes_);
     return extremes_.front().half_range();
   }
-  /// The section of the first one's unit in which the order is largest.
+  /// The section in which the order is largest relative to its scale, among those with the unit of the first
+  /// one.
   int most_moved(double speed, int order, double beside) {
     response_.vibration(beside * speed, point_, order);
     int best = 0;
@@ -275,10 +278,10 @@ class Search {
   const std::function<void()>& pause_;
   LinearSweep& sweep_;
   double low_, high_;
-  std::map<double, std::vector<double>> curves_;  // half ranges of all sections, by speed
+  std::map<double, std::vector<double>> curves_;  // half ranges of all sections by speed
   std::vector<double> largest_;                   // half range of each section
   std::vector<bool> has_content_;
-  std::vector<int> numbers_;  // of each critical's order
+  std::vector<int> numbers_;  // number of the order of each critical speed
   LinearResponse::Point point_;
   std::vector<SumExtremes> extremes_;
 };

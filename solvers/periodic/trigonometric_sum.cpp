@@ -10,20 +10,21 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/periodic/trigonometric_kernels.hpp"
+
 namespace drev {
 
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kSameOrder = 1e-9;  // of the highest order: rounding of orders written down
-constexpr int kPointsAPeriod = 4;    // of the highest order
+constexpr double kSameOrder = 1e-9;  // rounding of orders as text, relative to the highest order [-]
+constexpr int kPointsAPeriod = 4;    // points in a period of the highest order
 constexpr int kFewestPoints = 16;
 constexpr int kRefinements = 20;
-constexpr double kRounding = 1e-13;       // of the sum of the amplitudes, at the least
-constexpr double kAngleTolerance = 4e-4;  // of the distance of points
+constexpr double kAngleTolerance = 5e-3;  // last step d over distance of points [-]: (n d)^6/720 is rounding
 
-/// The largest order that all are whole multiples of, by Euclid's algorithm; 0: below `least`.
+/// The largest order of which all are integer multiples, by Euclid's algorithm; 0: it is below `least`.
 double common_order(const std::vector<double>& orders, double least, double same) {
   double common = 0.0;
   for (double order : orders) {
@@ -49,320 +50,225 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
         {{place, "orders", to_text(orders.front()) + " ... " + to_text(orders.back()), "",
           "must be whole multiples of one order, which is at least the highest over " +
               std::to_string(kMostMultiples) + ": they have no common cycle to be summed over"}});
-  for (const double order : orders) multiples_.push_back(static_cast<int>(std::lround(order / base_)));
+  for (const int parity : {0, 1}) {
+    for (std::size_t k = 0; k < orders.size(); ++k)
+      if (const auto n = static_cast<int>(std::lround(orders[k] / base_)); n % 2 == parity)
+        multiples_.push_back(n), rows_.push_back(static_cast<Eigen::Index>(k));
+    if (parity == 0) even_ = static_cast<int>(rows_.size());
+  }
   base_ = highest / std::round(highest / base_);
-  for (const int n : multiples_) cubes_.push_back(std::pow(n, 3));
+  for (const int n : multiples_) cubes_.push_back(std::pow(n, 3)), sevenths_.push_back(std::pow(n, 7));
   highest_ = *std::max_element(multiples_.begin(), multiples_.end());
   const int points = std::max(kFewestPoints, kPointsAPeriod * highest_);
   step_ = kTwoPi / points;
-  for (const int parity : {0, 1}) {
-    for (std::size_t k = 0; k < multiples_.size(); ++k)
-      if (multiples_[k] % 2 == parity) by_parity_.push_back(static_cast<int>(k));
-    if (parity == 0) even_ = static_cast<int>(by_parity_.size());
-  }
   points_ = points;
-  for (int p = 0; p <= points / 4; ++p)
-    for (const int row : by_parity_) {
-      const double angle = step_ * static_cast<double>(static_cast<long>(multiples_[idx(row)]) * p % points);
-      cosines_.push_back(std::cos(angle));
-      sines_.push_back(std::sin(angle));
-    }
   for (int p = 0; p < points; ++p) {
     turned_re_.push_back(std::cos(step_ * p));
     turned_im_.push_back(std::sin(step_ * p));
   }
-  dense_ = highest_ <= 4 * static_cast<int>(multiples_.size()) &&
-           std::is_sorted(multiples_.begin(), multiples_.end());
-  for (LaneArray* rows : {&re_, &im_, &top_re_, &top_im_, &power_re_, &power_im_})
-    rows->resize(orders.size());
-  samples_.resize(idx(points));
+  for (int p = 0; p <= points / 4 + 1; ++p)  // one more, since points are processed in pairs
+    for (const int n : multiples_) {
+      cosines_.push_back(turned_re_[idx(n * p % points)]);
+      sines_.push_back(turned_im_[idx(n * p % points)]);
+    }
+  dense_ = highest_ <= 4 * static_cast<int>(multiples_.size());
+  for (LaneArray* rows : {&re_, &im_, &top_re_, &top_im_}) rows->resize(orders.size());
+  for (std::size_t k = 0; k < multiples_.size(); ++k)
+    places_.push_back(dense_ ? multiples_[k] : static_cast<int>(k));
+  for (LaneArray* rows : {&power_re_, &power_im_})
+    rows->resize(dense_ ? idx(highest_ + 2) : multiples_.size());
+  samples_.resize(idx(points + 2 * kBeside));
+  for (LaneArray* marks : {&top_marks_, &bottom_marks_}) marks->resize(idx(points / kMarksAWord + 1));
 }
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
 
-namespace {
+/// Place of a top's sum and sign in best_, values_ and angles_.
+int TrigonometricSum::place_of(const Top& top) { return (top.sign > 0.0 ? 0 : kLanes) + top.lane; }
 
-/// y at all points, of the sums over a quarter of the cycle:
-///   cos n (pi - x) = (-1)^n cos n x, sin n (pi - x) = -(-1)^n sin n x, and both times (-1)^n at x + pi.
-DREV_WIDEST void sum_quarters(int points, int orders, int even, const int* row, const double* cosines,
-                              const double* sines, const LaneRow* re, const LaneRow* im, LaneRow* y,
-                              Lanes& highest, Lanes& lowest) {
-  const int quarter = points / 4;
-  Lanes most = Lanes{} - std::numeric_limits<double>::infinity(), least = -most;
-  for (int p = 0; p <= quarter; ++p, cosines += orders, sines += orders) {
-    Lanes ce{}, se{}, co{}, so{};
-    for (int k = 0; k < even; ++k) {
-      ce += cosines[k] * re[row[k]].v;
-      se += sines[k] * im[row[k]].v;
+void TrigonometricSum::find_powers(const LaneRow* point, const LaneRow& angle, const LaneRow& away) {
+  if (dense_) {
+    run_widest<FindPowers>((highest_ + 2) / 2 * 2, point, &away, power_re_.data(), power_im_.data());
+    return;
+  }
+  for (std::size_t k = 0; k < multiples_.size(); ++k)
+    for (int i = 0; i < kLanes; ++i) {
+      power_re_[k].v[i] = std::cos(multiples_[k] * (angle.v[i] + away.v[i]));
+      power_im_[k].v[i] = std::sin(multiples_[k] * (angle.v[i] + away.v[i]));
     }
-    for (int k = even; k < orders; ++k) {
-      co += cosines[k] * re[row[k]].v;
-      so += sines[k] * im[row[k]].v;
-    }
-    const Lanes first = ce + co - (se + so), second = ce - co + (se - so), third = ce - co - (se - so),
-                last = ce + co + (se + so);
-    y[p].v = first;
-    y[2 * quarter - p].v = second;
-    y[2 * quarter + p].v = third;
-    y[p > 0 ? points - p : 0].v = last;
-    const Lanes up = first > second ? first : second, up_2 = third > last ? third : last;
-    const Lanes down = first < second ? first : second, down_2 = third < last ? third : last;
-    most = up > most ? up : most;
-    most = up_2 > most ? up_2 : most;
-    least = down < least ? down : least;
-    least = down_2 < least ? down_2 : least;
-  }
-  highest = most;
-  lowest = least;
 }
 
-constexpr int kWord = 52;  // points in a word of marks: bits of a double's significand
-
-/// Marks the points that may be next to the largest value, and those that may be next to the smallest: bit p % kWord of
-/// tops[p / kWord] and of bottoms[p / kWord] in each lane. highest, lowest: of the points. A parabola through three points
-/// whose middle is the highest rises above it by an eighth of its second difference at the most. Written with choices
-/// between doubles: GCC 12 takes masks of lanes to pieces.
-DREV_WIDEST void mark_extremes(int points, const LaneRow* y, const Lanes& slack, const Lanes& highest,
-                               const Lanes& lowest, LaneRow* tops, LaneRow* bottoms) {
-  const Lanes least = highest - slack, most = lowest + slack, none{};
-  Lanes before = y[points - 1].v, here = y[0].v, top{}, bottom{};
-  double bit = 1.0;
-  for (int p = 0; p < points; ++p) {
-    const Lanes after = y[p + 1 < points ? p + 1 : 0].v;
-    const Lanes reach = 1.25 * here - 0.125 * (before + after);
-    // The least of the three differences that must not be negative; not a number: none.
-    const Lanes rise = here - before, fall = here - after, over_least = reach - least, under = most - reach;
-    Lanes over = rise < fall ? rise : fall, below = rise > fall ? -rise : -fall;
-    over = over < over_least ? over : over_least;
-    below = below < under ? below : under;
-    top += over >= none ? none + bit : none;
-    bottom += below >= none ? none + bit : none;
-    bit *= 2.0;
-    if (p % kWord == kWord - 1 || p + 1 == points) {
-      tops[p / kWord].v = top;
-      bottoms[p / kWord].v = bottom;
-      top = bottom = none;
-      bit = 1.0;
-    }
-    before = here;
-    here = after;
-  }
+BracketedMaximum TrigonometricSum::search(const Top& top) const {
+  const double middle = step_ * top.point, near = 1e-9 * step_;
+  return bracketed_maximum(middle - step_, middle + step_ * top.shift, middle + step_, near,
+                           [&](double angle) {
+                             double sum = 0.0;
+                             for (std::size_t k = 0; k < multiples_.size(); ++k)
+                               sum += re_[k].v[top.lane] * std::cos(multiples_[k] * angle) -
+                                      im_[k].v[top.lane] * std::sin(multiples_[k] * angle);
+                             return top.sign * sum;
+                           });
 }
 
-/// Value and first three derivatives.
-struct Derivatives {
-  Lanes y{}, slope{}, bend{}, twist{};
-};
-/// At an angle, of ascending multiples n; dense: exp(i n angle) by passing through all of them from `one`, exp(i angle),
-/// on; else the powers are given.
-template <bool dense>
-[[gnu::always_inline]] inline void differentiate(int orders, const int* multiples, const LaneRow* re,
-                                                 const LaneRow* im, const Lanes& one_re, const Lanes& one_im,
-                                                 const LaneRow* given_re, const LaneRow* given_im,
-                                                 Derivatives& d) {
-  Lanes y{}, slope{}, bend{}, twist{}, power_re = Lanes{} + 1.0, power_im{};
-  int at = 0;
-  for (int k = 0; k < orders; ++k) {
-    for (; dense && at < multiples[k]; ++at) {
-      const Lanes turned = power_re * one_re - power_im * one_im;
-      power_im = power_re * one_im + power_im * one_re;
-      power_re = turned;
-    }
-    if (!dense) power_re = given_re[k].v, power_im = given_im[k].v;
-    const double n = multiples[k];
-    const Lanes a = re[k].v * power_re - im[k].v * power_im,
-                b = n * (re[k].v * power_im + im[k].v * power_re);
-    y += a;
-    slope -= b;
-    bend -= n * n * a;
-    twist += n * n * b;
-  }
-  d.y = y, d.slope = slope, d.bend = bend, d.twist = twist;
-}
-DREV_WIDEST void differentiate_dense(int orders, const int* multiples, const LaneRow* re, const LaneRow* im,
-                                     const Lanes& one_re, const Lanes& one_im, Derivatives& d) {
-  differentiate<true>(orders, multiples, re, im, one_re, one_im, nullptr, nullptr, d);
-}
-DREV_WIDEST void differentiate_given(int orders, const int* multiples, const LaneRow* re, const LaneRow* im,
-                                     const LaneRow* power_re, const LaneRow* power_im, Derivatives& d) {
-  const Lanes one{};
-  differentiate<false>(orders, multiples, re, im, one, one, power_re, power_im, d);
-}
-
-/// exp(i (point + away)) of points whose exp(i point) is known, |away| < 0.6 rad: series to rounding.
-DREV_WIDEST void turn_away(const Lanes& point_re, const Lanes& point_im, const Lanes& away, Lanes& re,
-                           Lanes& im) {
-  const Lanes d = away * away;
-  const Lanes c =
-      1.0 -
-      d / 2.0 * (1.0 - d / 12.0 * (1.0 - d / 30.0 * (1.0 - d / 56.0 * (1.0 - d / 90.0 * (1.0 - d / 132.0)))));
-  const Lanes s =
-      away *
-      (1.0 -
-       d / 6.0 *
-           (1.0 - d / 20.0 * (1.0 - d / 42.0 * (1.0 - d / 72.0 * (1.0 - d / 110.0 * (1.0 - d / 156.0))))));
-  re = point_re * c - point_im * s;
-  im = point_re * s + point_im * c;
-}
-
-/// The rows of some lanes, times their signs.
-DREV_WIDEST void pick_lanes(int orders, const LaneMask& lane, const Lanes& sign, const LaneRow* re,
-                            const LaneRow* im, LaneRow* to_re, LaneRow* to_im) {
-  for (int k = 0; k < orders; ++k) {
-    to_re[k].v = sign * __builtin_shuffle(re[k].v, lane);
-    to_im[k].v = sign * __builtin_shuffle(im[k].v, lane);
-  }
-}
-
-/// sum weight |a|, at the least: |a| <= larger + half of the smaller part.
-DREV_WIDEST void bound_sizes(int orders, const double* weights, const LaneRow* re, const LaneRow* im,
-                             Lanes& sum) {
-  Lanes all{};
-  for (int k = 0; k < orders; ++k) {
-    Lanes a = re[k].v, b = im[k].v;
-    magnitude(a), magnitude(b);
-    all += weights[k] * (a > b ? a + 0.5 * b : b + 0.5 * a);
-  }
-  sum = all;
-}
-
-/// Of Halley's step, where it does not turn Newton's round: the step, and the sum behind it.
-DREV_WIDEST void halley(const Derivatives& d, Lanes& step, Lanes& behind, Lanes& newton) {
-  const Lanes half = Lanes{} + 0.5;
-  newton = -d.slope / d.bend;
-  const Lanes third = 1.0 + 0.5 * newton * d.twist / d.bend;
-  step = newton / (third > half ? third : half);
-  behind = d.y + step * (d.slope + 0.5 * step * (d.bend + step * d.twist / 3.0));
-}
-
-}  // namespace
-
-/// Of a top's sum and sign.
-int TrigonometricSum::place_of(const Top& top) { return 2 * top.lane + (top.sign > 0.0 ? 0 : 1); }
-
-void TrigonometricSum::refine(const int* places, int count, const Lanes& least) {
+void TrigonometricSum::refine(const std::array<int, kLanes>& places, bool in_their_lanes) {
   const auto orders = static_cast<int>(multiples_.size());
-  Lanes away{}, start{}, sign{}, point{}, point_re{}, point_im{}, bound{};
-  Lanes value = Lanes{} - std::numeric_limits<double>::infinity();
-  LaneMask lane{};
+  LaneRow away, start, angle, point[2];
+  std::array<double, kLanes> value;
+  value.fill(-std::numeric_limits<double>::infinity());
+  unsigned open = 0;
   for (int i = 0; i < kLanes; ++i) {
-    const Top& top = tops_[idx(places[i < count ? i : 0])];
-    const int nearest = static_cast<int>(std::lround(top.at));
-    const int p = nearest < 0 ? nearest + points_ : nearest >= points_ ? nearest - points_ : nearest;
-    point[i] = step_ * nearest;
-    point_re[i] = turned_re_[idx(p)];
-    point_im[i] = turned_im_[idx(p)];
-    away[i] = start[i] = step_ * (top.at - nearest);
-    sign[i] = top.sign;
-    lane[i] = top.lane;
-    bound[i] = thirds_[top.lane];
-  }
-  pick_lanes(orders, lane, sign, re_.data(), im_.data(), top_re_.data(), top_im_.data());
-  unsigned open = (1U << static_cast<unsigned>(count)) - 1U;
-  for (int round = 0; round < kRefinements && open != 0; ++round) {
-    Derivatives d;
-    if (dense_) {
-      Lanes one_re{}, one_im{};
-      turn_away(point_re, point_im, away, one_re, one_im);
-      differentiate_dense(orders, multiples_.data(), top_re_.data(), top_im_.data(), one_re, one_im, d);
-    } else {
-      for (std::size_t k = 0; k < multiples_.size(); ++k)
-        for (int i = 0; i < kLanes; ++i) {
-          power_re_[k].v[i] = std::cos(multiples_[k] * (point[i] + away[i]));
-          power_im_[k].v[i] = std::sin(multiples_[k] * (point[i] + away[i]));
-        }
-      differentiate_given(orders, multiples_.data(), top_re_.data(), top_im_.data(), power_re_.data(),
-                          power_im_.data(), d);
+    if (places[idx(i)] < 0) continue;
+    const Top& top = tops_[idx(places[idx(i)])];
+    open |= 1U << static_cast<unsigned>(i);
+    angle.v[i] = step_ * top.point;
+    point[0].v[i] = turned_re_[idx(top.point)];
+    point[1].v[i] = turned_im_[idx(top.point)];
+    away.v[i] = start.v[i] = step_ * top.shift;
+    if (in_their_lanes) continue;
+    for (std::size_t k = 0; k < multiples_.size(); ++k) {
+      top_re_[k].v[i] = re_[k].v[top.lane];
+      top_im_[k].v[i] = im_[k].v[top.lane];
     }
-    Lanes step{}, behind{}, newton{};
-    halley(d, step, behind, newton);
-    for (int i = 0; i < count; ++i) {
+  }
+  const LaneRow *re = in_their_lanes ? re_.data() : top_re_.data(),
+                *im = in_their_lanes ? im_.data() : top_im_.data();
+  FollowTop::Found d;
+  for (int round = 0; round < kRefinements && open != 0; ++round) {
+    find_powers(point, angle, away);
+    run_widest<FollowTop>(orders, multiples_.data(), places_.data(), re, im, power_re_.data(),
+                          power_im_.data(), &d);
+    for (unsigned left = open; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
       const unsigned bit = 1U << static_cast<unsigned>(i);
-      if ((open & bit) == 0) continue;
-      value[i] = std::max(value[i], d.y[i]);
+      const Top& top = tops_[idx(places[idx(i)])];
+      value[idx(i)] = std::max(value[idx(i)], top.sign * d.value.v[i]);
       open &= ~bit;
-      if (!(d.bend[i] < 0.0)) continue;
-      // Newton's parabola, and what the third derivative may add to it: not worth following where that is too little.
-      const double reach = std::abs(newton[i]);
-      if (d.y[i] + 0.5 * d.slope[i] * newton[i] + bound[i] * reach * reach * reach <
-          least[i] - kRounding * bound[i])
+      const double step = d.step.v[i];
+      if (!(top.sign * d.bend.v[i] < 0.0) || std::abs(away.v[i] + step - start.v[i]) > step_) {
+        const BracketedMaximum found = search(top);
+        value[idx(i)] = std::max(value[idx(i)], found.value);
+        away.v[i] = found.at - angle.v[i];
         continue;
-      if (std::abs(away[i] + step[i] - start[i]) > step_) continue;
-      away[i] += step[i];
-      if (std::abs(step[i]) < kAngleTolerance * step_)
-        value[i] = std::max(value[i], behind[i]);
+      }
+      away.v[i] += step;
+      if (std::abs(step) < kAngleTolerance * step_)
+        value[idx(i)] = std::max(value[idx(i)], top.sign * d.behind.v[i]);
       else
         open |= bit;
     }
   }
-  for (int i = 0; i < count; ++i) {
-    Top& top = tops_[idx(places[i])];
-    top.found = value[i];
-    top.angle = point[i] + away[i];
+  for (int i = 0; i < kLanes; ++i) {
+    if (places[idx(i)] < 0) continue;
+    Top& top = tops_[idx(places[idx(i)])];
+    top.found = value[idx(i)];
+    top.angle = angle.v[i] + away.v[i];
   }
 }
 
 void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used) {
   for (std::size_t k = 0; used < kLanes && k < multiples_.size(); ++k) re_[k].v = im_[k].v = Lanes{};
-  for (int lane = 0; lane < used; ++lane) {
-    const auto column = amplitudes.col(first + lane);
-    for (std::size_t k = 0; k < multiples_.size(); ++k) {
-      re_[k].v[lane] = column[static_cast<Eigen::Index>(k)].real();
-      im_[k].v[lane] = column[static_cast<Eigen::Index>(k)].imag();
+  std::array<const Complex*, kLanes> columns{};
+  for (int lane = 0; lane < used; ++lane) columns[idx(lane)] = amplitudes.col(first + lane).data();
+  for (std::size_t k = 0; k < multiples_.size(); ++k)
+    for (int lane = 0; lane < used; ++lane) {
+      const Complex a = columns[idx(lane)][rows_[k]];
+      re_[k].v[lane] = a.real();
+      im_[k].v[lane] = a.imag();
     }
+  const auto orders = static_cast<int>(multiples_.size());
+  LaneRow sizes[2];
+  run_widest<BoundSizes>(orders, cubes_.data(), sevenths_.data(), re_.data(), im_.data(), sizes);
+  thirds_ = sizes[0];
+  // Largest excess of the sum, within half a step, over the parabola through three points and over the
+  // polynomial through seven.
+  const double third = step_ * step_ * step_ / (9.0 * std::sqrt(3.0)),
+               seventh = LookBetween::kSeventh * std::pow(step_, 7);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    slack_.v[lane] = third * sizes[0].v[lane];
+    rest_.v[lane] = seventh * sizes[1].v[lane];
   }
-  bound_sizes(static_cast<int>(multiples_.size()), cubes_.data(), re_.data(), im_.data(), thirds_);
-  // Between three points the sum is above the parabola through them by at most this.
-  slack_ = thirds_ * (step_ * step_ * step_ / (9.0 * std::sqrt(3.0)));
-  sum_quarters(points_, static_cast<int>(multiples_.size()), even_, by_parity_.data(), cosines_.data(),
-               sines_.data(), re_.data(), im_.data(), samples_.data(), highest_sample_, lowest_sample_);
+  run_widest<SumQuarters>(points_, orders, even_, cosines_.data(), sines_.data(), re_.data(), im_.data(),
+                          &samples_[kBeside], ends_.data());
+  for (int k = 0; k < kBeside; ++k) {
+    samples_[idx(k)] = samples_[idx(points_ + k)];
+    samples_[idx(points_ + kBeside + k)] = samples_[idx(kBeside + k)];
+  }
 }
 
 void TrigonometricSum::find_tops(int used) {
-  constexpr std::size_t kWords = 4 * kMostMultiples / kWord + 1;
-  std::array<LaneRow, kWords> tops, bottoms;
-  mark_extremes(points_, samples_.data(), slack_, highest_sample_, lowest_sample_, tops.data(),
-                bottoms.data());
+  run_widest<MarkExtremes>(points_, &samples_[kBeside], &slack_, ends_.data(), top_marks_.data(),
+                           bottom_marks_.data());
   for (int lane = 0; lane < kLanes; ++lane) {
-    best_[idx(2 * lane)] = highest_sample_[lane];
-    best_[idx(2 * lane + 1)] = -lowest_sample_[lane];
+    best_[idx(lane)] = ends_[0].v[lane];
+    best_[idx(kLanes + lane)] = -ends_[1].v[lane];
   }
-  for (const double sign : {1.0, -1.0}) take_marked(used, sign, sign > 0.0 ? tops.data() : bottoms.data());
+  for (const double sign : {1.0, -1.0})
+    take_marked(used, sign, sign > 0.0 ? top_marks_.data() : bottom_marks_.data());
 }
 
 void TrigonometricSum::take_marked(int used, double sign, const LaneRow* marks) {
   for (int lane = 0; lane < used; ++lane) {
-    if (!(slack_[lane] > 0.0)) continue;
-    for (int first = 0; first < points_; first += kWord)
-      for (auto word = static_cast<std::uint64_t>(marks[first / kWord].v[lane]); word != 0;
+    if (!(slack_.v[lane] > 0.0)) continue;
+    for (int first = 0; first < points_; first += kMarksAWord)
+      for (auto word = static_cast<std::uint64_t>(marks[first / kMarksAWord].v[lane]); word != 0;
            word &= word - 1) {
         const int p = first + std::countr_zero(word);
-        const double before = samples_[idx(p > 0 ? p - 1 : points_ - 1)].v[lane],
-                     here = samples_[idx(p)].v[lane],
-                     after = samples_[idx(p + 1 < points_ ? p + 1 : 0)].v[lane];
+        const double before = sample_at(p - 1, lane), here = sample_at(p, lane),
+                     after = sample_at(p + 1, lane);
         const double bend = sign * (2.0 * here - before - after), tilt = 0.5 * sign * (after - before);
-        const double shift = bend > 0.0 ? tilt / bend : 0.0;
-        Top top{lane, sign, p + shift, sign * here + 0.5 * tilt * shift};
-        if (top.value + slack_[lane] >= best_[idx(place_of(top))]) tops_.push_back(top);
+        // Place of the parabola's maximum within half a step.
+        const double shift = std::abs(tilt) < 0.5 * bend ? tilt / bend : std::copysign(0.5, tilt);
+        Top top{lane, p, sign, shift, sign * here + shift * (tilt - 0.5 * bend * shift) + slack_.v[lane]};
+        if (top.reach >= best_[idx(place_of(top))]) tops_.push_back(top);
       }
   }
 }
 
-void TrigonometricSum::put_leaders_first() {
-  std::array<int, 2 * kLanes> leaders;
-  leaders.fill(-1);
+void TrigonometricSum::look_between() {
+  constexpr int kSides = LookBetween::kSides;
+  std::array<LaneRow, 2 * kSides + 1> y;
+  LaneRow at, reach, rest, value;
+  for (std::size_t first = 0; first < tops_.size(); first += kLanes) {
+    const std::size_t count = std::min<std::size_t>(kLanes, tops_.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Top& top = tops_[first + i];
+      const auto lane = static_cast<int>(i);
+      for (int k = -kSides; k <= kSides; ++k)
+        y[idx(kSides + k)].v[lane] = top.sign * sample_at(top.point + k, top.lane);
+      at.v[lane] = top.shift, reach.v[lane] = top.reach, rest.v[lane] = rest_.v[top.lane];
+    }
+    run_widest<LookBetween>(y.data(), &rest, &at, &reach, &value);
+    for (std::size_t i = 0; i < count; ++i) {
+      tops_[first + i].shift = at.v[static_cast<int>(i)];
+      tops_[first + i].reach = reach.v[static_cast<int>(i)];
+      tops_[first + i].value = value.v[static_cast<int>(i)];
+    }
+  }
+}
+
+void TrigonometricSum::follow_leaders() {
+  std::array<std::array<int, kLanes>, 2> leaders;
+  for (auto& side : leaders) side.fill(-1);
   for (std::size_t i = 0; i < tops_.size(); ++i) {
-    int& leader = leaders[idx(place_of(tops_[i]))];
+    int& leader = leaders[tops_[i].sign > 0.0 ? 0 : 1][idx(tops_[i].lane)];
     if (leader < 0 || tops_[i].value > tops_[idx(leader)].value) leader = static_cast<int>(i);
   }
-  order_.clear();
-  for (const int leader : leaders) {
-    if (leader < 0) continue;
-    tops_[idx(leader)].leads = true;
-    order_.push_back(leader);
+  for (const auto& side : leaders) {
+    refine(side, true);
+    for (const int place : side)
+      if (place >= 0) take_found(place);
   }
-  for (std::size_t i = 0; i < tops_.size(); ++i)
-    if (!tops_[i].leads) order_.push_back(static_cast<int>(i));
+}
+
+void TrigonometricSum::take_found(int place) {
+  Top& top = tops_[idx(place)];
+  top.followed = true;
+  const int which = place_of(top);
+  double& best = best_[idx(which)];
+  if (angles_[idx(which)] >= 0.0 && !(top.found > best)) return;
+  best = std::max(best, top.found);
+  values_[idx(which)] = top.found;
+  angles_[idx(which)] = top.angle - kTwoPi * std::floor(top.angle / kTwoPi);
 }
 
 void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out) {
@@ -372,45 +278,33 @@ void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<
     const int used = static_cast<int>(std::min<Eigen::Index>(kLanes, amplitudes.cols() - first));
     sample(amplitudes, first, used);
     tops_.clear();
+    angles_.fill(-1.0);
+    values_.fill(0.0);
     find_tops(used);
-    // What the others can reach may then be known to be too little.
-    put_leaders_first();
-    for (std::size_t next = 0; next < order_.size();) {
-      std::array<int, kLanes> places{};
-      Lanes least{};
+    look_between();
+    follow_leaders();
+    // The upper bounds of other tops may now be below the best value.
+    for (std::size_t next = 0; next < tops_.size();) {
+      std::array<int, kLanes> places;
+      places.fill(-1);
       int count = 0;
-      for (; next < order_.size() && count < kLanes; ++next) {
-        const Top& top = tops_[idx(order_[next])];
-        const double best = best_[idx(place_of(top))];
-        if (top.value + slack_[top.lane] < best) continue;
-        least[count] = best;
-        places[idx(count++)] = order_[next];
-      }
+      for (; next < tops_.size() && count < kLanes; ++next)
+        if (!tops_[next].followed && !(tops_[next].reach < best_[idx(place_of(tops_[next]))]))
+          places[idx(count++)] = static_cast<int>(next);
       if (count == 0) break;
-      refine(places.data(), count, least);
-      for (int i = 0; i < count; ++i) {
-        const Top& top = tops_[idx(places[idx(i)])];
-        SumExtremes& e = out[static_cast<std::size_t>(first + top.lane)];
-        const double so_far = top.sign > 0.0 ? e.max : -e.min;
-        double& best = best_[idx(place_of(top))];
-        best = std::max(best, top.found);
-        if (!top.leads && !(top.found > so_far)) continue;
-        const double angle = (top.angle - kTwoPi * std::floor(top.angle / kTwoPi)) / base_;
-        if (top.sign > 0.0)
-          e.max = top.found, e.max_angle = angle;
-        else
-          e.min = -top.found, e.min_angle = angle;
-      }
+      refine(places, false);
+      for (int i = 0; i < count; ++i) take_found(places[idx(i)]);
     }
     for (int lane = 0; lane < used; ++lane) {
       SumExtremes& e = out[static_cast<std::size_t>(first + lane)];
-      const auto column = amplitudes.col(first + lane);
-      if (!column.allFinite()) {
-        e = {};
+      if (!std::isfinite(thirds_.v[lane])) {
         e.max = std::numeric_limits<double>::infinity();
         e.min = -e.max;
-      } else if (column.isZero(0.0)) {
-        e = {};
+      } else if (thirds_.v[lane] > 0.0) {
+        e.max = values_[idx(lane)];
+        e.min = -values_[idx(kLanes + lane)];
+        e.max_angle = std::max(0.0, angles_[idx(lane)]) / base_;
+        e.min_angle = std::max(0.0, angles_[idx(kLanes + lane)]) / base_;
       }
     }
   }

@@ -1,6 +1,6 @@
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
@@ -22,10 +22,10 @@ using Complex = std::complex<double>;
 
 constexpr double kLeastGain = 1.5;
 constexpr int kSamples = 1024;
-constexpr int kMostModes = 80;       // looked at; half of them may be kept
-constexpr double kDamping = 0.01;    // of critical, at resonance
-constexpr double kStep = 25.0;       // of a product's cost, beside unknowns
-constexpr double kDensePart = 0.25;  // of an unknown's cost: an entry of a full matrix
+constexpr int kMostModes = 80;       // modes looked at; half of them may be kept
+constexpr double kDamping = 0.01;    // damping ratio, at resonance
+constexpr double kStep = 25.0;       // cost of a product beside its unknowns, in unknowns
+constexpr double kDensePart = 0.25;  // cost of an entry of a full matrix, in unknowns
 
 /// Two turns of the reference shaft if it turns, else the run.
 double spectrum_length(const System& system, double duration) {
@@ -100,7 +100,7 @@ class Predictor {
   const System& system_;
   const ModeSet& modes_;
   double length_;
-  std::vector<std::vector<Complex>> lines_;  // of each mode
+  std::vector<std::vector<Complex>> lines_;  // spectral lines of each mode
   std::vector<double> start_;
 };
 

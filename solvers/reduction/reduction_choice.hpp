@@ -14,7 +14,7 @@
 /// Gain: exact propagation's steps go with the fastest mode, and a product costs 25 + n of the full system's
 /// n unknowns, 25 + r (r + loaded nodes)/4 of the reduced system's r.
 #include <drev/core/range.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/reduction/reduction.hpp>
 
 #include <functional>

@@ -19,10 +19,10 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 constexpr int kLoadSamples = 128;
-constexpr double kShift = 1e-3;        // of the first eigenvalue
+constexpr double kShift = 1e-3;        // shift over the first eigenvalue
 constexpr int kRefinements = 5;        // each takes the shift's error down by kShift at least
-constexpr double kSamePattern = 1e-6;  // of the largest load pattern
-constexpr double kDependent = 1e-10;   // in energy, of shapes
+constexpr double kSamePattern = 1e-6;  // difference of equal load patterns over the largest one
+constexpr double kDependent = 1e-10;   // energy of a shape beside the others, over its own
 
 /// K^+ of the modes left out, contacts closed.
 class Residual {
@@ -192,7 +192,7 @@ ResidualVectors residual_vectors(const System& system, const KeptModes& modes, d
     taken = beside(taken, orthonormal_in_energy(most, kDependent));
   }
   if (taken.cols() == 0) return found;
-  // Among them: K-orthonormal already, but for rounding, so M x = mu K x.
+  // Among them: K-orthonormal already, except for rounding, so M x = mu K x.
   found.columns = taken * symmetric_eigen(taken.transpose() * residual.stiffness(taken),
                                           taken.transpose() * residual.mass(taken))
                               .vectors;

@@ -11,8 +11,8 @@ namespace drev {
 
 namespace {
 
-constexpr double kInSpan = 1e-9;  // of a mode's kinetic energy: what may be outside the reduced space
-constexpr double kOfLinear = 1.5, kOfContacts = 2.0;  // what the estimate is multiplied by
+constexpr double kInSpan = 1e-9;  // part of a mode's kinetic energy that may lie outside the reduced space
+constexpr double kOfLinear = 1.5, kOfContacts = 2.0;  // factors of the estimate
 constexpr int kFollowed = 20;
 
 /// Over h [s] of z'' + d z' + w2 z = f_0 + (f_1 - f_0) t/h.

@@ -41,7 +41,7 @@ class ChannelValues {
   void add(double t_0, double t_1, int depth);
 
   std::vector<Channel> channels_;
-  std::vector<std::size_t> integrals_;  // places of those that are
+  std::vector<std::size_t> integrals_;  // places of the channels that are integrals
   std::vector<int> place_;              // of each channel in integrals_; -1: a function of the state
   std::vector<double> sums_, sizes_, last_;
   StepMotion* motion_ = nullptr;

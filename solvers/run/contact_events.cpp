@@ -1,6 +1,6 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/scalar_force.hpp>
-#include <drev/solvers/run/contact_events.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
 #include <algorithm>

@@ -70,6 +70,17 @@ static std::vector<Channel> gap_forces(const System& system) {
   return forces;
 }
 
+static bool has_one_spring(const ScalarTerm& term, const Gap& gap) {
+  int above = 0, below = 0;
+  for (const LawPiece& p : linear_pieces(term)) {
+    if (p.c != 0.0 || p.product != 0.0) return false;
+    const Interval x = p.x_range();
+    above += x.low >= gap.high;
+    below += x.high <= gap.low;
+  }
+  return above + below > 0 && above <= 1 && below <= 1;
+}
+
 ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     : inside_steps_(inside_steps),
       forces_(inside_steps ? std::make_unique<Peaks>(gap_forces(system)) : nullptr) {
@@ -81,11 +92,13 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     terms_.push_back(j);
     rows_.push_back(term.z);
     in_unknowns_.push_back(term.phase_node < 0 && !term.varies);
+    one_spring_.push_back(in_unknowns_.back() && has_one_spring(term, *gap));
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
     records_.emplace_back().element = system.element_instances()[idx(index(term.element))].name;
   }
   intervals_.resize(terms_.size());
+  largest_inside_.resize(terms_.size());
 }
 
 ContactStatistics::~ContactStatistics() = default;
@@ -112,18 +125,38 @@ bool ContactStatistics::needs_acceleration() const { return forces_ && forces_->
 bool ContactStatistics::looks_inside(const EvaluatedState& from, const EvaluatedState& to,
                                      const double* beyond_cubic) {
   bool looks = forces_ && forces_->looks_inside(from, to, beyond_cubic);
-  for (std::size_t i = 0; inside_steps_ && !looks && i < terms_.size(); ++i) {
-    double beyond = 0.0;
-    for (const Entry& e : rows_[i]) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
-    const auto reach =
-        in_unknowns_[i] ? force_reach(*motion_, static_cast<int>(terms_[i]), from, to, beyond) : std::nullopt;
-    // A contact that this step begins has no largest force yet. Those at the step's ends are noted anyway.
-    const bool begins = intervals_[i].side != motion_->side(static_cast<int>(terms_[i]));
-    const double ends = std::max(std::abs(from.responses[terms_[i]].y), std::abs(to.responses[terms_[i]].y));
-    const double largest = std::max(ends, begins ? 0.0 : intervals_[i].largest);
-    looks = !(reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest);
+  for (std::size_t i = 0; inside_steps_ && i < terms_.size(); ++i) {
+    largest_inside_[i].reset();
+    looks = looks || may_rise_inside(i, from, to, beyond_cubic);
   }
   return looks;
+}
+
+/// Whether the force may come further inside the step than it is known to.
+bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to,
+                                        const double* beyond_cubic) {
+  const std::size_t j = terms_[i];
+  const int law = static_cast<int>(j);
+  const ScalarResponse &a = from.responses[j], &b = to.responses[j];
+  // A contact that this step begins has no largest force yet. Those at the step's ends are noted anyway.
+  const bool begins = intervals_[i].side != motion_->side(law);
+  const double largest = std::max({std::abs(a.y), std::abs(b.y), begins ? 0.0 : intervals_[i].largest});
+  double beyond = 0.0;
+  for (const Entry& e : rows_[i]) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
+  if (in_unknowns_[i]) {
+    const auto reach = force_reach(*motion_, law, from, to, beyond);
+    if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) return false;
+  }
+  // An end on an edge of the gap has the slope of either side.
+  const double k = std::max(a.dy_dx, b.dy_dx);
+  if (!one_spring_[i] || std::min(a.dy_dx, b.dy_dx) < 0.0) return true;
+  const auto range = motion_->deflection_range(law);
+  if (!range) return true;
+  const double x = from.inputs[j].x, y_low = a.y + k * (range->low - x), y_high = a.y + k * (range->high - x);
+  const double inside = std::max(-y_low, y_high);
+  if (k * range->error > kLargestOfContact * std::max(inside, largest)) return true;
+  largest_inside_[i] = inside;
+  return false;
 }
 
 void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& from,
@@ -160,7 +193,8 @@ void ContactStatistics::note_forces(std::size_t i, const EvaluatedState& from, c
   const double h = to.state.t - from.state.t;
   double& largest = intervals_[i].largest;
   note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
-  if (!inside_steps_) return;
+  if (largest_inside_[i]) largest = std::max(largest, *largest_inside_[i]);
+  if (!inside_steps_ || largest_inside_[i]) return;
   if (const auto peak =
           cubic_peak(r0.y, r0.dy_dx * from.inputs[j].x_dot, r1.y, r1.dy_dx * to.inputs[j].x_dot, h))
     note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);

@@ -12,7 +12,7 @@
 namespace drev {
 
 namespace {
-constexpr double kSamePoint = 1e-9;  // of a communication step
+constexpr double kSamePoint = 1e-9;  // distance of equal times over a communication step
 }
 
 ControlRun::ControlRun(const System& system, double t_start, double t_end)
@@ -23,7 +23,7 @@ ControlRun::ControlRun(const System& system, double t_start, double t_end)
       for (const Controlled& c : all_) c.controller->release();
       throw SolverError(
           system.name() + ": " + name +
-          " is in use by another run: a controller takes part in one run at a time; build the model anew");
+          " is in use by another run: a controller takes part in one run at a time; build the model again");
     }
     all_.push_back({name, controller, find_signals(system, controller->inputs())});
   }

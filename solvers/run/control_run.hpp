@@ -1,10 +1,10 @@
 #pragma once
 /// ControlRun: the sampled controllers of a system in one run (sampled_controller.hpp): when they are asked, what they
 /// see, and what acts from then on.
-#include <drev/core/control/signal.hpp>
-
 #include <memory>
 #include <vector>
+
+#include "core/control/signal.hpp"
 
 namespace drev {
 
@@ -21,7 +21,7 @@ class ControlRun {
   ControlRun& operator=(const ControlRun&) = delete;
 
   bool empty() const { return all_.empty(); }
-  /// At the start of the run; the assembler stands there. Then the state's accelerations are to be found anew.
+  /// At the start of the run; the assembler stands there. Then the state's accelerations are to be found again.
   void start(const Assembler& assembler, const State& state);
   /// The next communication point after t [s]; infinite if there is none.
   double next_stop(double t) const;

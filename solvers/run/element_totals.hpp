@@ -43,7 +43,7 @@ class ElementTotals final : public Observer {
  private:
   ChannelValues values_;
   Peaks stored_;
-  std::vector<double> begin_, last_;  // of values_' channels
+  std::vector<double> begin_, last_;  // integrals of values_' channels
   double t_begin_ = 0.0, t_last_ = 0.0;
 };
 

@@ -37,7 +37,7 @@ class EnergyMonitor {
 
   const Assembler& assembler_;
   MatrixProduct mass_;
-  bool damped_ = false;  // by constant dampers
+  bool damped_ = false;  // there are constant dampers
   EnergyBalance balance_;
 };
 

@@ -1,7 +1,8 @@
+#include "solvers/run/mean_speed.hpp"
+
 #include <drev/core/assembler.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
-#include <drev/solvers/run/mean_speed.hpp>
 
 #include <cmath>
 

@@ -15,7 +15,8 @@ class StepMotion {
   virtual ~StepMotion() = default;
   struct Point {
     const Assembler& assembler;  ///< stands at the point's time
-    const EvaluatedState& at;    ///< its motion, accelerations too, and the laws' inputs and responses
+    /// Its motion, with accelerations if some observer needs them, and the laws' inputs and responses.
+    const EvaluatedState& at;
   };
   /// At a time [s] between the two points that step() was given; valid until the next call. To the accuracy
   /// of the step's end in exact propagation; elsewhere on the polynomial through both ends of the step.
@@ -23,6 +24,12 @@ class StepMotion {
   /// Where a law (of System::scalars()) that has a gap is between the two points: 1 on the flank above it, 0 in
   /// the gap, -1 below; none where the method does not end its steps at changes.
   virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
+  /// The smallest and the largest deflection of a law between the two points that looks_inside() was given, both off by at
+  /// most `error` [m or rad]; none where that costs as much as to show the points inside.
+  struct DeflectionRange {
+    double low, high, error;
+  };
+  virtual std::optional<DeflectionRange> deflection_range(int /*law*/) { return std::nullopt; }
 };
 
 class Observer {
@@ -45,7 +52,7 @@ class Observer {
   /// observer does, points inside a step of exact propagation have none: a is not a number there.
   virtual bool needs_acceleration() const { return true; }
   /// Asked before exact propagation shows a step: whether it wants points inside, close enough for cubics between them;
-  /// where no observer does, the step is shown whole but for next_stop(). beyond_cubic: of each unknown, how far it
+  /// where no observer does, the step is shown whole except for next_stop(). beyond_cubic: of each unknown, how far it
   /// lies at most from the cubic through its values and rates at both ends [rad or m]; behind them the same of each rate.
   virtual bool looks_inside(const EvaluatedState& /*from*/, const EvaluatedState& /*to*/,
                             const double* /*beyond_cubic*/) {

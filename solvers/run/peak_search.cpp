@@ -10,13 +10,13 @@ namespace drev {
 namespace {
 
 constexpr int kMostLooks = 40;
-constexpr double kRounding = 4e-16;   // of the largest value
-constexpr double kSettled = 1e-13;    // of the range: the last parabola's gain
-constexpr double kCubicError = 0.25;  // of the rise that a cubic shows, and
-constexpr double kRangeError = 1e-6;  // of the range: what the cubic may be off by
-constexpr double kCloser = 0.125;     // to an end, in which nothing shows yet
-constexpr double kSwing = 0.5;        // of the ends' difference, and
-constexpr double kRangeSwing = 0.02;  // of the range: the most that an extremum rises above them
+constexpr double kRounding = 4e-16;   // rounding of a value over the largest one
+constexpr double kSettled = 1e-13;    // gain of the last parabola over the range
+constexpr double kCubicError = 0.25;  // error of a cubic over the rise that it shows,
+constexpr double kRangeError = 1e-6;  // and over the range
+constexpr double kCloser = 0.125;  // part of the way from an end to the middle, looked at where nothing shows
+constexpr double kSwing = 0.5;     // rise of an extremum above both ends over their difference,
+constexpr double kRangeSwing = 0.02;  // and over the range, at most
 
 using Look = std::function<PeakSample(double t)>;
 
@@ -42,7 +42,7 @@ void search_by_rates(PeakSample a, PeakSample b, const Look& look, double range,
 void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, const Look& look, double range,
                       Peak& peak) {
   double last = b.t - a.t;
-  std::optional<double> slope;  // from the better end inwards, by the parabola before
+  std::optional<double> slope;  // slope from the better end inwards, by the parabola before
   for (int i = 0; i < kMostLooks; ++i) {
     // The vertex of the parabola through the three.
     const double d_1 = m.t - a.t, d_2 = b.t - m.t;

@@ -10,8 +10,9 @@
 namespace drev {
 
 namespace {
-constexpr double kNear = 0.05;   // of the range so far: steps that may hold a new peak inside
-constexpr double kShort = 1e-6;  // of the longest step: nothing moves in shorter ones
+constexpr double kNear = 0.05;  // distance from the range so far, over it, of steps that may hold a new peak
+constexpr double kMostBulge = 0.15;  // > 4/27: cubic_reach()
+constexpr double kShort = 1e-6;      // length over the longest step: nothing moves in shorter ones
 }  // namespace
 
 std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
@@ -35,24 +36,33 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
     : channels_(std::move(channels)),
       peaks_(channels_.size()),
       watched_(channels_.size()),
+      last_(channels_.size()),
+      ahead_(channels_.size()),
+      last_rate_(channels_.size()),
+      ahead_rate_(channels_.size()),
       inside_steps_(inside_steps) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const std::vector<Entry>& row = channels_[c].z_row();
-    if (!channels_[c].is_linear() || row.size() > 2 || !channels_[c].v_row().empty()) continue;
-    watched_[c].two_entries = true;
-    if (!row.empty()) watched_[c].first = row[0];
-    if (row.size() == 2) watched_[c].second = row[1];
+    if (!channels_[c].is_linear() || row.size() > 2 || !channels_[c].v_row().empty()) {
+      others_.push_back(c);
+      continue;
+    }
+    watched_[c].pair = static_cast<int>(pairs_.size());
+    Pair& pair = pairs_.emplace_back(Pair{c});
+    if (!row.empty()) pair.first = row[0];
+    if (row.size() == 2) pair.second = row[1];
   }
 }
 
 double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const {
-  return watched_[c].two_entries ? watched_[c].sum(point.state.z)
-                                 : channels_[c].evaluate(assembler, point.state);
+  const int pair = watched_[c].pair;
+  return pair >= 0 ? pairs_[idx(pair)].sum(point.state.z.data())
+                   : channels_[c].evaluate(assembler, point.state);
 }
 
 std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
                                   const EvaluatedState& point) const {
-  if (watched_[c].two_entries) return watched_[c].sum(point.state.v);
+  if (const int pair = watched_[c].pair; pair >= 0) return pairs_[idx(pair)].sum(point.state.v.data());
   if (const int law = channels_[c].deflection_of(); law >= 0) return point.inputs[idx(law)].x_dot;
   // Known motions are those of the assembler's time, which may be another than the point's.
   if (!channels_[c].is_linear() && assembler.system().any_prescribed_moves()) return std::nullopt;
@@ -88,13 +98,9 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   const double h = to.state.t - from.state.t;
   Interval reach;
   double beyond = 0.0;
-  if (w.two_entries) {
-    reach = cubic_reach(w.last, w.sum(from.state.v), w.sum(to.state.z), w.sum(to.state.v), h);
-    beyond = std::abs(w.first.coeff) * beyond_cubic[w.first.index] +
-             std::abs(w.second.coeff) * beyond_cubic[w.second.index];
-  } else if (channels_[c].is_linear()) {
+  if (channels_[c].is_linear()) {
     // Its rate reads the acceleration, which is the rate's rate.
-    reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
+    reach = cubic_reach(last_[c], along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
                         along(c, to.state.v, to.state.a), h);
     for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     for (const Entry& e : channels_[c].v_row())
@@ -116,12 +122,36 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
 }
 
+/// may_pass() of any channel of two entries. If none may, their values and rates at the step's end are kept.
+bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
+  const double *z = to.state.z.data(), *v = to.state.v.data(), *v_before = from.state.v.data();
+  const double h = to.state.t - from.state.t, most_bulge = kMostBulge * h;
+  for (const Pair& pair : pairs_) {
+    const std::size_t c = pair.channel;
+    const double last = last_[c], ahead = pair.sum(z), ahead_rate = pair.sum(v),
+                 rate = last_rates_ ? last_rate_[c] : pair.sum(v_before);
+    ahead_[c] = ahead;
+    ahead_rate_[c] = ahead_rate;
+    const double beyond = std::abs(pair.first.coeff) * beyond_cubic[pair.first.index] +
+                          std::abs(pair.second.coeff) * beyond_cubic[pair.second.index];
+    const double high = peaks_[c].max - beyond, low = peaks_[c].min + beyond;
+    // Most values are so far from their peaks that no slope at an end leads there.
+    const double bulge = most_bulge * (std::abs(rate) + std::abs(ahead_rate));
+    if (std::max(last, ahead) + bulge <= high && std::min(last, ahead) - bulge >= low) continue;
+    const Interval reach = cubic_reach(last, rate, ahead, ahead_rate, h);
+    if (!(reach.high <= high && reach.low >= low)) return true;
+  }
+  return false;
+}
+
 bool Peaks::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
   passed_over_ = false;
   if (!inside_steps_) return false;
-  for (std::size_t c = 0; c < channels_.size(); ++c)
+  for (const std::size_t c : others_)
     if (may_pass(c, from, to, beyond_cubic)) return true;
+  if (pairs_may_pass(from, to, beyond_cubic)) return true;
   passed_over_ = true;
+  ahead_t_ = to.state.t;
   return false;
 }
 
@@ -130,16 +160,17 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double y = value(c, assembler, point);
     peaks_[c] = {{y, point.state.t, y, point.state.t}};
-    watched_[c].last = y;
+    last_[c] = y;
     set_bounds(c);
   }
+  passed_over_ = last_rates_ = false;
 }
 
 void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
-  for (std::size_t c = 0; c < channels_.size(); ++c) {
-    if (watched_[c].two_entries) continue;  // angles do not jump
-    watched_[c].last = value(c, assembler, point);
-    peaks_[c].note(watched_[c].last, point.state.t);
+  passed_over_ = last_rates_ = false;
+  for (const std::size_t c : others_) {  // angles do not jump
+    last_[c] = value(c, assembler, point);
+    peaks_[c].note(last_[c], point.state.t);
     set_bounds(c);
   }
 }
@@ -147,17 +178,25 @@ void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
 void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) {
   const double length = to.state.t - from.state.t;
   longest_ = std::max(longest_, length);
+  if (passed_over_ && to.state.t < ahead_t_) return;
+  last_rates_ = passed_over_;
+  if (passed_over_) {
+    last_.swap(ahead_);
+    last_rate_.swap(ahead_rate_);
+    for (const std::size_t c : others_) last_[c] = value(c, assembler, to);
+    passed_over_ = false;
+    return;
+  }
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    Watched& w = watched_[c];
-    const double y = value(c, assembler, to), before = w.last;
+    const Watched& w = watched_[c];
+    const double y = value(c, assembler, to), before = last_[c];
     const double higher = std::max(y, before), lower = std::min(y, before);
-    w.last = y;
+    last_[c] = y;
     if (higher <= w.high && lower >= w.low) continue;
     Peak& p = peaks_[c];
     p.note(y, to.state.t);
     const double near = kNear * (p.max - p.min);
-    if (inside_steps_ && !passed_over_ && length > kShort * longest_ &&
-        (higher > p.max - near || lower < p.min + near))
+    if (inside_steps_ && length > kShort * longest_ && (higher > p.max - near || lower < p.min + near))
       look_inside(c, assembler, from, to, before, y);
     set_bounds(c);
   }

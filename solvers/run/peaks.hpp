@@ -46,14 +46,16 @@ class Peaks final : public Observer {
   void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
                    const EvaluatedState& to, double y_0, double y_1);
 
-  /// What a step needs of a channel, close together: there are many steps and few new peaks.
-  struct Watched {
-    bool two_entries = false;  ///< its value is the sum over z, its rate that over v
+  /// A channel of two entries: its value is the sum over z, its rate that over v. There are many steps and few new peaks.
+  struct Pair {
+    std::size_t channel;
     Entry first{0, 0.0}, second{0, 0.0};
-    double sum(const Vector& x) const {
+    double sum(const double* x) const {
       return first.coeff * x[first.index] + second.coeff * x[second.index];
     }
-    double last = 0.0;
+  };
+  struct Watched {
+    int pair = -1;                 ///< of pairs_; -1: of another kind
     std::vector<Entry> row;        ///< of the unknowns that a channel of a law follows
     double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
   };
@@ -64,14 +66,21 @@ class Peaks final : public Observer {
   /// Whether the value may pass its peaks within a step.
   bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
                 const double* beyond_cubic) const;
+  bool pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic);
 
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
   std::vector<Watched> watched_;
+  std::vector<Pair> pairs_;
+  std::vector<double> last_, ahead_;  // values by channel at the last point; of pairs at the step's end
+  std::vector<double> last_rate_, ahead_rate_;  // of pairs, by channel
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
-  double longest_ = 0.0;      // step so far [s]
-  bool passed_over_ = false;  // no value passes its peaks inside this step
+  double longest_ = 0.0;             // step so far [s]
+  bool passed_over_ = false;         // no value passes its peaks in this step, inside or at its end
+  double ahead_t_ = 0.0;             // its end [s]
+  bool last_rates_ = false;          // the last step was passed over: rates at its end are known
+  std::vector<std::size_t> others_;  // channels of other kinds than two entries
 };
 
 }  // namespace drev

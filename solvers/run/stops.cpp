@@ -10,7 +10,7 @@
 namespace drev {
 
 namespace {
-constexpr double kWholeStep = 1e-6;  // of a step: a count of steps that is off a whole number by rounding
+constexpr double kWholeStep = 1e-6;  // steps by which a count of steps may be off a whole number by rounding
 }
 
 double Stop::evaluation_time() const {

@@ -38,7 +38,7 @@ class Stops {
   const ControlRun* controls_;
 };
 
-/// A span of time in steps of equal length, of the length asked for or (but for rounding) less.
+/// A span of time in steps of equal length, of the length asked for or (except for rounding) less.
 struct EvenSteps {
   /// begin < end, longest > 0 [s].
   EvenSteps(double begin, double end, double longest);

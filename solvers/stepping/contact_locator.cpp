@@ -12,7 +12,8 @@ namespace drev {
 namespace {
 
 constexpr double kEdgeRounding = 16 * std::numeric_limits<double>::epsilon();
-constexpr double kOnKnot = 1e-11;  // of an angle: above what next_knot() takes for one with a knot
+constexpr double kOnKnot =
+    1e-11;  // distance from a knot over the angle: above what next_knot() takes for none
 using Coefficients = StepPolynomial::Coefficients;
 
 /// Adds the quintic through values and rates (per step) at both ends and in the middle.

@@ -36,7 +36,7 @@ class ContactLocator {
  private:
   using Coefficients = StepPolynomial::Coefficients;
   struct Law {
-    std::size_t index;  // of System::scalars()
+    std::size_t index;  // place in System::scalars()
     std::vector<LawPiece> pieces;
   };
   /// Deflection x or phase angle of a law, with its rate.
@@ -58,7 +58,7 @@ class ContactLocator {
 
   const System& system_;
   std::vector<Law> laws_;            // of more than one piece
-  std::vector<std::size_t> phased_;  // that may have knots
+  std::vector<std::size_t> phased_;  // laws that may have knots
   Vector zero_;
 };
 

@@ -6,8 +6,8 @@
 namespace drev {
 
 namespace {
-constexpr double kLanding = 1e-6;    // of the step
-constexpr double kLeastHop = 1e-12;  // of the step: who starts on a bound at t = 0 leaves it, too
+constexpr double kLanding = 1e-6;    // distance from a change within which a step ends at it, over the step
+constexpr double kLeastHop = 1e-12;  // least hop over the step: a run that starts on a bound leaves it, too
 constexpr int kMaxTries = 30;
 constexpr int kMaxHops = 10;
 constexpr double kBeyond = 1e-6, kFarther = 8.0;  // first part of a hop added where it falls short; growth

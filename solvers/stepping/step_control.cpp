@@ -11,7 +11,7 @@ constexpr double kSafety = 0.9;
 constexpr double kLeastFactor = 0.2, kLargestFactor = 4.0;
 constexpr double kFailureFactor = 0.25;
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
-constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // of v_1 - v_0
+constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // rounding of v_1 - v_0
 constexpr double kTooShort = 0.05;                                        // E with which the step grows
 constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
 }  // namespace

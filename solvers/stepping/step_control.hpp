@@ -43,7 +43,7 @@ class StepControl {
 
  private:
   struct Scales {
-    double z[2] = {}, v[2] = {};  // by kind
+    double z[2] = {}, v[2] = {};  // scales by kind of node
   };
   Scales with(const State& state, double part) const;
   void set(double h);

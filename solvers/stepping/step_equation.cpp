@@ -193,7 +193,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
 
   // Loads start at the state that the old acceleration predicts. The mesh phase is taken there too: it is
   // off by O(h^3), and a stepped stiffness cannot flip to and fro inside the iteration. Methods of higher
-  // order take it anew in the first passes.
+  // order take it again in the first passes.
   if (moves_) {
     to.state.a = *problem.a_start;
     correct(problem, to);
@@ -214,7 +214,7 @@ NewtonResult StepEquation::solve_dense(Problem& problem, EvaluatedState& to) {
   const double rate = kappa_v / kappa_z;
 
   NewtonResult result;
-  double change = 0.0;  // of z since the loads were evaluated
+  double change = 0.0;  // change of z since the loads were evaluated
   for (int pass = 1;; ++pass) {
     ++load_passes_;
     clock_.enter(RunSection::linear);

@@ -16,7 +16,7 @@ class StepPolynomial {
   static constexpr int kTerms = 6;
   using Coefficients = std::array<double, kTerms>;  ///< of s = (t - t_0)/h in 0..1
 
-  /// Keeps references to both. h: between them [s] (their times differ by it but for rounding).
+  /// Keeps references to both. h: between them [s] (their times differ by it except for rounding).
   StepPolynomial(const State& from, const State& to, double h, int order)
       : from_(from), to_(to), h_(h), quintic_(order > 2) {}
 

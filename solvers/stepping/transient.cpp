@@ -25,11 +25,11 @@ namespace drev {
 namespace {
 
 constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
-constexpr double kLargestStep = 0.05;  // of the run
-constexpr double kLeastStep = 1e-9;    // of the run: not rejected for its error
-constexpr double kStanding = 1e-3;     // of a step: changes within it are counted together
-constexpr double kCoarseSteps = 200;   // of the run that finds the scales
-constexpr double kLeastShare = 1e-3;   // of the energy error for one step
+constexpr double kLargestStep = 0.05;  // largest step over the duration of the run
+constexpr double kLeastStep = 1e-9;    // step over the duration that is not rejected for its error
+constexpr double kStanding = 1e-3;     // part of a step within which changes are counted together
+constexpr double kCoarseSteps = 200;   // steps of the run that finds the scales
+constexpr double kLeastShare = 1e-3;   // share of the energy error that any step may have
 constexpr int kEnergyTries = 3;
 
 /// One run: the loop over stops, the steps between them, and what is kept about it.

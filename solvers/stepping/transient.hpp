@@ -37,7 +37,7 @@ struct TransientOptions {
   /// force that jumps and still leaves no solution is taken inside its jump, and counted (fallbacks).
   int max_halvings = 12;
   /// Largest energy error that passes without warning, relative to the run's energy scale [-]. A controlled
-  /// step that takes more than its share of it is made anew with half the length, up to three times.
+  /// step that takes more than its share of it is made again with half the length, up to three times.
   double energy_tolerance = 1e-2;
   /// A run whose energy grows by this factor over everything that was put in is stopped as unstable [-].
   double energy_growth_limit = 1e6;

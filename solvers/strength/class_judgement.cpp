@@ -12,12 +12,12 @@ namespace drev {
 
 namespace {
 
-/// A speed and what is there [rad/s; unit of the section].
+/// A speed [rad/s] and the value at it [unit of the section].
 struct CurvePoint {
   double speed = 0.0, half_range = 0.0;
 };
 
-/// Half ranges of a section at the speeds of the sweep and at its peaks, ascending.
+/// Half ranges of a section at the speeds of the sweep and at its peaks, by ascending speed.
 std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section) {
   const Vector half = sweep.sections[static_cast<std::size_t>(section)].half_range();
   std::vector<CurvePoint> curve;
@@ -30,7 +30,8 @@ std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section) {
   return curve;
 }
 
-/// Where ratio(speed, half range) > 1, ends by a straight line between points; not a number: there is no limit.
+/// Speed ranges where ratio(speed, half range) > 1, with ends by linear interpolation; not a number: there is
+/// no limit.
 std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
                                            const std::function<double(const CurvePoint&)>& ratio) {
   std::vector<ExceededRange> ranges;
@@ -111,7 +112,7 @@ class Judge {
 
   void add_chatter(int section, std::vector<ChatterRange>& chatter) const {
     const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
-    std::vector<CurvePoint> curve;  // of the ratio itself, at the speeds, where the mean is known
+    std::vector<CurvePoint> curve;  // ratio itself at the speeds, where the mean is known
     for (std::size_t i = 0; i < sweep_.speeds.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       curve.push_back({sweep_.speeds[i], s.half_range()[at] / std::abs(s.mean[at])});
@@ -136,7 +137,7 @@ class Judge {
     if (std::isnan(data.tensile_strength) || std::isnan(strength_.rated_speed)) return;
     for (std::size_t c = 0; c < sweep_.criticals.size(); ++c) {
       const SweepCritical& critical = sweep_.criticals[c];
-      // The critical belongs to a range in which this section's limit is exceeded.
+      // Whether the critical speed is in a range in which this section's limit is exceeded.
       const bool inside = std::any_of(found.exceeded.begin(), found.exceeded.end(), [&](const auto& range) {
         return critical.speed >= range.from && critical.speed <= range.to;
       });

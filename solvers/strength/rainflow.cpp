@@ -14,7 +14,7 @@ void RainflowCounter::add(double value) {
   const std::size_t n = points_.size();
   if (n > 0 && value == points_.back()) return;
   if (n > 1 && (points_[n - 1] > points_[n - 2]) == (value > points_[n - 1])) {
-    points_.back() = value;  // it goes on in the same direction
+    points_.back() = value;  // the signal continues in the same direction
     count_closed();
     return;
   }
@@ -28,7 +28,7 @@ void RainflowCounter::count_closed() {
     const double x = std::abs(points_[n - 1] - points_[n - 2]), y = std::abs(points_[n - 2] - points_[n - 3]);
     if (x < y) return;
     const double mean = 0.5 * (points_[n - 2] + points_[n - 3]);
-    if (n == 3) {  // Y holds the starting point
+    if (n == 3) {  // Y contains the starting point
       take_({y, mean, 0.5});
       points_.erase(points_.begin());
     } else {

@@ -1,9 +1,10 @@
 #pragma once
-/// Rainflow counting of load cycles, and Miner's sum.
+/// Rainflow counting of load cycles, and damage by Miner's rule.
 ///
 /// Source: ASTM E1049-85 (2017), Standard Practices for Cycle Counting in Fatigue Analysis, section 5.4.4: of the last
-/// three turning points with ranges X (last) >= Y (before), Y counts as one cycle, as half a cycle where it holds the
-/// starting point; what is left at the end counts as half cycles. Miner: D = sum n_i / N(range_i).
+/// three turning points with ranges X (last) >= Y (before), Y counts as one cycle, or as half a cycle if it
+/// contains the starting point; the remaining ranges count as half cycles at the end. Miner: D = sum n_i /
+/// N(range_i).
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
@@ -18,43 +19,44 @@ namespace drev {
 struct RainflowCycle {
   double range = 0.0;  ///< maximum - minimum, > 0, in the unit of the signal
   double mean = 0.0;   ///< (maximum + minimum) / 2
-  double count = 0.0;  ///< 1, or 0.5 of a half cycle
+  double count = 0.0;  ///< 1 for a cycle, 0.5 for a half cycle
 };
 
-/// Counts turning points as they come. Memory: the turning points that are not counted yet, which are nested.
+/// Counts cycles while the signal goes on. Memory: the turning points that are not counted yet; their ranges
+/// are nested.
 class RainflowCounter {
  public:
   using Take = std::function<void(const RainflowCycle&)>;
   /// take: called with each cycle as soon as it is counted.
   explicit RainflowCounter(Take take) : take_(std::move(take)) {}
-  /// The next value of the signal, a turning point or not; finite.
+  /// Adds the next value of the signal, whether or not it is a turning point; finite.
   void add(double value);
-  /// Counts what is left as half cycles, and begins anew.
+  /// Counts the remaining ranges as half cycles, and starts a new count.
   void finish();
 
  private:
   void count_closed();
   Take take_;
-  std::vector<double> points_;  ///< turning points, the last one as far as the signal has gone
+  std::vector<double> points_;  ///< turning points; the last one is the current value of the signal
 };
 
 /// All cycles of a signal, in the order in which they are counted. Throws ModelError for values that are not finite.
 std::vector<RainflowCycle> count_rainflow(std::span<const double> signal);
 
-/// sum count / N(range); ranges in Pa. 1: failure.
+/// Damage by Miner's rule [-]: sum count / N(range), with ranges in Pa. 1 means failure.
 double miner_sum(std::span<const RainflowCycle> cycles, const SnLine& line);
-/// 1 / N(range) of one cycle.
+/// Damage 1 / N(range) of one cycle [-].
 double damage_of(double range, const SnLine& line);
 
-/// Cycles by the size of their range, in bounded memory: 8 classes an octave.
+/// Cycles in classes of their range, in bounded memory: 8 classes per octave.
 class RainflowHistogram {
  public:
   struct Class {
-    double count = 0.0, largest = 0.0, sum = 0.0;  ///< sum: of count times range
+    double count = 0.0, largest = 0.0, sum = 0.0;  ///< cycles; largest range; sum of count times range
     double mean_range() const { return count > 0.0 ? sum / count : 0.0; }
   };
   void add(const RainflowCycle& cycle);
-  /// From the smallest ranges to the largest.
+  /// The classes in order of ascending range.
   std::vector<Class> classes() const;
   double cycles() const { return cycles_; }
   double largest() const { return largest_; }
@@ -64,14 +66,15 @@ class RainflowHistogram {
   double cycles_ = 0.0, largest_ = 0.0;
 };
 
-/// What is counted of a run: a channel, scaled to what the S-N line is given for.
+/// A channel whose cycles are counted in a run, with its factor to the stress of the S-N line.
 struct RainflowChannel {
   Channel channel;
   double stress_per_unit = SectionStrength::kNone;  ///< Pa per unit of the channel; not a number: no stress
   SnLine line = {};
 };
 
-/// Counts channels over a run; turning points are found on the motion itself, inside steps as at their ends.
+/// Counts cycles of channels over a run. Turning points are found on the motion itself, inside steps as well
+/// as at their ends.
 class RainflowWatch final : public Observer {
  public:
   explicit RainflowWatch(std::vector<RainflowChannel> channels);
@@ -87,9 +90,9 @@ class RainflowWatch final : public Observer {
   struct Result {
     RainflowChannel of;
     RainflowHistogram histogram;  ///< ranges in the unit of the channel
-    double damage = 0.0;          ///< Miner's sum over the run; 0 without an S-N line
+    double damage = 0.0;          ///< damage over the run by Miner's rule [-]; 0 without an S-N line
   };
-  /// Once, at the end of the run: counts what is left as half cycles.
+  /// To be called once, at the end of the run: counts the remaining ranges as half cycles.
   const std::vector<Result>& finish();
 
  private:

@@ -4,7 +4,7 @@
 //   build/release/bin/bench_advise
 //   build/release/bin/bench_advise "[rungs]"    with every model tried
 #include <drev/advice/advise.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 
 #include <algorithm>
 #include <cstdio>

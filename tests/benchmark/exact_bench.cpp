@@ -4,7 +4,7 @@
 //   build/release/bin/bench_exact
 #include <drev/core/system.hpp>
 #include <drev/elements/gear_mesh.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>

@@ -96,7 +96,7 @@ inline double process_memory(const char* what) {
   return 0.0;
 }
 
-/// Gives freed memory back and starts VmHWM anew.
+/// Gives freed memory back and starts VmHWM again.
 inline void forget_memory_peak() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";

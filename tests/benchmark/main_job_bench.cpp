@@ -2,7 +2,7 @@
 // share by phase. Processor time: what else the machine does is not in it.
 //   build/release/bin/bench_main_job
 #include <drev/core/system.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -3,7 +3,7 @@
 //   build/release/bin/bench_many
 //   build/release/bin/bench_many "[thousand]"    a thousand variants of 5 s: some minutes of processor time
 #include <drev/core/system.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 

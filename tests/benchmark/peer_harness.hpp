@@ -10,7 +10,7 @@
 #include <drev/core/element.hpp>
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>

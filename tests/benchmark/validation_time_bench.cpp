@@ -4,7 +4,7 @@
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# browser_test.sh DREV [--break|--hostile|--hostile-break|--sweep MODELS]: opens reports in Chromium, without a window, and does there what a reader
+# browser_test.sh DREV [--break|--hostile|--hostile-break|--sweep MODELS|--run-up MODELS|--run-up-break MODELS]: opens reports in Chromium, without a window, and does there what a reader
 # does (probe.html). --break: with a page that loses peaks and has an error, which must be found.
 # --hostile: with 200 names that are attacks (hostile_model.sh, hostile_probe.html), with the page's policy and
 # without it, alone and compared, and printed. --hostile-break: with a page that takes them for markup.
 #
 # --sweep: the reports of a sweep, of one with branches and of a class calculation of the models in that folder, and of a
 # study of many variants (sweep_probe.html, branches_probe.html, variants_probe.html).
+# --run-up: the report of a start-up with its waterfall (waterfall_probe.html). --run-up-break: with crowded labels and
+# a scale without its unit, which must be found.
 # Checked: no error, no request, all charts with the right number of points, none of which loses a peak, zoom
 # by mouse, wheel, keys and buttons, choice of a mode, themes, paper; sizes below 5 MB; a comparison; a PDF.
 # Prints how long the page took until it could be used, and checks nothing of that.
@@ -45,7 +47,7 @@ probe() {
   sed "/<meta charset/r $here/collect.html" "$1" >"$page"
   sed "s|^<script>|<script nonce=\"$nonce\">|" "$here/${3:-probe.html}" >>"$page"
   local budget=60000  # ms of the page's time; what waits for pictures polls
-  [[ ${3:-} != sweep_probe.html && ${3:-} != branches_probe.html && ${3:-} != variants_probe.html ]] || budget=1200000
+  [[ ${3:-} != @(sweep|branches|variants|waterfall)_probe.html ]] || budget=1200000
   headless --window-size=1280,1000 --virtual-time-budget=$budget --dump-dom "file://$page" \
     >"$folder/dom.html" 2>"$log" || {
     fail "$2: the browser ended with an error"
@@ -84,6 +86,18 @@ if [[ ${2:-} = --hostile* ]]; then
   "$drev" report hostile.html --out hostile.pdf --quiet
   [ "$(head -c 5 hostile.pdf)" = "%PDF-" ] || fail "hostile.pdf is no PDF"
   [ -z "$(ls | grep -E "partial|print" || true)" ] || fail "files of printing are left: $(ls)"
+  exit $failed
+fi
+if [[ ${2:-} = --run-up* ]]; then
+  "$drev" run "$3/genset/start.toml" --report start.html --quiet
+  if [ "$2" = --run-up-break ]; then
+    sed -i -e 's/pixelsPerLabel: 55,/pixelsPerLabel: 12,/' \
+      -e 's/\(a height of 1 order is ${sig((most \* readable.factor) \/ height, 3)}\) ${readable.unit}/\1/' start.html
+    probe start.html broken waterfall_probe.html
+    exit $failed
+  fi
+  below_5_MB start.html
+  probe start.html start waterfall_probe.html
   exit $failed
 fi
 if [ "${2:-}" = --sweep ]; then

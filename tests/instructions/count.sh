@@ -3,7 +3,7 @@
 #
 #   count.sh [--record] PROGRAM COMPILER FILE
 #
-# FILE has lines "COMPILER RUN COUNT". More than 10 % above fails; more than 10 % below asks to record anew,
+# FILE has lines "COMPILER RUN COUNT". More than 10 % above fails; more than 10 % below asks to record again,
 # which --record does for this compiler. Counted are drev's own code and what is compiled into it: libraries
 # choose theirs by the machine, and valgrind shows every machine with AVX2 as the same one. Without valgrind,
 # AVX2 or a record for the compiler it is skipped (status 77).

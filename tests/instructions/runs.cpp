@@ -2,7 +2,7 @@
 //   instructions_runs held|gears|modes
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -1,6 +1,6 @@
 /// Endless: a torque of 1 N m, whose evaluation does not come back after 0.01 s of the run.
 #include <drev/app/model_file/plugin.hpp>
-#include <drev/core/load.hpp>
+#include <drev/elements/own_element.hpp>
 
 #include <chrono>
 #include <thread>

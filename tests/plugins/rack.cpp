@@ -4,8 +4,7 @@
 ///
 /// Positive force is that of a pinion ahead of its rack. Nodes: the pinion; the rack is the internal node.
 #include <drev/app/model_file/plugin.hpp>
-#include <drev/core/law/law_force.hpp>
-#include <drev/elements/not_given.hpp>
+#include <drev/elements/own_element.hpp>
 
 namespace {
 

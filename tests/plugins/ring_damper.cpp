@@ -4,8 +4,7 @@
 ///
 /// Positive torque is that of a ring ahead of its hub. Nodes: the hub; the ring is the internal node.
 #include <drev/app/model_file/plugin.hpp>
-#include <drev/core/law/law_force.hpp>
-#include <drev/elements/not_given.hpp>
+#include <drev/elements/own_element.hpp>
 
 namespace {
 

@@ -3,7 +3,7 @@
 // Tolerance 0.2 %: the targets are printed to 5 to 6 digits; undamped runs amplify rounding.
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/statics.hpp>
 #include <drev/solvers/stepping/transient.hpp>

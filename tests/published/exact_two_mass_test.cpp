@@ -1,7 +1,7 @@
 // Exact propagation against the exact curves of the source's benchmark and their contact changes
 // (piecewise matrix exponentials with located changes in extended precision; data/case_*.csv).
 #include <drev/core/system.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/recorder.hpp>

@@ -1,7 +1,7 @@
 // The source's benchmark against the exact curves (piecewise matrix exponentials with located contact
 // changes in extended precision; tests/published/data/case_*.csv).
 #include <drev/core/system.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -1,9 +1,9 @@
 // Advice on how much of a model a figure needs never promises more than holds: forty drivetrains and the
 // camshaft with 6 to 10 cylinders at 750 rpm and at its worst speed. The full model is run by another method
-// than the advice's, and the figure of the model advised is found anew from its recipe.
+// than the advice's, and the figure of the model advised is found again from its recipe.
 #include <drev/advice/advise.hpp>
 #include <drev/core/units.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 
 #include "advice/figure_estimate.hpp"

@@ -5,6 +5,7 @@
 #include <drev/elements/inertia.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -5,8 +5,8 @@
 ///
 /// Methods that carry no acceleration of their own from step to step (it follows from z and v) have a
 /// 2 x 2 matrix over (z, v/s).
+#include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <Eigen/Core>
 #include <complex>

@@ -2,8 +2,8 @@
 // exponent 0.10947), so that trajectories part after 40 periods at best. Statistics are comparable.
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -91,10 +91,9 @@ TEST_CASE("Chaotic rattle: statistics of 5000 periods by exact propagation") {
 TEST_CASE("Chaotic rattle: statistics by average acceleration with 50 steps a period") {
   const System system = rattle();
   Recorder r(system, {"wheel.angle_rad"}, kTwoPi / kSamples);
-  const RunSummary run = simulate(
-      system,
-      {.step = kTwoPi / kSamples, .t_end = (kBatches * kPeriods + 100.5) * kTwoPi, .energy_tolerance = 1.0},
-      {&r});
+  const RunSummary run =
+      run_method(system, {.step = kTwoPi / kSamples},
+                 {.t_end = (kBatches * kPeriods + 100.5) * kTwoPi, .energy_tolerance = 1.0}, {&r});
   INFO(run.brief_report());
   check(statistics(r.samples(0), 100 * kSamples));
 }

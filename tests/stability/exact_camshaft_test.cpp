@@ -1,11 +1,11 @@
 // Exact propagation of the camshaft against an independent integration that knows nothing of knots
 // and pieces (Runge-Kutta, small steps), and against itself at a tighter tolerance.
 #include <drev/core/system.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/peaks.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
@@ -66,7 +66,7 @@ TEST_CASE("Exact propagation, camshaft with gear drive: as far as the trajectory
   CHECK(run.contact_changes > 10);
   CHECK(propagate(system, {.tolerance = 1e-14, .t_end = end}, tight).ok());
   runge_kutta(system, end, 2.5e-7, fine);
-  CHECK(simulate(system, {.step = 1e-6, .t_end = end}, stepped, {&stepped_contacts}).ok());
+  CHECK(run_method(system, {.step = 1e-6}, {.t_end = end}, stepped, {&stepped_contacts}).ok());
   const double peak = exact.z.lpNorm<Eigen::Infinity>();
   INFO("gears: Runge-Kutta 2.5e-7, average acceleration 1e-6, tolerance 1e-14 differ by "
        << largest_difference(exact.z, fine.z) / peak << ", " << largest_difference(exact.z, stepped.z) / peak

@@ -3,9 +3,9 @@
 // periodic solutions from closed-form pieces, confirmed by a Runge-Kutta method of 8th order to 6e-11.
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
@@ -149,8 +149,8 @@ TEST_CASE("Gear with backlash and stepped stiffness: orbits of one and two mesh 
     State s = State::initial(system);
     s.z[0] = row.x, s.v[0] = row.v;
     Peaks peaks({find_channel(system, "m.position_m")}, true);
-    simulate(system, {.step = period / 8000, .t_end = row.periods * period, .energy_tolerance = 10.0}, s,
-             {&peaks});
+    run_method(system, {.step = period / 8000}, {.t_end = row.periods * period, .energy_tolerance = 10.0}, s,
+               {&peaks});
     INFO("w = " << row.w << ", " << row.periods << " periods");
     // Average acceleration at 8000 steps: (w h)^2/12 = 5e-8 of the phase.
     CHECK(s.z[0] == Approx(row.x).margin(3e-6));

@@ -4,9 +4,9 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/observer.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,8 +52,8 @@ struct Result {
 Result run(const std::string& method, double omega_h, int steps, double speed = 10.0) {
   Result result;
   const double h = omega_h / 100.0;
-  result.run = simulate(between_stops(speed), {.scheme = step_scheme(method), .step = h, .t_end = steps * h},
-                        {&result.energy});
+  result.run =
+      run_method(between_stops(speed), {.name = method, .step = h}, {.t_end = steps * h}, {&result.energy});
   return result;
 }
 

@@ -1,6 +1,6 @@
 // The estimate of a reduced run's error against the full system, by exact propagation of both.
 #include <drev/core/channel.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/reduction/reduction_choice.hpp>
 #include <drev/solvers/run/recorder.hpp>

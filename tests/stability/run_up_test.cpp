@@ -4,9 +4,9 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
@@ -81,7 +81,7 @@ TEST_CASE("Run-up through resonance by average acceleration: second order in the
   double last = 0.0;
   for (const double h : {0.04, 0.02}) {
     Peaks peaks({find_channel(system, "disc.angle_rad")}, true);
-    CHECK(simulate(system, {.step = h, .t_end = t_end}, {&peaks}).ok());
+    CHECK(run_method(system, {.step = h}, {.t_end = t_end}, {&peaks}).ok());
     const double error = std::abs(peaks.peaks()[0].amplitude() - row.largest);
     INFO("h = " << h << ": " << error);
     CHECK(error < 0.05);

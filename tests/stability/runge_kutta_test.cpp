@@ -1,5 +1,6 @@
 // Runge-Kutta methods: stability functions on one undamped mode, order past contact changes.
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <complex>
 

@@ -4,6 +4,7 @@
 #include <drev/elements/inertia.hpp>
 #include <drev/elements/shaft_spring.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/stepping/transient.hpp>
 
 #include <Eigen/Dense>
 

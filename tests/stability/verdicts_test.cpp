@@ -5,7 +5,6 @@
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/peaks.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@ namespace {
 using D = Dimension;
 using Type = ImportedVariable::Type;
 
-/// What is wrong with a variable for what it is to be; empty: nothing.
+/// The fault of a variable that is to have this causality; empty: there is none.
 std::string fault_of(const FmuDescription& fmu, const std::string& name, const char* causality, bool real) {
   const ImportedVariable* v = fmu.find(name);
   const auto article = [](const std::string& word) {

@@ -1,15 +1,17 @@
 #pragma once
-/// An FMU of another tool (FMI 2.0 or 3.0, co-simulation) as a load or controller: it reads signals of the train and gives
-/// torques on nodes.
+/// An FMU of another tool (FMI 2.0 or 3.0, co-simulation) as a load or controller: it reads signals of the
+/// train and applies torques to nodes.
 ///
 ///   tau_j = factor_j y_j            on the RIGHT side, held between communication points (sampled_controller.hpp)
 ///
-/// At its communication points, every `step` from the start of the run, the FMU goes over the step behind it with its
-/// inputs at that step's end (interpolate_inputs: along the straight line between both ends), and what it gives then acts
-/// until the next. Between them the train is propagated by the method of the run, exactly or in steps: what is held is the
-/// only error of the coupling, of first order in `step`; of second where both hold = "first_order" and
-/// interpolate_inputs. Its first outputs are those after its initialization with the inputs at the start. The library runs
-/// inside drev's process: trust it as any program. Source: Functional Mock-up Interface 2.0.4 and 3.0, fmi-standard.org.
+/// At its communication points, every `step` from the start of the run, the FMU computes the past step with
+/// its inputs at the end of that step (interpolate_inputs: with a straight line between both ends), and its
+/// outputs then act until the next point. Between the points the train is propagated by the method of the
+/// run, exactly or in steps. Holding the torques is the only error of the coupling: first order in `step`, or
+/// second order with both hold = "first_order" and interpolate_inputs. The first outputs are those after
+/// initialization with the inputs at the start. The library runs inside drev's process: it must be trusted
+/// like any program.
+/// Source: Functional Mock-up Interface 2.0.4 and 3.0, fmi-standard.org.
 #include <drev/app/model_file/fields.hpp>
 #include <drev/core/control/sampled_controller.hpp>
 

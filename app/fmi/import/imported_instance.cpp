@@ -16,8 +16,8 @@ namespace drev::app {
 
 namespace {
 
-constexpr int kWarning = 1, kFatal = 4;  // of the status codes
-constexpr int kCoSimulation = 1;         // of fmi2Type
+constexpr int kWarning = 1, kFatal = 4;  // status codes of FMI
+constexpr int kCoSimulation = 1;         // value of fmi2Type
 constexpr std::size_t kLinesKept = 8, kLongestLine = 2000;
 
 /// The last messages of an FMU.
@@ -32,7 +32,7 @@ class Log {
     lines_.push_back(std::move(line));
     if (lines_.size() > kLinesKept) lines_.pop_front();
   }
-  /// "; it logged: ...", and forgets them.
+  /// Returns "; it logged: ..." and clears the messages.
   std::string take() {
     std::string all;
     for (const std::string& line : lines_) all += (all.empty() ? "; the FMU logged: " : " | ") + line;
@@ -71,7 +71,7 @@ struct Callbacks {
 using Reference = std::uint32_t;
 using Type = ImportedVariable::Type;
 
-/// What both versions share: the functions that the library has, and what becomes of their status.
+/// The part that both versions share: the functions of the library, and the treatment of their status.
 class Instance : public ImportedInstance {
  public:
   Instance(std::shared_ptr<const UnpackedFmu> fmu, int version)

@@ -27,7 +27,7 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// "; it has linux32, win64", or that it has none.
+/// The platforms of an FMU for a message: "; it has linux32, win64", or that it has none.
 std::string platforms_in(const fs::path& binaries) {
   std::string all;
   std::error_code none;
@@ -43,8 +43,9 @@ static std::vector<void*>& loaded_libraries() {
   return libraries;
 }
 
-/// A library that shares symbols with others (STB_GNU_UNIQUE) stays loaded all the same, and is finalized after its
-/// static objects. PythonFMU's finalizer would then release one of them twice; called ahead, it finds nothing to do later.
+/// A library that shares symbols with others (STB_GNU_UNIQUE) remains loaded after dlclose(), and is
+/// finalized after its static objects. PythonFMU's finalizer would then release one of them twice; if it is
+/// called earlier, it does nothing later.
 static void close_last_library() {
   void* library = loaded_libraries().back();
   loaded_libraries().pop_back();
@@ -73,8 +74,8 @@ void UnpackedFmu::load() const {
                              description_.identifier + ".so); " + platforms_in(binaries));
   library_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library_ == nullptr) throw std::runtime_error(std::string("cannot be loaded: ") + ::dlerror());
-  // Closed ahead of the library's own static objects, which its finalizers may use (PythonFMU's do): what is registered
-  // last runs first.
+  // Closed before the library's own static objects, which its finalizers may use (PythonFMU's do): exit
+  // handlers that are registered last run first.
   loaded_libraries().push_back(library_);
   if (std::atexit(close_last_library) != 0) loaded_libraries().pop_back();
 }

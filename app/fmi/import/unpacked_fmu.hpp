@@ -10,15 +10,16 @@ namespace drev::app {
 
 class UnpackedFmu {
  public:
-  /// Throws std::runtime_error that says what is wrong with the file.
+  /// Throws std::runtime_error with the fault of the file.
   explicit UnpackedFmu(const std::string& file);
 
   const FmuDescription& description() const { return description_; }
-  /// What messages call it: the name of its file.
+  /// Its name in messages: the name of its file.
   const std::string& name() const { return name_; }
   std::filesystem::path resources() const { return folder_.path / "resources"; }
-  /// A function of its library, which is loaded with the first call and stays so until the process ends. Throws std::runtime_error where
-  /// there is no library for this machine, or the library does not have the function.
+  /// A function of its library, which is loaded at the first call and remains loaded until the process ends.
+  /// Throws std::runtime_error if there is no library for this machine, or the library does not have the
+  /// function.
   void* function(const std::string& name) const;
 
  private:
@@ -30,7 +31,7 @@ class UnpackedFmu {
   mutable void* library_ = nullptr;
 };
 
-/// The FMU of a file: one for all models of the process, unpacked anew where the file has changed. Its folder is
+/// The FMU of a file: one for all models of the process, unpacked again where the file has changed. Its folder is
 /// removed when the process ends.
 std::shared_ptr<const UnpackedFmu> unpacked_fmu(const std::string& file);
 

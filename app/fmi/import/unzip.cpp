@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 4096;
-constexpr unsigned kEncrypted = 1;                        // of an entry's flags
-constexpr unsigned kFileKind = 0170000, kLink = 0120000;  // of a mode of Unix
+constexpr unsigned kEncrypted = 1;                        // bit in the flags of an entry
+constexpr unsigned kFileKind = 0170000, kLink = 0120000;  // bits of a Unix file mode
 constexpr std::size_t kRead = std::size_t{1} << 18;       // bytes read at once
 
 /// Whether the name, with '/' between folders, stays in the folder that it is unpacked to.
@@ -90,7 +90,7 @@ class Archive {
       const int got = unzReadCurrentFile(zip_.get(), part.data(), static_cast<unsigned>(part.size()));
       if (got < 0) throw std::runtime_error("is damaged at '" + name + "'");
       if (got == 0) break;
-      take(static_cast<std::uint64_t>(got));  // what the archive says of its sizes is not believed
+      take(static_cast<std::uint64_t>(got));  // the sizes stated in the archive are not trusted
       file.write(part.data(), got);
     }
     if (unzCloseCurrentFile(zip_.get()) != UNZ_OK) throw std::runtime_error("is damaged at '" + name + "'");

@@ -9,7 +9,7 @@ using namespace drev::app;
 using Logger = void (*)(void* environment, const char* instance, int status, const char* category,
                         const char* message, ...);
 
-/// What the importer hands over; the memory functions and stepFinished are not used.
+/// Callbacks of the importer; the memory functions and stepFinished are not used.
 struct Callbacks {
   Logger logger;
   void* (*allocate)(std::size_t, std::size_t);
@@ -18,9 +18,9 @@ struct Callbacks {
   void* environment;
 };
 
-constexpr int kCoSimulation = 1;  // of fmi2Type
+constexpr int kCoSimulation = 1;  // value of fmi2Type
 
-/// The path of a file:// URI, with its %XX; any other text as it is.
+/// The path of a file:// URI, with %XX decoded; any other text is returned unchanged.
 std::string path_of(const std::string& uri) {
   std::string rest = uri;
   if (rest.starts_with("file://"))
@@ -83,7 +83,7 @@ DREV_FMI void* fmi2Instantiate(const char* name, int type, const char* guid, con
 
 DREV_FMI void fmi2FreeInstance(void* component) { remove_component(component); }
 
-// FMI 2 gives times and tolerance ahead of initialization. They are kept in the state that begins it.
+// FMI 2 gives times and tolerance before initialization. They are kept in the state that begins it.
 DREV_FMI int fmi2SetupExperiment(void* component, int tolerance_given, double tolerance, double t_start,
                                  int stop_given, double t_stop) {
   return guard(component, "fmi2SetupExperiment", [&](Component& c) {

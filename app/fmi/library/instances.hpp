@@ -1,5 +1,6 @@
 #pragma once
-/// What both versions of FMI share: the instances that there are, and errors that end at the interface.
+/// The part that both versions of FMI share: the existing instances, and errors, which do not pass the
+/// interface.
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -21,27 +22,29 @@ enum Status : int { kOk = 0, kWarning = 1, kDiscard = 2, kError = 3, kFatal = 4 
 struct Component {
   std::unique_ptr<FmuInstance> fmu;
   std::function<void(Status, const char* category, const std::string&)> log;
-  std::vector<std::string> texts;  ///< what strings handed out point into, until the next such call
+  std::vector<std::string> texts;  ///< storage of the strings handed out, valid until the next such call
   std::map<void*, std::unique_ptr<FmuState>> states;
   // FMI 3:
   bool uses_events = false, in_event = false;  ///< event mode
   bool may_end_early = false;
   /// Intermediate values: called with times inside a step and its end [s]; empty: not wanted.
   std::function<void(double t)> update = {};
-  bool updating = false;  ///< the importer is in that call
+  bool updating = false;  ///< true: the importer is in that call
 };
 
-/// Makes a component of a folder of resources; null, and a message, where that fails. token: the importer's.
+/// Makes a component from a folder of resources; null, with a message, if that fails. token: token of the
+/// importer.
 Component* add_component(const std::string& resources, const std::string& token,
                          std::function<void(Status, const char*, const std::string&)> log);
-/// Null where the pointer is of no component that there is.
+/// The component of a pointer; null if it does not exist.
 Component* find_component(void* pointer);
 void remove_component(void* pointer);
 
-/// Does the call; what it throws is logged under the call's name, and an error. An unknown component is one, too.
+/// Executes the call. An exception is logged under the call's name and returned as an error; so is an unknown
+/// component.
 Status guard(void* pointer, const char* call, const std::function<Status(Component&)>& body);
 
-/// Get and set of values, and of states, alike in both versions.
+/// Getting and setting of values and of states, which are the same in both versions.
 Status get_state(Component& component, void** state);
 Status set_state(Component& component, void* state);
 Status free_state(Component& component, void** state);
@@ -58,7 +61,7 @@ struct ReferenceArray {
 };
 Status derivative(Component& component, const ReferenceArray<double>& unknowns,
                   const ReferenceArray<const double>& knowns);
-/// Throws FmuError where one of the arrays is missing or the sizes differ.
+/// Throws FmuError if one of the arrays is missing or the sizes differ.
 void check_arrays(const void* references, std::size_t count, const void* values, std::size_t value_count);
 
 }  // namespace drev::app

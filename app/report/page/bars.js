@@ -3,7 +3,7 @@
 const BAR_WIDTH = 720,
   BAR_HEIGHT = 190;
 
-/// A bar for each order; the axis in the unit that reads well, the largest five with their numbers.
+/// A bar for each order; the axis has a readable unit, the five largest bars are labelled with their orders.
 function barChart(title, unit, orders, values) {
   const most = values.reduce((a, b) => (Number.isFinite(b) ? Math.max(a, b) : a), 0),
     readable = readableUnit(unit, most);

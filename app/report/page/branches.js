@@ -1,4 +1,5 @@
-// The page of a nonlinear sweep: curves of periodic motions over the speed, stable and unstable ones told apart.
+// The page of a nonlinear sweep: curves of periodic motions over the speed, stable and unstable ones
+// distinguished.
 
 const page = JSON.parse(document.querySelector("script.run").textContent);
 const result = page.result;
@@ -8,7 +9,7 @@ const STATES = { stable: null, unstable: [5, 4], "not judged": [9, 3, 2, 3] };
 
 const stateOf = (curve, i) => (curve.stable[i] === null ? "not judged" : curve.stable[i] ? "stable" : "unstable");
 
-/// Stretches of a curve over which the speed goes one way and the state is one: what a chart can draw.
+/// Stretches of a curve with monotonic speed and one state, which a chart can draw.
 function piecesOf(curve) {
   const pieces = [];
   let piece = null,
@@ -17,7 +18,7 @@ function piecesOf(curve) {
     const state = stateOf(curve, i);
     const step = i ? Math.sign(speed - curve.speed_rpm[i - 1]) : 0;
     if (!piece || state !== piece.state || (way && step && step !== way)) {
-      // It begins where the last one ended, so that nothing is missing between.
+      // It begins where the last one ended, so that there is no gap between them.
       piece = { state, points: piece ? [i - 1, i] : [i] };
       way = step;
       pieces.push(piece);
@@ -186,7 +187,7 @@ function sectionChart(parent, group, s, c) {
         const x = g.toDomXCoord(change.speed_rpm);
         if (x < area.x || x > area.x + area.w) return;
         line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
-        // In rows, so that changes close to each other are all named.
+        // In rows, so that all of several nearby changes are labelled.
         text.put(`${change.what} ${sig(change.speed_rpm, 6)}`, x + 3, area.y + 12 + 13 * (i % 3), style("--quiet"));
       });
     },

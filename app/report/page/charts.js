@@ -1,10 +1,10 @@
-// Charts (dygraphs), all of one kind showing the same stretch of x.
+// Charts (dygraphs); all charts of one kind show the same range of x.
 
 const DASHES = [null, [7, 4], [2, 3], [9, 3, 2, 3]];
 const charts = [];
 let printing = false;
 
-/// Charts still to be drawn for the first time: one after the other, so that the page can be used meanwhile.
+/// Charts not yet drawn: they are drawn one after the other, so that the page can be used meanwhile.
 const waiting = [];
 
 function drawNext() {
@@ -28,7 +28,7 @@ class Group {
     this.whole = whole; // [from, to]
     this.window = [...whole];
     this.charts = [];
-    this.describe = describe; // called with the window after each change
+    this.describe = describe; // function called with the window after each change
   }
   add(chart) {
     this.charts.push(chart);
@@ -41,7 +41,7 @@ class Group {
     const width = Math.min(high - low, Math.max(to - from, least));
     const begin = Math.min(Math.max(from, low), high - width);
     this.window = [begin, begin + width];
-    // Those in sight at once, the others when there is time.
+    // Visible charts are drawn at once, the others when the browser is idle.
     const inSight = (chart) => {
       const box = chart.element.getBoundingClientRect();
       return box.bottom > 0 && box.top < innerHeight;
@@ -68,7 +68,7 @@ class Group {
   }
 }
 
-/// Drag: zoom; with Shift: move; wheel with Ctrl: zoom about the pointer; double click: all of it.
+/// Drag: zoom; with Shift: move; wheel with Ctrl: zoom about the pointer; double click: the whole range.
 function interaction(group) {
   const D = Dygraph;
   return {
@@ -83,7 +83,7 @@ function interaction(group) {
         group.frame = requestAnimationFrame(() => group.show(...g.xAxisRange()));
       };
       const up = (e) => {
-        // wherever the pointer is; before dygraphs' own listener, which ends the zoom
+        // wherever the pointer is, and before dygraphs' own listener, which ends the zoom
         document.removeEventListener("mousemove", move);
         document.removeEventListener("mouseup", up, true);
         (context.isZooming ? D.endZoom : D.endPan)(e, g, context);
@@ -123,7 +123,7 @@ function keys(group) {
   };
 }
 
-/// Buttons for all charts of a group, and what they show.
+/// Buttons for all charts of a group, and the text with the range shown.
 function toolbar(group, ...more) {
   const button = (text, label, click) =>
     make("button", { type: "button", "aria-label": label, title: label, click }, text);
@@ -141,12 +141,13 @@ function toolbar(group, ...more) {
   );
 }
 
-/// Names of curves for dygraphs, which finds curves by them and takes some words (__proto__) for its own: a blank
-/// of no width makes each a word of no meaning. It shows them as texts; titles of axes it reads as HTML.
+/// Names of curves for dygraphs, which finds curves by them and treats some words (__proto__) as its own: a
+/// zero-width space in front prevents that. It shows names as text, but reads titles of axes as HTML.
 const curveName = (label) => `\u200b${label}`;
 
 /// One chart. options: {group, title, caption, labels, rows(from, to, columns) -> {rows, sparse}, xName, xLabel; and
-/// where they are not the usual: yLabel, valueRange, log, legend, tall, middle, colors(), series(label, i), underlay}.
+/// where they are not the default: yLabel, valueRange, log, legend, tall, middle, colors(), series(label, i),
+/// underlay}.
 class Chart {
   constructor(parent, options) {
     this.options = options;
@@ -229,8 +230,7 @@ class Chart {
           valueFormatter: (y) => sig(y, 5),
           axisLabelFormatter: (y) => tidy(y),
           axisLabelWidth: o.tall ? 58 : 52,
-          pixelsPerLabel: o.tall ? 40 : 28,
-          ...(o.log ? { ticker: decades } : {}),
+          ticker: o.log ? decades : (low, high, pixels) => heights(low, high, pixels / (o.tall ? 40 : 28)),
         },
       },
       zoomCallback: (from, to) => o.group.show(from, to),
@@ -245,10 +245,10 @@ class Chart {
   }
 }
 
-const LIMIT_SHOWN = 2.5; // a limit stretches the axis up to so many times the largest value of the curves
+const LIMIT_SHOWN = 2.5; // largest limit shown, relative to the largest value of the curves [-]
 const largest = (values) => values.reduce((a, b) => (Number.isFinite(b) && b > a ? b : a), 0);
 
-/// Of the limits of a section those that are drawn beside curves up to `most`, and a remark on the others.
+/// The limits of a section that are drawn with curves up to `most`, and a remark on the others.
 function limitsOf(all, most, unit) {
   const limits = all.filter((limit) => largest(limit.values) <= LIMIT_SHOWN * most);
   const above = all.filter((limit) => !limits.includes(limit));
@@ -270,7 +270,7 @@ function keyMark(color, dash) {
   return svg;
 }
 
-/// Ticks of a logarithmic axis: powers of ten, at most five of them named.
+/// Ticks of a logarithmic axis: powers of ten, at most five of them labelled.
 function decades(low, high) {
   const first = Math.ceil(Math.log10(low) - 1e-9),
     last = Math.floor(Math.log10(high) + 1e-9);
@@ -281,7 +281,14 @@ function decades(low, high) {
   });
 }
 
-/// Text beside a place in a chart, unless it would cover another.
+/// Ticks of a y axis, about `count` of them, at least three.
+function heights(low, high, count) {
+  let ticks = [];
+  for (let n = Math.max(count, 3); ticks.length < 3 && n < 100; n *= 1.3) ticks = niceTicks(low, high, n);
+  return ticks;
+}
+
+/// Text next to a place in a chart, unless it would cover another text.
 class Labels {
   constructor(context, area) {
     Object.assign(this, { context, area, taken: [] });
@@ -322,7 +329,7 @@ function line(context, x0, y0, x1, y1, color, dash = []) {
   context.restore();
 }
 
-/// Which flank of a gap is in contact, over time: part of each pixel's time, front from below, back from above.
+/// The flank of a gap in contact over time: the part of each pixel's time, front from below, back from above.
 class Band {
   constructor(parent, group, run, band, chart) {
     Object.assign(this, { group, run, band, chart });

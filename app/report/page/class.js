@@ -1,4 +1,5 @@
-// The page of a class calculation: judgement, mass-elastic system, rules; the rest is the page of the sweep.
+// The page of a class calculation: judgement, mass-elastic system, rules; the other sections are those of a
+// sweep.
 
 const judged = page.class;
 const caseTitle = (one) => (one.name === "normal" ? "Normal firing" : "One cylinder misfiring");

@@ -1,4 +1,4 @@
-// The runs: blocks decoded, histories thinned for what is drawn.
+// The runs: decoding of the data blocks, and thinning of histories to the points drawn.
 
 function decode(text, Type) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -13,7 +13,7 @@ function readRun(element, index, count) {
     ? decode(h.times, Float64Array)
     : Float64Array.from({ length: h.groups }, (_, i) => i * h.every * h.group);
   h.times = times;
-  h.step = h.samples > 1 ? h.end / (h.samples - 1) : h.end; // of the samples, on the mean
+  h.step = h.samples > 1 ? h.end / (h.samples - 1) : h.end; // mean interval of the samples
   for (const s of h.series) {
     s.low = decode(s.low, Float32Array);
     s.high = s.high ? decode(s.high, Float32Array) : s.low;
@@ -46,8 +46,8 @@ function placeOf(times, t) {
   return low;
 }
 
-/// Points of one curve between a and b: every sample where there are few, else of each of `columns` equal
-/// parts the lowest and the highest. A group of samples is taken as two points, too.
+/// Points of one curve between a and b: every sample if there are few, otherwise the lowest and the highest
+/// of each of `columns` equal parts. A group of samples also gives two points.
 function thinned(history, series, a, b, columns) {
   const { times, group } = history;
   const first = Math.max(0, placeOf(times, a) - 1),
@@ -56,7 +56,8 @@ function thinned(history, series, a, b, columns) {
     y = [];
   let before = series.low[first];
   const both = (x0, x1, low, high) => {
-    // The nearer one first, near both ends, so that what rises evenly is drawn without stairs.
+    // The point nearer to the last one comes first, both near the ends, so that a steady rise is drawn
+    // without steps.
     x.push(x0 + 0.02 * (x1 - x0), x0 + 0.98 * (x1 - x0));
     if (Math.abs(low - before) < Math.abs(high - before)) y.push(low, high);
     else y.push(high, low);
@@ -101,7 +102,7 @@ function rowsOf(curves, factor) {
   }
 }
 
-/// Channels of all runs, by name, in the order of the first: [{name, unit, energy, of: [{run, series}]}].
+/// Channels of all runs by name, in the order of the first run: [{name, unit, energy, of: [{run, series}]}].
 function commonChannels(pick) {
   const found = new Map();
   for (const run of runs)
@@ -112,6 +113,6 @@ function commonChannels(pick) {
   return [...found.values()];
 }
 
-/// Runs of which this part differs: all, or the first where all are equal.
+/// The runs in which this part differs: all runs, or the first one if all are equal.
 const distinct = (pick) =>
   compared && JSON.stringify(pick(runs[0])) !== JSON.stringify(pick(runs[1])) ? runs : runs.slice(0, 1);

@@ -15,7 +15,7 @@ const SUPERSCRIPT = {
   9: "⁹",
 };
 
-/// With so many significant digits: 91.68, 43 530, 1.5·10⁻⁷.
+/// A number with so many significant digits: 91.68, 43 530, 1.5·10⁻⁷.
 function sig(x, digits = DIGITS) {
   if (x === null || x === undefined || !Number.isFinite(x)) return "–";
   if (x === 0) return "0";
@@ -31,7 +31,7 @@ function sig(x, digits = DIGITS) {
   return part ? `${grouped}.${part}` : grouped;
 }
 
-/// For axes: no more digits than there are.
+/// A number on an axis, without trailing zeros.
 function tidy(x) {
   const text = sig(x, 6);
   const [mantissa, power] = text.split("·");
@@ -42,7 +42,7 @@ const integer = (n) => String(n).replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f");
 const orderText = (order) => tidy(Number(order.toPrecision(4)));
 const percent = (x, digits = 3) => (Number.isFinite(x) ? `${sig(100 * x, digits)}\u00a0%` : "–");
 
-/// "rad/s^2" -> "rad/s²", blanks kept together.
+/// A unit as text: "rad/s^2" -> "rad/s²", with no-break spaces.
 const unitText = (unit) => (unit || "").replace("^2", "²").replaceAll(" ", "\u00a0");
 
 const PREFIXES = [
@@ -55,10 +55,10 @@ const PREFIXES = [
   [1e-9, "n"],
 ];
 
-/// Factor and name of the unit in which a quantity of this size reads well: N -> kN, rad -> mrad.
+/// Factor and name of a readable unit for a quantity of this size: N -> kN, rad -> mrad.
 function readableUnit(unit, size) {
   const found = size > 0 ? PREFIXES.find(([value]) => size >= value) || PREFIXES.at(-1) : PREFIXES[3];
-  // From 1 to 10 000 a prefix would not help.
+  // From 1 to 10 000 no prefix is needed.
   const [value, prefix] = size >= 1 && size < 1e4 ? PREFIXES[3] : found;
   return { factor: 1 / value, unit: prefix + unitText(unit) };
 }
@@ -86,13 +86,13 @@ function fill(element, attributes, children) {
   return element;
 }
 
-/// A text for what reads its text as HTML, which is the chart library: shown as it is.
+/// A text escaped for the chart library, which reads its texts as HTML, so that it is shown unchanged.
 const asMarkup = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
 
 const byId = (id) => document.getElementById(id);
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/// Rows of cells; a cell that is a number stands right. head: texts.
+/// A table from rows of cells; cells with numbers are right-aligned. head: texts of the header.
 function table(head, rows, attributes = {}) {
   const cell = (tag, value, right) =>
     make(tag, right ? { class: "n" } : {}, value instanceof Node ? value : String(value));

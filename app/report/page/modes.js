@@ -106,7 +106,7 @@ function showModes() {
   }
 }
 
-const CAMPBELL_MODES = 4; // shown unless zoomed out
+const CAMPBELL_MODES = 4; // number of modes shown unless zoomed out
 
 function showCampbell() {
   const section = byId("campbell");

@@ -1,4 +1,4 @@
-// What every page has: contents, footer, theme, paper.
+// The parts that all pages share: contents, footer, theme, printing.
 
 const stopAnimations = [],
   startAnimations = [];
@@ -37,7 +37,7 @@ function showTitle(page) {
   showFooter(page);
 }
 
-/// The command that gives it again, and the model's parameters.
+/// The command that reproduces the page, and the model's parameters.
 function showInputTable(page) {
   byId("inputs").append(
     make("p", {}, make("code", {}, page.command)),
@@ -52,7 +52,7 @@ function showInputTable(page) {
   );
 }
 
-/// The train, with a line below it that says how it is drawn.
+/// The figure of the train, with a line below it that explains the drawing.
 function trainFigure(model) {
   const held = model.nodes.filter((node) => node.held).map((node) => node.name);
   return make(
@@ -83,7 +83,8 @@ function showTheme(theme) {
   charts.forEach((chart) => chart.draw());
 }
 
-/// Light, at the width of A4 between its margins, all charts drawn at once and finely.
+/// Layout for printing: light theme, width of A4 between its margins, all charts drawn at once with high
+/// resolution.
 function layOutForPaper(on) {
   if (printing === on) return;
   printing = on;
@@ -113,7 +114,7 @@ function startControls() {
 /// Calls the functions that fill the sections, then draws.
 function showAll(...shows) {
   for (const show of [...shows, startControls]) show();
-  window.drevCharts = charts; // for tests, and for the console
+  window.drevCharts = charts; // for tests and the console
   document.documentElement.dataset.ready = Math.round(performance.now());
   drawNext();
 }

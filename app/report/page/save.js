@@ -4,7 +4,7 @@ const SAVED_WIDTH = 900,
   SAVED_HEIGHT = 420,
   SAVED_FONT = "12px system-ui, 'DejaVu Sans', sans-serif";
 
-/// What charts use of a canvas' context, written as SVG.
+/// The part of a canvas context that charts use, written as SVG.
 class SvgContext {
   constructor(width, height) {
     Object.assign(this, { strokeStyle: "#000", fillStyle: "#000", lineWidth: 1, font: SAVED_FONT });
@@ -91,7 +91,7 @@ function niceTicks(low, high, count) {
   return ticks;
 }
 
-/// The chart as it is shown, on paper's colours.
+/// Paints the chart as it is shown, in the colours for paper.
 function paintChart(context, chart, width, height) {
   const o = chart.options,
     { rows, sparse } = chart.data(),
@@ -171,7 +171,7 @@ function paintChart(context, chart, width, height) {
   });
 }
 
-/// In the colours of paper, whatever the theme.
+/// Calls paint with the colours for paper, whatever the theme.
 function onPaper(paint) {
   const root = document.documentElement,
     theme = root.dataset.theme;
@@ -200,7 +200,7 @@ function chartAsCanvas(chart) {
   return canvas;
 }
 
-/// The points that are shown; a text that a spreadsheet would take for a formula is kept from it.
+/// The points shown, as CSV; a text that a spreadsheet would read as a formula is escaped.
 function chartAsCsv(chart) {
   const cell = (text) => `"${(/^[=+\-@\t\r]/.test(text) ? "'" : "") + text.replaceAll('"', '""')}"`;
   const o = chart.options;

@@ -1,11 +1,11 @@
-// The page of shafts by their contours: drawing with stress, stiffness, stations.
+// The page of shafts given by their contours: drawing with stress, stiffness, stations.
 
 const page = JSON.parse(document.querySelector("script.run").textContent);
 const SHAFT_WIDTH = 900,
-  SHAFT_DRAWN = 200, // most that the drawing is high, px
+  SHAFT_DRAWN = 200, // largest height of the drawing [px]
   SHAFT_AROUND = 40;
 
-/// The contour, mirrored at its axis, in bands as dark as their nominal shear stress.
+/// The contour, mirrored at its axis, in bands whose darkness shows their nominal shear stress.
 function contourFigure(shaft) {
   const z = shaft.outline.z_m,
     r = shaft.outline.radius_m,

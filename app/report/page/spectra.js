@@ -10,12 +10,12 @@ function showSpectra() {
     return;
   }
   const shafts = withSpectra[0].campbell ? withSpectra[0].campbell.shafts : [];
-  const base = (withSpectra[0].spectra.speed ?? 0) / (2 * Math.PI); // turns a second, as the shaft really turned
+  const base = (withSpectra[0].spectra.speed ?? 0) / (2 * Math.PI); // actual turns of the shaft per second
   const s0 = withSpectra[0].spectra;
   const full = Math.max(
     ...withSpectra.map(({ spectra: s }) => s.line_Hz * (s.channels[0]?.amplitude.length ?? 1)),
   );
-  // To where nearly all of the movement is.
+  // Up to the frequency below which almost all of the motion is.
   let busy = 0;
   for (const { spectra: s } of withSpectra)
     for (const c of s.channels) {
@@ -25,7 +25,7 @@ function showSpectra() {
       while (k < c.amplitude.length && sum < 0.99 * total) ((sum += c.amplitude[k] ** 2), ++k);
       busy = Math.max(busy, 1.15 * k * s.line_Hz);
     }
-  let unit = 1; // Hz of one unit of the x axis
+  let unit = 1; // frequency of one unit of the x axis [Hz]
   const group = new Group([0, full], ([from, to]) => {
     group.output.textContent = `${tidy(from / unit)} to ${tidy(to / unit)} ${unit === 1 ? "Hz" : "orders"}`;
   });
@@ -201,7 +201,7 @@ function showOrderBars(section, run, base, channels) {
   show();
 }
 
-/// A spectrum's lines between two frequencies, the highest of each of `columns` parts.
+/// Lines of a spectrum between two frequencies: the highest in each of `columns` parts.
 function highest(amplitude, step, from, to, columns) {
   const first = Math.max(0, Math.floor(from / step) - 1),
     last = Math.min(amplitude.length, Math.ceil(to / step) + 1);
@@ -240,7 +240,7 @@ function showOrders(section, run) {
   );
   const grid = make("div", { class: "spectra" });
   section.append(grid);
-  // A run-up and a run-down pass a speed twice: by time, not joined backwards.
+  // A run-up with a run-down passes a speed twice: it is drawn over time, not joined backwards.
   const places = up.speed_rpm.map((_, i) => i).sort((a, b) => up.speed_rpm[a] - up.speed_rpm[b]);
   const tint = (i) => style(["--c0", "--c1", "--c2", "--c4", "--ink"][i % 5]);
   for (const channel of up.channels) {
@@ -284,8 +284,8 @@ function showOrders(section, run) {
   showWaterfall(section, run, group, places);
 }
 
-/// The waterfall of a run-up: of evenly spaced orders a line each, its amplitude above its order. places: of the windows,
-/// by ascending speed.
+/// The waterfall of a run-up: a line for each of evenly spaced orders, with its amplitude above its order.
+/// places: numbers of the windows by ascending speed.
 function showWaterfall(section, run, group, places) {
   const fall = run.waterfall;
   if (!fall) return;
@@ -310,7 +310,7 @@ function showWaterfall(section, run, group, places) {
     if (!(most > 0)) continue;
     const readable = readableUnit(channel.unit, most),
       name = channelName(channel.name),
-      height = highest / 4; // orders that the largest amplitude takes
+      height = highest / 4; // height of the largest amplitude [orders]
     const largest = lines.map((k) =>
       channel.amplitude.subarray(k * windows, (k + 1) * windows).reduce((a, b) => Math.max(a, b), 0),
     );

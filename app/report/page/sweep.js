@@ -1,4 +1,4 @@
-// The page of a sweep: amplitudes over speed by order and in sum, criticals, Campbell diagram.
+// The page of a sweep: amplitudes over speed by order and in sum, critical speeds, Campbell diagram.
 
 const decode = (text) => {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -12,7 +12,7 @@ for (const sweep of page.sweeps)
 for (const s of page.sweeps[0].sections) for (const limit of s.limits) limit.values = decode(limit.values);
 const sweep = page.sweeps[0];
 const span = [sweep.speeds_rpm[0], sweep.speeds_rpm.at(-1)];
-// One speed is no range: a chart needs a width.
+// A single speed is widened to a range, which a chart needs.
 const whole = span[0] < span[1] ? span : [0.99 * span[0], 1.01 * span[1]];
 const speedAxis = `speed of ${page.shaft} [rpm]`;
 const NAMED_ORDERS = 5;
@@ -147,7 +147,7 @@ function sectionChart(parent, group, s, index) {
         speed,
         ...curves.map(({ values }) => (Number.isFinite(values[i]) ? values[i] * readable.factor : null)),
       ]);
-      for (const peak of s.peaks) // between the speeds, known for the half range alone
+      for (const peak of s.peaks) // peaks between the speeds are known for the half range only
         if (peak.half_range !== null && !sweep.speeds_rpm.includes(peak.speed_rpm))
           rows.push([peak.speed_rpm, peak.half_range * readable.factor, ...curves.slice(1).map(() => null)]);
       return { sparse: true, rows: rows.sort((a, b) => a[0] - b[0]) };

@@ -1,4 +1,4 @@
-// What is said in words and numbers.
+// Sections with text and tables.
 
 /// Name, unit, key of the place, key of the error.
 const RESULT_NAMES = {
@@ -36,18 +36,19 @@ const unitOf = (key) => {
   return found ? [key.slice(0, -found.length), endings[found]] : [key, ""];
 };
 
-/// The digits that an error leaves, two of its own among them; as in the table of drev run.
+/// The significant digits of a value, down to the second digit of its error, as in the table of drev run.
 const earnedDigits = (x, error) =>
   error > 0 ? Math.min(15, Math.max(2, Math.ceil(Math.log10(Math.abs(x) / error)) + 1)) : 12;
 
-/// With its error where that is known: the digits are then those of the table of drev run, in the same unit.
+/// A value, with its error if that is known: the digits are then those of the table of drev run, in the same
+/// unit.
 const valueText = (x, unit, error) => {
   if (error !== null && error !== undefined)
     return `${sig(x, earnedDigits(x, error))} ± ${sig(error, 2)}${unit === "°" ? "°" : "\u00a0" + unitText(unit)}`;
   return unit === "°" ? `${sig(x)}°` : Number.isInteger(x) && !unit ? integer(x) : quantity(x, unit);
 };
 
-/// What the figures are of, and what speaks for them.
+/// The time span that the figures belong to, and the evidence for their accuracy.
 function spanText(run) {
   const r = run.result.results,
     of = r.of;
@@ -142,7 +143,7 @@ function showFigures() {
     if (run.result.note) section.append(make("p", { class: "note" }, prefixed(run, run.result.note)));
 }
 
-/// What each section carried, beside what it may carry; and its load cycles.
+/// The load of each section compared with its limits, and its load cycles.
 function showSections(section, run) {
   const carried = run.result.results.sections ?? [],
     counted = run.result.results.rainflow ?? [];
@@ -206,7 +207,7 @@ function showSections(section, run) {
   );
 }
 
-/// Work, heat and stored energy of each element, where they were asked for.
+/// Work, heat and stored energy of each element, if they were requested.
 function showElements(section, run) {
   const elements = run.result.results.elements ?? [];
   if (!elements.length) return;
@@ -228,7 +229,7 @@ function showElements(section, run) {
   );
 }
 
-/// "Run A: " where there are two.
+/// A text with the prefix "Run A: " if there are two runs.
 const prefixed = (run, text) => (run.name ? `Run ${run.name}: ${text}` : text);
 const headed = (run, text) => (run.name ? `${text} of run ${run.name}` : text);
 
@@ -236,7 +237,7 @@ function showContactTable(section) {
   for (const run of runs) {
     const contacts = run.result.results.contacts || [];
     if (!contacts.length) continue;
-    // Whatever numbers the run gives of each contact.
+    // All numbers that the run gives for each contact.
     const keys = Object.keys(contacts[0]).filter(
       (key) => key !== "element" && contacts.some((c) => typeof c[key] === "number"),
     );

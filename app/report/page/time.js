@@ -1,4 +1,4 @@
-// What is drawn over time: histories, forces and contacts, energies.
+// Charts over time: histories, forces and contacts, energies.
 
 function timeText([from, to]) {
   const h = runs[0].history;
@@ -60,8 +60,9 @@ function timeChart(parent, channel) {
   return chart;
 }
 
-/// Of a run-up: the speed at which the reference shaft turns nominally, or a shaft actually, in place of the time, along the axis of all
-/// charts over time. Where the speed rises and falls again it stands there twice.
+/// For a run-up, the axis of all charts over time shows the speed in place of the time: the nominal speed of
+/// the reference shaft, or the actual one of a shaft. If the speed rises and falls again, a speed appears
+/// twice.
 const rising = runs.every(
   (run) => run.speeds && JSON.stringify(run.speeds) === JSON.stringify(runs[0].speeds),
 )
@@ -74,7 +75,7 @@ function speedAt(t) {
   return speeds[i - 1] + ((speeds[i] - speeds[i - 1]) * (t - times[i - 1])) / (times[i] - times[i - 1]);
 }
 
-/// Ticks at round speeds, where they are passed between two times.
+/// Ticks at round speeds that are passed between two times.
 function speedTicks(a, b, pixels, options, g) {
   const { time_s: times, speed_rpm: speeds } = rising;
   const inside = times.map((t, i) => i).filter((i) => times[i] > a && times[i] < b);

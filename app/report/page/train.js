@@ -1,13 +1,13 @@
 // The train as a schematic, and its mode shapes.
 //
-// Parts that turn together about one axis (joined by anything but gears) lie on one line, the longest chain straight, branches
-// on rows below. Lines in mesh lie above each other, their gears touching; gears on a carrier stay on its line, joined.
+// Parts that turn together about one axis (joined by anything but gears) lie on one line, the longest chain in
+// the main row, branches below. Lines in mesh touch at their gears; gears on a carrier are joined on its line.
 
 const PITCH_LEAST = 24,
   DISC = 34,
   GEAR = 52,
-  THICKEST = 7; // px; radii of the largest disc and gear
-const MOST_LABELS = 60; // on one line
+  THICKEST = 7; // sizes [px]; disc and gear: largest radii
+const MOST_LABELS = 60; // largest number of labels on one line
 const coupling = (joint) => joint.kind === "gear" || (joint.kind === "mesh" && !joint.carried);
 
 function layout(model) {
@@ -22,7 +22,7 @@ function layout(model) {
   const nodes = model.nodes.map(() => ({ line: -1, x: 0, row: 0, from: -1 }));
   const lines = [];
   const walk = (start, allowed) => {
-    // breadth first: order and predecessors
+    // breadth-first search: order and predecessors
     const order = [start],
       from = new Map([[start, -1]]);
     for (const i of order)
@@ -32,12 +32,12 @@ function layout(model) {
   for (let start = 0; start < count; ++start) {
     if (nodes[start].line >= 0) continue;
     const all = walk(start, () => true).order;
-    const ends = walk(all.at(-1), () => true); // the longest chain begins at what is farthest
+    const ends = walk(all.at(-1), () => true); // the longest chain begins at the farthest node
     const trunk = [];
     for (let i = ends.order.at(-1); i >= 0; i = ends.from.get(i)) trunk.push(i);
     if (trunk[0] > trunk.at(-1)) trunk.reverse();
     const line = { nodes: all, rows: 1, width: trunk.length };
-    const taken = new Set(); // places of branches
+    const taken = new Set(); // occupied places of branches
     trunk.forEach((i, x) =>
       Object.assign(nodes[i], { line: lines.length, x, row: 0, from: trunk[x - 1] ?? -1 }),
     );
@@ -66,8 +66,8 @@ function layout(model) {
   return { nodes, lines, ties, gears };
 }
 
-/// Places of the lines against each other: x so that gears in mesh stand above each other, from the longest line
-/// on. Where a mesh stands at a node: its gears side by side.
+/// Places of the lines, from the longest one on: x so that gears in mesh are above each other. The gears of one
+/// node are side by side.
 function place(plan, pitch, gap) {
   const offset = (node, tie) => {
     const list = plan.gears[node];
@@ -122,7 +122,7 @@ function dashpot(x0, y0, x1, y1) {
   });
 }
 
-/// Dry friction: two plates, each on its rod.
+/// Symbol of dry friction: two plates, each on its rod.
 const plates = (x0, y0, x1, y1) => {
   const length = Math.hypot(x1 - x0, y1 - y0) || 1;
   const [u, v] = [(2 * (x1 - x0)) / length, (2 * (y1 - y0)) / length];
@@ -161,7 +161,7 @@ function jointText(joint) {
   return parts.join(", ");
 }
 
-/// Sizes by the fourth root, as of discs of one thickness and shafts of one length.
+/// Sizes by the fourth root, as for discs of equal thickness and shafts of equal length.
 const fourth = (values, largest) => {
   const top = Math.max(...values.filter((v) => v > 0), 0);
   return (v) => (v > 0 && top > 0 ? largest * Math.pow(v / top, 0.25) : 0);
@@ -192,7 +192,7 @@ function drawTrain(model) {
   const nameLength = Math.max(...model.nodes.map((node) => node.name.length));
   const labelHeight = shortLabels || !labelled ? 18 : Math.min(90, nameLength * 5 + 6);
 
-  // Heights: each line below the one it was reached from, gears touching; or below all so far.
+  // Heights: each line is below the one it was reached from, with touching gears, or below all lines so far.
   const y = plan.lines.map(() => 0),
     half = plan.lines.map((line) =>
       Math.max(DISC, ...line.nodes.flatMap((i) => plan.gears[i].map((tie) => gearRadius(tie, i)))),
@@ -206,7 +206,7 @@ function drawTrain(model) {
       const [a, b] = tie.nodes,
         other = plan.nodes[a].line === line ? plan.nodes[b].line : plan.nodes[a].line;
       const [r, s] = [gearRadius(tie, a), gearRadius(tie, b)];
-      y[line] = y[other] - (tie.internal ? Math.abs(r - s) : r + s); // upwards: labels stand below
+      y[line] = y[other] - (tie.internal ? Math.abs(r - s) : r + s); // upwards, since labels are below
     }
     bottom = Math.max(bottom, y[line] + half[line] + height(line));
   });
@@ -322,11 +322,11 @@ function drawTrain(model) {
     if (!labelled) return;
     const reach = Math.max(r, 4, ...plan.gears[i].map((tie) => gearRadius(tie, i)));
     if (plan.lines[plan.nodes[i].line].width === 1 && plan.gears[i].length) {
-      // beside its gears
+      // next to its gears
       const side = Math.max(...plan.gears[i].map((tie) => Math.abs(offset(i, tie)))) + 12;
       svg.append(draw("text", { x: cx + side, y: cy + (node.held ? -8 : 4) }, node.name));
     } else if (grounded.has(i)) {
-      // above, where a spring to ground stands below
+      // above, where a spring to ground is below
       svg.append(
         draw("text", { x: cx, y: cy - reach - (loaded.has(i) ? 15 : 5), "text-anchor": "middle" }, node.name),
       );
@@ -343,7 +343,7 @@ function drawTrain(model) {
       );
     }
   });
-  // Names of meshes, beside their contact where no name of a node stands.
+  // Names of meshes, next to their contact where there is no name of a node.
   const boxOf = (text, x, y) => ({ left: x - 2, right: x + 6.3 * text.length + 2, top: y - 10, bottom: y + 3 });
   const taken = [...svg.querySelectorAll("text:not([transform])")].map((label) => {
     const box = boxOf(label.textContent, Number(label.getAttribute("x")), Number(label.getAttribute("y")));
@@ -384,7 +384,7 @@ class ShapeView {
     const widest = Math.max(...plan.lines.map((line) => line.width));
     const pitch = (width - (bare ? 10 : 120)) / Math.max(widest, 2);
     const { x, order } = place(plan, pitch, 0);
-    // A bare view shows the longest line alone.
+    // A bare view shows only the longest line.
     if (bare && widest === 1) return this.asRow(model.nodes.length, width, rowHeight);
     const shown = bare ? order.slice(0, 1) : [...order].reverse();
     this.amplitude = rowHeight * 0.42;
@@ -461,7 +461,7 @@ class ShapeView {
         );
     this.svg.append(...this.dots);
   }
-  /// A train of single nodes in mesh, bare: node after node.
+  /// A bare view of a train of single nodes in mesh: node after node.
   asRow(count, width, rowHeight) {
     this.amplitude = rowHeight * 0.42;
     this.rows = Array.from({ length: count }, (_, i) => ({
@@ -489,7 +489,7 @@ class ShapeView {
       this.envelopes.forEach((envelope, i) => envelope.setAttribute("d", this.path(i ? -1 : 1)));
     this.move(1);
   }
-  /// factor: of the shape, 1 to -1.
+  /// factor: factor of the shape, 1 to -1.
   move(factor) {
     this.curve.setAttribute("d", this.path(factor));
     this.dots.forEach((dot, k) => {

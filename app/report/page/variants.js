@@ -4,9 +4,9 @@ const page = JSON.parse(document.querySelector("script.run").textContent);
 const result = page.result,
   points = page.points;
 const PLOT = { width: 720, height: 230, left: 62, right: 14, top: 14, bottom: 34 };
-const PARTS = 20; // of a parameter's range, with a mean of the figure each
+const PARTS = 20; // number of parts of a parameter's range, each with a mean of the figure
 
-/// A number without unit has no prefix either: "[m]" would be read as metres.
+/// Unit of a figure. A number without unit has no prefix either: "[m]" would be read as metres.
 const unitOf = (figure, size) => (figure.unit ? readableUnit(figure.unit, size) : { factor: 1, unit: "1" });
 const known = result.figures.filter((figure) => figure.count > 0);
 const varies = (figure) => figure.max.value > figure.min.value;
@@ -76,7 +76,8 @@ function showFigures() {
   );
 }
 
-/// An SVG with axes from x0 to x1, with the ticks given, and from 0 to y1; paint(x, y, parts) adds what stands in it.
+/// An SVG with axes from x0 to x1, with the ticks given, and from 0 to y1; paint(x, y, parts) adds its
+/// content.
 function plot(label, [x0, x1], xTicks, y1, xLabel, paint) {
   const wide = PLOT.width - PLOT.left - PLOT.right,
     high = PLOT.height - PLOT.top - PLOT.bottom;
@@ -101,7 +102,7 @@ function plot(label, [x0, x1], xTicks, y1, xLabel, paint) {
   );
 }
 
-/// How many values are in each part of the range, with mean and quantiles; their intervals as bands.
+/// Histogram of the values of a figure, with mean and quantiles, and with their intervals as bands.
 function histogram(figure) {
   const low = figure.min.value,
     high = figure.max.value,
@@ -168,7 +169,7 @@ function showHistograms() {
   );
 }
 
-/// First order and total of each parameter, with their intervals.
+/// First-order and total indices of each parameter, with their intervals.
 function indexPicture(figure) {
   const most = Math.max(1, ...figure.sobol.map((s) => s.total + s.total_error));
   const count = figure.sobol.length;
@@ -231,7 +232,7 @@ function showSensitivity() {
     );
 }
 
-/// A figure over a parameter: a point a variant, and its mean over parts of the range.
+/// A figure over a parameter: a point for each variant, and the mean over parts of the range.
 function scatter(parent, group, parameter, figure, values) {
   const readable = unitOf(figure, Math.max(Math.abs(figure.min.value), Math.abs(figure.max.value)));
   const pairs = parameter.values

@@ -22,7 +22,7 @@ const char* name(Integrator integrator);
 struct SundialsOptions {
   Integrator integrator = Integrator::erk5;
   double rtol = 1e-6, t_end = 5.0;
-  bool roots = true;  ///< contact changes by root finding; the integrator starts anew at each
+  bool roots = true;  ///< contact changes by root finding; the integrator starts again at each
   int samples = 0;
 };
 /// Throws std::runtime_error where SUNDIALS reports that it could not be set up.

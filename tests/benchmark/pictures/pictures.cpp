@@ -6,8 +6,7 @@
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
-#include <drev/models/two_mass_backlash/build_two_mass_backlash.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>

@@ -1,5 +1,5 @@
 #include <drev/app/model_file/plugin.hpp>
-#include <drev/core/law_element.hpp>
+#include <drev/elements/own_element.hpp>
 
 /// y = k x + k3 x^3 [N m], x = twist of end b against end a [rad].
 struct Hardening {

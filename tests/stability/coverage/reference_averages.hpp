@@ -16,7 +16,7 @@ class Averages {
 
   Real mean(std::size_t channel) const { return sums_[channel].value / (end_ - begin_); }
   Real mean_square(std::size_t channel) const { return sums_[channel].square / (end_ - begin_); }
-  /// a_n of y = Re sum a_n exp(i n omega t): twice the coefficient, but for n = 0.
+  /// a_n of y = Re sum a_n exp(i n omega t): twice the coefficient, except for n = 0.
   std::complex<Real> amplitude(std::size_t channel, int n) const;
 
  private:

@@ -4,7 +4,6 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
 #include <drev/solvers/method.hpp>
-#include <drev/solvers/method_choice.hpp>
 #include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
 #include <cmath>
@@ -78,7 +78,7 @@ TEST_CASE("A mesh that starts on its flank and stays there needs no gap") {
   CHECK_FALSE(without_backlash(closed));
 }
 
-TEST_CASE("Parts that are tied anew keep the twists that they start with") {
+TEST_CASE("Parts that are tied again keep the twists that they start with") {
   const Model full = geared(2e-4, -1e-3, -4e-3);
   for (const Model& m : {*with_rigid_meshes(full), *with_drive_held(full, {"gear", "end"})}) {
     const System system = m.build();

@@ -181,13 +181,13 @@ TEST_CASE("Pieces that overlap, leave a hole or have a bound elsewhere are found
 }
 
 TEST_CASE("Kinks, gap and closed slopes that contradict the pieces are found") {
-  CHECK(contains(report(DeadZone{.told_kinks = {-0.1}}), "kinks: none is told at x = 0.1"));
-  CHECK(contains(report(DeadZone{.told_kinks = {-0.1, 0.1, 0.2}}), "kinks: one is told at x = 0.2"));
+  CHECK(contains(report(DeadZone{.told_kinks = {-0.1}}), "kinks: none is stated at x = 0.1"));
+  CHECK(contains(report(DeadZone{.told_kinks = {-0.1, 0.1, 0.2}}), "kinks: one is stated at x = 0.2"));
   CHECK(contains(report(DeadZone{.told_gap = {-0.1, 0.09}}),
-                 "gap: the pieces have -0.1 to 0.1, told is -0.1 to 0.09"));
+                 "gap: the pieces have -0.1 to 0.1, stated is -0.1 to 0.09"));
   CHECK(contains(report(DeadZone{.told_stiffness = 300.0}),
-                 "closed_stiffness: 300 is told, the pieces have 0 to 200"));
-  CHECK(contains(report(DeadZone{.told_damping = 4.0}), "closed_damping: 4 is told"));
+                 "closed_stiffness: 300 is stated, the pieces have 0 to 200"));
+  CHECK(contains(report(DeadZone{.told_damping = 4.0}), "closed_damping: 4 is stated"));
 }
 
 TEST_CASE("A gap that contradicts the call of a law without pieces is found") {
@@ -254,7 +254,7 @@ TEST_CASE("A load's own stretch that contradicts the call is refused") {
                    if (angle > 5.0) return std::nullopt;
                    return right(angle);
                  }),
-                 "stretch: is told at"));
+                 "stretch: is stated at"));
   CHECK(contains(refusal({}, [](double) { return LoadStretch{.torque = 3.0}; }),
                  "contradictory/saw: describe(): load 0, stretch = gives a torque of 3, the call "));
 }

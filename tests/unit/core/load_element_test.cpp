@@ -6,7 +6,7 @@
 #include <drev/core/verify.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/stepping/transient.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <cmath>
 
@@ -42,9 +42,8 @@ struct Push {
 
 double speed_at_end(const System& system, bool exact) {
   State state = State::initial(system);
-  const RunSummary run =
-      exact ? propagate(system, {.tolerance = 1e-12, .t_end = 1.0}, state)
-            : simulate(system, {.scheme = step_scheme("sdirk4"), .step = 1e-3, .t_end = 1.0}, state);
+  const RunSummary run = exact ? propagate(system, {.tolerance = 1e-12, .t_end = 1.0}, state)
+                               : run_method(system, {.name = "sdirk4", .step = 1e-3}, {.t_end = 1.0}, state);
   REQUIRE(run.ok());
   return state.v[0];
 }

@@ -12,7 +12,7 @@ using namespace drev;
 
 namespace {
 
-/// Rate and acceleration against central differences; both are exact but for rounding where the motion
+/// Rate and acceleration against central differences; both are exact except for rounding where the motion
 /// is a parabola on either side.
 void check_derivatives(const Motion& motion, double t) {
   const double h = 1e-4;

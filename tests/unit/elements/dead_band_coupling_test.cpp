@@ -2,7 +2,7 @@
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/stepping/transient.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <cmath>
 
@@ -67,7 +67,7 @@ TEST_CASE("Dead-band coupling between two shafts: exact propagation and steps ag
     const RunSummary run = propagate(system, {.tolerance = 1e-11, .t_end = 0.15}, exact);
     CHECK(run.ok());
     CHECK(run.contact_changes > 2);
-    CHECK(simulate(system, {.step = 2e-7, .t_end = 0.15}, stepped).ok());
+    CHECK(run_method(system, {.step = 2e-7}, {.t_end = 0.15}, stepped).ok());
     for (const Eigen::Index i : {0, 1}) CHECK(exact.v[i] == Approx(stepped.v[i]).epsilon(1e-4));
   }
 }

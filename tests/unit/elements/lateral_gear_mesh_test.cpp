@@ -4,10 +4,10 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/statics.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ TEST_CASE("Gears on bearings with backlash rattle alike by exact propagation and
       propagate(system, {.tolerance = 1e-11, .t_end = 0.01, .energy_tolerance = 1e-8}, exact);
   CHECK(run.ok());
   CHECK(run.contact_changes > 4);
-  CHECK(simulate(system, {.step = 2e-8, .t_end = 0.01}, stepped).ok());
+  CHECK(run_method(system, {.step = 2e-8}, {.t_end = 0.01}, stepped).ok());
   for (Eigen::Index i = 0; i < exact.z.size(); ++i)
     CHECK(std::abs(exact.z[i] - stepped.z[i]) < 2e-4 * exact.z.lpNorm<Eigen::Infinity>());
 }

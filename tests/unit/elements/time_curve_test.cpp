@@ -76,5 +76,5 @@ TEST_CASE("A formula over time: bad input is named") {
   CHECK(test::contains(test::findings(Clutch({.torque = 1.0,
                                               .engagement = TimeTable({0.0}, {1.0}),
                                               .engagement_formula = TimeCurve(closing())})),
-                       "beside engagement"));
+                       "together with engagement"));
 }

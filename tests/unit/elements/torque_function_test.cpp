@@ -4,7 +4,7 @@
 #include <drev/elements/inertia.hpp>
 #include <drev/elements/machines/torque_function.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/stepping/transient.hpp>
+#include <drev/solvers/method.hpp>
 
 #include <cmath>
 
@@ -98,7 +98,7 @@ TEST_CASE("A torque function in time: run-up against a quadratic law, exact and 
   State exact = State::initial(system), stepped = exact;
   CHECK(propagate(system, {.tolerance = 1e-11, .t_end = 0.9}, exact).ok());
   CHECK(exact.v[0] == Approx(w_inf * std::tanh(0.9 * rate)).epsilon(1e-10));
-  CHECK(simulate(system, {.step = 1e-4, .t_end = 0.9}, stepped).ok());
+  CHECK(run_method(system, {.step = 1e-4}, {.t_end = 0.9}, stepped).ok());
   CHECK(stepped.v[0] == Approx(w_inf * std::tanh(0.9 * rate)).epsilon(1e-7));
 }
 

@@ -121,7 +121,7 @@ System train(bool varying, std::optional<Motion> nominal) {
 }
 
 /// Angles and speeds after 0.1 s: SciPy 1.17, solve_ivp with DOP853 at a tolerance of 1e-13, within 5e-12 of Radau at
-/// 1e-12; slider and crank, equations and orders written there anew. With the mean inertia: the same program.
+/// 1e-12; slider and crank, equations and orders written there again. With the mean inertia: the same program.
 constexpr double kVarying[] = {12.093408838779,  12.0904460608269, 12.0819415543615,
                                123.605872145463, 123.115259700813, 123.363889683105};
 constexpr double kMean[] = {12.0940433626314, 12.0910858762617, 12.0826092459099,

@@ -4,9 +4,9 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/modal_damping.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 
@@ -79,7 +79,7 @@ TEST_CASE("Modal damping in time: free decay in closed form, exactly and by step
   CHECK(propagate(system, {.tolerance = 1e-13, .t_end = t, .energy_tolerance = 1e-10}, exact).ok());
   CHECK(exact.z[1] - exact.z[0] == Approx(twist).epsilon(1e-11));
   CHECK(0.4 * exact.v[0] + 0.6 * exact.v[1] == Approx(0.5).epsilon(1e-13));  // rigid motion loses nothing
-  CHECK(simulate(system, {.step = 1e-5, .t_end = t}, stepped).ok());
+  CHECK(run_method(system, {.step = 1e-5}, {.t_end = t}, stepped).ok());
   CHECK(stepped.z[1] - stepped.z[0] == Approx(twist).epsilon(1e-5));
 }
 

@@ -198,7 +198,7 @@ TEST_CASE("Campbell: the criticals are those of the sweep", "[sweep]") {
     largest = std::max(largest, critical.at("relative").get<double>());
     critical.erase("relative");
     CHECK(critical == sweep["criticals"][i]);
-    // The order meets the mode there, but for what damping and the other orders' flanks move.
+    // The order meets the mode there, except for what damping and the other orders' flanks move.
     CHECK(critical.at("order").get<double>() * critical.at("speed_rpm").get<double>() / 60.0 ==
           Approx(critical.at("frequency_Hz").get<double>()).epsilon(0.1));
   }

@@ -5,7 +5,7 @@
 #include <drev/core/channel.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/recorder.hpp>
 

@@ -103,7 +103,7 @@ const std::vector<Fault>& faults() {
       {"J_gear = {", "J_gear = @5 #", "must be a table, { type = ... }"},
       {"nodes = [\"gear\", \"end\"]", "nodes = @[\"gear\"]", "nodes = 1"},
       {"nodes = [\"gear\", \"end\"]", "node = \"gear\", @nodes = [\"gear\", \"end\"]",
-       "is there beside node"},
+       "is given together with node"},
       {"stiffness_MNm_per_rad = 87.5", "@stiffness_N_per_m = 87.5", "belongs to translational nodes"},
       {"stiffness_N_per_mm = 30", "@stiffness_Nm_per_rad = 30",
        "belongs to rotational nodes; on a translational one"},

@@ -108,7 +108,7 @@ TEST_CASE("The wind turbine: ratio, first mode, planets against each other, shar
   const double planets = std::sqrt(2.0 * 9e9 * r_planet * r_planet / 130.0) / kTwoPi;
   CHECK(modes.frequency_Hz[4] == Approx(planets).epsilon(1e-9));
   CHECK(modes.frequency_Hz[5] == Approx(planets).epsilon(1e-9));
-  // The mean of a mesh's force over two periods of the first mode: a third of what the generator takes, but for what
+  // The mean of a mesh's force over two periods of the first mode: a third of what the generator takes, except for what
   // speeds it up.
   const double window = 2.0 / modes.frequency_Hz[0], end = 2.0;
   Recorder recorder(

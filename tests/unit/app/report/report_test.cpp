@@ -344,7 +344,7 @@ TEST_CASE("A damaged report is refused") {
   REQUIRE(sum != std::string::npos);
   CHECK(refused(with(sum + 13, 1, page[sum + 13] == '0' ? "1" : "0")));
   CHECK(refused(with(sum, 30, "")));
-  // As it was written it is taken, also after it was written anew.
+  // As it was written it is taken, also after it was written again.
   CHECK_FALSE(refused(page));
   std::filesystem::remove(folder / "x.html");
   std::ofstream(folder / "e.html") << page;

@@ -1,8 +1,8 @@
 // history.csv: exactly the times asked for, the library's own values, 17 digits; and what is left when
 // something goes wrong.
 #include <drev/models/model_case.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <chrono>
 #include <cstring>
@@ -77,7 +77,7 @@ TEST_CASE("history.csv has the times asked for and the library's values") {
   const drev::ModelCase model_case = entry.build(parameters);
   const drev::System system = model_case.model.build();
   drev::Recorder recorder(system, channels, 0.017);
-  drev::simulate(system, {.step = 0.001, .t_end = 2.5}, {&recorder});
+  drev::run_method(system, {.step = 0.001}, {.t_end = 2.5}, {&recorder});
   REQUIRE(table.rows.size() == 148);  // 0 to 147 * 0.017 = 2.499
   REQUIRE(recorder.times().size() == table.rows.size());
   for (std::size_t k = 0; k < table.rows.size(); ++k) {

@@ -1,6 +1,7 @@
 // Work and precision of methods on an oscillator whose error is known in closed form.
+#include "solvers/accuracy/work_precision.hpp"
+
 #include <drev/core/units.hpp>
-#include <drev/solvers/accuracy/work_precision.hpp>
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // The example of docs/parameter_study.md.
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/batch/simulate_many.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 

@@ -1,6 +1,6 @@
 // Exact propagation: closed forms, breakpoints, known motions, dampers, refusals, laws without a
 // solution.
-// Covers solvers/exact/taylor_series.hpp, series_kernels.hpp, load_series.hpp and law_series.hpp through
+// Covers solvers/series/taylor_series.hpp, series_kernels.hpp, load_series.hpp and law_series.hpp through
 // propagate().
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>

@@ -2,8 +2,8 @@
 // series, against closed forms; and what a jump leaves of a bound.
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/stepping/step_scheme.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -191,8 +191,8 @@ TEST_CASE("Exact propagation: mesh stiffness by phase and kinks of tables share 
           cams_behind_mesh({.stiffness = *stiffness, .damping = damping, .damping_law = law}).build();
       State exact = State::initial(system), other = exact;
       const RunSummary run = propagate(system, {.tolerance = 1e-10, .t_end = 0.05}, exact);
-      const RunSummary known = simulate(
-          system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-13, .t_end = 0.05}, other);
+      const RunSummary known =
+          run_method(system, {.name = "dormand_prince", .tolerance = 1e-13}, {.t_end = 0.05}, other);
       INFO(run.brief_report());
       REQUIRE(run.ok());
       REQUIRE(known.ok());

@@ -4,8 +4,8 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
 #include <random>
@@ -80,9 +80,8 @@ TEST_CASE("Smooth loads as series, kinks and a mesh with damping together: the m
     const std::vector<std::string> channels{"cam.angle_rad", "throw_1.speed_rad_per_s"};
     Recorder shown(system, channels, kEnd / 40.0), reference(system, channels, kEnd / 40.0);
     const RunSummary run = propagate(system, {.tolerance = 1e-9, .t_end = kEnd}, exact, {&shown});
-    const RunSummary known =
-        simulate(system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-12, .t_end = kEnd}, other,
-                 {&reference});
+    const RunSummary known = run_method(system, {.name = "dormand_prince", .tolerance = 1e-12},
+                                        {.t_end = kEnd}, other, {&reference});
     REQUIRE(run.ok());
     REQUIRE(known.ok());
     INFO("seed " << seed << ": " << run.steps << " steps, " << run.contact_changes << " contact changes");
@@ -113,7 +112,7 @@ TEST_CASE("Moments of a curved force behind a knot: in closed form along a strai
   for (std::size_t k = 0; k < 2; ++k) terms[k * kLanes] = theta[k];
   constexpr int kDegree = 6, kStride = 8;
   std::vector<double> columns((kDegree + 1) * kStride);
-  kinks.add_to_sweep(end, kDegree, kStride, columns.data());
+  kinks.add_to_sweep(end, kDegree, 8, 2, kStride, columns.data());
   CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
   for (int j = 0; j <= kDegree; ++j) {
     double truth = 0.0;  // int_0^r (r - u)^j/j! u^q du = q! r^(j+q+1)/(j+q+1)!

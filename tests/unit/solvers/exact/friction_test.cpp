@@ -6,7 +6,7 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
-#include <drev/solvers/method_choice.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/statics.hpp>
 #include <drev/solvers/stepping/transient.hpp>

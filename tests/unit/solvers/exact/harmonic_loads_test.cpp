@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "solvers/exact/harmonic_cells.hpp"
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

@@ -4,7 +4,7 @@
 
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
 #include <cmath>
@@ -25,7 +25,7 @@ TEST_CASE("Moments of kinks for a sweep: in closed form along a quadratic path")
     for (std::size_t k = 0; k < theta.size(); ++k) terms[k * kLanes] = theta[k];
     constexpr int kDegree = 9, kStride = 8;
     std::vector<double> columns((kDegree + 1) * kStride);
-    kinks.add_to_sweep(end, kDegree, kStride, columns.data());
+    kinks.add_to_sweep(end, kDegree, 8, theta.size(), kStride, columns.data());
     CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
     double power = end - place, factorial = 1.0;  // r^(j+1), (j+1)!
     for (int j = 0; j <= kDegree; ++j, power *= end - place, factorial *= j + 1) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "solvers/exact/kink_moments.hpp"
-#include "solvers/exact/legendre_projection.hpp"
+#include "solvers/series/legendre_projection.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

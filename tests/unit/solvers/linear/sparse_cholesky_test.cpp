@@ -224,7 +224,7 @@ TEST_CASE("A factor can be moved", "[SparseCholesky]") {
   CHECK(x == Vector::Ones(3));
 }
 
-TEST_CASE("LU solves unsymmetric matrices and pivots anew where it must", "[SparseLu]") {
+TEST_CASE("LU solves unsymmetric matrices and pivots again where it must", "[SparseLu]") {
   Eigen::MatrixXd dense = Eigen::MatrixXd(free_chain(30, 1.0));
   dense(3, 4) = 7.0;
   dense(0, 0) = -2.0;

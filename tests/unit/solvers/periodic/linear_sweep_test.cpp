@@ -1,6 +1,6 @@
 // Linear sweeps against closed forms, exact propagation and brute force.
-// Covers solvers/periodic/linear_response.hpp, order_content.hpp, trigonometric_sum.hpp, lane_sections.hpp,
-// damped_pairs.hpp and sweep_peaks.hpp through sweep_linear(), and solvers/periodic/bracketed_maximum.hpp.
+// Covers solvers/periodic/linear_response.hpp, order_content.hpp, trigonometric_sum.hpp,
+// trigonometric_kernels.hpp, lane_sections.hpp, damped_pairs.hpp and sweep_peaks.hpp through sweep_linear(), and solvers/periodic/bracketed_maximum.hpp.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
@@ -364,6 +364,42 @@ TEST_CASE("The extremes of sums are those of a fine search", "[linear_sweep]") {
     CHECK(found[0].max <= max + 1e-7 * size);
     CHECK(found[0].min <= min + 1e-14 * size);
     CHECK(found[0].min >= min - 1e-7 * size);
+  }
+}
+
+TEST_CASE("The extremes of many sums of 24 orders are those of a fine search", "[linear_sweep]") {
+  // Amplitudes that fall with the order, so that flat tops occur whose highest place has no point beside it that is
+  // higher than its neighbours, and tops whose parabola points elsewhere.
+  constexpr int kPoints = 2400, kOrders = 24, kSums = 4800;
+  std::mt19937 draw(11);
+  std::normal_distribution<double> number;
+  std::vector<double> orders;
+  for (int k = 1; k <= kOrders; ++k) orders.push_back(0.5 * k);
+  Eigen::MatrixXcd a(kOrders, kSums), waves(kPoints, kOrders);
+  for (Eigen::Index s = 0; s < kSums; ++s)
+    for (int k = 0; k < kOrders; ++k) a(k, s) = Complex(number(draw), number(draw)) / (k + 1.0);
+  for (int k = 0; k < kOrders; ++k)
+    for (int p = 0; p < kPoints; ++p) waves(p, k) = std::polar(1.0, (k + 1) * kTwoPi * p / kPoints);
+  const Eigen::MatrixXd y = (waves * a).real();
+  TrigonometricSum sum(orders, "test");
+  std::vector<SumExtremes> found;
+  sum.extremes(a, found);
+  for (Eigen::Index s = 0; s < kSums; ++s) {
+    const SumExtremes& e = found[static_cast<std::size_t>(s)];
+    const double size = a.col(s).cwiseAbs().sum();  // the search misses (n h)^2 / 8 = 5e-4 of it at most
+    const double max = y.col(s).maxCoeff(), min = y.col(s).minCoeff();
+    double at_max = 0.0, at_min = 0.0;
+    for (int k = 0; k < kOrders; ++k) {
+      at_max += (a(k, s) * std::polar(1.0, orders[static_cast<std::size_t>(k)] * e.max_angle)).real();
+      at_min += (a(k, s) * std::polar(1.0, orders[static_cast<std::size_t>(k)] * e.min_angle)).real();
+    }
+    CAPTURE(s);
+    CHECK(e.max >= max - 1e-14 * size);
+    CHECK(e.max <= max + 5e-4 * size);
+    CHECK(std::abs(e.max - at_max) < 1e-13 * size);
+    CHECK(e.min <= min + 1e-14 * size);
+    CHECK(e.min >= min - 5e-4 * size);
+    CHECK(std::abs(e.min - at_min) < 1e-13 * size);
   }
 }
 

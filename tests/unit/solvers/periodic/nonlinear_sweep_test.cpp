@@ -2,13 +2,12 @@
 // programs that put closed-form pieces together (shooting, saltation), to 1e-10.
 // Covers solvers/periodic/law_balance.hpp, mean_equilibrium.hpp, motion_sections.hpp, section_rows.hpp,
 // branch_tracer.hpp, floquet.hpp and motion_figures.hpp through sweep_nonlinear(), and
-// solvers/at_speed.hpp, worst_motions.hpp.
+// solvers/at_speed.hpp.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
-#include <drev/solvers/worst_motions.hpp>
 
 #include <algorithm>
 #include <cmath>

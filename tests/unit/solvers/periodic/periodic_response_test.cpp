@@ -4,10 +4,9 @@
 #include <drev/core/ritz_projection.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
-#include <drev/models/camshaft/build_camshaft.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
-#include <drev/solvers/periodic/speed_sweep.hpp>
 #include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>

@@ -4,12 +4,12 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/run/after_time.hpp>
-#include <drev/solvers/run/mean_speed.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <cmath>
 
+#include "solvers/run/mean_speed.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;

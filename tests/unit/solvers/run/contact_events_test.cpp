@@ -2,7 +2,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
-#include <drev/solvers/run/contact_events.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
-#include <drev/solvers/stepping/transient.hpp>
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -86,7 +86,7 @@ TEST_CASE("A mass thrown to and fro between two stops meets each at its speed") 
     CHECK(r.rattle_index(periods * period) == Approx(mass * v * v / period).epsilon(1e-10));
   }
   ContactStatistics stepped(system);  // the speed is interpolated in the step that passes the edge
-  REQUIRE(simulate(system, {.step = 1e-5, .t_end = periods * period}, {&stepped}).ok());
+  REQUIRE(run_method(system, {.step = 1e-5}, {.t_end = periods * period}, {&stepped}).ok());
   check_all(stepped.records()[0].speed(), 2 * periods, v, 1e-4);
 }
 

@@ -28,7 +28,7 @@ double position_at(const System& system, double t, double step, const StepScheme
 
 }  // namespace
 
-TEST_CASE("Sudden release of a static load: second order with the acceleration evaluated anew") {
+TEST_CASE("Sudden release of a static load: second order with the acceleration evaluated again") {
   // Load k held to t = 1/sqrt 2 + 0.8 from equilibrium; u(2.25) = cos(2 pi (2.25 - release)).
   const double release = 1 / std::sqrt(2.0) + 0.8;
   Model m = unit_oscillator();

@@ -1,10 +1,10 @@
-#include "solvers/exact/legendre_projection.hpp"
+#include "solvers/series/legendre_projection.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/exact/lane_pair.hpp"
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/linear/lane_pair.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 

@@ -38,12 +38,15 @@ struct SeriesRecursion {
   double damping_factor(int k) const { return derivatives ? 1.0 : k - 1.0; }
 };
 
-/// Z_k for k = first ... last, and the largest |Z_k| of
-/// each, or NaN if any is not finite, in sizes from 0 on.
+/// Z_k for k = first ... last, and, of a series, the largest |Z_k| of each in sizes from 0 on; the last two are not finite if any
+/// of the terms is not. Derivatives have no sizes.
 void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes);
 
 /// out_i = factor a_i b_i.
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out);
+
+/// main_i -= slope_i; returns the largest |slope_i| mobility_i.
+double subtract_slopes(int stride, const double* slope, const double* mobility, double* main);
 
 /// z = sum Z_k s^k and v = sum k Z_k s^(k-1) from columns Z_k at z_0 + k stride.
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v);
@@ -56,7 +59,7 @@ void series_at_nodes(int stride, int degree, const double* z_0, const double* s,
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope);
 
 /// out_j = sum_q w_qj f_q, j < terms, and behind those out_j = sum_q w_qj |f_q|, j < terms + sizes, q < count; w_qj at
-/// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. add: to what out holds.
+/// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. add: the first ones to what out holds.
 void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const double* f,
                    double* out, bool add = false);
 

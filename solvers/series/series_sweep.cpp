@@ -1,8 +1,7 @@
 // TaylorSeries: what forces inside a step add to its end.
-#include <array>
 #include <cmath>
 
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -22,12 +21,10 @@ void TaylorSeries::sweep(const double* moments, int degree) {
   r.p_degree = degree;
   r.z = swept_.data() + idx(pad_);
   products_ += degree + 1;
-  if (by_kernel()) {
-    std::array<double, kMostSwept + 1> sizes;
-    series_terms(r, 2, degree + 2, sizes.data());
-  } else {
+  if (by_kernel())
+    series_terms(r, 2, degree + 2, nullptr);
+  else
     for (int k = 2; k <= degree + 2; ++k) product_term(r, k);
-  }
 }
 
 double TaylorSeries::coupling(int row, int other) const {

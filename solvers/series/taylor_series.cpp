@@ -1,4 +1,4 @@
-#include "solvers/exact/taylor_series.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 #include <drev/core/error.hpp>
 #include <drev/core/lanes.hpp>
@@ -7,18 +7,20 @@
 #include <cmath>
 #include <map>
 
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/extreme_eigenvalue.hpp"
 #include "solvers/linear/vector_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
 namespace {
-constexpr double kDiagonalFill = 2.0;  // diagonals pay up to this many values an entry
+constexpr double kDiagonalFill = 2.0;  // diagonals are kept up to this many values an entry
 constexpr double kEigenvalueMargin = 1.1;
-constexpr double kEnergyPart = 0.01;     // of the tolerance: terms that energies do without, 1e-13 to 1e-9
-constexpr double kLastOfProducts = 0.1;  // of what is allowed: the last two terms where series are multiplied
-constexpr double kShortenSeries = 0.9;   // of the step at which the last terms are just small enough
+constexpr double kEnergyPart = 0.01;  // terms that energies do without, relative to the tolerance
+// Size of the last two terms where series are multiplied, relative to what is allowed.
+constexpr double kLastOfProducts = 0.1;
+constexpr int kFewer = 4;               // terms that a step may do with less than the step before
+constexpr double kShortenSeries = 0.9;  // factor on the step at which the last terms are just small enough
 }  // namespace
 
 TaylorSeries::TaylorSeries(const System& system)
@@ -131,6 +133,7 @@ void TaylorSeries::find_views(bool far) {
 void TaylorSeries::reset() {
   std::copy(k_base_.begin(), k_base_.end(), k_.begin());  // the views stay
   std::copy(c_base_.begin(), c_base_.end(), c_.begin());
+  scaled_ = Scaled::none;
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
@@ -142,8 +145,23 @@ void TaylorSeries::reset() {
 
 void TaylorSeries::add_damping(int slot, double value) {
   c_[position_[idx(slot)]] += value;
+  scaled_ = Scaled::none;
   damped_ = true;
   main_damping_ = false;
+}
+
+void TaylorSeries::add_row_slopes(const double* slope) {
+  int first = 0;
+  if (main_ >= 0 && diagonal_mass_) {
+    const double widest = subtract_slopes(stride_, slope, inverse_mass_.data(), main_diagonal());
+    k_more_ = std::max(k_more_, widest);
+    first = n_;
+  }
+  for (int row = first; row < n_ + row_slopes_.size(); ++row) {
+    if (slope[row] == 0.0) continue;
+    add_row_stiffness(row, -slope[row]);
+    widen(row, slope[row], 0.0);
+  }
 }
 
 void TaylorSeries::subtract_product(const std::vector<double>& values, bool main_only, const double* x,
@@ -165,14 +183,13 @@ void TaylorSeries::subtract_product(const std::vector<double>& values, bool main
 }
 
 double TaylorSeries::bound_rates() {
-  const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
-  k_norm_ = c_norm_ = largest_coupling_ = 0.0;
+  const int* outer = system_.pattern().outerIndexPtr();
+  k_norm_ = c_norm_ = 0.0;
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
       const double k = std::abs(k_[position_[idx(s)]]);
       k_sum += k;
-      if (inner[s] != row) largest_coupling_ = std::max(largest_coupling_, k * mobility(row));
       c_sum += std::abs(c_[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
@@ -199,7 +216,7 @@ void TaylorSeries::widen(int row, double k, double c) {
 }
 
 double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
-  // What the iteration lacks after its steps is in the margin.
+  // The margin covers what the iteration lacks after its steps.
   return kEigenvalueMargin * extreme_eigenvalue(n_, [&](const Vector& x, Vector& product) {
            std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
            std::copy_n(x.data(), n_, z_.data() + pad_);
@@ -211,7 +228,6 @@ double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
 void TaylorSeries::scale_as(const TaylorSeries& other) {
   k_norm_ = other.k_norm_;
   c_norm_ = other.c_norm_;
-  largest_coupling_ = other.largest_coupling_;
   z_scale_ = z_step_scale_ = other.z_scale_;
   v_scale_ = v_step_scale_ = other.v_scale_;
 }
@@ -272,14 +288,19 @@ TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) co
 
 /// The matrices that stand now, for the recursion over a step of h_.
 void TaylorSeries::scale_step() {
-  if (!by_kernel()) return;
-  for (int i = 0; i < n_; ++i) mobility_step_[idx(i)] = h_ * h_ * inverse_mass_[idx(i)];
-  const double* mobility = mobility_step_.data();
+  if (!by_kernel() || (scaled_ == Scaled::all && scaled_h_ == h_)) return;
+  const bool main_only = scaled_ == Scaled::without_main && scaled_h_ == h_;
+  double* mobility = mobility_step_.data();
+  if (!main_only)
+    for (int i = 0; i < n_; ++i) mobility[i] = h_ * h_ * inverse_mass_[idx(i)];
   for (const Diagonal& d : diagonals_) {
+    if (main_only && d.offset != 0) continue;
     scaled_product(stride_, -1.0, mobility, k_.data() + d.values, k_step_.data() + d.values);
-    if (damped_ && !(main_damping_ && d.offset != 0))
+    if (!main_only && damped_ && !(main_damping_ && d.offset != 0))
       scaled_product(stride_, -1.0 / h_, mobility, c_.data() + d.values, c_step_.data() + d.values);
   }
+  scaled_ = Scaled::all;
+  scaled_h_ = h_;
 }
 
 SeriesRecursion TaylorSeries::recursion() {
@@ -353,7 +374,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   v_scale = v_scale_;
   const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
   const std::size_t kinds = kinds_.empty() ? 1 : 2;
-  // How far a term is above what is allowed, and what was added to it above what is then.
+  // Size of a term over what is allowed, and the same of what forces added to it.
   const auto excess_of = [&](const Norm& size, int k) {
     double largest = 0.0;
     for (std::size_t i = 0; i < kinds; ++i)
@@ -368,33 +389,35 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     return excess_of(size, k) / kLastOfProducts;
   };
   int known_degree = right_degree_;
-  bool products = false;  // of series: their tails are not bounded by the norms of K and C alone
+  bool products = false;  // products of series act, whose tails the norms of K and C alone do not bound
   for (const TermForces* forces : term_forces_)
     if (forces->active()) {
       known_degree = std::max(known_degree, forces->known_degree());
       products = true;
     }
   double last = 0.0;
+  const double per_time = 1.0 / h;
   // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
   int known = 1;
   const int likely = by_diagonals() ? degree_ - 1 : 0;
+  const int judged = likely - kFewer;  // terms before this one are not asked whether they are the last
   for (int k = 2; k <= kMaxDegree; ++k) {
     if (k > known) {
       known = std::min(std::max({k, known_degree + 2, likely}), kMaxDegree);
       next_terms(k, known);
+      if (const Norm& end = sizes_[idx(known)]; !std::isfinite(end[0] + end[1])) return h_ = 0.0;
     }
     const Norm& size = sizes_[idx(k)];
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < kinds; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i]);
-      v_scale[i] = std::max(v_scale[i], k * size[i] / h);
+      v_scale[i] = std::max(v_scale[i], k * per_time * size[i]);
     }
     degree_ = k;
     ++products_;
-    if (!std::isfinite(size[0] + size[1])) return h_ = 0.0;
-    if (k < known_degree + 2) continue;  // a term of the right side may still be to come
+    if (k < std::max(known_degree + 2, judged)) continue;  // a term of the right side may still be to come
     const double before = last;
     last = excess(k);
-    if (k < known_degree + 3) continue;
+    if (k < std::max(known_degree + 3, judged + 1)) continue;
     const double first = k_all * h * h / (k * (k + 1.0)) * before + c_all * h / (k + 1.0) * last;
     const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
     const bool is_small = first <= 1.0 && second <= 1.0;
@@ -414,6 +437,16 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
   h_ = r * h;
   return h_;
+}
+
+int TaylorSeries::terms_within(double part) const {
+  Norm tail{};
+  for (int k = degree_; k > 2; --k)
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += sizes_[idx(k)][kind];
+      if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
+    }
+  return 3;
 }
 
 int TaylorSeries::energy_degree() const {

@@ -20,9 +20,9 @@
 #include <algorithm>
 #include <array>
 
-#include "solvers/exact/legendre_projection.hpp"
-#include "solvers/exact/series_kernels.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
@@ -55,28 +55,37 @@ class TaylorSeries {
 
   /// K and C back to the system's own, the right side to zero; then add what the pieces add.
   void reset();
-  void add_stiffness(int slot, double value) { k_[position_[idx(slot)]] += value; }
+  void add_stiffness(int slot, double value) {
+    k_[position_[idx(slot)]] += value;
+    scaled_ = Scaled::none;
+  }
   /// The same on the diagonal of a row.
   void add_row_stiffness(int row, double value) {
-    if (row < n_)
-      add_stiffness(system_.diagonal_slots()[idx(row)], value);
-    else
+    if (row >= n_)
       row_slopes_[row - n_] += value;
+    else if (main_ >= 0)
+      main_diagonal()[row] += value;
+    else
+      add_stiffness(system_.diagonal_slots()[idx(row)], value);
   }
+  /// Subtracts slopes of loads from the diagonal of each row, and notes them (widen()).
+  void add_row_slopes(const double* slope);
   void add_damping(int slot, double value);
   /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
   void add_load_damping(int row, double value) {
     c_[position_[idx(system_.diagonal_slots()[idx(row)])]] += value;
     damped_ = true;
+    scaled_ = Scaled::none;
     load_damping_.push_back({row, value});
   }
   /// Takes back what was added last.
   void take_load_damping() {
     c_[position_[idx(system_.diagonal_slots()[idx(load_damping_.back().index)])]] -=
         load_damping_.back().coeff;
+    scaled_ = Scaled::none;
     load_damping_.pop_back();
   }
-  /// Tells of tangents added to a row beyond what bound_rates() saw, |k| [N m/rad or N/m] and |c|.
+  /// Notes tangents added to a row that bound_rates() did not see, |k| [N m/rad or N/m] and |c|.
   void widen(int row, double k, double c);
   /// The same of a damping along any row, as a rate c/m [1/s].
   void widen_damping(double rate) { c_more_ += rate; }
@@ -99,14 +108,14 @@ class TaylorSeries {
   /// overflow. tolerance: relative to the largest deflection and speed noted so far.
   double expand(const Vector& z, const Vector& v, double h, double tolerance);
 
-  /// Of forces f on the unknowns that come on top of the right side in the step, the motion y that they add up to
-  /// s = e, by one backward sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
+  /// The motion y that forces f on the unknowns, on top of the right side, add up to s = e, by one backward
+  /// sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
   /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each.
   /// Only where sweeps() holds. Source: variation of constants, with exp(A (e - s)) as its Taylor series.
   void sweep(const double* moments, int degree);
   bool sweeps() const;
   static constexpr int kMostSwept = 28;  ///< largest degree of a sweep
-  /// After sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
+  /// Results of sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
   const double* swept(int part) const {
     return swept_.data() + idx(pad_ + (swept_degree_ + 1 - part) * stride_);
   }
@@ -121,6 +130,8 @@ class TaylorSeries {
   int degree() const { return degree_; }
   /// Size of term k of the step's series, of unknowns of a kind.
   double size(int k, std::size_t kind) const { return sizes_[idx(k)][kind]; }
+  /// The least number of terms of the step's series behind which all others add up to no more than `part` of the largest motion.
+  int terms_within(double part) const;
   double step() const { return h_; }
   int size() const { return n_; }
   /// Rows of right_side() and of the coefficients, with padding (zeros) behind the size() of them.
@@ -130,10 +141,11 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// z and v at s.
   void evaluate(double s, Vector& z, Vector& v) const;
-  /// Of each row over the step: how far it comes, and what its terms and, from the second on, their slopes by s add up to.
-  void ranges(double* end, double* size, double* slope);
-  /// Of each unknown, and of its rate, how far it lies at most from the cubic through its values and rates at 0 and s
-  /// (cubic_peak.hpp); out: size() of either.
+  /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
+  /// s from the second term on.
+  void ranges(double* end, double* size);
+  /// Bound of the distance of each unknown from the cubic through its values and rates at 0 and s (cubic_peak.hpp), and
+  /// stride() behind it the same of its rate.
   void beyond_cubic(double s, double* out);
   /// int_0^s (sum P_k u^k) . z' du with columns P_k at p + k stride(), k <= degree.
   double work(const double* p, int degree, double s);
@@ -160,8 +172,13 @@ class TaylorSeries {
   }
   /// |k| between two unknowns over the first one's mass [1/s^2].
   double coupling(int row, int other) const;
-  /// The largest of them, as bound_rates() saw them.
-  double largest_coupling() const { return largest_coupling_; }
+  /// Calls each(other, coupling(row, other)) for every unknown that is coupled with a row.
+  template <class Each>
+  void for_coupled(int row, const Each& each) const {
+    const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
+    for (int s = outer[row]; s < outer[row + 1]; ++s)
+      if (inner[s] != row) each(inner[s], std::abs(k_[position_[idx(s)]]) * mobility(row));
+  }
   /// Whether some third one is coupled with both.
   bool share_neighbour(int row, int other) const;
   /// The same of the unknown that a force on a row moves most.
@@ -172,6 +189,11 @@ class TaylorSeries {
     int offset;
     std::size_t values;
   };
+  /// K's main diagonal, to be changed: what was scaled for the step lacks it then.
+  double* main_diagonal() {
+    if (scaled_ == Scaled::all) scaled_ = Scaled::without_main;
+    return k_.data() + diagonals_[idx(main_)].values;
+  }
   void find_storage();
   void find_views(bool far);
   void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
@@ -202,6 +224,7 @@ class TaylorSeries {
   }
   void add_row_forces(const double* p, const double* x_0);
   const double* sums(double s);
+  void add_tails(const Norm& tail, const Norm& other_tail, double* out) const;
   bool add_term_forces(int k, double factor, double* term);
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
@@ -211,15 +234,18 @@ class TaylorSeries {
   int n_, stride_ = 0, pad_ = 0;
   std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
   std::vector<double> k_step_, c_step_, mobility_step_;  // SeriesRecursion's k, c and mobility
-  std::vector<std::size_t> position_;                    // of a slot of the pattern in k_, c_
-  std::vector<Diagonal> diagonals_;                      // padded to stride_; empty: rows of the pattern
-  int main_ = -1;                                        // which diagonal is the main one
-  std::vector<DiagonalView> k_views_, c_views_;          // of each block of lanes
+  enum class Scaled { none, without_main, all };
+  Scaled scaled_ = Scaled::none;                 // which of the values that stand now are in those
+  double scaled_h_ = 0.0;                        // step that they are for [s]
+  std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_
+  std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
+  int main_ = -1;                                // which diagonal is the main one
+  std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
   bool chain_ = false;  // nearly all of them are the main one and its neighbours
-  bool undamped_ = false, base_main_damping_ = false;  // of the system's own C
+  bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
-  double k_norm_ = 0.0, c_norm_ = 0.0, largest_coupling_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
+  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;     // of M^-1, largest row sum, where M is not diagonal
   std::vector<double> swept_;  // columns of the sweep behind two of zeros
@@ -228,14 +254,14 @@ class TaylorSeries {
   std::vector<Entry> load_damping_;                               // by row, within c_
   double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
   std::vector<double> p_, z_, rates_, forces_, zeros_;
-  // Of the system's loaded rows.
+  // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
   std::vector<double> with_rows_;
   mutable std::vector<double> values_;
   Vector solve_in_, solve_out_;
-  // Of the terms, from 2 on; and of what forces that act on every term added to them.
+  // Sizes of the terms from the second on, and of what forces that act on every term added to them.
   std::array<Norm, kMaxDegree + 1> sizes_{}, added_{};
-  std::vector<int> kinds_;  // of the unknowns, if the system has both
+  std::vector<int> kinds_;  // kinds of the unknowns, if the system has both
   Norm z_scale_{}, v_scale_{}, z_step_scale_{}, v_step_scale_{};
   int degree_ = 0, right_degree_ = 2;
   double h_ = 0.0, energy_part_ = 0.0;

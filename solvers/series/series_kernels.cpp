@@ -1,4 +1,4 @@
-#include "solvers/exact/series_kernels.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 #include <drev/core/ids.hpp>
 
@@ -6,12 +6,12 @@
 #include <array>
 #include <cstddef>
 
-#include "solvers/exact/lane_pair.hpp"
+#include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 
 namespace {
-constexpr int kMostTerms = 128;  // of a product of two series
+constexpr int kMostTerms = 128;  // terms of a product of two series
 
 /// 1/k.
 constexpr auto kInverse = [] {
@@ -24,178 +24,6 @@ constexpr auto kInverse = [] {
   return first + static_cast<std::ptrdiff_t>(k) * stride;
 }
 
-/// P_{m-2}; null: there is none.
-[[gnu::always_inline]] inline const double* right_side(const SeriesRecursion& r, int m) {
-  return m - 2 <= r.p_degree ? column(r.p, r.stride, m - 2 - r.p_first) : nullptr;
-}
-
-/// sum += mobility p.
-template <class L>
-[[gnu::always_inline]] inline void add_right_side(const double* mobility, const double* p, int i, L& sum) {
-  if (p == nullptr) return;
-  L force, w;
-  load(p + i, force);
-  load(mobility + i, w);
-  sum += w * force;
-}
-
-/// Stores a term and notes its size.
-template <class L>
-[[gnu::always_inline]] inline void finish_term(L& term, double* to, L& largest, L& not_finite) {
-  store(term, to);
-  not_finite += 0.0 * term;  // comparisons drop a NaN
-  magnitude(term);
-  raise(largest, term);
-}
-
-struct Terms {
-  template <class L>
-  [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
-                                         double* sizes) {
-    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
-    const int stride = r.stride;
-    const double* c_main = r.c_main;
-    const DiagonalView *k = r.k.views, *c = r.c.views;
-    for (int m = first; m <= last; ++m) {
-      const double factor = r.factor(m), c_factor = r.damping_factor(m);
-      const double *x_0 = column(r.z, stride, m - 2), *x_1 = column(r.z, stride, m - 1);
-      double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
-      const double* p = right_side(r, m);
-      L largest{}, not_finite{};
-      for (int i = 0, block = 0; i < stride; i += kLanes, ++block) {
-        L sum{}, damping{}, a, b;
-        for (int d = r.k.begin[block]; d < r.k.begin[block + 1]; ++d) {
-          load(k[d].values + i, a);
-          load(x_0 + i + k[d].offset, b);
-          sum += a * b;
-        }
-        if (c_main != nullptr) {
-          load(c_main + i, a);
-          load(x_1 + i, b);
-          damping = a * b;
-        } else if (c != nullptr) {
-          for (int d = r.c.begin[block]; d < r.c.begin[block + 1]; ++d) {
-            load(c[d].values + i, a);
-            load(x_1 + i + c[d].offset, b);
-            damping += a * b;
-          }
-        }
-        add_right_side(r.mobility, p, i, sum);
-        sum = factor * (sum + c_factor * damping);
-        finish_term(sum, next + i, largest, not_finite);
-      }
-      sizes[m - first] = largest_of(largest) + sum_of(not_finite);
-    }
-  }
-};
-
-/// The same where K and C have their entries on the main diagonal and beside it, with a few elsewhere (k.views, c.views): the
-/// neighbours come from the lanes beside, so that no load overlaps what was stored just before.
-struct ChainTerms {
-  /// sum = a x, a's diagonals below, on and above the main one.
-  template <class L>
-  [[gnu::always_inline]] static void multiply(const std::array<const double*, 3>& a, int i, const L& up,
-                                              const L& x, const L& down, L& sum) {
-    L value;
-    load(a[1] + i, value);
-    sum = value * x;
-    load(a[0] + i, value);
-    sum += value * up;
-    load(a[2] + i, value);
-    sum += value * down;
-  }
-  /// sum += the entries elsewhere.
-  template <class L>
-  [[gnu::always_inline]] static void add_far(const BlockDiagonals& far, int block, const double* x, L& sum) {
-    for (int d = far.begin[block]; d < far.begin[block + 1]; ++d) {
-      L a, b;
-      load(far.views[d].values + block * kLanes, a);
-      load(x + block * kLanes + far.views[d].offset, b);
-      sum += a * b;
-    }
-  }
-  /// kBlocks: of lanes in a column, where that is known, so that loops over them are unrolled; 0: any number. kPlain: no
-  /// entries are elsewhere, and C has its main diagonal alone.
-  template <class L, int kBlocks, bool kPlain>
-  [[gnu::always_inline]] static void terms(const SeriesRecursion* recursion, int first, int last,
-                                           double* sizes) {
-    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
-    const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
-    const double* c_main = r.c_main;
-    const bool whole_c = !kPlain && r.c_chain[1] != nullptr;
-    for (int m = first; m <= last; ++m) {
-      const double factor = r.factor(m), c_factor = r.damping_factor(m);
-      const double *x_0 = column(r.z, stride, m - 2), *x_1 = column(r.z, stride, m - 1);
-      double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
-      const double* p = right_side(r, m);
-      L largest{}, not_finite{}, before{}, x, behind{}, rate_before{}, rate, rate_behind{};
-      load(x_0, x);
-      load(x_1, rate);
-#pragma GCC unroll 6
-      for (int i = 0, block = 0; i < stride; i += kLanes, ++block) {
-        const bool more = i + kLanes < stride;
-        L up, down, sum;
-        behind = L{};
-        if (more) load(x_0 + i + kLanes, behind);
-        move_up(before, x, up);
-        move_down(x, behind, down);
-        multiply(r.k_chain, i, up, x, down, sum);
-        if constexpr (!kPlain) add_far(r.k, block, x_0, sum);
-        if (whole_c) {
-          L damping;
-          rate_behind = L{};
-          if (more) load(x_1 + i + kLanes, rate_behind);
-          move_up(rate_before, rate, up);
-          move_down(rate, rate_behind, down);
-          multiply(r.c_chain, i, up, rate, down, damping);
-          add_far(r.c, block, x_1, damping);
-          sum += c_factor * damping;
-          rate_before = rate;
-          rate = rate_behind;
-        } else if (kPlain || c_main != nullptr) {
-          L value;
-          load(c_main + i, value);
-          load(x_1 + i, rate);
-          sum += (c_factor * value) * rate;
-        }
-        add_right_side(r.mobility, p, i, sum);
-        sum = factor * sum;
-        finish_term(sum, next + i, largest, not_finite);
-        before = x;
-        x = behind;
-      }
-      sizes[m - first] = largest_of(largest) + sum_of(not_finite);
-    }
-  }
-  template <class L, int kBlocks>
-  [[gnu::always_inline]] static void of_size(const SeriesRecursion* r, int first, int last, double* sizes) {
-    const bool plain = r->k.begin[r->stride / kLanes] == 0 && r->c_main != nullptr;
-    if (plain)
-      terms<L, kBlocks, true>(r, first, last, sizes);
-    else
-      terms<L, kBlocks, false>(r, first, last, sizes);
-  }
-  template <class L>
-  [[gnu::always_inline]] static void run(const SeriesRecursion* r, int first, int last, double* sizes) {
-    switch (r->stride / kLanes) {
-      case 1:
-        return of_size<L, 1>(r, first, last, sizes);
-      case 2:
-        return of_size<L, 2>(r, first, last, sizes);
-      case 3:
-        return of_size<L, 3>(r, first, last, sizes);
-      case 4:
-        return of_size<L, 4>(r, first, last, sizes);
-      case 5:
-        return of_size<L, 5>(r, first, last, sizes);
-      case 6:
-        return of_size<L, 6>(r, first, last, sizes);
-      default:
-        return of_size<L, 0>(r, first, last, sizes);
-    }
-  }
-};
-
 struct ScaledProduct {
   template <class L>
   [[gnu::always_inline]] static void run(int stride, double factor, const double* a, const double* b,
@@ -206,6 +34,24 @@ struct ScaledProduct {
       load(b + i, y);
       store((factor * x) * y, out + i);
     }
+  }
+};
+
+struct Slopes {
+  template <class L>
+  [[gnu::always_inline]] static double run(int stride, const double* slope, const double* mobility,
+                                           double* main) {
+    L most{};
+    for (int i = 0; i < stride; i += kLanes) {
+      L x, y;
+      load(slope + i, x);
+      load(main + i, y);
+      store(y - x, main + i);
+      load(mobility + i, y);
+      magnitude(x);
+      raise(most, x * y);
+    }
+    return largest_of(most);
   }
 };
 
@@ -270,42 +116,47 @@ struct Polynomial {
 };
 
 struct Sums {
-  static constexpr int kTogether = 5;  // of sums, which stay in registers
-  template <class L, int kCount, bool kSizes>
+  static constexpr int kTogether = 5;  // sums that stay in registers together
+  template <class L, int kCount, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void some(int stride, int count, int per_column, const double* weight,
-                                          const double* f, double* out, bool add) {
+                                          const double* f, double* out) {
     L sum[kCount], x;
-    clear(sum);
-    if (add)
+    if constexpr (kAdd) {
+#pragma GCC unroll 5
       for (int j = 0; j < kCount; ++j) load(out + j * stride, sum[j]);
+    } else {
+      clear(sum);
+    }
     for (int q = 0; q < count; ++q, weight += per_column, f += stride) {
       load(f, x);
       if constexpr (kSizes) magnitude(x);
+#pragma GCC unroll 5
       for (int j = 0; j < kCount; ++j) sum[j] += weight[j] * x;
     }
+#pragma GCC unroll 5
     for (int j = 0; j < kCount; ++j) store(sum[j], out + j * stride);
   }
-  template <class L, bool kSizes>
+  template <class L, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void all(int stride, int first, int last, int count, int per_column,
-                                         const double* weight, const double* f, double* out, bool add) {
+                                         const double* weight, const double* f, double* out) {
     for (int j = first; j < last; j += kTogether) {
       const double* w = weight + j;
       double* to = out + j * stride;
       switch (std::min(last - j, kTogether)) {
         case 1:
-          some<L, 1, kSizes>(stride, count, per_column, w, f, to, add);
+          some<L, 1, kSizes, kAdd>(stride, count, per_column, w, f, to);
           break;
         case 2:
-          some<L, 2, kSizes>(stride, count, per_column, w, f, to, add);
+          some<L, 2, kSizes, kAdd>(stride, count, per_column, w, f, to);
           break;
         case 3:
-          some<L, 3, kSizes>(stride, count, per_column, w, f, to, add);
+          some<L, 3, kSizes, kAdd>(stride, count, per_column, w, f, to);
           break;
         case 4:
-          some<L, 4, kSizes>(stride, count, per_column, w, f, to, add);
+          some<L, 4, kSizes, kAdd>(stride, count, per_column, w, f, to);
           break;
         default:
-          some<L, kTogether, kSizes>(stride, count, per_column, w, f, to, add);
+          some<L, kTogether, kSizes, kAdd>(stride, count, per_column, w, f, to);
       }
     }
   }
@@ -314,8 +165,11 @@ struct Sums {
                                          const double* f, double* out, bool add) {
     const int together = terms + sizes;
     for (int i = 0; i < stride; i += kLanes) {
-      all<L, false>(stride, 0, terms, count, together, weight, f + i, out + i, add);
-      all<L, true>(stride, terms, together, count, together, weight, f + i, out + i, add);
+      if (add)
+        all<L, false, true>(stride, 0, terms, count, together, weight, f + i, out + i);
+      else
+        all<L, false, false>(stride, 0, terms, count, together, weight, f + i, out + i);
+      all<L, true, false>(stride, terms, together, count, together, weight, f + i, out + i);
     }
   }
 };
@@ -440,15 +294,12 @@ struct Product {
 
 }  // namespace
 
-void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes) {
-  if (recursion.k_chain[1] != nullptr)
-    run_widest<ChainTerms>(&recursion, first, last, sizes);
-  else
-    run_widest<Terms>(&recursion, first, last, sizes);
-}
-
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out) {
   run_widest<ScaledProduct>(stride, factor, a, b, out);
+}
+
+double subtract_slopes(int stride, const double* slope, const double* mobility, double* main) {
+  return run_widest<Slopes>(stride, slope, mobility, main);
 }
 
 void series_values(int stride, int degree, const double* z_0, double s, double* z, double* v) {

@@ -56,6 +56,46 @@ struct LanePair {
   most.low = most.low < x.low ? x.low : most.low;
   most.high = most.high < x.high ? x.high : most.high;
 }
+/// to = x < 0 ? a : b by lanes.
+[[gnu::always_inline]] inline void choose(const Lanes& x, const Lanes& a, const Lanes& b, Lanes& to) {
+  to = x < 0.0 ? a : b;
+}
+[[gnu::always_inline]] inline void choose(const LanePair& x, const LanePair& a, const LanePair& b,
+                                          LanePair& to) {
+  to.low = x.low < 0.0 ? a.low : b.low;
+  to.high = x.high < 0.0 ? a.high : b.high;
+}
+/// least = min(least, x).
+[[gnu::always_inline]] inline void sink(Lanes& least, const Lanes& x) { least = x < least ? x : least; }
+[[gnu::always_inline]] inline void sink(LanePair& least, const LanePair& x) {
+  least.low = x.low < least.low ? x.low : least.low;
+  least.high = x.high < least.high ? x.high : least.high;
+}
+/// to = otherwise in the lanes where a >= b does not hold, not a number included. A choice between doubles: GCC 12
+/// takes masks of lanes to pieces.
+[[gnu::always_inline]] inline void keep_where_not_below(const Lanes& a, const Lanes& b,
+                                                        const Lanes& otherwise, Lanes& to) {
+  to = a >= b ? to : otherwise;
+}
+[[gnu::always_inline]] inline void keep_where_not_below(const LanePair& a, const LanePair& b,
+                                                        const LanePair& otherwise, LanePair& to) {
+  to.low = a.low >= b.low ? to.low : otherwise.low;
+  to.high = a.high >= b.high ? to.high : otherwise.high;
+}
+/// A row of lanes, or one number for all of them, as lanes of either type; and back. By reference: a vector passed by
+/// value has another calling convention on each level.
+[[gnu::always_inline]] inline void take(const LaneRow& from, Lanes& to) { to = from.v; }
+[[gnu::always_inline]] inline void take(const LaneRow& from, LanePair& to) {
+  load(reinterpret_cast<const double*>(&from.v), to);
+}
+template <class L>
+[[gnu::always_inline]] inline void take(double from, L& to) {
+  to = L{} + from;
+}
+[[gnu::always_inline]] inline void put(const Lanes& from, LaneRow& to) { to.v = from; }
+[[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
+  store(from, reinterpret_cast<double*>(&to.v));
+}
 /// to = x with its halves, quarters or neighbours exchanged: lane l of x in lane l ^ distance.
 [[gnu::always_inline]] inline void exchange(const Lanes& x, int distance, Lanes& to) {
   to = distance == 4   ? __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3)
@@ -85,12 +125,19 @@ template <class L>
   exchange(sum, 1, other), sum += other;
   return sum[0];
 }
-template <class L>
-[[gnu::always_inline]] inline double largest_of(const L& x) {
-  L most = x, other;
+[[gnu::always_inline]] inline double largest_of(const Lanes& x) {
+  Lanes most = x, other;
   exchange(most, 4, other), raise(most, other);
   exchange(most, 2, other), raise(most, other);
   exchange(most, 1, other), raise(most, other);
+  return most[0];
+}
+[[gnu::always_inline]] inline double largest_of(const LanePair& x) {
+  LanePair::Half most = x.low < x.high ? x.high : x.low, other;
+  other = __builtin_shufflevector(most, most, 2, 3, 0, 1);
+  most = most < other ? other : most;
+  other = __builtin_shufflevector(most, most, 1, 0, 3, 2);
+  most = most < other ? other : most;
   return most[0];
 }
 /// to = x moved up by a lane, behind the last lane of `before`; or down by a lane, ahead of the first one of `behind`.

@@ -1,0 +1,316 @@
+#include "solvers/exact/straight_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/linear/lane_pair.hpp"
+
+namespace drev {
+
+namespace {
+constexpr double kOnKnot = 1e-13;  // an angle stands on a knot, relative to the angle and to 1 rad at least
+}  // namespace
+
+struct StraightLoads::Move {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double* x, double nominal, double rate, const double* z,
+                                         const double* v) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L feedback, ratio, a;
+      load(x + kFeedback * stride + i, feedback);
+      load(x + kRatio * stride + i, ratio);
+      load(z + i, a);
+      a *= feedback;
+      store(a, x + kDeviation * stride + i);
+      store(nominal * ratio + a, x + kAngle * stride + i);
+      load(v + i, a);
+      store(rate * ratio + feedback * a, x + kSpeed * stride + i);
+    }
+  }
+};
+
+/// p_0 ... p_2, right_0 and slopes += of the loads of a layer.
+struct StraightLoads::Terms {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, const double* x, double t, double h, const double* phi,
+                                         double* p, double* right, double* slopes) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L coeff, feedback, ratio, slope, rate, a, b, sum;
+      load(x + kCoeff * stride + i, coeff);
+      load(x + kAngleSlope * stride + i, slope);
+      load(x + kTimeSlope * stride + i, rate);
+      load(x + kAngle * stride + i, a);
+      load(x + kAngle0 * stride + i, b);
+      a = slope * (a - b);
+      load(x + kTime0 * stride + i, b);
+      a += rate * (t - b);
+      load(x + kTorque * stride + i, b);
+      load(p + i, sum);
+      sum += coeff * (a + b);
+      store(sum, p + i);
+      load(x + kRatio * stride + i, ratio);
+      ratio *= slope;
+      load(p + stride + i, sum);
+      sum += coeff * (h * rate + phi[1] * ratio);
+      store(sum, p + stride + i);
+      load(p + 2 * stride + i, sum);
+      sum += coeff * (phi[2] * ratio);
+      store(sum, p + 2 * stride + i);
+      // The slope acts on the change of the deviation over the step.
+      load(x + kFeedback * stride + i, feedback);
+      slope *= feedback;
+      load(x + kDeviation * stride + i, a);
+      load(right + i, sum);
+      sum = sum - slope * a;
+      store(sum, right + i);
+      load(slopes + i, sum);
+      sum += feedback * slope;
+      store(sum, slopes + i);
+    }
+  }
+};
+
+/// How far the angle comes behind its nearest bound, at most where it is not monotone: < 0 where it passes none.
+struct StraightLoads::Reach {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, const double* x, double to, const double* phi,
+                                         const double* first, const double* turns, double* excess) {
+    const double linear = phi[1], square = phi[2], turn = to * (linear + to * square);
+    const double bend = 2.0 * __builtin_fabs(square),
+                 most_turn = __builtin_fabs(linear) + __builtin_fabs(square);
+    for (int i = 0; i < stride; i += kLanes) {
+      L ratio, feedback, angle, a, low, high;
+      load(x + kRatio * stride + i, ratio);
+      load(x + kFeedback * stride + i, feedback);
+      load(x + kAngle * stride + i, angle);
+      load(x + kLow * stride + i, low);
+      load(x + kHigh * stride + i, high);
+      load(first + i, a);
+      L rate = linear * ratio + feedback * a;
+      load(turns + i, a);
+      const L end = angle + turn * ratio + feedback * a;
+      magnitude(rate);
+      magnitude(ratio);
+      magnitude(feedback);
+      load(turns + stride + i, a);
+      const L reach = most_turn * ratio + feedback * a;
+      load(turns + 2 * stride + i, a);
+      const L others = bend * ratio + feedback * a;
+      L passes = end - high, may = angle + reach - high;
+      raise(passes, low - end);
+      raise(may, low - (angle - reach));
+      choose(kMonotone * rate - others, may, passes, a);
+      store(a, excess + i);
+    }
+  }
+};
+
+/// The same of an angle that stands, nearer to a bound than rounding.
+struct StraightLoads::BesideKnot {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, const double* x, double* excess) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L angle, near, a, one{};
+      one = 1.0 + one;
+      load(x + kAngle * stride + i, angle);
+      near = angle;
+      magnitude(near);
+      raise(near, one);
+      near = kOnKnot * near;
+      load(x + kHigh * stride + i, a);
+      L most = near - (a - angle);
+      load(x + kLow * stride + i, a);
+      raise(most, near - (angle - a));
+      store(most, excess + i);
+    }
+  }
+};
+
+/// 1/2 sum slope (feedback (b - a))^2.
+struct StraightLoads::SlopeWork {
+  template <class L>
+  [[gnu::always_inline]] static double run(int stride, const double* x, const double* a, const double* b) {
+    L sum{};
+    for (int i = 0; i < stride; i += kLanes) {
+      L turn, y, slope;
+      load(b + i, turn);
+      load(a + i, y);
+      turn = turn - y;
+      load(x + kFeedback * stride + i, y);
+      turn *= y;
+      load(x + kAngleSlope * stride + i, slope);
+      sum += slope * (turn * turn);
+    }
+    return 0.5 * sum_of(sum);
+  }
+};
+
+StraightLoads::StraightLoads(const System& system)
+    : system_(system),
+      stride_(TaylorSeries::stride(system)),
+      rows_(idx(stride_)),
+      rates_(idx(stride_)),
+      slopes_(idx(stride_)),
+      excess_(idx(stride_)) {}
+
+void StraightLoads::add(const LoadTerm& term) {
+  Load& l = loads_.emplace_back(system_, term);
+  while (l.layer < layers_.size() && layers_[l.layer].load[idx(l.row)] >= 0) ++l.layer;
+  if (l.layer == layers_.size()) {
+    Layer& layer = layers_.emplace_back();
+    layer.values.assign(idx(kQuantities * stride_), 0.0);
+    layer.load.assign(idx(stride_), -1);
+    std::fill_n(values(layer, kLow), stride_, -std::numeric_limits<double>::infinity());
+    std::fill_n(values(layer, kHigh), stride_, std::numeric_limits<double>::infinity());
+  }
+  layers_[l.layer].load[idx(l.row)] = static_cast<int>(loads_.size()) - 1;
+  value(l, kCoeff) = l.coeff;
+  value(l, kFeedback) = l.feedback ? l.coeff : 0.0;
+  value(l, kRatio) = l.ratio;
+}
+
+const double* StraightLoads::rows_of(const Vector& z) {
+  const int n = system_.size();
+  std::copy_n(z.data(), n, rows_.data());
+  for (int j = 0; j < system_.loaded_rows(); ++j) rows_[idx(n + j)] = system_.rows().row(j).dot(z);
+  return rows_.data();
+}
+
+void StraightLoads::move(const MotionPoint& nominal, const Vector& z, const Vector& v) {
+  if (loads_.empty()) return;
+  std::copy_n(rows_of(v), stride_, rates_.data());
+  rows_of(z);
+  for (Layer& layer : layers_)
+    run_widest<Move>(stride_, layer.values.data(), nominal.value, nominal.rate,
+                     static_cast<const double*>(rows_.data()), static_cast<const double*>(rates_.data()));
+  stale_ = true;
+}
+
+void StraightLoads::move_as(const StraightLoads& other) {
+  loads_ = other.loads_;
+  layers_ = other.layers_;
+  listed_ = other.listed_;
+  stale_ = other.stale_;
+}
+
+void StraightLoads::refresh(Load& l) {
+  l.angle = value(l, kAngle);
+  l.deviation = value(l, kDeviation);
+  l.speed = value(l, kSpeed);
+}
+
+std::vector<StraightLoads::Load>& StraightLoads::loads() {
+  if (stale_)
+    for (Load& l : loads_) refresh(l);
+  stale_ = false;
+  return loads_;
+}
+
+/// Writes the load's stretch to its row.
+void StraightLoads::place(Load& l) {
+  value(l, kLow) = l.stretch.low;
+  value(l, kHigh) = l.stretch.high;
+  value(l, kTorque) = l.stretch.torque;
+  value(l, kAngleSlope) = l.stretch.angle_slope;
+  value(l, kTimeSlope) = l.stretch.time_slope;
+  value(l, kAngle0) = l.angle_0;
+  value(l, kTime0) = l.t_0;
+}
+
+void StraightLoads::look_up(Load& l, double t, double direction) {
+  l.stretch = l.term->load->stretch(t, l.angle, direction).value_or(LoadStretch{});
+  l.t_0 = t;
+  l.angle_0 = l.angle;
+  place(l);
+}
+
+void StraightLoads::locate(double t) {
+  listed_.clear();
+  for (Load& l : loads()) {
+    l.watched = false;
+    look_up(l, t, l.speed);
+  }
+}
+
+/// Calls with each load of a layer whose excess_ is not below zero.
+template <class Each>
+void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
+  for (int first = 0; first < stride_; first += kLanes) {
+    const double* excess = excess_.data() + first;
+    double most = excess[0];
+    for (int lane = 1; lane < kLanes; ++lane) most = std::max(most, excess[lane]);
+    if (!(most >= 0.0)) continue;
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (excess[lane] >= 0.0) each(layer.load[idx(first + lane)]);
+  }
+}
+
+void StraightLoads::advance(double t, bool whole) {
+  if (whole)
+    for (const int k : listed_) {
+      Load& l = loads_[idx(k)];
+      if (l.watched) continue;
+      l.stretch = l.ahead;
+      l.angle_0 = l.ahead_angle_0;
+      place(l);
+    }
+  for (Layer& layer : layers_) {
+    run_widest<BesideKnot>(stride_, static_cast<const double*>(layer.values.data()), excess_.data());
+    for_flagged(layer, [&](int k) {
+      Load& l = loads_[idx(k)];
+      refresh(l);
+      const double near = kOnKnot * std::max(1.0, std::abs(l.angle));
+      const double above = l.angle - l.stretch.low, below = l.stretch.high - l.angle;
+      if (l.speed > 0.0 ? below > near : above > near) return;
+      // From rest LoadSeries::pass_knot() knows where it goes.
+      if (l.speed == 0.0 && above >= -near && below >= -near) return;
+      look_up(l, t, l.speed);
+    });
+  }
+}
+
+void StraightLoads::add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi,
+                           double* p) {
+  if (loads_.empty()) return;
+  std::fill(slopes_.begin(), slopes_.end(), 0.0);
+  for (const Layer& layer : layers_)
+    run_widest<Terms>(stride_, static_cast<const double*>(layer.values.data()), t, h, phi.data(), p,
+                      series.right_side(0), slopes_.data());
+  series.add_row_slopes(slopes_.data());
+}
+
+const std::vector<StraightLoads::Load*>& StraightLoads::near_knots(const TaylorSeries& series, double to,
+                                                                   const std::array<double, 3>& phi,
+                                                                   const double* turns) {
+  for (const int k : listed_) {
+    Load& l = loads_[idx(k)];
+    l.watched = false;
+    l.contraction = 0.0;
+  }
+  listed_.clear();
+  near_.clear();
+  for (const Layer& layer : layers_) {
+    run_widest<Reach>(stride_, static_cast<const double*>(layer.values.data()), to, phi.data(),
+                      series.coefficients(1), turns, excess_.data());
+    for_flagged(layer, [&](int k) {
+      Load& l = loads_[idx(k)];
+      refresh(l);
+      listed_.push_back(k);
+      near_.push_back(&l);
+    });
+  }
+  return near_;
+}
+
+double StraightLoads::slope_work(const TaylorSeries& series, const Vector& z) {
+  double sum = 0.0;
+  if (loads_.empty()) return sum;
+  const double* end = rows_of(z);
+  for (const Layer& layer : layers_)
+    sum += run_widest<SlopeWork>(stride_, static_cast<const double*>(layer.values.data()),
+                                 series.coefficients(0), end);
+  return sum;
+}
+
+}  // namespace drev

@@ -1,0 +1,100 @@
+#pragma once
+/// StraightLoads: loads that are straight between knots of their angle (LoadStretch), over one step of a series.
+///
+///   torque = T_0 + T_t (t - t_0) + T_theta (theta - theta_0)       on the stretch at hand
+///
+/// What each load adds to a step, and whether its angle may come near a knot, is found for all of them at once, by rows of
+/// the series: rows side by side, loads on one row in layers. Only those that may reach a knot are looked at singly.
+#include <array>
+#include <vector>
+
+#include "solvers/exact/tangent_load.hpp"
+#include "solvers/series/taylor_series.hpp"
+
+namespace drev {
+
+class StraightLoads {
+ public:
+  struct Load : PlacedLoad {
+    using PlacedLoad::PlacedLoad;
+    LoadStretch stretch = {}, ahead = {};
+    double t_0 = 0.0, angle_0 = 0.0;  // time and angle at which `stretch` gives its torque
+    double ahead_angle_0 = 0.0;       // the same of `ahead`
+    LoadStretch next = {};            // behind this bound, at this time
+    double next_bound = 0.0, next_t = 0.0;
+    int next_direction = 0;  // 0: none is known
+    std::size_t layer = 0;
+  };
+  explicit StraightLoads(const System& system);
+  StraightLoads(const StraightLoads&) = delete;
+  void add(const LoadTerm& term);
+  bool empty() const { return loads_.empty(); }
+  /// All of them, with their angles where the step starts.
+  std::vector<Load>& loads();
+
+  /// Moves all loads to a state, at the nominal motion there.
+  void move(const MotionPoint& nominal, const Vector& z, const Vector& v);
+  void move_as(const StraightLoads& other);
+  /// Finds each load's stretch ahead of its angle at time t [s].
+  void locate(double t);
+  /// Takes the stretches that loads came to by move(); where `whole`, those ahead of the step that was listed.
+  void advance(double t, bool whole);
+  void look_up(Load& load, double t, double direction);
+
+  /// Adds to p, by powers of s over a step of h [s] from t, the torques along the nominal motion phi; to the series the slopes.
+  void add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi, double* p);
+  /// Those whose angle passes a knot up to s = `to` of a series, or may where it is not monotone, in a step of nominal motion
+  /// phi. turns: of the series' rows, how far they come up to there; behind them by its stride, TaylorSeries::ranges()' bounds. The
+  /// others are no longer watched, and stay on their stretches. kMonotone: of the first rate, what all others may add up to.
+  static constexpr double kMonotone = 0.25;
+  const std::vector<Load*>& near_knots(const TaylorSeries& series, double to,
+                                       const std::array<double, 3>& phi, const double* turns);
+  /// Work of the slopes on the motion from that of the series' start to z [J].
+  double slope_work(const TaylorSeries& series, const Vector& z);
+  /// The motion of each row; loaded rows stand behind the unknowns.
+  const double* rows_of(const Vector& z);
+
+ private:
+  enum Quantity {
+    kCoeff,
+    kFeedback,
+    kRatio,
+    kAngle,
+    kDeviation,
+    kSpeed,
+    kLow,
+    kHigh,
+    kTorque,
+    kAngleSlope,
+    kTimeSlope,
+    kAngle0,
+    kTime0,
+    kQuantities
+  };
+  struct Layer {
+    std::vector<double> values;  // quantities one behind the other, each by row
+    std::vector<int> load;       // of each row; -1: none
+  };
+  struct Move;
+  struct Terms;
+  struct Reach;
+  struct BesideKnot;
+  struct SlopeWork;
+  double* values(Layer& layer, Quantity q) const { return layer.values.data() + idx(q * stride_); }
+  double& value(const Load& load, Quantity q) { return values(layers_[load.layer], q)[load.row]; }
+  void place(Load& load);
+  void refresh(Load& load);
+  template <class Each>
+  void for_flagged(const Layer& layer, const Each& each);
+
+  const System& system_;
+  int stride_;
+  std::vector<Load> loads_;
+  std::vector<Layer> layers_;
+  std::vector<int> listed_;  // indices in loads_ of those that were near knots when last asked for
+  std::vector<Load*> near_;
+  std::vector<double> rows_, rates_, slopes_, excess_;
+  bool stale_ = false;  // loads_ lack the angles
+};
+
+}  // namespace drev

@@ -1,0 +1,245 @@
+// TaylorSeries: sums over the terms of a step, for its end, its energies and its bounds.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solvers/series/taylor_series.hpp"
+
+namespace drev {
+
+namespace {
+
+// Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what is left out is
+// at most 1e-11 of the loss by a mode of rate h = 3.
+constexpr int kLossTerms = 8;
+// Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
+constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
+// Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
+constexpr int kRangeTerms = 8, kFirstBeyond = 4, kLastBeyond = 16;
+
+/// Weights of the moments int y' (s - s')^m/m! ds' = swept(m) in int y' L_k ds, for s = 1: by kTerms - 1 - m, in the order of a
+/// sweep's columns, then by k.
+template <int kTerms>
+std::array<double, std::size_t{kTerms} * kTerms> weights_of_swept() {
+  std::array<double, std::size_t{kTerms} * kTerms> weight{};
+  const PowersOf<kTerms> powers = legendre_powers<kTerms>();
+  double factorial = 1.0;
+  for (std::size_t m = 0; m < kTerms; factorial *= static_cast<double>(++m))
+    for (std::size_t k = m; k < kTerms; ++k)
+      weight[(kTerms - 1 - m) * kTerms + k] = (k % 2 == 0 ? factorial : -factorial) * powers[k][m];
+  return weight;
+}
+
+/// Weight of term k: Hermite's cubic through values and rates at both ends is off by the largest fourth derivative times s^4/384 at most.
+constexpr double beyond_weight(int k) { return k * (k - 1.0) * (k - 2.0) * (k - 3.0) / 384.0; }
+
+struct SumWeights {
+  // Weights by term k, then by column, for s = 1.
+  std::array<double, std::size_t{kSums} * (TaylorSeries::kMaxDegree + 1)> end{};
+  std::array<double, std::size_t{kLossTerms}* kLossTerms> swept = weights_of_swept<kLossTerms>();
+  std::array<double, std::size_t{2} * kRangeTerms>
+      range{};  // weights of the terms' sizes from the first on: of the value, of the slope
+  SumWeights() {
+    for (int k = 1; k <= TaylorSeries::kMaxDegree; ++k) {
+      double* w = end.data() + k * kSums;
+      w[kRateSum] = k;
+      for (int j = 0; j < kLossTerms; ++j) {
+        // k int u^(k-1) L_j du = k! (k-1)!/((k-1-j)! (k+j)!), which is zero below j.
+        double& moment = w[kMoments + j];
+        moment = k > j ? 1.0 : 0.0;
+        for (int i = 1; i <= j; ++i) moment *= static_cast<double>(k - i) / (k + i);
+      }
+      if (k > kRangeTerms) continue;
+      range[idx(2 * k - 2)] = 1.0;
+      range[idx(2 * k - 1)] = k > 1 ? k : 0.0;
+    }
+  }
+};
+
+const SumWeights& sum_weights() {
+  static const SumWeights weights;
+  return weights;
+}
+
+/// Weights of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
+struct NodeWeights {
+  std::array<NodeValues, kLossTerms> of_moment{};
+  NodeWeights() {
+    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
+    const auto swept = weights_of_swept<kLossTerms>();
+    for (std::size_t m = 0; m < kLossTerms; ++m)
+      for (std::size_t k = m; k < kLossTerms; ++k) {
+        const double weight =
+            (2.0 * static_cast<double>(k) + 1.0) * swept[(kLossTerms - 1 - m) * kLossTerms + k];
+        std::array<double, kLossTerms + 1> integral{};  // powers of the integral of L_k from 0
+        for (std::size_t i = 0; i < kLossTerms; ++i)
+          integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
+        NodeValues at;
+        find_at_nodes(integral, 1.0, at);
+        for (std::size_t q = 0; q < at.value.size(); ++q) {
+          of_moment[m].value[q] += weight * at.value[q];
+          of_moment[m].slope[q] += weight * at.slope[q];
+        }
+      }
+  }
+};
+
+}  // namespace
+
+void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const {
+  static const NodeWeights weights;
+  out = {};
+  double part = 1.0;  // s^-m
+  for (int m = 0; m < kLossTerms; ++m, part /= s) {
+    const double moment = value_along(row, swept(m));
+    const NodeValues& weight = weights.of_moment[idx(m)];
+    for (std::size_t q = 0; q < out.value.size(); ++q) {
+      out.value[q] += part * moment * weight.value[q];
+      out.slope[q] += part / s * moment * weight.slope[q];
+    }
+  }
+}
+
+const double* TaylorSeries::sums(double s) {
+  if (s == sums_at_) return step_sums_.data();
+  const auto& at_end = sum_weights().end;
+  const double* weight = at_end.data();
+  if (s != 1.0) {
+    part_weights_.assign(at_end.begin(), at_end.end());
+    double power = s, below = 1.0;  // s^k, s^(k-1)
+    for (int k = 1; k <= degree_; ++k, below = power, power *= s) {
+      double* w = part_weights_.data() + k * kSums;
+      for (int j = 0; j < kSums; ++j) w[j] *= j == kRateSum ? below : power;
+    }
+    weight = part_weights_.data();
+  }
+  step_sums_.resize(idx(kSums * stride_));
+  weighted_sums(stride_, kSums, 0, degree_, weight + kSums, coefficients(1), step_sums_.data());
+  sums_at_ = s;
+  return step_sums_.data();
+}
+
+void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
+  z.resize(n_);
+  v.resize(n_);
+  const double per_time = 1.0 / h_;
+  if (s == sums_at_) {
+    const double *start = coefficients(0), *rate = step_sums_.data() + idx(kRateSum * stride_),
+                 *turn = step_sums_.data() + idx(kMoments * stride_);
+    for (int i = 0; i < n_; ++i) {
+      z[i] = start[i] + turn[i];
+      v[i] = per_time * rate[i];
+    }
+    return;
+  }
+  double* values = values_.data();
+  series_values(stride_, degree_, coefficients(0), s, values, values + stride_);
+  for (int i = 0; i < n_; ++i) {
+    z[i] = values[i];
+    v[i] = per_time * values[stride_ + i];
+  }
+}
+
+/// out += by unknown, and stride() behind them other_tail: of either kind.
+void TaylorSeries::add_tails(const Norm& tail, const Norm& other_tail, double* out) const {
+  const bool same = kinds_.empty();
+  for (int i = 0; i < n_; ++i) {
+    const std::size_t kind = same ? 0 : idx(kinds_[idx(i)]);
+    out[i] += tail[kind];
+    out[stride_ + i] += other_tail[kind];
+  }
+}
+
+void TaylorSeries::ranges(double* end, double* size) {
+  std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
+  const int terms = std::min(degree_, kRangeTerms);
+  weighted_sums(stride_, 0, 2, terms, sum_weights().range.data(), coefficients(1), size);
+  Norm tail{}, slope_tail{};
+  for (int k = terms + 1; k <= degree_; ++k)
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += sizes_[idx(k)][kind];
+      slope_tail[kind] += k * sizes_[idx(k)][kind];
+    }
+  add_tails(tail, slope_tail, size);
+  for (int i = n_; i < n_ + row_slopes_.size(); ++i)  // loaded rows, of whose terms no sizes are known
+    for (int k = terms + 1; k <= degree_; ++k) {
+      size[i] += std::abs(coefficient(k, i));
+      size[stride_ + i] += k * std::abs(coefficient(k, i));
+    }
+}
+
+void TaylorSeries::beyond_cubic(double s, double* out) {
+  const int last = std::min(degree_, kLastBeyond);
+  std::array<double, std::size_t{2} * (kLastBeyond - kFirstBeyond + 1)> weight;
+  Norm tail{}, rate_tail{};
+  double power = s * s * s;  // s^(k-1)
+  for (int k = kFirstBeyond; k <= degree_; ++k) {
+    const double of_rate = beyond_weight(k) * (k - 4.0) * power / h_;
+    power *= s;
+    const double of_value = beyond_weight(k) * power;
+    if (k <= last) {
+      weight[idx(2 * (k - kFirstBeyond))] = of_value;
+      weight[idx(2 * (k - kFirstBeyond) + 1)] = of_rate;
+      continue;
+    }
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += of_value * sizes_[idx(k)][kind];
+      rate_tail[kind] += of_rate * sizes_[idx(k)][kind];
+    }
+  }
+  weighted_sums(stride_, 0, 2, last - kFirstBeyond + 1, weight.data(), coefficients(kFirstBeyond), out);
+  add_tails(tail, rate_tail, out);
+}
+
+double TaylorSeries::work(const double* p, int degree, double s) {
+  if (sums_at_ >= 0.0 && degree <= 2)
+    return work_of_moments(stride_, p, sums(s) + idx(kMoments * stride_), s);
+  return series_work(stride_, energy_degree(), coefficients(0), degree, p, s);
+}
+
+double TaylorSeries::loss(double s, bool swept_too) {
+  if (!damped_) return 0.0;
+  // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
+  const double* of_z = sums(s) + idx(kMoments * stride_);
+  std::array<double, kLossTerms> factor;
+  for (int k = 0; k < kLossTerms; ++k) factor[idx(k)] = (2 * k + 1) / s;
+  swept_moments_.resize(idx(kLossTerms * stride_));
+  double* of_y = swept_moments_.data();
+  if (swept_too) {
+    const auto& at_end = sum_weights().swept;
+    const double* weight = at_end.data();
+    if (s != 1.0) {
+      part_weights_.assign(at_end.begin(), at_end.end());
+      double part = 1.0;
+      for (int m = 0; m < kLossTerms; ++m, part /= s)
+        for (int k = 0; k < kLossTerms; ++k)
+          part_weights_[idx((kLossTerms - 1 - m) * kLossTerms + k)] *= part;
+      weight = part_weights_.data();
+    }
+    weighted_sums(stride_, kLossTerms, 0, kLossTerms, weight, swept(kLossTerms - 1), of_y);
+  }
+  const int y_terms = swept_too ? kLossTerms : 0;
+  double sum = 0.0;
+  for (const Entry& load : load_damping_)
+    for (int k = 0; k < kLossTerms; ++k) {
+      const auto at = idx(k * stride_ + load.index);
+      const double x = of_z[at] + (k < y_terms ? of_y[at] : 0.0);
+      sum -= factor[idx(k)] * load.coeff * x * x;
+    }
+  if (main_damping_)
+    return (sum + weighted_squares(stride_, kLossTerms, factor.data(),
+                                   c_.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
+           h_;
+  with_rows_.resize(idx(2 * pad_ + stride_));  // the product reads beside the column
+  double* x = with_rows_.data() + pad_;
+  for (int k = 0; k < kLossTerms; ++k) {
+    for (int i = 0; i < n_; ++i)
+      x[i] = of_z[idx(k * stride_ + i)] + (k < y_terms ? of_y[idx(k * stride_ + i)] : 0.0);
+    solve_in_.setZero();
+    subtract_product(c_, false, x, -1.0, solve_in_.data());
+    for (int i = 0; i < n_; ++i) sum += factor[idx(k)] * x[i] * solve_in_[i];
+  }
+  return sum / h_;
+}
+
+}  // namespace drev

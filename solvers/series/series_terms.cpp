@@ -1,0 +1,229 @@
+// The terms of a series, degree by degree.
+#include <drev/core/ids.hpp>
+
+#include <cstddef>
+
+#include "solvers/linear/lane_pair.hpp"
+#include "solvers/series/series_kernels.hpp"
+
+namespace drev {
+
+namespace {
+
+[[gnu::always_inline]] inline const double* term_of(const double* first, int stride, int k) {
+  return first + static_cast<std::ptrdiff_t>(k) * stride;
+}
+
+/// P_{m-2}; null: there is none.
+[[gnu::always_inline]] inline const double* right_side(const SeriesRecursion& r, int m) {
+  return m - 2 <= r.p_degree ? term_of(r.p, r.stride, m - 2 - r.p_first) : nullptr;
+}
+
+/// Runs Body::term<L, kForces>(recursion, m, largest) for the terms first ... last. Of a series with their sizes; of a sweep
+/// (derivatives), whose terms tell nothing by their sizes, without.
+template <class Body, class L>
+[[gnu::always_inline]] inline void all_terms(const SeriesRecursion& r, int first, int last, double* sizes) {
+  for (int m = first; m <= last; ++m) {
+    L largest{};
+    if (right_side(r, m) != nullptr)
+      Body::template term<L, true>(r, m, largest);
+    else
+      Body::template term<L, false>(r, m, largest);
+    if constexpr (!Body::kSweep) sizes[m - first] = largest_of(largest);
+  }
+  if constexpr (!Body::kSweep) {
+    // Comparisons drop a NaN, but what is not finite in one term stays so in those behind it.
+    for (int m = last > first ? last - 1 : last; m <= last; ++m) {
+      L not_finite{}, x;
+      for (int i = 0; i < r.stride; i += kLanes) {
+        load(term_of(r.z, r.stride, m) + i, x);
+        not_finite += 0.0 * x;
+      }
+      sizes[m - first] += sum_of(not_finite);
+    }
+  }
+}
+
+/// Stores a term and notes its size.
+template <bool kSweep, class L>
+[[gnu::always_inline]] inline void finish_term(L& term, double* to, L& largest) {
+  store(term, to);
+  if constexpr (!kSweep) {
+    magnitude(term);
+    raise(largest, term);
+  }
+}
+
+/// sum += mobility p.
+template <class L>
+[[gnu::always_inline]] inline void add_right_side(const double* mobility, const double* p, int i, L& sum) {
+  L force, w;
+  load(p + i, force);
+  load(mobility + i, w);
+  sum += w * force;
+}
+
+/// Terms where K and C have any diagonals.
+template <bool kOfSweep>
+struct Diagonals {
+  static constexpr bool kSweep = kOfSweep;
+  template <class L, bool kForces>
+  [[gnu::always_inline]] static void term(const SeriesRecursion& r, int m, L& largest) {
+    const double factor = r.factor(m), c_factor = r.damping_factor(m);
+    const double *x_0 = term_of(r.z, r.stride, m - 2), *x_1 = term_of(r.z, r.stride, m - 1);
+    double* next = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
+    const double* p = right_side(r, m);
+    const DiagonalView *k = r.k.views, *c = r.c.views;
+    for (int i = 0, block = 0; i < r.stride; i += kLanes, ++block) {
+      L sum{}, damping{}, a, b;
+      for (int d = r.k.begin[block]; d < r.k.begin[block + 1]; ++d) {
+        load(k[d].values + i, a);
+        load(x_0 + i + k[d].offset, b);
+        sum += a * b;
+      }
+      if (r.c_main != nullptr) {
+        load(r.c_main + i, a);
+        load(x_1 + i, b);
+        damping = a * b;
+      } else if (c != nullptr) {
+        for (int d = r.c.begin[block]; d < r.c.begin[block + 1]; ++d) {
+          load(c[d].values + i, a);
+          load(x_1 + i + c[d].offset, b);
+          damping += a * b;
+        }
+      }
+      if constexpr (kForces) add_right_side(r.mobility, p, i, sum);
+      sum = factor * (sum + c_factor * damping);
+      finish_term<kSweep>(sum, next + i, largest);
+    }
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
+                                         double* sizes) {
+    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
+    all_terms<Diagonals, L>(r, first, last, sizes);
+  }
+};
+
+/// The same where K and C have their entries on the main diagonal and beside it, with a few elsewhere (k.views, c.views): the
+/// neighbours come from the lanes beside, so that no load overlaps what was stored just before. kBlocks: of lanes in a column,
+/// where that is known, so that loops over them are unrolled; 0: any number. kPlain: no entries are elsewhere, and C has its
+/// main diagonal alone.
+template <bool kOfSweep, int kBlocks, bool kPlain>
+struct Chain {
+  static constexpr bool kSweep = kOfSweep;
+  /// sum = a x, a's diagonals below, on and above the main one.
+  template <class L>
+  [[gnu::always_inline]] static void multiply(const std::array<const double*, 3>& a, int i, const L& up,
+                                              const L& x, const L& down, L& sum) {
+    L value;
+    load(a[1] + i, value);
+    sum = value * x;
+    load(a[0] + i, value);
+    sum += value * up;
+    load(a[2] + i, value);
+    sum += value * down;
+  }
+  /// sum += the entries elsewhere.
+  template <class L>
+  [[gnu::always_inline]] static void add_far(const BlockDiagonals& far, int block, const double* x, L& sum) {
+    for (int d = far.begin[block]; d < far.begin[block + 1]; ++d) {
+      L a, b;
+      load(far.views[d].values + block * kLanes, a);
+      load(x + block * kLanes + far.views[d].offset, b);
+      sum += a * b;
+    }
+  }
+  template <class L, bool kForces>
+  [[gnu::always_inline]] static void term(const SeriesRecursion& r, int m, L& largest) {
+    const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
+    const double factor = kSweep ? 1.0 : r.factor(m), c_factor = kSweep ? 1.0 : r.damping_factor(m);
+    const double *x_0 = term_of(r.z, stride, m - 2), *x_1 = term_of(r.z, stride, m - 1);
+    double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
+    const double* p = kForces ? right_side(r, m) : nullptr;
+    const bool whole_c = !kPlain && r.c_chain[1] != nullptr;
+    L before{}, x, behind{}, rate_before{}, rate, rate_behind{};
+    load(x_0, x);
+    load(x_1, rate);
+#pragma GCC unroll 6
+    for (int i = 0, block = 0; i < stride; i += kLanes, ++block) {
+      const bool more = i + kLanes < stride;
+      L up, down, sum;
+      behind = L{};
+      if (more) load(x_0 + i + kLanes, behind);
+      move_up(before, x, up);
+      move_down(x, behind, down);
+      multiply(r.k_chain, i, up, x, down, sum);
+      if constexpr (!kPlain) add_far(r.k, block, x_0, sum);
+      if (whole_c) {
+        L damping;
+        rate_behind = L{};
+        if (more) load(x_1 + i + kLanes, rate_behind);
+        move_up(rate_before, rate, up);
+        move_down(rate, rate_behind, down);
+        multiply(r.c_chain, i, up, rate, down, damping);
+        add_far(r.c, block, x_1, damping);
+        sum += c_factor * damping;
+        rate_before = rate;
+        rate = rate_behind;
+      } else if (kPlain || r.c_main != nullptr) {
+        L value;
+        load(r.c_main + i, value);
+        load(x_1 + i, rate);
+        if constexpr (!kSweep) value = c_factor * value;
+        sum += value * rate;
+      }
+      if constexpr (kForces) add_right_side(r.mobility, p, i, sum);
+      if constexpr (!kSweep) sum = factor * sum;
+      finish_term<kSweep>(sum, next + i, largest);
+      before = x;
+      x = behind;
+    }
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
+                                         double* sizes) {
+    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
+    all_terms<Chain, L>(r, first, last, sizes);
+  }
+};
+
+template <bool kSweep, int kBlocks>
+void run_chain(const SeriesRecursion* r, int first, int last, double* sizes) {
+  if (r->k.begin[r->stride / kLanes] == 0 && r->c_main != nullptr)
+    run_widest<Chain<kSweep, kBlocks, true>>(r, first, last, sizes);
+  else
+    run_widest<Chain<kSweep, kBlocks, false>>(r, first, last, sizes);
+}
+
+template <bool kSweep>
+void run_terms(const SeriesRecursion* r, int first, int last, double* sizes) {
+  if (r->k_chain[1] == nullptr) return run_widest<Diagonals<kSweep>>(r, first, last, sizes);
+  switch (r->stride / kLanes) {
+    case 1:
+      return run_chain<kSweep, 1>(r, first, last, sizes);
+    case 2:
+      return run_chain<kSweep, 2>(r, first, last, sizes);
+    case 3:
+      return run_chain<kSweep, 3>(r, first, last, sizes);
+    case 4:
+      return run_chain<kSweep, 4>(r, first, last, sizes);
+    case 5:
+      return run_chain<kSweep, 5>(r, first, last, sizes);
+    case 6:
+      return run_chain<kSweep, 6>(r, first, last, sizes);
+    default:
+      return run_chain<kSweep, 0>(r, first, last, sizes);
+  }
+}
+
+}  // namespace
+
+void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes) {
+  if (recursion.derivatives)
+    run_terms<true>(&recursion, first, last, nullptr);
+  else
+    run_terms<false>(&recursion, first, last, sizes);
+}
+
+}  // namespace drev
