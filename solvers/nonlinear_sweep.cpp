@@ -32,7 +32,7 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   check.increasing("speeds", options.speeds, "rad/s");
   check.increasing("orders", options.orders, "");
   if (options.speeds.size() < 2)
-    check.fail("speeds", std::to_string(options.speeds.size()) + " values", "rad/s",
+    check.fail("number of speeds", std::to_string(options.speeds.size()), "",
                "must be at least two, for a model that is not linear");
   else
     check.positive("speeds", options.speeds.front(), "rad/s");

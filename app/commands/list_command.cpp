@@ -84,8 +84,9 @@ std::string model_as_text(const ModelRequest& model) {
       text += pad_right(s.range(), range);
     text += wrap(s.meaning, indent);
   }
-  text += "\nSimulated: " + short_digits(model.model_case.duration, 6) + " s in steps of " +
-          short_digits(model.model_case.default_step, 4) + " s unless --step says otherwise.\n";
+  text += "\nSimulated: " + short_digits(model.model_case.duration, 6) +
+          " s; where a method with constant steps is chosen, in steps of " +
+          short_digits(model.model_case.default_step, 4) + " s.\n";
   if (model.file && !model.file->run_names().empty())
     text += "Runs, named by --run: " + join(model.file->run_names()) + ".\n";
   text +=

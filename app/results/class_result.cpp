@@ -51,9 +51,33 @@ Json barred_object(const LinearSweep& sweep, const RuleBarredRange& barred) {
           {"to_rpm", permitted ? number(to_rpm(barred.to)) : Json()}};
 }
 
+const SectionStrength& strength_of(const ClassCase& c, const SectionJudgement& judged) {
+  return c.request.model.model_case.strength->sections[static_cast<std::size_t>(judged.strength)];
+}
+
+/// Half range [N m], stress [Pa] and limit [N m] where the utilisation is largest, also between the speeds; of a section that is not
+/// judged the largest of the speeds, without a limit. Not a number: not known.
+struct WorstVibration {
+  double half_range, stress, permissible;
+};
+
+WorstVibration worst_vibration(const ClassCase& c, const SectionJudgement& judged) {
+  const SectionStrength& data = strength_of(c, judged);
+  WorstVibration worst{.half_range = 0.0, .stress = 0.0, .permissible = std::nan("")};
+  if (judged.judged()) {
+    const double rated = c.request.model.model_case.strength->rated_speed;
+    worst.permissible = torque_limit(data, judged.utilisation_speed / rated).continuous;
+    worst.half_range = judged.utilisation * worst.permissible;
+  } else {
+    worst.half_range = c.sweep.sections[static_cast<std::size_t>(judged.section)].half_range().maxCoeff();
+  }
+  worst.stress = worst.half_range * data.stress_concentration / judged.modulus;
+  return worst;
+}
+
 Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
-  const SectionStrength& data =
-      c.request.model.model_case.strength->sections[static_cast<std::size_t>(judged.strength)];
+  const SectionStrength& data = strength_of(c, judged);
+  const WorstVibration worst = worst_vibration(c, judged);
   const SweepSection& section = c.sweep.sections[static_cast<std::size_t>(judged.section)];
   Json permissible = Json::array(), transient = Json::array(), exceeded = Json::array(),
        barred = Json::array();
@@ -74,6 +98,9 @@ Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
           {"transient_Nm", std::move(transient)},
           {"utilisation", judged.judged() ? number(judged.utilisation) : Json()},
           {"utilisation_at_rpm", judged.judged() ? number(to_rpm(judged.utilisation_speed)) : Json()},
+          {"worst_half_range_Nm", number(worst.half_range)},
+          {"worst_stress_Pa", number(worst.stress)},
+          {"worst_permissible_Nm", number(worst.permissible)},
           {"rule", text_or_null(judged.rule)},
           {"exceeded", std::move(exceeded)},
           {"barred_by_rule", std::move(barred)},
@@ -111,29 +138,28 @@ std::string case_text(const ClassCase& c) {
       {"section", "half range", "stress [MPa]", "permissible", "used", "at [rpm]", "heat [W]", "by"}};
   std::string ranges;
   for (const SectionJudgement& j : c.judgement.sections) {
-    const SectionStrength& data =
-        c.request.model.model_case.strength->sections[static_cast<std::size_t>(j.strength)];
+    const SectionStrength& data = strength_of(c, j);
     const SweepSection& s = c.sweep.sections[static_cast<std::size_t>(j.section)];
-    const double limit =
-        torque_limit(data, j.utilisation_speed / c.request.model.model_case.strength->rated_speed).continuous;
-    const double half = j.judged() ? j.utilisation * limit : s.half_range().maxCoeff();
-    rows.push_back(
-        {s.name, digits(half, kShown),
-         std::isnan(j.modulus) ? "" : digits(half * data.stress_concentration / j.modulus / kMega, 4),
-         j.judged() ? digits(limit, kShown) : "", j.judged() ? digits(100.0 * j.utilisation, 3) + " %" : "",
-         j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
-         digits(j.heat, 4) +
-             (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
-         j.rule.empty() ? "not judged" : j.rule});
+    const WorstVibration worst = worst_vibration(c, j);
+    rows.push_back({s.name, digits(worst.half_range, kShown),
+                    std::isnan(worst.stress) ? "" : digits(worst.stress / kMega, 4),
+                    j.judged() ? digits(worst.permissible, kShown) : "",
+                    j.judged() ? digits(100.0 * j.utilisation, 3) + " %" : "",
+                    j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
+                    digits(j.heat, 4) +
+                        (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
+                    j.rule.empty() ? "not judged" : j.rule});
     for (const ExceededRange& range : j.exceeded)
       ranges += wrap(s.name + ": exceeded from " + exceeded_text(range), 2);
-    for (const RuleBarredRange& b : j.barred)
-      ranges += wrap(s.name + ": critical at " +
-                         digits(to_rpm(c.sweep.criticals[static_cast<std::size_t>(b.critical)].speed), 5) +
-                         " rpm, speed ratio " + digits(b.speed_ratio, 3) +
+    for (const RuleBarredRange& b : j.barred) {
+      const SweepCritical& critical = c.sweep.criticals[static_cast<std::size_t>(b.critical)];
+      ranges += wrap(s.name + ": critical at " + digits(to_rpm(critical.speed), 5) + " rpm (order " +
+                         short_digits(critical.order, 4) + ", mode " + std::to_string(critical.mode + 1) +
+                         "), speed ratio " + digits(b.speed_ratio, 3) +
                          (b.to > 0.0 ? ": barred by IACS UR M68.5 from " + rpm_range(b.from, b.to)
                                      : ": IACS UR M68.5 permits no barred range from a ratio of 0.8 on"),
                      2);
+    }
     if (j.heat > data.permissible_heat)
       ranges += wrap(
           s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);

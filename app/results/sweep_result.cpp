@@ -131,8 +131,8 @@ std::string left_over_sentence(const LeftOver& left, const std::string& part, co
   return "Mean torque does not balance at " + std::to_string(left.count) + " of " +
          std::to_string(left.speeds) + " speeds: up to " + digits(left.most, kDigits) + " N m, at " +
          short_digits(left.at_rpm, 8) + " rpm, are left over " +
-         (left.of > 0.0 ? "of " + digits(left.of, kDigits) + " N m " : "") + "on the part of " + part +
-         " (referred to the reference shaft). " +
+         (left.of > 0.0 ? "of mean torques of up to " + digits(left.of, kDigits) + " N m " : "") +
+         "on the part of " + part + " (referred to the reference shaft). " +
          (balance.empty() ? moving : "It is taken up at " + balance + ".");
 }
 

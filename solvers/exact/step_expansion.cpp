@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/run/cubic_peak.hpp"
+
 namespace drev {
 
 namespace {
@@ -145,7 +147,7 @@ StepMotion::DeflectionRange StepExpansion::deflection_range(const LawSeries& law
   for (const Entry& e : term.z)
     if (sweeps_ && kinks.any())  // from zero at rest, |y| <= |y_1| + 4/27 |y'_1| on the cubic
       error += std::abs(e.coeff) * ((1.0 + kOfKinks) * std::abs(series.swept(0)[e.index]) +
-                                    (4.0 / 27.0 + kOfKinkRates) * std::abs(series.swept(-1)[e.index]));
+                                    (kCubicBulge + kOfKinkRates) * std::abs(series.swept(-1)[e.index]));
     else if (known.kinked())
       error += std::abs(e.coeff) * known.kinks_inside() * series.z_scale()[idx(series.kind(e.index))];
   return {range.low, range.high, error};

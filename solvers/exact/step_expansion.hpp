@@ -4,6 +4,8 @@
 /// The series of the motion (taylor_series.hpp) and what enters its right side: loads and known motions
 /// (load_series.hpp), laws that are products of series (expanded_laws.hpp) and smooth laws (projected_laws.hpp), whose
 /// projection along the path is repeated until the path settles.
+#include <drev/solvers/run/observer.hpp>
+
 #include <optional>
 
 #include "solvers/exact/expanded_laws.hpp"
@@ -13,7 +15,6 @@
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/projected_laws.hpp"
-#include "solvers/run/observer.hpp"
 #include "solvers/series/taylor_series.hpp"
 
 namespace drev {

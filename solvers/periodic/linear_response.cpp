@@ -74,7 +74,7 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
     const std::string name = element_name(system_, term.element);
     if (!close_contacts)
       refuse(name,
-             "is not linear; close_contacts (drev sweep --contact closed) takes its stiffness with the "
+             "is not linear; close_contacts (--contact closed) takes its stiffness with the "
              "contact closed, at its mean over the mesh");
     if (term.phase_node < 0) continue;
     for (int i = 0; i < 16; ++i)

@@ -29,16 +29,18 @@ inline std::optional<CubicPeak> cubic_peak(double y_0, double rate_0, double y_1
   return CubicPeak{y_0 + s * (d_0 + s * (b + s * a)), s};
 }
 
+/// max |s (1-s)^2|: how far an end slope d raises a cubic above both ends, or lowers it below, over d.
+inline constexpr double kCubicBulge = 4.0 / 27.0;
+
 /// The interval that the cubic stays in: between its ends where it is monotone (slopes of the rise's sign, of at most
 /// three times its size; F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021), else an end slope d raises it above, or
 /// lowers it below, both ends by at most max |s (1-s)^2| d = 4/27 d.
 inline Interval cubic_reach(double y_0, double rate_0, double y_1, double rate_1, double h) {
-  constexpr double kBulge = 4.0 / 27.0;
   const double low = std::min(y_0, y_1), high = std::max(y_0, y_1), steepest = 3.0 * (high - low);
   const double d_0 = y_0 <= y_1 ? h * rate_0 : -h * rate_0, d_1 = y_0 <= y_1 ? h * rate_1 : -h * rate_1;
   if (d_0 >= 0.0 && d_1 >= 0.0 && d_0 <= steepest && d_1 <= steepest) return {low, high};
-  const double up = kBulge * h * std::max(rate_0, 0.0) + kBulge * h * std::max(-rate_1, 0.0);
-  const double down = kBulge * h * std::max(-rate_0, 0.0) + kBulge * h * std::max(rate_1, 0.0);
+  const double up = kCubicBulge * h * std::max(rate_0, 0.0) + kCubicBulge * h * std::max(-rate_1, 0.0);
+  const double down = kCubicBulge * h * std::max(-rate_0, 0.0) + kCubicBulge * h * std::max(rate_1, 0.0);
   return {low - down, high + up};
 }
 

@@ -22,15 +22,13 @@ function showJudgement() {
           "by",
         ],
         one.sections.map((s) => {
-          const i = s.half_range_Nm.indexOf(Math.max(...s.half_range_Nm));
-          const half = Math.max(...s.half_range_Nm);
           const heat = sig(s.heat_W) + (s.permissible_heat_W === null ? "" : ` of ${sig(s.permissible_heat_W)}`);
           return [
             s.section,
             s.diameter_m === null ? "–" : sig(1e3 * s.diameter_m) + (s.bore_m ? ` / ${sig(1e3 * s.bore_m)}` : ""),
-            sig(half, 5),
-            s.stress_Pa === null ? "–" : sig(s.stress_Pa[i] / 1e6),
-            s.utilisation === null ? "–" : sig(s.permissible_Nm[i]),
+            sig(s.worst_half_range_Nm, 5),
+            s.worst_stress_Pa === null ? "–" : sig(s.worst_stress_Pa / 1e6),
+            s.worst_permissible_Nm === null ? "–" : sig(s.worst_permissible_Nm),
             s.utilisation === null ? "–" : percent(s.utilisation),
             s.utilisation === null ? "–" : sig(s.utilisation_at_rpm, 5),
             heat,

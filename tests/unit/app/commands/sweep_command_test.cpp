@@ -145,7 +145,8 @@ propeller = { type = "propeller", node = "hub", rated_torque_Nm = 100, rated_spe
   };
   // The propeller takes 100 n^2/1000^2: of 100 N m, -19 at 900 rpm, 0 at 1000 and 44 at 1200, of 100 + 144.
   const std::string sentence =
-      "does not balance at 2 of 3 speeds: up to 44.0000 N m, at 1200 rpm, are left over of 244.000 N m on "
+      "does not balance at 2 of 3 speeds: up to 44.0000 N m, at 1200 rpm, are left over of mean torques of "
+      "up to 244.000 N m on "
       "the part of";
   CHECK(contains(said({}), sentence));
   CHECK(contains(said({"--balance", "hub"}), sentence));
