@@ -18,6 +18,7 @@
 #include "app/report/sweep_report.hpp"
 #include "app/results/branches_result.hpp"
 #include "app/results/history_hdf5.hpp"
+#include "solvers/periodic/section_rows.hpp"
 
 namespace drev::app {
 
@@ -50,6 +51,16 @@ std::vector<std::string> names_of(const Sections& sections) {
 }  // namespace
 
 namespace {
+
+/// Names that the sweep would look up in the model, with all other faults of the command line.
+void check_names(const System& system, const LinearSweepOptions& options, std::vector<Finding>& findings) {
+  if (!options.sections.empty()) find_section_rows(system, options.sections, findings);
+  if (!options.balance.empty()) try {
+      system.node(options.balance);
+    } catch (const ModelError& error) {
+      findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+    }
+}
 
 /// In quotes where a shell would take it for something else.
 std::string in_shell(const std::string& value) {
@@ -85,6 +96,7 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
       findings.push_back({kCommandLine, "--report", *report, "", *why});
     if (model) check_output("--report", *report, model->model_case.files, findings);
   }
+  if (model) check_names(model->system, options, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), std::move(options), std::move(speeds_rpm),
           line.options.contains("--absolute-sum")};

@@ -214,6 +214,11 @@ TEST_CASE("Faults of a sweep are listed at once", "[sweep]") {
   CHECK(refused.exit_code == 2);
   for (const char* part : {"2 faults", "--speeds", "is missing", "--orders", "rise from each to the next"})
     CHECK(contains(refused.err, part));
+  // Names of the model are looked up although the speeds are wrong.
+  const auto names =
+      drev_command({"sweep", "two_inertia", "--speeds", "x", "--record", "nix", "--balance", "nox"});
+  CHECK(names.exit_code == 2);
+  for (const char* part : {"3 faults", "--speeds = x", "nix", "nox"}) CHECK(contains(names.err, part));
   const auto contacts =
       drev_command({"sweep", kGearPair, "--speeds", "900", "--cycle", "0", "--absolute-sum"});
   CHECK(contacts.exit_code == 2);
