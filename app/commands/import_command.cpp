@@ -15,6 +15,26 @@
 
 namespace drev::app {
 
+namespace {
+
+/// What is written can be read: a fault of the data, a mass without inertia, is found now. Its place is the train's: the
+/// line of a file that is not written tells nobody anything.
+void check_written(const std::string& toml, const std::string& file) {
+  try {
+    const ModelFile written(toml, file, "");
+    const ModelEntry& entry = written.entry();
+    entry.build(Parameters(entry.name, entry.parameters));
+  } catch (const ModelError& error) {
+    std::vector<Finding> findings = error.findings();
+    for (Finding& finding : findings)
+      if (const std::size_t end = finding.place.find(": "); finding.place.starts_with(file + ":"))
+        finding.place = file + (end == std::string::npos ? "" : finding.place.substr(end));
+    throw ModelError(std::move(findings));
+  }
+}
+
+}  // namespace
+
 int import_command(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   const std::vector<std::string> files = line.list("FILE").value_or(std::vector<std::string>{});
@@ -30,10 +50,7 @@ int import_command(const CommandLine& line) {
   const std::string text = read_text(file, nullptr);
   const ImportedModel model = json ? import_opentorsion(text, file) : import_mass_elastic(text, file);
   const std::string toml = model.toml(std::filesystem::path(file).filename().string());
-  // What was written can be read: a fault of the data, a negative stiffness, is found now.
-  const ModelFile written(toml, out.value_or("imported.toml"), "");
-  const ModelEntry& entry = written.entry();
-  entry.build(Parameters(entry.name, entry.parameters));
+  check_written(toml, file);
   for (const std::string& sentence : model.left_out())
     std::fprintf(stderr, "drev: not taken over: %s\n", sentence.c_str());
   if (out) {

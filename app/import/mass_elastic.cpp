@@ -70,6 +70,7 @@ class MassElasticReader {
   struct Header {
     std::string name;  ///< empty: not taken
     double factor = 1.0, low = 0.0;
+    std::string column = {};  ///< as the file spells it, with its unit
   };
 
   std::string stem() const {
@@ -77,8 +78,9 @@ class MassElasticReader {
     const std::string name = slash == file_.npos ? file_ : file_.substr(slash + 1);
     return name.substr(0, name.rfind('.'));
   }
-  void fault(int line, const std::string& what) {
-    findings_.push_back({file_ + (line > 0 ? ":" + std::to_string(line) : ""), "", "", "", what});
+  void fault(int line, const std::string& what, const std::string& column = "",
+             const std::string& value = "") {
+    findings_.push_back({file_ + (line > 0 ? ":" + std::to_string(line) : ""), column, value, "", what});
   }
 
   void read_head(const std::vector<std::string>& cells, int line) {
@@ -90,18 +92,22 @@ class MassElasticReader {
       if (cell == "node" || cell == "name") header.name = "node";
       for (const MassElasticColumn& column : kColumns) {
         if (column.dimension == Dimension::none && cell == column.name)
-          header = {column.name, 1.0, column.low};
+          header = {column.name, 1.0, column.low, cell};
         for (const Unit& unit : units_of(column.dimension))
           if (cell == std::string(column.name) + "_" + unit.suffix)
-            header = {column.name, unit.factor, column.low};
+            header = {column.name, unit.factor, column.low, cell};
       }
-      if (header.name.empty())
-        for (const MassElasticColumn& column : kColumns)
+      if (header.name.empty()) {
+        for (const MassElasticColumn& column : kColumns) {
           if (cell == column.name)
             fault(line,
                   "the column " + cell + " has no unit; write " + spellings(column.name, column.dimension));
-      if (header.name.empty())
+          else if (column.dimension != Dimension::none && cell.starts_with(std::string(column.name) + "_"))
+            fault(line, "the column " + cell + " has a unit that it cannot have; write " +
+                            spellings(column.name, column.dimension));
+        }
         model_.not_taken("the column \"" + cell + "\"; there are " + join(known, "; "));
+      }
       headers_.push_back(header);
     }
     for (const char* needed : {"inertia"})
@@ -121,8 +127,8 @@ class MassElasticReader {
       }
       double value = 0.0;
       if (!read_number(cells[c], value) || !std::isfinite(value) || value < header.low)
-        fault(line, header.name + " is " + cells[c] + "; it must be a number" +
-                        (header.low == 0.0 ? " >= 0" : "") + ", with a point");
+        fault(line, std::string("must be a number") + (header.low == 0.0 ? " >= 0" : "") + ", with a point",
+              header.column, cells[c]);
       row.values[header.name] = value * header.factor;
     }
     for (const Row& other : rows_)

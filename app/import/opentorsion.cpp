@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kShearModulus = 80e9, kDensity = 8000.0;  // of openTorsion, where none is given
 constexpr int kMostConnected = 1000;                       // components in one chain
+const std::map<std::string, const char*> kUnits{
+    {"inertia", "kg m^2"}, {"stiffness", "N m/rad"}, {"damping", "N m s/rad"}, {"length", "mm"},
+    {"diameter", "mm"},    {"outerDiameter", "mm"},  {"innerDiameter", "mm"},  {"density", "kg/m^3"}};
 
 class OpenTorsionReader {
  public:
@@ -28,7 +31,7 @@ class OpenTorsionReader {
       if (component.is_object() && component.value("name", Json()).is_string())
         components_[component["name"].get<std::string>()] = &component;
       else
-        fault("components", "has a component without a name");
+        fault(numbered("components", &component - &json_["components"].front()), "has no name");
     read_structure();
     for (const auto& [name, component] : components_)
       if (!ends_.contains(name)) starts_.push_back(name);
@@ -49,21 +52,25 @@ class OpenTorsionReader {
   void fault(const std::string& place, const std::string& what) {
     findings_.push_back({file_ + ": " + place, "", "", "", what});
   }
+  static std::string numbered(const std::string& list, std::ptrdiff_t number) {
+    return list + "[" + std::to_string(number) + "]";
+  }
 
   /// [["component.element", "component.element"], ...]
   void read_structure() {
     if (!json_.contains("structure")) return;
+    std::ptrdiff_t number = 0;
     for (const Json& pair : json_["structure"]) {
+      const std::string place = numbered("structure", number++);
       if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string() || !pair[1].is_string()) {
-        fault("structure", "must hold pairs of names, [\"component.element\", \"component.element\"]");
+        fault(place, "must be a pair of names, [\"component.element\", \"component.element\"]");
         continue;
       }
       const std::string from = pair[0], to = pair[1];
       const std::string next = to.substr(0, to.find('.'));
-      if (!components_.contains(next))
-        fault("structure", "names " + to + ", which is none of the components");
+      if (!components_.contains(next)) fault(place, "names " + to + ", which is none of the components");
       if (!components_.contains(from.substr(0, from.find('.'))))
-        fault("structure", "names " + from + ", which is none of the components");
+        fault(place, "names " + from + ", which is none of the components");
       connections_[from].push_back(next);
       ends_.insert(next);
     }
@@ -80,7 +87,11 @@ class OpenTorsionReader {
     const Json found = element.value(key, Json());
     if (found.is_null() && !std::isnan(fallback)) return fallback;
     if (!found.is_number() || !(found.get<double>() >= low)) {
-      fault(place + "." + key, std::string("must be a number >= ") + to_text(low));
+      const auto unit = kUnits.find(key);
+      findings_.push_back(
+          {file_ + ": " + place, key, found.is_null() ? "" : found.dump(),
+           unit == kUnits.end() ? "" : unit->second,
+           (found.is_null() ? "is missing; it " : "") + std::string("must be a number >= ") + to_text(low)});
       return 1.0;
     }
     return found.get<double>();

@@ -17,11 +17,16 @@ struct Cell {
 };
 
 /// A CSV text row by row (RFC 4180): cells in double quotes may hold commas, line ends and doubled quotes; those
-/// without lose the blanks about them. A byte-order mark is passed over.
+/// without lose the blanks about them. Where the first row has semicolons and no comma, semicolons separate the cells.
+/// A byte-order mark is passed over.
 class Rows {
  public:
   explicit Rows(const std::string& text)
-      : text_(text), at_(text.starts_with("\xef\xbb\xbf") ? 3 : 0), start_(at_) {}
+      : text_(text), at_(text.starts_with("\xef\xbb\xbf") ? 3 : 0), start_(at_) {
+    while (at_ < text_.size() && (text_[at_] == '#' || ends_line())) skip_line();
+    const std::string first = text_.substr(at_, text_.find('\n', at_) - at_);
+    if (first.find(';') != first.npos && first.find(',') == first.npos) separator_ = ';';
+  }
 
   /// The next row that is neither empty nor a comment; false: there is none. fault: nothing, or what is wrong with
   /// the last cell, which ends the text.
@@ -31,7 +36,7 @@ class Rows {
     if (at_ >= text_.size()) return false;
     do {
       cells.push_back(cell(fault));
-    } while (fault.empty() && at_ < text_.size() && text_[at_] == ',' && ++at_ > 0);
+    } while (fault.empty() && at_ < text_.size() && text_[at_] == separator_ && ++at_ > 0);
     if (fault.empty()) skip_line();
     return true;
   }
@@ -57,7 +62,7 @@ class Rows {
       quoted(cell, fault);
       return cell;
     }
-    while (!ends_line() && text_[at_] != ',') cell.text += text_[at_++];
+    while (!ends_line() && text_[at_] != separator_) cell.text += text_[at_++];
     while (cell.text.ends_with(' ') || cell.text.ends_with('\t')) cell.text.pop_back();
     return cell;
   }
@@ -76,12 +81,14 @@ class Rows {
     }
     ++at_;
     skip_blanks();
-    if (!ends_line() && text_[at_] != ',') fault = "more than blanks follows the quotes that begin here";
+    if (!ends_line() && text_[at_] != separator_)
+      fault = "more than blanks follows the quotes that begin here";
   }
 
   const std::string& text_;
   std::size_t at_, start_;  // here, and where this line begins
   int line_ = 1;
+  char separator_ = ',';
 };
 
 /// A name that drev would have written with ' before it, so that no spreadsheet takes it for a formula.

@@ -97,16 +97,24 @@ TEST_CASE("Faults of what is imported are named, all at once", "[import]") {
   };
   const std::string table = said("t.csv", "node,inertia,stiffness_Nm_per_rad\na,1,-3\na,x,\n");
   for (const char* part : {"the column inertia has no unit", "lacks the column inertia_kg_m2",
-                           "stiffness is -3", "the node a is there already, in line 2"})
+                           "t.csv:2: stiffness_Nm_per_rad = -3, must be a number >= 0",
+                           "the node a is there already, in line 2"})
     CHECK(contains(table, part));
   CHECK(contains(said("u.csv", "inertia_kg_m2\n1\n2\n"), "has neither stiffness, ratio nor damping"));
+  CHECK(contains(said("w.csv", "inertia_kg_m2,stiffness_MN\n1,2\n2,\n"), "has a unit that it cannot have"));
+  CHECK(contains(said("x.csv", "node,inertia_kg_m2,stiffness_Nm_per_rad\na,1,2\nb,,\n"),
+                 "x.csv: x/b: inertia = 0 kg m^2"));
   CHECK(contains(said("v.csv", ""), "has no line with the names"));
   CHECK(contains(said("a.json", "{"), "is no JSON"));
   CHECK(contains(said("b.json", "[]"), "no JSON of openTorsion"));
   const std::string train =
       said("c.json", R"({"structure": [["a.x", "z.y"]], "components": [{"name": "a", "elements": [
       {"name": "x", "type": "Disk", "inertia": "much"}]}, {"name": "b", "elements": []}]})");
-  for (const char* part : {"z.y, which is none", "must connect all components"}) CHECK(contains(train, part));
+  for (const char* part : {"structure[0]: names z.y, which is none", "must connect all components"})
+    CHECK(contains(train, part));
+  CHECK(contains(said("d.json", R"({"components": [{"name": "a", "elements": [
+      {"name": "x", "type": "Disk", "inertia": "much"}]}]})"),
+                 "a.x: inertia = \"much\" kg m^2, must be a number >= 0"));
   CHECK(drev_command({"import"}).exit_code == 2);
   CHECK(drev_command({"import", "train.xml"}).exit_code == 2);
 }

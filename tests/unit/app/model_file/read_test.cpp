@@ -125,7 +125,7 @@ TEST_CASE("Includes and tables are relative to the file that names them") {
         "angle = \"crank_deg\", torque = \"b_kNm\" }\n"
         "[nodes]\ngear = {}\n[elements]\nJ_gear = { type = \"inertia\", node = \"gear\", inertia_kg_m2 = "
         "\"J_kg_m2\" }\n");
-  write("parts/lift.csv", "# lift\ncrank_deg, a_Nm, b_kNm\r\n0,1,2\n\n90,3,4.5\n");
+  write("parts/lift.csv", "# lift; of a cam\ncrank_deg; a_Nm; b_kNm\r\n0;1;2\n\n90;3;4.5\n");
   write(
       "main.toml",
       "format = 1\ninclude = \"parts/gear.toml\"\n[parameters]\nJ_kg_m2 = 7\n[nodes]\nend = {}\n[elements]\n"
