@@ -1,5 +1,6 @@
 #include "app/base/progress.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <unistd.h>
 #include <utility>
@@ -8,8 +9,8 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kAnnounced = 120.0;                         // s left: said before
-constexpr auto kMeasured = std::chrono::milliseconds(2000);  // after which what is left is estimated
+constexpr double kAnnounced = 120.0;  // s left: said before
+constexpr double kMeasured = 1.5;     // s, after which the rate is measured, and over which
 
 thread_local ProgressListener::Told* listener = nullptr;
 
@@ -69,7 +70,13 @@ void Progress::update(double part) {
     (*listener)(part, left);
     return;
   }
-  if (why_long_ && part > 0.0 && Clock::now() - start_ >= kMeasured) announce(left);
+  if (why_long_ && part > 0.0 && elapsed >= kMeasured) {
+    // A start in small steps tells nothing of the rest: the rate since then counts, if it is faster.
+    if (!(measured_part_ > 0.0))
+      measured_ = elapsed, measured_part_ = part;
+    else if (elapsed >= measured_ + kMeasured && part > measured_part_)
+      announce(std::min(left, (1.0 - part) * (elapsed - measured_) / (part - measured_part_)));
+  }
   if (!due() || !(part > 0.0)) return;
   char text[32];
   std::snprintf(text, sizeof text, "%5.1f %%, ", 100.0 * part);

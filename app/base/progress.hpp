@@ -48,6 +48,7 @@ class Progress {
   bool terminal_, shown_ = false;
   std::function<std::string()> why_long_;
   Clock::time_point start_, drawn_;
+  double measured_ = 0.0, measured_part_ = 0.0;  // s since the start, and the part done then
 };
 
 }  // namespace drev::app

@@ -14,7 +14,9 @@
 #include "app/report/report_model.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/sweep_report.hpp"
+#include "app/results/branches_result.hpp"
 #include "app/results/class_result.hpp"
+#include "app/results/sweep_result.hpp"
 
 namespace drev::app {
 
@@ -35,11 +37,12 @@ std::string speeds_text(const std::vector<double>& speeds) {
 void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
   std::vector<NonlinearSweep> sweeps;
   std::vector<double> missing;
-  for (const ClassCase& c : cases) {
+  for (ClassCase& c : cases) {
     std::vector<Finding> findings;
     const NonlinearSweepOptions options = nonlinear_options(line, c.request, findings);
     if (!findings.empty()) throw ModelError(std::move(findings));
     sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
+    c.notes = left_over_notes(options, sweeps.back());
     end_if_interrupted();
     for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
   }
@@ -91,6 +94,7 @@ Json report_data(const CommandLine& line, const std::vector<ClassCase>& cases, c
                                           names_of(cases.front().sweep), cases.front().sweep.speeds),
                                 beside);
   data["class"] = judged;
+  data["notes"] = Json::array();  // of the first case alone
   for (const ClassCase& c : cases)
     for (const std::string& note : c.notes)
       data["notes"].push_back(cases.size() > 1 ? c.name + ": " + note : note);
@@ -119,7 +123,10 @@ int class_command(const CommandLine& line) {
     sweep_contacts(line, cases);
   } else {
     refuse_nonlinear_options(line);
-    for (ClassCase& c : cases) c.sweep = sweep_linear(c.request.model.system, c.request.options);
+    for (ClassCase& c : cases) {
+      c.sweep = sweep_linear(c.request.model.system, c.request.options);
+      c.notes = sweep_notes(c.request, c.sweep);
+    }
   }
   for (ClassCase& c : cases) c.judgement = judge_sweep(c.sweep, *strength);
   const ModelRequest& model = cases.front().request.model;

@@ -15,7 +15,7 @@ struct ClassCase {
   SweepRequest request;
   LinearSweep sweep;
   ClassJudgement judgement;
-  std::vector<std::string> notes = {};  ///< sentences on motions of the sweep whose contacts open
+  std::vector<std::string> notes = {};  ///< sentences on the sweep
 };
 
 std::string class_as_text(const std::vector<ClassCase>& cases);

@@ -22,7 +22,7 @@ TEST_CASE("A run that cannot end in reasonable time says so, with what makes it 
                          "1e15 }\nload = { type = \"applied_torque\", node = \"a\", torque_Nm = 1 }\n[run]\n"
                          "duration_s = 1000\n";
   const Process process({"run", path, "--method", "exact"});
-  std::this_thread::sleep_for(std::chrono::seconds(5));
+  std::this_thread::sleep_for(std::chrono::seconds(7));
   process.send(SIGINT);
   const auto run = process.wait();
   CAPTURE(run.err);
