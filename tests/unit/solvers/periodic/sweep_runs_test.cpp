@@ -51,6 +51,28 @@ Decayed decay_of(std::complex<double> multiplier, int most, double start = 0.3) 
   return result;
 }
 
+/// 20 N m on a wheel whose pinion is held at its speed [rad/s], stiffness in steps.
+System step_pair(double speed) {
+  Model m("step pair");
+  m.add_node("pinion");
+  m.add_node("wheel");
+  m.add<Inertia>("J", {"wheel"}, {.inertia = 0.01});
+  m.add<GearMesh>("mesh", {"pinion", "wheel"},
+                  {.base_radius_1 = 0.05,
+                   .base_radius_2 = 0.05,
+                   .teeth_1 = 30,
+                   .teeth_2 = 30,
+                   .stiffness = MeshStiffness::step(1.5e8, 2.5e8, 1.5),
+                   .normal_backlash = 1e-4,
+                   .damping = 100.0,
+                   .damping_law = MeshDamping::always,
+                   .transmission_error = std::vector<Harmonic>{{1.0, 2.5e-6, 0.0}}});
+  m.add<EngineOrderTorque>("load", {"wheel"}, {.mean = 20.0});
+  m.constant_speed("pinion", speed);
+  m.set_initial("wheel", 2e-5, 0.0);
+  return m.build();
+}
+
 }  // namespace
 
 TEST_CASE("Cycles repeat when what the decay leaves to come is small, not when they change little",
@@ -174,26 +196,10 @@ TEST_CASE("A free train in a run keeps its mean speed, and its teeth carry what 
 }
 
 TEST_CASE("Means of a stiffness that jumps do not depend on where the steps fall", "[cycle_run]") {
-  // 20 N m on a wheel whose pinion is held at its speed: 400 N, whatever the teeth do.
+  // 20 N m on a wheel whose pinion is held at its speed: 400 N, whatever the teeth do. From this start the steps keep time
+  // with the teeth: Gauss's two points in each give 413.8 N +- 2.2.
   const double speed = rpm(1200.0);
-  Model m("step pair");
-  m.add_node("pinion");
-  m.add_node("wheel");
-  m.add<Inertia>("J", {"wheel"}, {.inertia = 0.01});
-  m.add<GearMesh>("mesh", {"pinion", "wheel"},
-                  {.base_radius_1 = 0.05,
-                   .base_radius_2 = 0.05,
-                   .teeth_1 = 30,
-                   .teeth_2 = 30,
-                   .stiffness = MeshStiffness::step(1.5e8, 2.5e8, 1.5),
-                   .normal_backlash = 1e-4,
-                   .damping = 100.0,
-                   .damping_law = MeshDamping::always,
-                   .transmission_error = std::vector<Harmonic>{{1.0, 2.5e-6, 0.0}}});
-  m.add<EngineOrderTorque>("load", {"wheel"}, {.mean = 20.0});
-  m.constant_speed("pinion", speed);
-  m.set_initial("wheel", 1e-4, 0.0);
-  const System system = m.build();
+  const System system = step_pair(speed);
   const SweptRun run =
       run_cycles(
           system, State::initial(system),
@@ -204,6 +210,28 @@ TEST_CASE("Means of a stiffness that jumps do not depend on where the steps fall
   INFO(run.mean[0] << " +- " << run.mean_error[0]);
   CHECK(std::abs(std::abs(run.mean[0]) - 400.0) <= std::max(1.0, 2.0 * run.mean_error[0]));
   CHECK(run.mean_error[0] < 40.0);
+}
+
+TEST_CASE("Closed contacts are tried where a curve passes without being stable", "[nonlinear_sweep]") {
+  // The curve from 900 and 4,500 rpm passes 1,200 rpm unstable; another is stable there.
+  const double speed = rpm(1200.0);
+  const NonlinearSweep sweep =
+      sweep_nonlinear(step_pair(speed), {.speeds = {rpm(900.0), speed, rpm(4500.0)}, .tolerance = 1e-3});
+  CHECK(sweep.runs.empty());
+  bool found = false;
+  for (const SweptBranch& branch : sweep.branches)
+    for (const SweptMotion& motion : branch.motions) {
+      if (!motion.asked || !motion.stable || std::abs(motion.speed - speed) > 1e-9 * speed) continue;
+      found = true;
+      CHECK(branch.run_speed == 0.0);  // no run led to it
+      const System here = step_pair(speed);
+      State state = State::initial(here);
+      state.z = motion.z;
+      state.v = motion.v;
+      REQUIRE(propagate(here, {.tolerance = 1e-11, .t_end = branch.turns * kTwoPi / speed}, state).ok());
+      CHECK(state.z[0] == Approx(motion.z[0]).epsilon(1e-2));
+    }
+  CHECK(found);
 }
 
 TEST_CASE("Where closed contacts lead to no curve the harmonics of a run do", "[nonlinear_sweep]") {
