@@ -1,10 +1,13 @@
 // The command drev. See drev --help.
 #include <drev/app/model_file/model_file.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/base/output_file.hpp"
 #include "app/cli/command_line.hpp"
@@ -28,6 +31,19 @@ void complain(const ModelError& error) {
   for (const Finding& finding : error.findings()) std::fprintf(stderr, "  %s\n", finding.text().c_str());
 }
 
+/// The words of the command line; `drev report --class MODEL ... --out FILE` as `drev class MODEL ... --report FILE`.
+std::vector<std::string> command_words(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  const auto flag = std::find(words.begin(), words.end(), "--class");
+  if (argc < 2 || words[1] != "report" || flag == words.end()) return words;
+  words.erase(flag);
+  words[1] = "class";
+  constexpr std::string_view kOut = "--out";
+  for (std::string& word : words)
+    if (word == kOut || word.starts_with(std::string(kOut) + "=")) word.replace(0, kOut.size(), "--report");
+  return words;
+}
+
 int guarded_main(int argc, char** argv) {
   try {
     register_fmu();
@@ -37,7 +53,11 @@ int guarded_main(int argc, char** argv) {
       print(text);
       return kSuccess;
     }
-    const ParsedCommandLine parsed = parse_command_line(argc, argv, commands());
+    std::vector<std::string> words = command_words(argc, argv);
+    std::vector<char*> texts;
+    for (std::string& word : words) texts.push_back(word.data());
+    const ParsedCommandLine parsed =
+        parse_command_line(static_cast<int>(texts.size()), texts.data(), commands());
     if (!parsed.command) return parsed.exit_code;
     const CommandLine& line = *parsed.command;
     set_quiet(line.quiet);

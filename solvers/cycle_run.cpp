@@ -26,8 +26,14 @@ namespace {
 constexpr double kUnbounded =
     30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kBatches = 20;
-constexpr double kStudent = 2.093;  // 97.5 % quantile of Student's t with 19 degrees of freedom
-constexpr int kQuarters = 4;        // points in a step, for statistics
+/// Batches, each of as many of those, and the 97.5 % quantile of Student's t with one degree of freedom less. The fewer
+/// there are, the slower a modulation may be that does not make their means alike.
+struct BatchCount {
+  int count;
+  double student;
+};
+constexpr std::array<BatchCount, 3> kBatchCounts{{{20, 2.093}, {10, 2.262}, {5, 2.776}}};
+constexpr int kQuarters = 4;                          // points in a step, for statistics
 constexpr double kGoldenRatio = 0.61803398874989485;  // whose multiples fill 0 to 1 evenly
 constexpr double kRunTolerance = 1e-9;                // of a cycle
 
@@ -309,8 +315,16 @@ void CycleRun::of_statistics(const std::vector<CycleFigures>& cycles) {
   run.highest = sum.all.highest;
   run.left_over = sum.all.left_over;
   run.mean_error = Vector::Zero(run.mean.size());
-  for (const FigureSum& batch : batches) run.mean_error += (batch.all.mean - run.mean).cwiseAbs2();
-  run.mean_error = kStudent * (run.mean_error / (kBatches * (kBatches - 1.0))).cwiseSqrt();
+  for (const auto& [count, student] : kBatchCounts) {
+    const int joined = kBatches / count;
+    Vector squares = Vector::Zero(run.mean.size()), mean;
+    for (int b = 0; b < kBatches; ++b) {
+      const Vector& next = batches[static_cast<std::size_t>(b)].all.mean;
+      mean = b % joined == 0 ? next : mean + next;
+      if (b % joined == joined - 1) squares += (mean / joined - run.mean).cwiseAbs2();
+    }
+    run.mean_error = run.mean_error.cwiseMax(student * (squares / (count * (count - 1.0))).cwiseSqrt());
+  }
   // Largest values up to the end of the first batch, the one in the middle and the last.
   std::array<Vector, 3> sizes;
   for (std::size_t part = 0; part < 3; ++part) sizes[part] = batches[part * (kBatches - 1) / 2].all.largest();

@@ -97,7 +97,8 @@ struct SweptRun {
   /// Of a run that repeats, beside each section's largest value: largest change of mean, deviation, lowest and highest
   /// value from the repetition before, and what the decay leaves of it. NaN: it does not repeat.
   double error = std::numeric_limits<double>::quiet_NaN();
-  /// Of a run that repeats, its mean's own change, as error; else half of the 95 % interval, by batch means.
+  /// Of a run that repeats, its mean's own change, as error; else half of the 95 % interval: the widest
+  /// by 20, 10 and 5 batch means.
   Vector mean, mean_error;
   Vector deviation, lowest, highest;  ///< extremes of a run that repeats are located
   /// Mean torque left over on each floating part, as in MotionFigures; the part keeps its mean speed all the same.

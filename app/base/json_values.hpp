@@ -17,6 +17,14 @@ inline Json number(double value) { return std::isfinite(value) ? Json(value) : J
 
 inline Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
+/// Of a list of numbers, each times `factor`.
+template <class Numbers>
+Json numbers(const Numbers& values, double factor = 1.0) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(factor * value));
+  return list;
+}
+
 inline Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// Numbers as numbers, everything else as text.

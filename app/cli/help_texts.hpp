@@ -142,7 +142,8 @@ inline constexpr const char* kOptimiseExamples =
 inline constexpr const char* kReportExamples =
     "Examples:\n"
     "  drev report result --out result.pdf\n"
-    "  drev report before after --out compared.html\n";
+    "  drev report before after --out compared.html\n"
+    "  drev report --class genset.toml --speeds 600:10:1800 --out tvc.pdf\n";
 
 inline constexpr const char* kListExamples =
     "Examples:\n"

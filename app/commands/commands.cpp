@@ -264,7 +264,9 @@ const std::vector<CommandEntry>& commands() {
        .summary = "Writes the report of a run again, or compares two runs",
        .takes_model = false,
        .options = {{"RUN", "RUN [RUN]", "Directory of drev run --out, or its report.html", words},
-                   {"--out", "FILE", "The report to write, .html or .pdf"}},
+                   {"--out", "FILE", "The report to write, .html or .pdf"},
+                   {"--class", "", "MODEL in place of RUN: drev class MODEL, with its options, to --out FILE",
+                    none}},
        .footer = kReportExamples,
        .execute = report_command}};
   return table;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
 
 namespace drev::app {
@@ -87,14 +88,14 @@ void list_section(Fields& f, SectionStrength& s) {
 void read_strength(const Value& table, const System& system, ModelCase& model_case, ReadContext& context) {
   Strength strength;
   const std::size_t before = context.findings.size();
+  Part whole{table.at};
   read_fields(
       table, "class", NodeKind::rotational, {"sections", "misfire"},
       [&](Fields& f) {
         f.number({"rated_speed", D::angular_speed}, strength.rated_speed);
       },
-      context);
-  if (const Entry* misfire = table.find("misfire")) read_misfire(misfire->value, strength, context);
-  std::map<std::string, const Entry*> places;
+      context, &whole.fields);
+  std::map<std::string, Part> places;
   const std::vector<std::string> known = torque_elements(system);
   if (const Entry* sections = table.find("sections")) {
     if (!sections->value.is(Value::Kind::table))
@@ -109,9 +110,10 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
         continue;
       }
       SectionStrength section;
+      Part part{entry.at};
       read_fields(
-          entry.value, where, NodeKind::rotational, {}, [&](Fields& f) { list_section(f, section); },
-          context);
+          entry.value, where, NodeKind::rotational, {}, [&](Fields& f) { list_section(f, section); }, context,
+          &part.fields);
       bool fits = false;
       for (const std::string& name : known) {
         if (!fits_pattern(entry.key, name)) continue;
@@ -120,7 +122,7 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
         SectionStrength own = section;
         if (const std::string why = take_from_contour(model_case.model, name, own); !why.empty())
           context.findings.push_back(fault_at(entry.at, where, why));
-        places[name] = &entry;
+        places[name] = part;
         // What is said of one element alone counts beside what is said of many.
         std::erase_if(strength.sections, [&](const auto& other) { return other.element == name; });
         strength.sections.push_back(own);
@@ -131,12 +133,12 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
     }
   }
   if (context.findings.size() == before)
-    for (Finding finding : check_strength(strength)) {
-      const auto place = places.find(finding.place.substr(std::min(finding.place.size(), std::size_t{15})));
-      const Position at = place != places.end() ? place->second->at : table.at;
-      finding.place = at.text() + ": " + finding.place;
-      context.findings.push_back(std::move(finding));
+    for (const Finding& finding : check_strength(strength)) {
+      const auto section = places.find(finding.place.substr(std::min(finding.place.size(), std::size_t{15})));
+      const Part& part = section != places.end() ? section->second : whole;
+      context.findings.push_back(placed(finding, part, finding.place));
     }
+  if (const Entry* misfire = table.find("misfire")) read_misfire(misfire->value, strength, context);
   model_case.strength = std::make_shared<const Strength>(std::move(strength));
 }
 

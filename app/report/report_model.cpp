@@ -106,6 +106,7 @@ class Drawing {
     if (local.empty() || (local.size() > 2 && !mesh)) return add_star(spec.b);
     Json& law = joint(mesh ? "mesh" : "spring", mesh ? std::vector<int>{local[0], local[1]} : local);
     law["stiffness"] = number(spec.force->closed_stiffness());
+    if (const double c = spec.force->closed_damping(); c != 0.0) law["damping"] = c;
     if (const auto gap = spec.force->gap()) law["gap"] = gap->high - gap->low;
     if (!mesh) return;
     const bool internal = spec.b[local[0]] * spec.b[local[1]] < 0.0;

@@ -172,12 +172,6 @@ Json along(const SweptBranch& branch, const Of& of) {
   return list;
 }
 
-Json over_sections(const Vector& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
 Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
   Json sections = Json::array();
   for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(sweep.sections.size()); ++c) {
@@ -314,19 +308,20 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
                        {"branch", change.branch + 1},
                        {"speed_rpm", number(to_rpm(change.speed))},
                        {"error_rpm", number(to_rpm(change.error))},
-                       {"half_range", over_sections(change.motion.half_range())},
-                       {"jumps_to", change.jumps_to.size() > 0 ? over_sections(change.jumps_to) : Json()}});
+                       {"half_range", numbers(change.motion.half_range())},
+                       {"jumps_to", change.jumps_to.size() > 0 ? numbers(change.jumps_to) : Json()}});
   for (const SweptRun& run : sweep.runs)
     runs.push_back({{"speed_rpm", number(to_rpm(run.speed))},
                     {"cycles", run.cycles},
                     {"repeats_after", run.repeats > 0 ? Json(run.repeats) : Json()},
                     {"error", number(run.error)},
                     {"reason", text_or_null(run.reason)},
-                    {"mean", over_sections(run.mean)},
-                    {"mean_error", over_sections(run.mean_error)},
-                    {"deviation", over_sections(run.deviation)},
-                    {"lowest", over_sections(run.lowest)},
-                    {"highest", over_sections(run.highest)}});
+                    {"mean", numbers(run.mean)},
+                    {"mean_error", numbers(run.mean_error)},
+                    {"deviation", numbers(run.deviation)},
+                    {"lowest", numbers(run.lowest)},
+                    {"highest", numbers(run.highest)},
+                    {"left_over_Nm", numbers(run.left_over)}});
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
     floating.push_back(
         {{"node", sweep.floating_parts[f]}, {"left_over_Nm", number(left_over_of(sweep, f).most)}});

@@ -75,12 +75,6 @@ std::string shaft_text(const PlacedShaft& shaft) {
   return text + "\n" + stations_text(s);
 }
 
-Json numbers_of(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
 Json shaft_object(const PlacedShaft& shaft) {
   const ShaftSections& s = *shaft.element->sections();
   const ShaftBounds bounds = shaft_bounds(shaft.element->params());
@@ -117,9 +111,9 @@ Json shaft_object(const PlacedShaft& shaft) {
           {"stations", std::move(stations)},
           {"segments", std::move(segments)},
           {"outline",
-           {{"z_m", numbers_of(s.outline_z)},
-            {"radius_m", numbers_of(s.outline_r)},
-            {"stress_Pa_per_Nm", numbers_of(s.outline_stress)}}}};
+           {{"z_m", numbers(s.outline_z)},
+            {"radius_m", numbers(s.outline_r)},
+            {"stress_Pa_per_Nm", numbers(s.outline_stress)}}}};
 }
 
 }  // namespace

@@ -76,17 +76,11 @@ std::string criticals_text(const LinearSweep& sweep) {
   return note + text;
 }
 
-Json numbers(const Vector& values, double factor = 1.0) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(factor * value));
-  return list;
-}
-
 Json section_object(const SweepRequest& request, const SweepSection& s) {
   Json amplitude = Json::array(), phase = Json::array();
   for (Eigen::Index k = 0; k < s.amplitude.rows(); ++k) {
-    amplitude.push_back(numbers(s.amplitude.row(k).cwiseAbs()));
-    phase.push_back(numbers(s.amplitude.row(k).cwiseArg(), to_deg(1.0)));
+    amplitude.push_back(numbers(Vector(s.amplitude.row(k).cwiseAbs())));
+    phase.push_back(numbers(Vector(s.amplitude.row(k).cwiseArg()), to_deg(1.0)));
   }
   Json separates;
   if (s.contact) {

@@ -207,7 +207,7 @@ std::vector<Finding> check_strength(const Strength& strength) {
       findings.push_back(
           {place, "tensile_strength", "", "Pa", "IACS UR M68 needs it together with shape_factor"});
     if (rule && std::isnan(strength.rated_speed))
-      findings.push_back({"class", "rated_speed", "", "rad/s", "is missing: IACS UR M68 needs it"});
+      findings.push_back({"class", "rated_speed", "", "rpm", "is missing: IACS UR M68 needs it"});
     const bool by_stress =
         rule || !std::isnan(s.permissible_stress) || !std::isnan(s.transient_stress) || s.sn.given();
     if (by_stress && std::isnan(s.diameter))
@@ -215,7 +215,7 @@ std::vector<Finding> check_strength(const Strength& strength) {
   }
   const double rated = std::isnan(strength.rated_speed) ? 1.0 : strength.rated_speed;
   if (!(rated > 0.0) || rated == none)
-    findings.push_back({"class", "rated_speed", to_text(rated), "rad/s", "> 0"});
+    findings.push_back({"class", "rated_speed", to_text(to_rpm(rated)), "rpm", "> 0"});
   return findings;
 }
 

@@ -105,7 +105,7 @@ function showMassElastic() {
       m.nodes.map((n) => [n.name, sig(n.ratio, 5), sig(n.inertia, 6), sig(n.inertia * n.ratio * n.ratio, 6)]),
     ),
     table(
-      ["joint", "between", "kind", "stiffness [N m/rad; mesh N/m]", "damping [N m s/rad]"],
+      ["joint", "between", "kind", "stiffness [N m/rad; mesh N/m]", "damping [N m s/rad; mesh N s/m]"],
       m.joints.map((j) => [
         j.name,
         j.nodes.join(" – "),

@@ -32,6 +32,13 @@ std::vector<std::string> with_genset_speeds(std::vector<std::string> words) {
   return words;
 }
 
+/// What a report shows.
+nlohmann::json page_of(const std::string& report) {
+  const std::string text = read_file(report), mark = "class=\"run\">";
+  const std::size_t begin = text.find(mark) + mark.size();
+  return nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin));
+}
+
 }  // namespace
 
 TEST_CASE("The class calculation judges what the sweep finds, fired and misfiring", "[class]") {
@@ -79,10 +86,7 @@ TEST_CASE("The class calculation judges what the sweep finds, fired and misfirin
   CHECK(judged["cases"][1].at("accepted") == false);
   CHECK(judged.at("mass_elastic").at("nodes").size() == 10);
   // The report has both cases, the limits drawn, the formulas and what is not judged.
-  const std::string text = read_file(report), mark = "class=\"run\">";
-  const std::size_t begin = text.find(mark) + mark.size();
-  const nlohmann::json page =
-      nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin));
+  const nlohmann::json page = page_of(report);
   CHECK(page.at("class") == judged);
   CHECK(page.at("sweeps").size() == 2);
   std::size_t limits = 0;
@@ -179,6 +183,35 @@ TEST_CASE("A model without [class] is told what it lacks", "[class]") {
       drev_command({"class", DREV_SOURCE_DIR "/models/engine/engine.toml", "--speeds", "900"});
   CHECK(refused.exit_code == 2);
   CHECK(contains(refused.err, "[class]"));
+}
+
+TEST_CASE("Faults of [class] are told of all at once, at the file and key that they are of", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "mine.toml")
+      << "format = 1\ninclude = [\"" << kGensetFile << "\"]\n[class]\nrated_speed_rpm = -3\n"
+      << "misfire = { cylinder_1 = 0 }\n[class.sections]\nflange = { diameter_mm = -5 }\n";
+  const auto refused = drev_command(with_genset_speeds({"class", (folder / "mine.toml").string()}));
+  CHECK(refused.exit_code == 2);
+  for (const char* part :
+       {"mine.toml:4:1: class: rated_speed = -3 rpm", "mine.toml:5:13: class.misfire.cylinder_1",
+        "mine.toml:7:12: class.sections.flange: diameter = -0.005 m"})
+    CHECK(contains(refused.err, part));
+}
+
+TEST_CASE("drev report --class writes what drev class --report does", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const auto judged_by = [&](std::vector<std::string> words, const char* name) {
+    const auto outcome = drev_command(with_genset_speeds(std::move(words)));
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return page_of(folder / name).at("class");
+  };
+  const nlohmann::json by_class =
+      judged_by({"class", kGensetFile, "--report", (folder / "a.html").string()}, "a.html");
+  CHECK(judged_by({"report", "--class", kGensetFile, "--out", (folder / "b.html").string()}, "b.html") ==
+        by_class);
+  CHECK(judged_by({"report", kGensetFile, "--class", "--out=" + (folder / "c.html").string()}, "c.html") ==
+        by_class);
 }
 
 TEST_CASE("A run counts load cycles of sections with an S-N line and of channels asked for", "[class]") {

@@ -71,6 +71,7 @@ TEST_CASE("A train whose rattle takes more harmonics than there are: no curve is
           Approx(-600.0).epsilon(1e-3));  // of the gas, less what the twist changes
     CHECK(run.at("mean_error")[0].get<double>() < 0.1);
     CHECK(run.at("error").get<double>() <= 1e-5);
+    CHECK(run.at("left_over_Nm").size() == json.at("floating_parts").size());
   }
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "app/fmi/fmu_instance.hpp"
+#include "tests/unit/app/process.hpp"
 
 extern "C" {
 void* fmi3InstantiateCoSimulation(const char*, const char*, const char*, bool, bool, bool, bool,
@@ -43,10 +44,11 @@ spring = { type = "ground_spring", node = "wheel", stiffness_Nm_per_rad = "stiff
 duration_s = 1
 )";
 
-/// The folder of resources of an FMU of the oscillator, with a torque as input.
+/// The folder of resources of an FMU of the oscillator, with a torque as input. Each test program has its own: tests run side by
+/// side.
 std::string oscillator(const std::vector<std::string>& tunable = {}) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "drev_fmu_test";
-  std::filesystem::create_directories(folder);
+  static const test::TemporaryFolder resources;
+  const std::filesystem::path folder = resources / "";
   std::ofstream(folder / "model.toml") << kOscillator;
   std::ofstream(folder / "interface.toml")
       << interface_text({"model.toml", "", "token", {"wheel"}, {}, {"wheel.angle_rad"}, {}, tunable});
