@@ -1,5 +1,7 @@
 #pragma once
 /// The loops of TrigonometricSum over kLanes sums at a time, for run_widest(). Internal to trigonometric_sum.cpp.
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -11,10 +13,17 @@ namespace drev {
 template <class L>
 struct RegisterOf {
   using Type = Lanes;
+  using Bits =
+      std::uint64_t __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
 };
 template <>
 struct RegisterOf<LanePair> {
   using Type = LanePair::Half;
+  using Bits = std::uint64_t __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
+};
+/// A word of 64 bits of each lane.
+struct LaneWord {
+  std::uint64_t of[kLanes] = {};
 };
 /// Loads the lanes of a row from number `first` on, as many as a register holds; and stores them.
 template <class Part>
@@ -26,153 +35,204 @@ template <class Part>
   std::memcpy(reinterpret_cast<double*>(&row.v) + first, &from, sizeof from);
 }
 
-/// Values y at all points of the cycle, from the sums over a quarter of it:
-///   cos n (pi - x) = (-1)^n cos n x, sin n (pi - x) = -(-1)^n sin n x, and both times (-1)^n at x + pi.
-/// ends: receives the highest and the lowest value.
-struct SumQuarters {
+/// Values y at all points of the cycle, from sums over an eighth of it for even n, over a quarter for odd n. Both
+/// follow, with x in the first eighth, from
+///
+///   cos n (pi/2 - x) = (-1)^(n/2) cos n x, sin n (pi/2 - x) = -(-1)^(n/2) sin n x     (n even)
+///   cos n (pi - x)   = (-1)^n cos n x,     sin n (pi - x)   = -(-1)^n sin n x         and (-1)^n at x + pi.
+///
+/// Amplitudes: `fours` of multiples of four first, then those of other even numbers up to `even`, then of odd ones.
+/// cosines, sines: [point of a quarter][amplitude]. ends: receives the highest and the lowest value.
+struct SumEighths {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, int orders, int even, const double* cosines,
+  [[gnu::always_inline]] static void run(int points, int orders, int fours, int even, const double* cosines,
                                          const double* sines, const LaneRow* re, const LaneRow* im,
                                          LaneRow* y, LaneRow* ends) {
-    const int quarter = points / 4;
+    const int eighth = points / 8, quarter = points / 4, half = points / 2;
     L most = L{} - std::numeric_limits<double>::infinity(), least = -1.0 * most;
-    // Two points at a time, so that each amplitude is read once for both.
-    for (int p = 0; p <= quarter; p += 2, cosines += 2 * orders, sines += 2 * orders) {
-      L ce{}, se{}, co{}, so{}, ce_2{}, se_2{}, co_2{}, so_2{}, x;
-      for (int k = 0; k < even; ++k) {
-        take(re[k], x), ce += cosines[k] * x, ce_2 += cosines[orders + k] * x;
-        take(im[k], x), se += sines[k] * x, se_2 += sines[orders + k] * x;
+    // Sums of cosines and of sines at two points at a time, so that each amplitude is read once for both.
+    struct Sums {
+      L cosine{}, sine{};
+    };
+    const auto sum = [&](int from, int to, int point_1, int point_2, Sums& at_1, Sums& at_2)
+        __attribute__((always_inline)) {
+      const double *cosines_1 = cosines + point_1 * orders, *sines_1 = sines + point_1 * orders,
+                   *cosines_2 = cosines + point_2 * orders, *sines_2 = sines + point_2 * orders;
+      L x, c_1{}, s_1{}, c_2{}, s_2{};
+      for (int k = from; k < to; ++k) {
+        take(re[k], x), c_1 += cosines_1[k] * x, c_2 += cosines_2[k] * x;
+        take(im[k], x), s_1 += sines_1[k] * x, s_2 += sines_2[k] * x;
       }
-      for (int k = even; k < orders; ++k) {
-        take(re[k], x), co += cosines[k] * x, co_2 += cosines[orders + k] * x;
-        take(im[k], x), so += sines[k] * x, so_2 += sines[orders + k] * x;
-      }
-      const auto write = [&](int at, const L& value) __attribute__((always_inline)) {
-        raise(most, value), sink(least, value);
-        put(value, y[at]);
-      };
-      const auto write_four = [&](int at, const L& cos_even, const L& sin_even, const L& cos_odd,
-                                  const L& sin_odd) __attribute__((always_inline)) {
-        write(at, cos_even + cos_odd - (sin_even + sin_odd));
-        write(2 * quarter - at, cos_even - cos_odd + (sin_even - sin_odd));
-        write(2 * quarter + at, cos_even - cos_odd - (sin_even - sin_odd));
-        write(at > 0 ? points - at : 0, cos_even + cos_odd + (sin_even + sin_odd));
-      };
-      write_four(p, ce, se, co, so);
-      if (p < quarter) write_four(p + 1, ce_2, se_2, co_2, so_2);
+      at_1.cosine = c_1, at_1.sine = s_1, at_2.cosine = c_2, at_2.sine = s_2;
+    };
+    const auto write = [&](int at, const L& value) __attribute__((always_inline)) {
+      raise(most, value), sink(least, value);
+      put(value, y[at]);
+    };
+    // The sums over even n at x and -x, and those over odd ones.
+    const auto write_four = [&](int at, const L& here, const L& mirrored, const Sums& odd)
+        __attribute__((always_inline)) {
+      const L apart = odd.cosine - odd.sine, together = odd.cosine + odd.sine;
+      write(at, here + apart);
+      write(half - at, mirrored - together);
+      write(half + at, here - apart);
+      write(at > 0 ? points - at : 0, mirrored + together);
+    };
+    const auto write_eight = [&](int p, const Sums& four, const Sums& two, const Sums& odd,
+                                 const Sums& odd_behind) __attribute__((always_inline)) {
+      const L c_sum = four.cosine + two.cosine, s_sum = four.sine + two.sine;
+      const L c_rest = four.cosine - two.cosine, s_rest = four.sine - two.sine;
+      write_four(p, c_sum - s_sum, c_sum + s_sum, odd);
+      write_four(quarter - p, c_rest + s_rest, c_rest - s_rest, odd_behind);
+    };
+    for (int p = 0; p <= eighth; p += 2) {
+      Sums four, two, four_next, two_next, odd, odd_behind;
+      sum(0, fours, p, p + 1, four, four_next);
+      sum(fours, even, p, p + 1, two, two_next);
+      sum(even, orders, p, quarter - p, odd, odd_behind);
+      write_eight(p, four, two, odd, odd_behind);
+      if (p == eighth) break;
+      sum(even, orders, p + 1, quarter - p - 1, odd, odd_behind);
+      write_eight(p + 1, four_next, two_next, odd, odd_behind);
     }
     put(most, ends[0]), put(least, ends[1]);
   }
 };
 
-/// Number of points in a word of marks: the bits of a double's significand.
-inline constexpr int kMarksAWord = 52;
+/// Number of points in a word of marks.
+inline constexpr int kMarksAWord = 64;
 
-/// Marks the points within half a step of which the largest value may be, and those for the smallest: bit
-/// p % kMarksAWord of tops[p / kMarksAWord], and of bottoms, in each lane. slack: S = B h^3 / 15.5 by which
-/// the sum may exceed the parabola through three points, with B a bound of the third derivative; ends:
-/// highest and lowest value of the points; y: values, with the points before and after the cycle.
+/// Marks the points within half a step h of which the largest value may be, and those for the smallest: bit
+/// p % kMarksAWord of tops[p / kMarksAWord], and of bottoms, in each lane. bounds: B_2 h^2 / 8 and 2/3 B_3 h^3, with
+/// bounds B_2 and B_3 of the second and third derivatives; ends: highest and lowest value of the points; y: values,
+/// with the points before and after the cycle.
 ///
-/// A maximum at x in [-1/2, 1/2] has slope 0 and no upward curvature. With the errors B h^3 / 6 of the
-/// parabola's slope and B h^3 / 2 of its curvature, the middle point is at most 2/3 B h^3 = 10.4 S below its
-/// neighbours. With c the downward curvature, the parabola rises above the middle point by at most c/8 where
-/// its vertex is in this interval, otherwise by |slope|/2 - c/8.
+/// A maximum within half a step is above its middle point by at most B_2 h^2 / 8, since its slope is 0. Its curvature
+/// is not upwards: with the errors B_3 h^3 / 6 of the slope and B_3 h^3 / 2 of the curvature of the parabola through
+/// three points, the middle one is at most 2/3 B_3 h^3 below its neighbours.
 struct MarkExtremes {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, const LaneRow* y, const LaneRow* slack,
-                                         const LaneRow* ends, LaneRow* tops, LaneRow* bottoms) {
+  [[gnu::always_inline]] static void run(int points, const LaneRow* y, const LaneRow* bounds,
+                                         const LaneRow* ends, LaneWord* tops, LaneWord* bottoms) {
     using Part = typename RegisterOf<L>::Type;
+    using Bits = typename RegisterOf<L>::Bits;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
+    constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
+    // Shifts the words by a bit and sets the new one where x >= 0; it may be set where x is not a number.
+    const auto note = [&](const Part& x, Bits& word) __attribute__((always_inline)) {
+      word = (word >> 1U) | (~reinterpret_cast<Bits>(x) & kSign);
+    };
     for (int lane = 0; lane < kLanes; lane += kWidth) {
-      Part least, most, room, before, here, after;
-      take_part(*slack, lane, room), take_part(ends[0], lane, least), take_part(ends[1], lane, most);
+      Part least, most, room, below, before, here, after;
+      take_part(bounds[0], lane, room), take_part(bounds[1], lane, below);
+      take_part(ends[0], lane, least), take_part(ends[1], lane, most);
       least -= room, most += room;
-      const Part below_neighbours = 10.4 * room;
       take_part(y[-1], lane, before), take_part(y[0], lane, here);
       for (int first = 0; first < points; first += kMarksAWord) {
-        const int end = points - first < kMarksAWord ? points : first + kMarksAWord;
-        const Part none{};
-        Part top{}, bottom{}, bit = none + 1.0;
-        for (int p = first; p < end; ++p) {
+        const int count = points - first < kMarksAWord ? points - first : kMarksAWord;
+        Bits top{}, bottom{};
+        for (int p = first; p < first + count; ++p) {
           take_part(y[p + 1], lane, after);
-          const Part rise = here - before, fall = here - after, eighth = 0.125 * (rise + fall),
-                     quarter = 0.25 * (rise - fall), steep = quarter > none ? quarter : -quarter,
-                     end_up = steep - eighth, end_down = steep + eighth,
-                     reach = here + (eighth > end_up ? eighth : end_up),
-                     depth = here - (-eighth > end_down ? -eighth : end_down);
-          // The smallest of three differences that must not be negative, and the largest of three that must
-          // not be positive; not a number: none. Written as choices between doubles, since GCC 12 splits
-          // masks of lanes.
-          Part over = rise < fall ? rise : fall, below = rise > fall ? rise : fall;
-          over += below_neighbours;
-          below -= below_neighbours;
-          const Part over_least = reach - least, under = depth - most;
-          over = over < over_least ? over : over_least;
-          below = below > under ? below : under;
-          top += over >= none ? bit : none;
-          bottom += below <= none ? bit : none;
-          bit += bit;
+          const Part rise = here - before, fall = here - after;
+          Part lowest = rise < fall ? rise : fall, highest = rise > fall ? rise : fall;
+          lowest += below, highest = below - highest;
+          const Part above = here - least, under = most - here;
+          note(lowest < above ? lowest : above, top);
+          note(highest < under ? highest : under, bottom);
           before = here;
           here = after;
         }
-        put_part(top, lane, tops[first / kMarksAWord]), put_part(bottom, lane, bottoms[first / kMarksAWord]);
+        top >>= static_cast<std::uint64_t>(kMarksAWord - count);
+        bottom >>= static_cast<std::uint64_t>(kMarksAWord - count);
+        std::memcpy(&tops[first / kMarksAWord].of[lane], &top, sizeof top);
+        std::memcpy(&bottoms[first / kMarksAWord].of[lane], &bottom, sizeof bottom);
       }
     }
   }
 };
 
-/// Tops at up to kLanes places, from the polynomial through the seven points around each, times its sign.
-/// at: place of its maximum within half a step, by Newton's method from a start, both in steps from the
-/// middle point; value: the polynomial there; reach: upper bound of the sum within half a step. Where the
-/// polynomial is concave throughout, the bound is the highest value of its tangent plus the largest
-/// contribution of the seventh derivative: |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh.
-struct LookBetween {
+/// kLanes places of tops: the values at seven points around each, times its sign, and what LookBetween finds.
+struct TopRows {
   static constexpr int kSides = 3;
+  LaneRow y[2 * kSides + 1];
+  LaneRow
+      rest;  ///< largest excess of the sum within half a step over the polynomial through the seven points
+  LaneRow shift;  ///< place of the polynomial's maximum within half a step, in steps from the middle point
+  LaneRow value;  ///< the polynomial there
+  LaneRow reach;  ///< upper bound of the sum within half a step
+};
+
+/// Tops from the polynomial p through seven points: its maximum by Newton's method from that of the parabola through
+/// three points, both within half a step (|x| <= 1/2). With lower and upper bounds of p'' there, the sum is at most
+/// the rest above
+///
+///   the highest value of the tangent at the place found      where p'' <= 0 throughout,
+///   the higher end plus max(0, -p'')/8                       in any case.
+///
+/// The largest contribution of the seventh derivative is |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh of it.
+struct LookBetween {
+  static constexpr int kSides = TopRows::kSides;
   static constexpr double kSeventh = 12.35 / 5040.0;
   template <class L>
-  [[gnu::always_inline]] static void run(const LaneRow* y, const LaneRow* rest, LaneRow* at, LaneRow* reach,
-                                         LaneRow* value) {
-    L middle, x, limit, right, left, d1, d2, d3, s1, s2, s3;
-    take(y[kSides], middle), take(*at, x), take(*reach, limit);
-    const auto sides = [&](int k, L& difference, L& sum) __attribute__((always_inline)) {
-      take(y[kSides + k], right), take(y[kSides - k], left);
-      difference = right - left;
-      sum = right + left - 2.0 * middle;
-    };
-    sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
-    // Derivatives at the middle point divided by their factorials.
-    const L c1 = 0.75 * d1 - 0.15 * d2 + d3 / 60.0, c2 = 0.75 * s1 - 0.075 * s2 + s3 / 180.0,
-            c3 = (8.0 * d2 - 13.0 * d1 - d3) / 48.0, c4 = (12.0 * s2 - 39.0 * s1 - s3) / 144.0,
-            c5 = (5.0 * d1 - 4.0 * d2 + d3) / 240.0, c6 = (15.0 * s1 - 6.0 * s2 + s3) / 720.0;
-    const auto slope = [&](L & to) __attribute__((always_inline)) {
-      to = c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5 + x * 6.0 * c6))));
-    };
-    L tilt, start = x, away;
-    for (int step = 0; step < 2; ++step) {
-      slope(tilt);
-      const L bend = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5 + x * 30.0 * c6)));
-      x -= tilt / bend;
+  [[gnu::always_inline]] static void run(int count, TopRows* all) {
+    for (TopRows* rows = all; rows != all + count; ++rows) {
+      L middle, right, left, d1, d2, d3, s1, s2, s3;
+      take(rows->y[kSides], middle);
+      const auto sides = [&](int k, L& difference, L& sum) __attribute__((always_inline)) {
+        take(rows->y[kSides + k], right), take(rows->y[kSides - k], left);
+        difference = right - left;
+        sum = right + left - 2.0 * middle;
+      };
+      sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
+      // Derivatives at the middle point divided by their factorials.
+      const L c1 = 0.75 * d1 - 0.15 * d2 + d3 * (1.0 / 60.0),
+              c2 = 0.75 * s1 - 0.075 * s2 + s3 * (1.0 / 180.0),
+              c3 = (8.0 * d2 - 13.0 * d1 - d3) * (1.0 / 48.0),
+              c4 = (12.0 * s2 - 39.0 * s1 - s3) * (1.0 / 144.0),
+              c5 = (5.0 * d1 - 4.0 * d2 + d3) * (1.0 / 240.0),
+              c6 = (15.0 * s1 - 6.0 * s2 + s3) * (1.0 / 720.0);
+      const L half = L{} + 0.5;
+      const auto inside = [&](L & place) __attribute__((always_inline)) {
+        sink(place, half), raise(place, -1.0 * half);
+      };
+      const auto slope = [&](const L& at, L& to) __attribute__((always_inline)) {
+        to = c1 + at * (2.0 * c2 + at * (3.0 * c3 + at * (4.0 * c4 + at * (5.0 * c5 + at * 6.0 * c6))));
+      };
+      // The parabola's maximum; its end that is higher where it has none inside, or none at all.
+      L start = -0.5 * d1 / s1, tilt, end;
+      inside(start);
+      choose(d1, -1.0 * half, half, end);
+      choose(s1, start, end, start);
+      L x = start;
+      for (int step = 0; step < 2; ++step) {
+        slope(x, tilt);
+        const L bend = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5 + x * 30.0 * c6)));
+        x -= tilt / bend;
+      }
+      // If the place is unreliable or not a number, take the start.
+      L away = x - start;
+      magnitude(away);
+      keep_where_not_below(half, away, start, x);
+      inside(x);
+      slope(x, tilt);
+      L rest;
+      take(rows->rest, rest);
+      const L height = middle + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * (c5 + x * c6)))));
+      L upwards = tilt * (half - x);
+      raise(upwards, -1.0 * tilt * (half + x));
+      const L by_tangent = height + upwards;
+      // p'' at the middle point, and by how much it may differ within half a step.
+      L b3 = c3, b4 = c4, b5 = c5, b6 = c6;
+      magnitude(b3), magnitude(b4), magnitude(b5), magnitude(b6);
+      const L bend = 2.0 * c2, varies = 3.0 * b3 + 3.0 * b4 + 2.5 * b5 + 1.875 * b6;
+      L odd = 0.5 * c1 + 0.125 * c3 + 0.03125 * c5, downwards = varies - bend;
+      magnitude(odd), raise(downwards, L{});
+      L reach = middle + 0.25 * c2 + 0.0625 * c4 + 0.015625 * c6 + odd + 0.125 * downwards;
+      L lower = by_tangent;
+      sink(lower, reach);
+      choose(bend + varies, lower, reach, reach);
+      put(x, rows->shift), put(height, rows->value), put(reach + rest, rows->reach);
     }
-    // If the place is unreliable or not a number, take the start.
-    away = x - start;
-    magnitude(away);
-    const L half = L{} + 0.5;
-    keep_where_not_below(half, away, start, x);
-    sink(x, half), raise(x, -1.0 * half);
-    L addition, upwards;
-    slope(tilt);
-    upwards = tilt * (half - x);
-    raise(upwards, -1.0 * tilt * (half + x));
-    take(*rest, addition);
-    const L height = middle + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * (c5 + x * c6)))));
-    L bound = height + upwards + addition;
-    // Upper bound of the second derivative within half a step.
-    L b3 = c3, b4 = c4, b5 = c5, b6 = c6;
-    magnitude(b3), magnitude(b4), magnitude(b5), magnitude(b6);
-    const L bends = 2.0 * c2 + 3.0 * b3 + 3.0 * b4 + 2.5 * b5 + 1.875 * b6;
-    keep_where_not_below(L{}, bends, limit, bound);
-    sink(limit, bound);
-    put(x, *at), put(limit, *reach), put(height, *value);
   }
 };
 
@@ -257,22 +317,22 @@ struct FollowTop {
   }
 };
 
-/// sums: upper bounds of the sums of weight |a| and of other |a|, from |a| <= larger + half of the smaller
-/// part. Not finite where an amplitude is not.
+/// sums: upper bounds of sum n^2 |a|, sum n^3 |a| and sum n^7 |a|, from |a| <= larger + half of the smaller part.
+/// powers: these powers of each n. Not finite where an amplitude is not.
 struct BoundSizes {
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, const double* weights, const double* others,
-                                         const LaneRow* re, const LaneRow* im, LaneRow* sums) {
-    L sum{}, other{}, a, b, apart;
+  [[gnu::always_inline]] static void run(int orders, const std::array<double, 3>* powers, const LaneRow* re,
+                                         const LaneRow* im, LaneRow* sums) {
+    L second{}, third{}, seventh{}, a, b, apart;
     for (int k = 0; k < orders; ++k) {
       take(re[k], a), take(im[k], b);
       magnitude(a), magnitude(b);
       apart = a - b;
       magnitude(apart);
       a = 0.75 * (a + b) + 0.25 * apart;
-      sum += weights[k] * a, other += others[k] * a;
+      second += powers[k][0] * a, third += powers[k][1] * a, seventh += powers[k][2] * a;
     }
-    put(sum, sums[0]), put(other, sums[1]);
+    put(second, sums[0]), put(third, sums[1]), put(seventh, sums[2]);
   }
 };
 

@@ -19,10 +19,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSameOrder = 1e-9;  // rounding of orders as text, relative to the highest order [-]
-constexpr int kPointsAPeriod = 4;    // points in a period of the highest order
-constexpr int kFewestPoints = 16;
+constexpr int kPointsAPeriod = 6;    // points in a period of the highest order
+constexpr int kFewestPoints = 32;
 constexpr int kRefinements = 20;
-constexpr double kAngleTolerance = 5e-3;  // last step d over distance of points [-]: (n d)^6/720 is rounding
+constexpr double kAngleTolerance =
+    7.5e-3;  // last step d over distance of points [-]: (n d)^6/720 is rounding
 
 /// The largest order of which all are integer multiples, by Euclid's algorithm; 0: it is below `least`.
 double common_order(const std::vector<double>& orders, double least, double same) {
@@ -50,23 +51,26 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
         {{place, "orders", to_text(orders.front()) + " ... " + to_text(orders.back()), "",
           "must be whole multiples of one order, which is at least the highest over " +
               std::to_string(kMostMultiples) + ": they have no common cycle to be summed over"}});
-  for (const int parity : {0, 1}) {
+  const auto take = [&](int from, int step) {  // the multiples from, from + step, ...
     for (std::size_t k = 0; k < orders.size(); ++k)
-      if (const auto n = static_cast<int>(std::lround(orders[k] / base_)); n % 2 == parity)
+      if (const auto n = static_cast<int>(std::lround(orders[k] / base_)); n % step == from)
         multiples_.push_back(n), rows_.push_back(static_cast<Eigen::Index>(k));
-    if (parity == 0) even_ = static_cast<int>(rows_.size());
-  }
+    return static_cast<int>(rows_.size());
+  };
+  fours_ = take(0, 4);
+  even_ = take(2, 4);
+  take(1, 2);
   base_ = highest / std::round(highest / base_);
-  for (const int n : multiples_) cubes_.push_back(std::pow(n, 3)), sevenths_.push_back(std::pow(n, 7));
+  for (const int n : multiples_) powers_.push_back({std::pow(n, 2), std::pow(n, 3), std::pow(n, 7)});
   highest_ = *std::max_element(multiples_.begin(), multiples_.end());
-  const int points = std::max(kFewestPoints, kPointsAPeriod * highest_);
+  const int points = (std::max(kFewestPoints, kPointsAPeriod * highest_) + 7) / 8 * 8;
   step_ = kTwoPi / points;
   points_ = points;
   for (int p = 0; p < points; ++p) {
     turned_re_.push_back(std::cos(step_ * p));
     turned_im_.push_back(std::sin(step_ * p));
   }
-  for (int p = 0; p <= points / 4 + 1; ++p)  // one more, since points are processed in pairs
+  for (int p = 0; p <= points / 4; ++p)
     for (const int n : multiples_) {
       cosines_.push_back(turned_re_[idx(n * p % points)]);
       sines_.push_back(turned_im_[idx(n * p % points)]);
@@ -78,13 +82,10 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
   for (LaneArray* rows : {&power_re_, &power_im_})
     rows->resize(dense_ ? idx(highest_ + 2) : multiples_.size());
   samples_.resize(idx(points + 2 * kBeside));
-  for (LaneArray* marks : {&top_marks_, &bottom_marks_}) marks->resize(idx(points / kMarksAWord + 1));
+  for (auto& marks : marks_) marks.resize(idx((points + kMarksAWord - 1) / kMarksAWord));
 }
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
-
-/// Place of a top's sum and sign in best_, values_ and angles_.
-int TrigonometricSum::place_of(const Top& top) { return (top.sign > 0.0 ? 0 : kLanes) + top.lane; }
 
 void TrigonometricSum::find_powers(const LaneRow* point, const LaneRow& angle, const LaneRow& away) {
   if (dense_) {
@@ -176,19 +177,14 @@ void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index f
       im_[k].v[lane] = a.imag();
     }
   const auto orders = static_cast<int>(multiples_.size());
-  LaneRow sizes[2];
-  run_widest<BoundSizes>(orders, cubes_.data(), sevenths_.data(), re_.data(), im_.data(), sizes);
-  thirds_ = sizes[0];
-  // Largest excess of the sum, within half a step, over the parabola through three points and over the
-  // polynomial through seven.
-  const double third = step_ * step_ * step_ / (9.0 * std::sqrt(3.0)),
-               seventh = LookBetween::kSeventh * std::pow(step_, 7);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    slack_.v[lane] = third * sizes[0].v[lane];
-    rest_.v[lane] = seventh * sizes[1].v[lane];
-  }
-  run_widest<SumQuarters>(points_, orders, even_, cosines_.data(), sines_.data(), re_.data(), im_.data(),
-                          &samples_[kBeside], ends_.data());
+  LaneRow sizes[3];
+  run_widest<BoundSizes>(orders, powers_.data(), re_.data(), im_.data(), sizes);
+  thirds_ = sizes[1];
+  bounds_[0].v = step_ * step_ / 8.0 * sizes[0].v;
+  bounds_[1].v = 2.0 / 3.0 * std::pow(step_, 3) * sizes[1].v;
+  rest_.v = LookBetween::kSeventh * std::pow(step_, 7) * sizes[2].v;
+  run_widest<SumEighths>(points_, orders, fours_, even_, cosines_.data(), sines_.data(), re_.data(),
+                         im_.data(), &samples_[kBeside], ends_.data());
   for (int k = 0; k < kBeside; ++k) {
     samples_[idx(k)] = samples_[idx(points_ + k)];
     samples_[idx(points_ + kBeside + k)] = samples_[idx(kBeside + k)];
@@ -196,61 +192,45 @@ void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index f
 }
 
 void TrigonometricSum::find_tops(int used) {
-  run_widest<MarkExtremes>(points_, &samples_[kBeside], &slack_, ends_.data(), top_marks_.data(),
-                           bottom_marks_.data());
-  for (int lane = 0; lane < kLanes; ++lane) {
-    best_[idx(lane)] = ends_[0].v[lane];
-    best_[idx(kLanes + lane)] = -ends_[1].v[lane];
-  }
-  for (const double sign : {1.0, -1.0})
-    take_marked(used, sign, sign > 0.0 ? top_marks_.data() : bottom_marks_.data());
-}
-
-void TrigonometricSum::take_marked(int used, double sign, const LaneRow* marks) {
-  for (int lane = 0; lane < used; ++lane) {
-    if (!(slack_.v[lane] > 0.0)) continue;
-    for (int first = 0; first < points_; first += kMarksAWord)
-      for (auto word = static_cast<std::uint64_t>(marks[first / kMarksAWord].v[lane]); word != 0;
-           word &= word - 1) {
-        const int p = first + std::countr_zero(word);
-        const double before = sample_at(p - 1, lane), here = sample_at(p, lane),
-                     after = sample_at(p + 1, lane);
-        const double bend = sign * (2.0 * here - before - after), tilt = 0.5 * sign * (after - before);
-        // Place of the parabola's maximum within half a step.
-        const double shift = std::abs(tilt) < 0.5 * bend ? tilt / bend : std::copysign(0.5, tilt);
-        Top top{lane, p, sign, shift, sign * here + shift * (tilt - 0.5 * bend * shift) + slack_.v[lane]};
-        if (top.reach >= best_[idx(place_of(top))]) tops_.push_back(top);
-      }
+  tops_.clear();
+  run_widest<MarkExtremes>(points_, &samples_[kBeside], bounds_.data(), ends_.data(), marks_[0].data(),
+                           marks_[1].data());
+  for (int side = 0; side < kSigns; ++side)
+    for (int lane = 0; lane < used; ++lane) {
+      const double sign = side == 0 ? 1.0 : -1.0;
+      best_[idx(side * kLanes + lane)] = sign * ends_[idx(side)].v[lane];
+      if (!(thirds_.v[lane] > 0.0)) continue;
+      for (std::size_t w = 0; w < marks_[0].size(); ++w)
+        for (std::uint64_t word = marks_[idx(side)][w].of[lane]; word != 0; word &= word - 1)
+          add_top(lane, static_cast<int>(w) * kMarksAWord + std::countr_zero(word), side, sign);
+    }
+  const std::size_t rows = (tops_.size() + kLanes - 1) / kLanes;
+  run_widest<LookBetween>(static_cast<int>(rows), top_rows_.data());
+  for (std::size_t i = 0; i < tops_.size(); ++i) {
+    const TopRows& found = top_rows_[i / kLanes];
+    const auto lane = static_cast<int>(i % kLanes);
+    tops_[i].shift = found.shift.v[lane];
+    tops_[i].reach = found.reach.v[lane];
+    tops_[i].value = found.value.v[lane];
   }
 }
 
-void TrigonometricSum::look_between() {
-  constexpr int kSides = LookBetween::kSides;
-  std::array<LaneRow, 2 * kSides + 1> y;
-  LaneRow at, reach, rest, value;
-  for (std::size_t first = 0; first < tops_.size(); first += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, tops_.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Top& top = tops_[first + i];
-      const auto lane = static_cast<int>(i);
-      for (int k = -kSides; k <= kSides; ++k)
-        y[idx(kSides + k)].v[lane] = top.sign * sample_at(top.point + k, top.lane);
-      at.v[lane] = top.shift, reach.v[lane] = top.reach, rest.v[lane] = rest_.v[top.lane];
-    }
-    run_widest<LookBetween>(y.data(), &rest, &at, &reach, &value);
-    for (std::size_t i = 0; i < count; ++i) {
-      tops_[first + i].shift = at.v[static_cast<int>(i)];
-      tops_[first + i].reach = reach.v[static_cast<int>(i)];
-      tops_[first + i].value = value.v[static_cast<int>(i)];
-    }
-  }
+void TrigonometricSum::add_top(int lane, int point, int side, double sign) {
+  const std::size_t place = tops_.size();
+  tops_.push_back({lane, point, side * kLanes + lane, sign});
+  if (top_rows_.size() <= place / kLanes) top_rows_.emplace_back();
+  TopRows& rows = top_rows_[place / kLanes];
+  const auto to = static_cast<int>(place % kLanes);
+  for (int k = -kBeside; k <= kBeside; ++k)
+    rows.y[kBeside + k].v[to] = sign * samples_[idx(point + kBeside + k)].v[lane];
+  rows.rest.v[to] = rest_.v[lane];
 }
 
 void TrigonometricSum::follow_leaders() {
   std::array<std::array<int, kLanes>, 2> leaders;
   for (auto& side : leaders) side.fill(-1);
   for (std::size_t i = 0; i < tops_.size(); ++i) {
-    int& leader = leaders[tops_[i].sign > 0.0 ? 0 : 1][idx(tops_[i].lane)];
+    int& leader = leaders[idx(tops_[i].which / kLanes)][idx(tops_[i].lane)];
     if (leader < 0 || tops_[i].value > tops_[idx(leader)].value) leader = static_cast<int>(i);
   }
   for (const auto& side : leaders) {
@@ -263,12 +243,11 @@ void TrigonometricSum::follow_leaders() {
 void TrigonometricSum::take_found(int place) {
   Top& top = tops_[idx(place)];
   top.followed = true;
-  const int which = place_of(top);
-  double& best = best_[idx(which)];
-  if (angles_[idx(which)] >= 0.0 && !(top.found > best)) return;
+  double& best = best_[idx(top.which)];
+  if (angles_[idx(top.which)] >= 0.0 && !(top.found > best)) return;
   best = std::max(best, top.found);
-  values_[idx(which)] = top.found;
-  angles_[idx(which)] = top.angle - kTwoPi * std::floor(top.angle / kTwoPi);
+  values_[idx(top.which)] = top.found;
+  angles_[idx(top.which)] = top.angle - kTwoPi * std::floor(top.angle / kTwoPi);
 }
 
 void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out) {
@@ -277,11 +256,9 @@ void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<
   for (Eigen::Index first = 0; first < amplitudes.cols(); first += kLanes) {
     const int used = static_cast<int>(std::min<Eigen::Index>(kLanes, amplitudes.cols() - first));
     sample(amplitudes, first, used);
-    tops_.clear();
     angles_.fill(-1.0);
     values_.fill(0.0);
     find_tops(used);
-    look_between();
     follow_leaders();
     // The upper bounds of other tops may now be below the best value.
     for (std::size_t next = 0; next < tops_.size();) {
@@ -289,7 +266,7 @@ void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<
       places.fill(-1);
       int count = 0;
       for (; next < tops_.size() && count < kLanes; ++next)
-        if (!tops_[next].followed && !(tops_[next].reach < best_[idx(place_of(tops_[next]))]))
+        if (!tops_[next].followed && !(tops_[next].reach < best_[idx(tops_[next].which)]))
           places[idx(count++)] = static_cast<int>(next);
       if (count == 0) break;
       refine(places, false);
