@@ -96,6 +96,33 @@ template <class L>
 [[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
   store(from, reinterpret_cast<double*>(&to.v));
 }
+/// Numbers in pairs, as those of std::complex are, as two rows of lanes: the first of each pair and the second; and back.
+[[gnu::always_inline]] inline void take_pairs(const double* from, Lanes& first, Lanes& second) {
+  Lanes low, high;
+  load(from, low), load(from + kLanes, high);
+  first = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+  second = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+[[gnu::always_inline]] inline void take_pairs(const double* from, LanePair& first, LanePair& second) {
+  LanePair low, high;
+  load(from, low), load(from + kLanes, high);
+  first.low = __builtin_shufflevector(low.low, low.high, 0, 2, 4, 6);
+  first.high = __builtin_shufflevector(high.low, high.high, 0, 2, 4, 6);
+  second.low = __builtin_shufflevector(low.low, low.high, 1, 3, 5, 7);
+  second.high = __builtin_shufflevector(high.low, high.high, 1, 3, 5, 7);
+}
+[[gnu::always_inline]] inline void put_pairs(const Lanes& first, const Lanes& second, double* to) {
+  const Lanes low = __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
+              high = __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15);
+  store(low, to), store(high, to + kLanes);
+}
+[[gnu::always_inline]] inline void put_pairs(const LanePair& first, const LanePair& second, double* to) {
+  const LanePair low{__builtin_shufflevector(first.low, second.low, 0, 4, 1, 5),
+                     __builtin_shufflevector(first.low, second.low, 2, 6, 3, 7)},
+      high{__builtin_shufflevector(first.high, second.high, 0, 4, 1, 5),
+           __builtin_shufflevector(first.high, second.high, 2, 6, 3, 7)};
+  store(low, to), store(high, to + kLanes);
+}
 /// to = x with its halves, quarters or neighbours exchanged: lane l of x in lane l ^ distance.
 [[gnu::always_inline]] inline void exchange(const Lanes& x, int distance, Lanes& to) {
   to = distance == 4   ? __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3)
