@@ -9,16 +9,21 @@
 
 namespace drev {
 
+/// Sets of kLanes sums that are processed side by side: row i of set s is at i kSumSets + s.
+inline constexpr int kSumSets = 2;
+
 /// The vector type that fills one register where lanes have the type L.
 template <class L>
 struct RegisterOf {
   using Type = Lanes;
+  static constexpr int kRegisters = 1;  // that lanes take
   using Bits =
       std::uint64_t __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
 };
 template <>
 struct RegisterOf<LanePair> {
   using Type = LanePair::Half;
+  static constexpr int kRegisters = 2;
   using Bits = std::uint64_t __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
 };
 /// A word of 64 bits of each lane.
@@ -42,60 +47,90 @@ template <class Part>
 ///   cos n (pi - x)   = (-1)^n cos n x,     sin n (pi - x)   = -(-1)^n sin n x         and (-1)^n at x + pi.
 ///
 /// Amplitudes: `fours` of multiples of four first, then those of other even numbers up to `even`, then of odd ones.
-/// cosines, sines: [point of a quarter][amplitude]. ends: receives the highest and the lowest value.
+/// cosines, sines: [point of a quarter][amplitude]. ends: receives the highest values of all sets, then the lowest.
 struct SumEighths {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, int orders, int fours, int even, const double* cosines,
-                                         const double* sines, const LaneRow* re, const LaneRow* im,
-                                         LaneRow* y, LaneRow* ends) {
+  struct Sums {
+    L cosine{}, sine{};
+  };
+  /// The sums over the amplitudes [from, to) at two points, for kTile sets from number `set` on: each cosine and each
+  /// amplitude is read once for all of them.
+  template <int kTile, class L>
+  [[gnu::always_inline]] static void sum(int from, int to, int set, const double* cosines_1,
+                                         const double* sines_1, const double* cosines_2,
+                                         const double* sines_2, const LaneRow* re, const LaneRow* im,
+                                         Sums<L> (&at_1)[kTile], Sums<L> (&at_2)[kTile]) {
+    L c_1[kTile], s_1[kTile], c_2[kTile], s_2[kTile];
+    clear(c_1), clear(s_1), clear(c_2), clear(s_2);
+    for (int k = from; k < to; ++k) {
+      L x, of_1, of_2;
+      take(cosines_1[k], of_1), take(cosines_2[k], of_2);
+      for (int i = 0; i < kTile; ++i)
+        take(re[k * kSumSets + set + i], x), c_1[i] += of_1 * x, c_2[i] += of_2 * x;
+      take(sines_1[k], of_1), take(sines_2[k], of_2);
+      for (int i = 0; i < kTile; ++i)
+        take(im[k * kSumSets + set + i], x), s_1[i] += of_1 * x, s_2[i] += of_2 * x;
+    }
+    for (int i = 0; i < kTile; ++i) at_1[i] = {c_1[i], s_1[i]}, at_2[i] = {c_2[i], s_2[i]};
+  }
+  template <int kTile, class L>
+  [[gnu::always_inline]] static void run_tile(int set, int points, int orders, int fours, int even,
+                                              const double* cosines, const double* sines, const LaneRow* re,
+                                              const LaneRow* im, LaneRow* y, LaneRow* ends) {
     const int eighth = points / 8, quarter = points / 4, half = points / 2;
-    L most = L{} - std::numeric_limits<double>::infinity(), least = -1.0 * most;
-    // Sums of cosines and of sines at two points at a time, so that each amplitude is read once for both.
-    struct Sums {
-      L cosine{}, sine{};
+    L most[kTile], least[kTile];
+    for (int i = 0; i < kTile; ++i)
+      most[i] = L{} - std::numeric_limits<double>::infinity(), least[i] = -1.0 * most[i];
+    const auto sum_at = [&](int from, int to, int point_1, int point_2, Sums<L>(&at_1)[kTile],
+                            Sums<L>(&at_2)[kTile]) __attribute__((always_inline)) {
+      sum<kTile, L>(from, to, set, cosines + point_1 * orders, sines + point_1 * orders,
+                    cosines + point_2 * orders, sines + point_2 * orders, re, im, at_1, at_2);
     };
-    const auto sum = [&](int from, int to, int point_1, int point_2, Sums& at_1, Sums& at_2)
-        __attribute__((always_inline)) {
-      const double *cosines_1 = cosines + point_1 * orders, *sines_1 = sines + point_1 * orders,
-                   *cosines_2 = cosines + point_2 * orders, *sines_2 = sines + point_2 * orders;
-      L x, c_1{}, s_1{}, c_2{}, s_2{};
-      for (int k = from; k < to; ++k) {
-        take(re[k], x), c_1 += cosines_1[k] * x, c_2 += cosines_2[k] * x;
-        take(im[k], x), s_1 += sines_1[k] * x, s_2 += sines_2[k] * x;
-      }
-      at_1.cosine = c_1, at_1.sine = s_1, at_2.cosine = c_2, at_2.sine = s_2;
-    };
-    const auto write = [&](int at, const L& value) __attribute__((always_inline)) {
-      raise(most, value), sink(least, value);
-      put(value, y[at]);
+    const auto write = [&](int i, int at, const L& value) __attribute__((always_inline)) {
+      raise(most[i], value), sink(least[i], value);
+      put(value, y[at * kSumSets + set + i]);
     };
     // The sums over even n at x and -x, and those over odd ones.
-    const auto write_four = [&](int at, const L& here, const L& mirrored, const Sums& odd)
+    const auto write_four = [&](int i, int at, const L& here, const L& mirrored, const Sums<L>& odd)
         __attribute__((always_inline)) {
       const L apart = odd.cosine - odd.sine, together = odd.cosine + odd.sine;
-      write(at, here + apart);
-      write(half - at, mirrored - together);
-      write(half + at, here - apart);
-      write(at > 0 ? points - at : 0, mirrored + together);
+      write(i, at, here + apart);
+      write(i, half - at, mirrored - together);
+      write(i, half + at, here - apart);
+      write(i, at > 0 ? points - at : 0, mirrored + together);
     };
-    const auto write_eight = [&](int p, const Sums& four, const Sums& two, const Sums& odd,
-                                 const Sums& odd_behind) __attribute__((always_inline)) {
-      const L c_sum = four.cosine + two.cosine, s_sum = four.sine + two.sine;
-      const L c_rest = four.cosine - two.cosine, s_rest = four.sine - two.sine;
-      write_four(p, c_sum - s_sum, c_sum + s_sum, odd);
-      write_four(quarter - p, c_rest + s_rest, c_rest - s_rest, odd_behind);
+    const auto write_eight = [&](int p, const Sums<L>(&four)[kTile], const Sums<L>(&two)[kTile])
+        __attribute__((always_inline)) {
+      Sums<L> odd[kTile], odd_behind[kTile];
+      sum_at(even, orders, p, quarter - p, odd, odd_behind);
+      for (int i = 0; i < kTile; ++i) {
+        const L c_sum = four[i].cosine + two[i].cosine, s_sum = four[i].sine + two[i].sine;
+        const L c_rest = four[i].cosine - two[i].cosine, s_rest = four[i].sine - two[i].sine;
+        write_four(i, p, c_sum - s_sum, c_sum + s_sum, odd[i]);
+        write_four(i, quarter - p, c_rest + s_rest, c_rest - s_rest, odd_behind[i]);
+      }
     };
     for (int p = 0; p <= eighth; p += 2) {
-      Sums four, two, four_next, two_next, odd, odd_behind;
-      sum(0, fours, p, p + 1, four, four_next);
-      sum(fours, even, p, p + 1, two, two_next);
-      sum(even, orders, p, quarter - p, odd, odd_behind);
-      write_eight(p, four, two, odd, odd_behind);
-      if (p == eighth) break;
-      sum(even, orders, p + 1, quarter - p - 1, odd, odd_behind);
-      write_eight(p + 1, four_next, two_next, odd, odd_behind);
+      Sums<L> four[kTile], two[kTile], four_next[kTile], two_next[kTile];
+      sum_at(0, fours, p, p + 1, four, four_next);
+      sum_at(fours, even, p, p + 1, two, two_next);
+      write_eight(p, four, two);
+      if (p < eighth) write_eight(p + 1, four_next, two_next);
     }
-    put(most, ends[0]), put(least, ends[1]);
+    for (int i = 0; i < kTile; ++i) put(most[i], ends[set + i]), put(least[i], ends[kSumSets + set + i]);
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(int sets, int points, int orders, int fours, int even,
+                                         const double* cosines, const double* sines, const LaneRow* re,
+                                         const LaneRow* im, LaneRow* y, LaneRow* ends) {
+    // Pairs of vectors fill the registers with one set alone.
+    if constexpr (RegisterOf<L>::kRegisters == 1)
+      if (sets == 2) {
+        run_tile<2, L>(0, points, orders, fours, even, cosines, sines, re, im, y, ends);
+        return;
+      }
+    for (int set = 0; set < sets; ++set)
+      run_tile<1, L>(set, points, orders, fours, even, cosines, sines, re, im, y, ends);
   }
 };
 
@@ -112,7 +147,7 @@ inline constexpr int kMarksAWord = 64;
 /// three points, the middle one is at most 2/3 B_3 h^3 below its neighbours.
 struct MarkExtremes {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, const LaneRow* y, const LaneRow* bounds,
+  [[gnu::always_inline]] static void run(int sets, int points, const LaneRow* y, const LaneRow* bounds,
                                          const LaneRow* ends, LaneWord* tops, LaneWord* bottoms) {
     using Part = typename RegisterOf<L>::Type;
     using Bits = typename RegisterOf<L>::Bits;
@@ -122,32 +157,37 @@ struct MarkExtremes {
     const auto note = [&](const Part& x, Bits& word) __attribute__((always_inline)) {
       word = (word >> 1U) | (~reinterpret_cast<Bits>(x) & kSign);
     };
-    for (int lane = 0; lane < kLanes; lane += kWidth) {
-      Part least, most, room, below, before, here, after;
-      take_part(bounds[0], lane, room), take_part(bounds[1], lane, below);
-      take_part(ends[0], lane, least), take_part(ends[1], lane, most);
-      least -= room, most += room;
-      take_part(y[-1], lane, before), take_part(y[0], lane, here);
-      for (int first = 0; first < points; first += kMarksAWord) {
-        const int count = points - first < kMarksAWord ? points - first : kMarksAWord;
-        Bits top{}, bottom{};
-        for (int p = first; p < first + count; ++p) {
-          take_part(y[p + 1], lane, after);
-          const Part rise = here - before, fall = here - after;
-          Part lowest = rise < fall ? rise : fall, highest = rise > fall ? rise : fall;
-          lowest += below, highest = below - highest;
-          const Part above = here - least, under = most - here;
-          note(lowest < above ? lowest : above, top);
-          note(highest < under ? highest : under, bottom);
-          before = here;
-          here = after;
+    for (int set = 0; set < sets; ++set)
+      for (int lane = 0; lane < kLanes; lane += kWidth) {
+        const auto value = [&](int point, Part& to) __attribute__((always_inline)) {
+          take_part(y[point * kSumSets + set], lane, to);
+        };
+        Part least, most, room, below, before, here, after;
+        take_part(bounds[set], lane, room), take_part(bounds[kSumSets + set], lane, below);
+        take_part(ends[set], lane, least), take_part(ends[kSumSets + set], lane, most);
+        least -= room, most += room;
+        value(-1, before), value(0, here);
+        for (int first = 0; first < points; first += kMarksAWord) {
+          const int count = points - first < kMarksAWord ? points - first : kMarksAWord;
+          Bits top{}, bottom{};
+          for (int p = first; p < first + count; ++p) {
+            value(p + 1, after);
+            const Part rise = here - before, fall = here - after;
+            Part lowest = rise < fall ? rise : fall, highest = rise > fall ? rise : fall;
+            lowest += below, highest = below - highest;
+            const Part above = here - least, under = most - here;
+            note(lowest < above ? lowest : above, top);
+            note(highest < under ? highest : under, bottom);
+            before = here;
+            here = after;
+          }
+          top >>= static_cast<std::uint64_t>(kMarksAWord - count);
+          bottom >>= static_cast<std::uint64_t>(kMarksAWord - count);
+          const int word = first / kMarksAWord * kSumSets + set;
+          std::memcpy(&tops[word].of[lane], &top, sizeof top);
+          std::memcpy(&bottoms[word].of[lane], &bottom, sizeof bottom);
         }
-        top >>= static_cast<std::uint64_t>(kMarksAWord - count);
-        bottom >>= static_cast<std::uint64_t>(kMarksAWord - count);
-        std::memcpy(&tops[first / kMarksAWord].of[lane], &top, sizeof top);
-        std::memcpy(&bottoms[first / kMarksAWord].of[lane], &bottom, sizeof bottom);
       }
-    }
   }
 };
 
@@ -272,17 +312,27 @@ struct FindPowers {
   }
 };
 
-/// From an angle whose powers exp(i n angle) are given by place: the value and five derivatives there, and
-/// the step to the place where the slope of that Taylor polynomial is 0: Halley's step, unless it reverses
-/// Newton's, followed by one Newton step.
+/// kLanes tops that are followed to y' = 0, each in a lane, times its sign.
+struct FollowedTops {
+  /// States; lost: the steps do not lead to a maximum near the start.
+  static constexpr double kDone = 0.0, kOpen = 1.0, kLost = 2.0;
+  LaneRow point[2];     ///< exp(i angle) of the nearest point
+  LaneRow angle, sign;  ///< of that point [rad]; 1 for a maximum, -1 for a minimum
+  LaneRow start, away;  ///< distances from the point [rad]: first and present one
+  LaneRow value;        ///< largest value found, times the sign
+  LaneRow state;
+};
+
+/// A step of tops whose powers exp(i n angle) are given by place: the value and five derivatives there, and the step
+/// to the place where the slope of that Taylor polynomial is 0: Halley's step, unless it reverses Newton's, followed
+/// by one Newton step. A top is done where the step is shorter than `near`; it is lost where the sum does not curve
+/// downwards, or farther than `far` from the start.
 struct FollowTop {
-  struct Found {
-    LaneRow value, bend, step, behind;  ///< behind: value of the sum after the step
-  };
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, const int* multiples, const int* places,
+  [[gnu::always_inline]] static void run(int orders, int stride, const int* multiples, const int* places,
                                          const LaneRow* re, const LaneRow* im, const LaneRow* power_re,
-                                         const LaneRow* power_im, Found* found) {
+                                         const LaneRow* power_im, double near, double far,
+                                         FollowedTops* tops) {
     // One register-wide vector at a time, so that all sums stay in registers.
     using Part = typename RegisterOf<L>::Type;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
@@ -290,7 +340,7 @@ struct FollowTop {
       Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, x_re, x_im, p_re, p_im;
       for (int k = 0; k < orders; ++k) {
         const double n = multiples[k], n_2 = n * n;
-        take_part(re[k], first, x_re), take_part(im[k], first, x_im);
+        take_part(re[k * stride], first, x_re), take_part(im[k * stride], first, x_im);
         take_part(power_re[places[k]], first, p_re), take_part(power_im[places[k]], first, p_im);
         Part a = x_re * p_re - x_im * p_im, b = n * (x_re * p_im + x_im * p_re);
         y += a;
@@ -311,28 +361,48 @@ struct FollowTop {
       const Part behind =
           y + d * (s1 + d * (0.5 * s2 +
                              d * ((1.0 / 6.0) * s3 + d * ((1.0 / 24.0) * s4 + d * (1.0 / 120.0) * s5))));
-      put_part(y, first, found->value), put_part(s2, first, found->bend);
-      put_part(d, first, found->step), put_part(behind, first, found->behind);
+      Part sign, start, away, value, before;
+      take_part(tops->sign, first, sign), take_part(tops->start, first, start);
+      take_part(tops->away, first, away), take_part(tops->value, first, value);
+      take_part(tops->state, first, before);
+      const Part none{}, is_open = none + FollowedTops::kOpen, is_lost = none + FollowedTops::kLost;
+      const Part there = away + d, size = d < none ? -d : d, from_start = there - start,
+                 distance = from_start < none ? -from_start : from_start, bend = sign * s2;
+      Part best = sign * y, state = size < near ? none : is_open;
+      best = best > value ? best : value;
+      state = distance <= far ? state : is_lost;
+      state = bend < none ? state : is_lost;
+      Part end = sign * behind;
+      end = state == none ? end : best;
+      best = end > best ? end : best;
+      const Part to = state < is_lost ? there : away;
+      const auto change = [&](const Part& now, const Part& old, LaneRow& row) __attribute__((always_inline)) {
+        const Part kept = before == is_open ? now : old;
+        put_part(kept, first, row);
+      };
+      change(to, away, tops->away), change(best, value, tops->value), change(state, before, tops->state);
     }
   }
 };
 
-/// sums: upper bounds of sum n^2 |a|, sum n^3 |a| and sum n^7 |a|, from |a| <= larger + half of the smaller part.
-/// powers: these powers of each n. Not finite where an amplitude is not.
+/// bounds: upper bounds of sum n^2 |a|, sum n^3 |a| and sum n^7 |a|, each of all sets, from |a| <= larger + half of the
+/// smaller part. powers: these powers of each n. Not finite where an amplitude is not.
 struct BoundSizes {
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, const std::array<double, 3>* powers, const LaneRow* re,
-                                         const LaneRow* im, LaneRow* sums) {
-    L second{}, third{}, seventh{}, a, b, apart;
-    for (int k = 0; k < orders; ++k) {
-      take(re[k], a), take(im[k], b);
-      magnitude(a), magnitude(b);
-      apart = a - b;
-      magnitude(apart);
-      a = 0.75 * (a + b) + 0.25 * apart;
-      second += powers[k][0] * a, third += powers[k][1] * a, seventh += powers[k][2] * a;
+  [[gnu::always_inline]] static void run(int sets, int orders, const std::array<double, 3>* powers,
+                                         const LaneRow* re, const LaneRow* im, LaneRow* bounds) {
+    for (int set = 0; set < sets; ++set) {
+      L second{}, third{}, seventh{}, a, b, apart;
+      for (int k = 0; k < orders; ++k) {
+        take(re[k * kSumSets + set], a), take(im[k * kSumSets + set], b);
+        magnitude(a), magnitude(b);
+        apart = a - b;
+        magnitude(apart);
+        a = 0.75 * (a + b) + 0.25 * apart;
+        second += powers[k][0] * a, third += powers[k][1] * a, seventh += powers[k][2] * a;
+      }
+      put(second, bounds[set]), put(third, bounds[kSumSets + set]), put(seventh, bounds[2 * kSumSets + set]);
     }
-    put(second, sums[0]), put(third, sums[1]), put(seventh, sums[2]);
   }
 };
 

@@ -76,215 +76,206 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
       sines_.push_back(turned_im_[idx(n * p % points)]);
     }
   dense_ = highest_ <= 4 * static_cast<int>(multiples_.size());
-  for (LaneArray* rows : {&re_, &im_, &top_re_, &top_im_}) rows->resize(orders.size());
+  for (LaneArray* rows : {&re_, &im_}) rows->resize(orders.size() * kSumSets);
+  for (LaneArray* rows : {&top_re_, &top_im_}) rows->resize(orders.size());
   for (std::size_t k = 0; k < multiples_.size(); ++k)
     places_.push_back(dense_ ? multiples_[k] : static_cast<int>(k));
   for (LaneArray* rows : {&power_re_, &power_im_})
     rows->resize(dense_ ? idx(highest_ + 2) : multiples_.size());
-  samples_.resize(idx(points + 2 * kBeside));
-  for (auto& marks : marks_) marks.resize(idx((points + kMarksAWord - 1) / kMarksAWord));
+  samples_.resize(idx(points + 2 * kBeside) * kSumSets);
+  for (auto& marks : marks_) marks.resize(idx((points + kMarksAWord - 1) / kMarksAWord) * kSumSets);
+  // From sums of n^2 |a|, n^3 |a| and n^7 |a|: the bounds of MarkExtremes, and that of the polynomial's error.
+  shares_ = {step_ * step_ / 8.0, 2.0 / 3.0 * std::pow(step_, 3), LookBetween::kSeventh * std::pow(step_, 7)};
 }
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
 
-void TrigonometricSum::find_powers(const LaneRow* point, const LaneRow& angle, const LaneRow& away) {
+void TrigonometricSum::find_powers(const FollowedTops& tops) {
   if (dense_) {
-    run_widest<FindPowers>((highest_ + 2) / 2 * 2, point, &away, power_re_.data(), power_im_.data());
+    run_widest<FindPowers>((highest_ + 2) / 2 * 2, tops.point, &tops.away, power_re_.data(),
+                           power_im_.data());
     return;
   }
   for (std::size_t k = 0; k < multiples_.size(); ++k)
     for (int i = 0; i < kLanes; ++i) {
-      power_re_[k].v[i] = std::cos(multiples_[k] * (angle.v[i] + away.v[i]));
-      power_im_[k].v[i] = std::sin(multiples_[k] * (angle.v[i] + away.v[i]));
+      power_re_[k].v[i] = std::cos(multiples_[k] * (tops.angle.v[i] + tops.away.v[i]));
+      power_im_[k].v[i] = std::sin(multiples_[k] * (tops.angle.v[i] + tops.away.v[i]));
     }
 }
 
-BracketedMaximum TrigonometricSum::search(const Top& top) const {
+BracketedMaximum TrigonometricSum::search(const Top& top, double shift) const {
   const double middle = step_ * top.point, near = 1e-9 * step_;
-  return bracketed_maximum(middle - step_, middle + step_ * top.shift, middle + step_, near,
-                           [&](double angle) {
-                             double sum = 0.0;
-                             for (std::size_t k = 0; k < multiples_.size(); ++k)
-                               sum += re_[k].v[top.lane] * std::cos(multiples_[k] * angle) -
-                                      im_[k].v[top.lane] * std::sin(multiples_[k] * angle);
-                             return top.sign * sum;
-                           });
+  const auto row = [&](std::size_t k) { return k * kSumSets + idx(top.sum / kLanes); };
+  const int lane = top.sum % kLanes;
+  return bracketed_maximum(middle - step_, middle + step_ * shift, middle + step_, near, [&](double angle) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < multiples_.size(); ++k)
+      sum += re_[row(k)].v[lane] * std::cos(multiples_[k] * angle) -
+             im_[row(k)].v[lane] * std::sin(multiples_[k] * angle);
+    return sign_of(top) * sum;
+  });
 }
 
-void TrigonometricSum::refine(const std::array<int, kLanes>& places, bool in_their_lanes) {
-  const auto orders = static_cast<int>(multiples_.size());
-  LaneRow away, start, angle, point[2];
-  std::array<double, kLanes> value;
-  value.fill(-std::numeric_limits<double>::infinity());
-  unsigned open = 0;
+void TrigonometricSum::follow(const std::array<int, kLanes>& places, int stride, const LaneRow* re,
+                              const LaneRow* im) {
+  FollowedTops tops;
   for (int i = 0; i < kLanes; ++i) {
     if (places[idx(i)] < 0) continue;
-    const Top& top = tops_[idx(places[idx(i)])];
-    open |= 1U << static_cast<unsigned>(i);
-    angle.v[i] = step_ * top.point;
-    point[0].v[i] = turned_re_[idx(top.point)];
-    point[1].v[i] = turned_im_[idx(top.point)];
-    away.v[i] = start.v[i] = step_ * top.shift;
-    if (in_their_lanes) continue;
-    for (std::size_t k = 0; k < multiples_.size(); ++k) {
-      top_re_[k].v[i] = re_[k].v[top.lane];
-      top_im_[k].v[i] = im_[k].v[top.lane];
-    }
+    const auto place = idx(places[idx(i)]);
+    const Top& top = tops_[place];
+    tops.state.v[i] = FollowedTops::kOpen;
+    tops.point[0].v[i] = turned_re_[idx(top.point)];
+    tops.point[1].v[i] = turned_im_[idx(top.point)];
+    tops.angle.v[i] = step_ * top.point;
+    tops.sign.v[i] = sign_of(top);
+    tops.start.v[i] = step_ * top_rows_[place / kLanes].shift.v[place % kLanes];
   }
-  const LaneRow *re = in_their_lanes ? re_.data() : top_re_.data(),
-                *im = in_their_lanes ? im_.data() : top_im_.data();
-  FollowTop::Found d;
-  for (int round = 0; round < kRefinements && open != 0; ++round) {
-    find_powers(point, angle, away);
-    run_widest<FollowTop>(orders, multiples_.data(), places_.data(), re, im, power_re_.data(),
-                          power_im_.data(), &d);
-    for (unsigned left = open; left != 0; left &= left - 1) {
-      const int i = std::countr_zero(left);
-      const unsigned bit = 1U << static_cast<unsigned>(i);
-      const Top& top = tops_[idx(places[idx(i)])];
-      value[idx(i)] = std::max(value[idx(i)], top.sign * d.value.v[i]);
-      open &= ~bit;
-      const double step = d.step.v[i];
-      if (!(top.sign * d.bend.v[i] < 0.0) || std::abs(away.v[i] + step - start.v[i]) > step_) {
-        const BracketedMaximum found = search(top);
-        value[idx(i)] = std::max(value[idx(i)], found.value);
-        away.v[i] = found.at - angle.v[i];
-        continue;
-      }
-      away.v[i] += step;
-      if (std::abs(step) < kAngleTolerance * step_)
-        value[idx(i)] = std::max(value[idx(i)], top.sign * d.behind.v[i]);
-      else
-        open |= bit;
-    }
+  tops.away = tops.start;
+  tops.value.v = Lanes{} - std::numeric_limits<double>::infinity();
+  bool any = true;
+  for (int round = 0; round < kRefinements && any; ++round) {
+    find_powers(tops);
+    run_widest<FollowTop>(static_cast<int>(multiples_.size()), stride, multiples_.data(), places_.data(), re,
+                          im, power_re_.data(), power_im_.data(), kAngleTolerance * step_, step_, &tops);
+    any = false;
+    for (int i = 0; i < kLanes; ++i) any |= tops.state.v[i] == FollowedTops::kOpen;
   }
   for (int i = 0; i < kLanes; ++i) {
     if (places[idx(i)] < 0) continue;
     Top& top = tops_[idx(places[idx(i)])];
-    top.found = value[idx(i)];
-    top.angle = angle.v[i] + away.v[i];
+    double value = tops.value.v[i], angle = tops.angle.v[i] + tops.away.v[i];
+    if (tops.state.v[i] == FollowedTops::kLost) {
+      const BracketedMaximum found = search(top, tops.start.v[i] / step_);
+      value = std::max(value, found.value);
+      angle = found.at;
+    }
+    top.followed = true;
+    if (angles_[idx(top.which)] >= 0.0 && !(value > best_[idx(top.which)])) continue;
+    best_[idx(top.which)] = std::max(best_[idx(top.which)], value);
+    values_[idx(top.which)] = value;
+    angles_[idx(top.which)] = angle - kTwoPi * std::floor(angle / kTwoPi);
   }
 }
 
-void TrigonometricSum::sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used) {
-  for (std::size_t k = 0; used < kLanes && k < multiples_.size(); ++k) re_[k].v = im_[k].v = Lanes{};
-  std::array<const Complex*, kLanes> columns{};
-  for (int lane = 0; lane < used; ++lane) columns[idx(lane)] = amplitudes.col(first + lane).data();
-  for (std::size_t k = 0; k < multiples_.size(); ++k)
-    for (int lane = 0; lane < used; ++lane) {
-      const Complex a = columns[idx(lane)][rows_[k]];
-      re_[k].v[lane] = a.real();
-      im_[k].v[lane] = a.imag();
+void TrigonometricSum::sample(std::span<const Complex* const> sums) {
+  const int used = static_cast<int>(sums.size());
+  sets_ = (used + kLanes - 1) / kLanes;
+  for (std::size_t k = 0; k < multiples_.size(); ++k) {
+    LaneRow *re = &re_[k * kSumSets], *im = &im_[k * kSumSets];
+    if (used < sets_ * kLanes) re[sets_ - 1] = im[sets_ - 1] = {};
+    for (int i = 0; i < used; ++i) {
+      const Complex a = sums[idx(i)][rows_[k]];
+      re[i / kLanes].v[i % kLanes] = a.real();
+      im[i / kLanes].v[i % kLanes] = a.imag();
     }
-  const auto orders = static_cast<int>(multiples_.size());
-  LaneRow sizes[3];
-  run_widest<BoundSizes>(orders, powers_.data(), re_.data(), im_.data(), sizes);
-  thirds_ = sizes[1];
-  bounds_[0].v = step_ * step_ / 8.0 * sizes[0].v;
-  bounds_[1].v = 2.0 / 3.0 * std::pow(step_, 3) * sizes[1].v;
-  rest_.v = LookBetween::kSeventh * std::pow(step_, 7) * sizes[2].v;
-  run_widest<SumEighths>(points_, orders, fours_, even_, cosines_.data(), sines_.data(), re_.data(),
-                         im_.data(), &samples_[kBeside], ends_.data());
-  for (int k = 0; k < kBeside; ++k) {
-    samples_[idx(k)] = samples_[idx(points_ + k)];
-    samples_[idx(points_ + kBeside + k)] = samples_[idx(kBeside + k)];
   }
+  const auto orders = static_cast<int>(multiples_.size());
+  run_widest<BoundSizes>(sets_, orders, powers_.data(), re_.data(), im_.data(), bounds_.data());
+  for (std::size_t set = 0; set < kSumSets; ++set) {
+    thirds_[set] = bounds_[kSumSets + set];
+    for (std::size_t b = 0; b < shares_.size(); ++b) bounds_[b * kSumSets + set].v *= shares_[b];
+  }
+  LaneRow* samples = &samples_[kBeside * kSumSets];
+  run_widest<SumEighths>(sets_, points_, orders, fours_, even_, cosines_.data(), sines_.data(), re_.data(),
+                         im_.data(), samples, ends_.data());
+  std::copy_n(samples, kBeside * kSumSets, samples + points_ * kSumSets);
+  std::copy_n(samples + (points_ - kBeside) * kSumSets, kBeside * kSumSets, samples_.data());
 }
 
 void TrigonometricSum::find_tops(int used) {
   tops_.clear();
-  run_widest<MarkExtremes>(points_, &samples_[kBeside], bounds_.data(), ends_.data(), marks_[0].data(),
-                           marks_[1].data());
+  run_widest<MarkExtremes>(sets_, points_, &samples_[kBeside * kSumSets], bounds_.data(), ends_.data(),
+                           marks_[0].data(), marks_[1].data());
+  const std::size_t words = marks_[0].size() / kSumSets;
+  std::array<std::size_t, kSigns * kSums + 1> begin{};
   for (int side = 0; side < kSigns; ++side)
-    for (int lane = 0; lane < used; ++lane) {
-      const double sign = side == 0 ? 1.0 : -1.0;
-      best_[idx(side * kLanes + lane)] = sign * ends_[idx(side)].v[lane];
-      if (!(thirds_.v[lane] > 0.0)) continue;
-      for (std::size_t w = 0; w < marks_[0].size(); ++w)
-        for (std::uint64_t word = marks_[idx(side)][w].of[lane]; word != 0; word &= word - 1)
-          add_top(lane, static_cast<int>(w) * kMarksAWord + std::countr_zero(word), side, sign);
+    for (int sum = 0; sum < kSums; ++sum) {
+      const int which = side * kSums + sum, set = sum / kLanes, lane = sum % kLanes;
+      begin[idx(which)] = tops_.size();
+      if (sum >= used || !(thirds_[idx(set)].v[lane] > 0.0)) continue;
+      const double end = ends_[idx(side * kSumSets + set)].v[lane];
+      best_[idx(which)] = side == 0 ? end : -end;
+      for (std::size_t w = 0; w < words; ++w)
+        for (std::uint64_t word = marks_[idx(side)][w * kSumSets + idx(set)].of[lane]; word != 0;
+             word &= word - 1)
+          add_top({sum, static_cast<int>(w) * kMarksAWord + std::countr_zero(word), which});
     }
-  const std::size_t rows = (tops_.size() + kLanes - 1) / kLanes;
-  run_widest<LookBetween>(static_cast<int>(rows), top_rows_.data());
-  for (std::size_t i = 0; i < tops_.size(); ++i) {
-    const TopRows& found = top_rows_[i / kLanes];
-    const auto lane = static_cast<int>(i % kLanes);
-    tops_[i].shift = found.shift.v[lane];
-    tops_[i].reach = found.reach.v[lane];
-    tops_[i].value = found.value.v[lane];
+  begin.back() = tops_.size();
+  run_widest<LookBetween>(static_cast<int>((tops_.size() + kLanes - 1) / kLanes), top_rows_.data());
+  for (std::size_t which = 0; which + 1 < begin.size(); ++which) {
+    int leader = -1;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = begin[which]; i < begin[which + 1]; ++i)
+      if (const double value = top_rows_[i / kLanes].value.v[i % kLanes]; value > most || leader < 0)
+        most = value, leader = static_cast<int>(i);
+    leaders_[which / kLanes][which % kLanes] = leader;
   }
 }
 
-void TrigonometricSum::add_top(int lane, int point, int side, double sign) {
+void TrigonometricSum::add_top(const Top& top) {
   const std::size_t place = tops_.size();
-  tops_.push_back({lane, point, side * kLanes + lane, sign});
+  tops_.push_back(top);
   if (top_rows_.size() <= place / kLanes) top_rows_.emplace_back();
   TopRows& rows = top_rows_[place / kLanes];
-  const auto to = static_cast<int>(place % kLanes);
-  for (int k = -kBeside; k <= kBeside; ++k)
-    rows.y[kBeside + k].v[to] = sign * samples_[idx(point + kBeside + k)].v[lane];
-  rows.rest.v[to] = rest_.v[lane];
+  const auto to = static_cast<int>(place % kLanes), set = top.sum / kLanes, lane = top.sum % kLanes;
+  const LaneRow* values = &samples_[idx(top.point * kSumSets + set)];
+  for (int k = 0; k <= 2 * kBeside; ++k) rows.y[k].v[to] = sign_of(top) * values[k * kSumSets].v[lane];
+  rows.rest.v[to] = bounds_[idx(2 * kSumSets + set)].v[lane];
 }
 
-void TrigonometricSum::follow_leaders() {
-  std::array<std::array<int, kLanes>, 2> leaders;
-  for (auto& side : leaders) side.fill(-1);
-  for (std::size_t i = 0; i < tops_.size(); ++i) {
-    int& leader = leaders[idx(tops_[i].which / kLanes)][idx(tops_[i].lane)];
-    if (leader < 0 || tops_[i].value > tops_[idx(leader)].value) leader = static_cast<int>(i);
+void TrigonometricSum::follow_others() {
+  // The upper bounds of other tops may now be below the best value.
+  for (std::size_t next = 0; next < tops_.size();) {
+    std::array<int, kLanes> places;
+    places.fill(-1);
+    int count = 0;
+    for (; next < tops_.size() && count < kLanes; ++next) {
+      const Top& top = tops_[next];
+      if (top.followed || top_rows_[next / kLanes].reach.v[next % kLanes] < best_[idx(top.which)]) continue;
+      for (std::size_t k = 0; k < multiples_.size(); ++k) {
+        const auto row = k * kSumSets + idx(top.sum / kLanes);
+        top_re_[k].v[count] = re_[row].v[top.sum % kLanes];
+        top_im_[k].v[count] = im_[row].v[top.sum % kLanes];
+      }
+      places[idx(count++)] = static_cast<int>(next);
+    }
+    if (count > 0) follow(places, 1, top_re_.data(), top_im_.data());
   }
-  for (const auto& side : leaders) {
-    refine(side, true);
-    for (const int place : side)
-      if (place >= 0) take_found(place);
-  }
 }
 
-void TrigonometricSum::take_found(int place) {
-  Top& top = tops_[idx(place)];
-  top.followed = true;
-  double& best = best_[idx(top.which)];
-  if (angles_[idx(top.which)] >= 0.0 && !(top.found > best)) return;
-  best = std::max(best, top.found);
-  values_[idx(top.which)] = top.found;
-  angles_[idx(top.which)] = top.angle - kTwoPi * std::floor(top.angle / kTwoPi);
-}
-
-void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out) {
-  out.assign(static_cast<std::size_t>(amplitudes.cols()), {});
+void TrigonometricSum::extremes(std::span<const Complex* const> sums, std::vector<SumExtremes>& out) {
+  out.assign(sums.size(), {});
   if (multiples_.empty()) return;
-  for (Eigen::Index first = 0; first < amplitudes.cols(); first += kLanes) {
-    const int used = static_cast<int>(std::min<Eigen::Index>(kLanes, amplitudes.cols() - first));
-    sample(amplitudes, first, used);
+  for (std::size_t first = 0; first < sums.size(); first += kSums) {
+    const std::size_t used = std::min<std::size_t>(kSums, sums.size() - first);
+    sample(sums.subspan(first, used));
     angles_.fill(-1.0);
     values_.fill(0.0);
-    find_tops(used);
-    follow_leaders();
-    // The upper bounds of other tops may now be below the best value.
-    for (std::size_t next = 0; next < tops_.size();) {
-      std::array<int, kLanes> places;
-      places.fill(-1);
-      int count = 0;
-      for (; next < tops_.size() && count < kLanes; ++next)
-        if (!tops_[next].followed && !(tops_[next].reach < best_[idx(tops_[next].which)]))
-          places[idx(count++)] = static_cast<int>(next);
-      if (count == 0) break;
-      refine(places, false);
-      for (int i = 0; i < count; ++i) take_found(places[idx(i)]);
-    }
-    for (int lane = 0; lane < used; ++lane) {
-      SumExtremes& e = out[static_cast<std::size_t>(first + lane)];
-      if (!std::isfinite(thirds_.v[lane])) {
+    find_tops(static_cast<int>(used));
+    for (int side = 0; side < kSigns; ++side)
+      for (int set = 0; set < sets_; ++set)
+        follow(leaders_[idx(side * kSumSets + set)], kSumSets, &re_[idx(set)], &im_[idx(set)]);
+    follow_others();
+    for (std::size_t i = 0; i < used; ++i) {
+      SumExtremes& e = out[first + i];
+      const double thirds = thirds_[i / kLanes].v[i % kLanes];
+      if (!std::isfinite(thirds)) {
         e.max = std::numeric_limits<double>::infinity();
         e.min = -e.max;
-      } else if (thirds_.v[lane] > 0.0) {
-        e.max = values_[idx(lane)];
-        e.min = -values_[idx(kLanes + lane)];
-        e.max_angle = std::max(0.0, angles_[idx(lane)]) / base_;
-        e.min_angle = std::max(0.0, angles_[idx(kLanes + lane)]) / base_;
+      } else if (thirds > 0.0) {
+        e.max = values_[i];
+        e.min = -values_[kSums + i];
+        e.max_angle = std::max(0.0, angles_[i]) / base_;
+        e.min_angle = std::max(0.0, angles_[kSums + i]) / base_;
       }
     }
   }
+}
+
+void TrigonometricSum::extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out) {
+  std::vector<const Complex*> sums;
+  for (Eigen::Index c = 0; c < amplitudes.cols(); ++c) sums.push_back(amplitudes.col(c).data());
+  extremes(sums, out);
 }
 
 }  // namespace drev

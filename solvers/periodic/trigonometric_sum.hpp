@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,62 +42,60 @@ class TrigonometricSum {
   TrigonometricSum(const std::vector<double>& orders, const std::string& place);
   double base_order() const { return base_; }
   double cycle() const;  ///< 2 pi / o_0 [rad]
-  /// amplitudes: a column for each sum, a row for each order. Extremes are not finite where an amplitude is
-  /// not.
+  /// sums: the amplitudes of each, in the sequence of the orders. Extremes are not finite where an amplitude is not.
+  void extremes(std::span<const std::complex<double>* const> sums, std::vector<SumExtremes>& out);
+  /// amplitudes: a column for each sum, a row for each order.
   void extremes(const Eigen::MatrixXcd& amplitudes, std::vector<SumExtremes>& out);
 
  private:
-  /// A place where sign times y may have its maximum: the nearest point, the distance from it (shift), and an
-  /// upper bound of the value there (reach).
+  static constexpr int kSigns = 2;                 // maxima and minima
+  static constexpr int kSums = kSumSets * kLanes;  // sums that are processed together
+  static constexpr int kBeside = TopRows::kSides;  // points that are repeated before and after the cycle
+  /// The point nearest to a place where y, or -y, may have its maximum.
   struct Top {
-    int lane, point;
-    int which;  // place of its sum and sign in best_, values_ and angles_
-    double sign;
-    double shift = 0.0, reach = 0.0;  // shift in steps
-    double value = 0.0;               // value of the polynomial through seven points
-    double found = 0.0, angle = 0.0;
+    int sum, point;
+    int which;  // place of its sum and sign in best_, values_ and angles_: maxima first
     bool followed = false;
   };
-  void sample(const Eigen::MatrixXcd& amplitudes, Eigen::Index first, int used);
-  /// Finds the places of maxima and minima that may be the extremes, with their shift and reach.
+  static double sign_of(const Top& top) { return top.which < kSums ? 1.0 : -1.0; }
+  void sample(std::span<const std::complex<double>* const> sums);
+  /// Finds the places of maxima and minima that may be the extremes, and the highest of each sum and sign.
   void find_tops(int used);
-  void add_top(int lane, int point, int side, double sign);
-  /// Refines the highest top of each sum and sign.
-  void follow_leaders();
-  /// Refines the tops with these numbers in tops_ (-1: none) to their extrema. in_their_lanes: true: each
-  /// number is in the lane of its sum.
-  void refine(const std::array<int, kLanes>& places, bool in_their_lanes);
+  void add_top(const Top& top);
+  /// Follows the tops with these numbers in tops_ (-1: none) to their extrema, each in the lane of its amplitudes, and
+  /// takes them as extremes of their sums where they are the largest so far.
+  void follow(const std::array<int, kLanes>& places, int stride, const LaneRow* re, const LaneRow* im);
+  void follow_others();
   /// The largest value between a top's neighbours, by bracketing; used where the steps to y' = 0 do not
-  /// converge.
-  BracketedMaximum search(const Top& top) const;
-  void find_powers(const LaneRow* point, const LaneRow& angle, const LaneRow& away);
-  /// Takes a refined top as the extreme of its sum if it is the largest so far.
-  void take_found(int place);
+  /// converge. shift: where it starts, in steps from the point.
+  BracketedMaximum search(const Top& top, double shift) const;
+  void find_powers(const FollowedTops& tops);
 
   double base_ = 0.0, step_ = 0.0;
-  int highest_ = 0, points_ = 0;
-  static constexpr int kSigns = 2;                 // maxima and minima
-  static constexpr int kBeside = TopRows::kSides;  // points that are repeated before and after the cycle
-  std::vector<int> multiples_;                     // the n_k, in the sequence of SumEighths
-  int fours_ = 0, even_ = 0;                       // number of multiples of four, and of even ones
-  std::vector<Eigen::Index> rows_;                 // rows of the orders in `amplitudes`, in this sequence
-  std::vector<std::array<double, 3>> powers_;      // second, third and seventh powers of the multiples
-  std::vector<double> cosines_, sines_;            // [point of a quarter][place in multiples_]
-  LaneArray re_, im_, samples_;                    // of kLanes sums: amplitudes by multiple; values at points
-  LaneArray top_re_, top_im_;                      // amplitudes of the sums being refined, by order
-  LaneArray power_re_, power_im_;                  // exp(i n angle) at these tops
-  std::vector<int> places_;                        // place of each order in power_re_ and power_im_
-  std::vector<double> turned_re_, turned_im_;      // exp(i angle) of the points
-  bool dense_ = false;                             // true: powers are kept for all n, not only the n_k
+  int highest_ = 0, points_ = 0, sets_ = 0;
+  std::vector<int> multiples_;                       // the n_k, in the sequence of SumEighths
+  int fours_ = 0, even_ = 0;                         // number of multiples of four, and of even ones
+  std::vector<Eigen::Index> rows_;                   // places of the orders given, in this sequence
+  std::vector<std::array<double, 3>> powers_;        // second, third and seventh powers of the multiples
+  std::array<double, 3> shares_{};                   // factors of the bounds
+  std::vector<double> cosines_, sines_;              // [point of a quarter][place in multiples_]
+  LaneArray re_, im_, samples_;                      // of the sets: amplitudes by multiple; values at points
+  LaneArray top_re_, top_im_;                        // amplitudes of the sums of tops, by multiple
+  LaneArray power_re_, power_im_;                    // exp(i n angle) at these tops
+  std::vector<int> places_;                          // place of each order in power_re_ and power_im_
+  std::vector<double> turned_re_, turned_im_;        // exp(i angle) of the points
+  bool dense_ = false;                               // true: powers are kept for all n, not only the n_k
   std::array<std::vector<LaneWord>, kSigns> marks_;  // marks of the points that may be next to an extreme
-  LaneRow thirds_, rest_;          // B_3 of each sum; bound of its excess over the polynomial
-  std::array<LaneRow, 2> bounds_;  // of MarkExtremes
-  std::array<LaneRow, 2> ends_;    // highest and lowest value of each sum at the points
+  std::array<LaneRow, kSumSets> thirds_;             // sum n^3 |a| of each sum
+  std::array<LaneRow, 3 * kSumSets> bounds_;         // those of MarkExtremes; excess over the polynomial
+  std::array<LaneRow, 2 * kSumSets> ends_;           // highest and lowest value of each sum at the points
   // For each sum, first the maxima, then the minima: the best value at the points or found so far; the value
   // found and its angle (-1: not yet).
-  std::array<double, kSigns * kLanes> best_{}, values_{}, angles_{};
+  std::array<double, kSigns * kSums> best_{}, values_{}, angles_{};
   std::vector<Top> tops_;
   std::vector<TopRows> top_rows_;  // of the tops, kLanes at a time
+  std::array<std::array<int, kLanes>, kSigns * kSumSets>
+      leaders_;  // highest top of each sum and sign; -1: none
 };
 
 }  // namespace drev
