@@ -96,6 +96,46 @@ template <class L>
 [[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
   store(from, reinterpret_cast<double*>(&to.v));
 }
+/// Transposes eight rows: lane j of row i to lane i of row j.
+template <int kDistance>
+[[gnu::always_inline]] inline void exchange_blocks(Lanes& a, Lanes& b) {
+  const Lanes x = a, y = b;
+  if constexpr (kDistance == 1) {
+    a = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    b = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  } else if constexpr (kDistance == 2) {
+    a = __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13);
+    b = __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
+  } else {
+    a = __builtin_shufflevector(x, y, 0, 1, 2, 3, 8, 9, 10, 11);
+    b = __builtin_shufflevector(x, y, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+template <int kDistance>
+[[gnu::always_inline]] inline void exchange_blocks(LanePair& a, LanePair& b) {
+  const LanePair x = a, y = b;
+  if constexpr (kDistance == 1) {
+    a = {__builtin_shufflevector(x.low, y.low, 0, 4, 2, 6),
+         __builtin_shufflevector(x.high, y.high, 0, 4, 2, 6)};
+    b = {__builtin_shufflevector(x.low, y.low, 1, 5, 3, 7),
+         __builtin_shufflevector(x.high, y.high, 1, 5, 3, 7)};
+  } else if constexpr (kDistance == 2) {
+    a = {__builtin_shufflevector(x.low, y.low, 0, 1, 4, 5),
+         __builtin_shufflevector(x.high, y.high, 0, 1, 4, 5)};
+    b = {__builtin_shufflevector(x.low, y.low, 2, 3, 6, 7),
+         __builtin_shufflevector(x.high, y.high, 2, 3, 6, 7)};
+  } else {
+    a = {x.low, y.low};
+    b = {x.high, y.high};
+  }
+}
+template <class L>
+[[gnu::always_inline]] inline void transpose(L (&x)[kLanes]) {
+  for (int i = 0; i < kLanes; i += 2) exchange_blocks<1>(x[i], x[i + 1]);
+  for (int i = 0; i < kLanes; i += 4)
+    exchange_blocks<2>(x[i], x[i + 2]), exchange_blocks<2>(x[i + 1], x[i + 3]);
+  for (int i = 0; i < kLanes / 2; ++i) exchange_blocks<4>(x[i], x[i + 4]);
+}
 /// Numbers in pairs, as those of std::complex are, as two rows of lanes: the first of each pair and the second; and back.
 [[gnu::always_inline]] inline void take_pairs(const double* from, Lanes& first, Lanes& second) {
   Lanes low, high;

@@ -40,6 +40,25 @@ template <class Part>
   std::memcpy(reinterpret_cast<double*>(&row.v) + first, &from, sizeof from);
 }
 
+/// Complex amplitudes of kLanes sums, one behind the other, as rows of lanes: number k of each to row places[k].
+/// Processes four at a time, up to count / 4 * 4.
+struct TakeColumns {
+  template <class L>
+  [[gnu::always_inline]] static void run(int count, const double* const* columns, const int* places,
+                                         LaneRow* re, LaneRow* im) {
+    constexpr int kAtOnce = kLanes / 2;
+    for (int k = 0; k + kAtOnce <= count; k += kAtOnce) {
+      L x[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) load(columns[lane] + 2 * k, x[lane]);
+      transpose(x);
+      for (int i = 0; i < kAtOnce; ++i) {
+        put(x[2 * i], re[places[k + i] * kSumSets]);
+        put(x[2 * i + 1], im[places[k + i] * kSumSets]);
+      }
+    }
+  }
+};
+
 /// Values y at all points of the cycle, from sums over an eighth of it for even n, over a quarter for odd n. Both
 /// follow, with x in the first eighth, from
 ///
@@ -276,42 +295,6 @@ struct LookBetween {
   }
 };
 
-/// Powers exp(i n angle), n = 0, 1, ... count - 1 (count even), with angle = point + away, exp(i point) given
-/// and |away| < 0.6 rad, by a series to rounding and products of every second power.
-struct FindPowers {
-  template <class L>
-  [[gnu::always_inline]] static void run(int count, const LaneRow* point, const LaneRow* away, LaneRow* re,
-                                         LaneRow* im) {
-    L x, point_re, point_im;
-    take(*away, x), take(point[0], point_re), take(point[1], point_im);
-    const L d = x * x;
-    const L c =
-        1.0 - 0.5 * d *
-                  (1.0 - d * (1.0 / 12.0) *
-                             (1.0 - d * (1.0 / 30.0) *
-                                        (1.0 - d * (1.0 / 56.0) *
-                                                   (1.0 - d * (1.0 / 90.0) * (1.0 - d * (1.0 / 132.0))))));
-    const L s =
-        x *
-        (1.0 - d * (1.0 / 6.0) *
-                   (1.0 - d * (1.0 / 20.0) *
-                              (1.0 - d * (1.0 / 42.0) *
-                                         (1.0 - d * (1.0 / 72.0) *
-                                                    (1.0 - d * (1.0 / 110.0) * (1.0 - d * (1.0 / 156.0)))))));
-    L odd_re = point_re * c - point_im * s, odd_im = point_re * s + point_im * c;
-    const L two_re = odd_re * odd_re - odd_im * odd_im, two_im = 2.0 * odd_re * odd_im;
-    L even_re = L{} + 1.0, even_im{};
-    for (int n = 0; n < count; n += 2) {
-      put(even_re, re[n]), put(even_im, im[n]);
-      put(odd_re, re[n + 1]), put(odd_im, im[n + 1]);
-      const L next_even = even_re * two_re - even_im * two_im, next_odd = odd_re * two_re - odd_im * two_im;
-      even_im = even_re * two_im + even_im * two_re;
-      odd_im = odd_re * two_im + odd_im * two_re;
-      even_re = next_even, odd_re = next_odd;
-    }
-  }
-};
-
 /// kLanes tops that are followed to y' = 0, each in a lane, times its sign.
 struct FollowedTops {
   /// States; lost: the steps do not lead to a maximum near the start.
@@ -323,13 +306,38 @@ struct FollowedTops {
   LaneRow state;
 };
 
-/// A step of tops whose powers exp(i n angle) are given by place: the value and five derivatives there, and the step
-/// to the place where the slope of that Taylor polynomial is 0: Halley's step, unless it reverses Newton's, followed
-/// by one Newton step. A top is done where the step is shorter than `near`; it is lost where the sum does not curve
-/// downwards, or farther than `far` from the start.
+/// exp(i (angle + away)), exp(i angle) given, |away| < 0.6 rad, by a series to rounding.
+template <class Part>
+[[gnu::always_inline]] inline void turn(const Part& point_re, const Part& point_im, const Part& away,
+                                        Part& re, Part& im) {
+  const Part d = away * away;
+  const Part c =
+      1.0 - 0.5 * d *
+                (1.0 - d * (1.0 / 12.0) *
+                           (1.0 - d * (1.0 / 30.0) *
+                                      (1.0 - d * (1.0 / 56.0) *
+                                                 (1.0 - d * (1.0 / 90.0) * (1.0 - d * (1.0 / 132.0))))));
+  const Part s =
+      away *
+      (1.0 - d * (1.0 / 6.0) *
+                 (1.0 - d * (1.0 / 20.0) *
+                            (1.0 - d * (1.0 / 42.0) *
+                                       (1.0 - d * (1.0 / 72.0) *
+                                                  (1.0 - d * (1.0 / 110.0) * (1.0 - d * (1.0 / 156.0)))))));
+  re = point_re * c - point_im * s;
+  im = point_re * s + point_im * c;
+}
+
+/// A step of tops: the value and five derivatives where they are, and the step to the place where the slope of that
+/// Taylor polynomial is 0: Halley's step, unless it reverses Newton's, followed by one Newton step. A top is done where
+/// the step is shorter than `near`; it is lost where the sum does not curve downwards, or farther than `far` from the
+/// start.
+///
+/// rows: row in re and im of each n = 1 ... count, count even. power_re, power_im: exp(i n angle) of each n; null: they
+/// are found here, from the products of every second one.
 struct FollowTop {
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, int stride, const int* multiples, const int* places,
+  [[gnu::always_inline]] static void run(int count, int stride, const int* rows, const int* multiples,
                                          const LaneRow* re, const LaneRow* im, const LaneRow* power_re,
                                          const LaneRow* power_im, double near, double far,
                                          FollowedTops* tops) {
@@ -337,12 +345,13 @@ struct FollowTop {
     using Part = typename RegisterOf<L>::Type;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
     for (int first = 0; first < kLanes; first += kWidth) {
-      Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, x_re, x_im, p_re, p_im;
-      for (int k = 0; k < orders; ++k) {
-        const double n = multiples[k], n_2 = n * n;
-        take_part(re[k * stride], first, x_re), take_part(im[k * stride], first, x_im);
-        take_part(power_re[places[k]], first, p_re), take_part(power_im[places[k]], first, p_im);
-        Part a = x_re * p_re - x_im * p_im, b = n * (x_re * p_im + x_im * p_re);
+      Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, p_re, p_im, sign, start, away, value, before;
+      const auto add = [&](double n, int row, const Part& of_re, const Part& of_im)
+          __attribute__((always_inline)) {
+        Part x_re, x_im;
+        take_part(re[row * stride], first, x_re), take_part(im[row * stride], first, x_im);
+        const double n_2 = n * n;
+        Part a = x_re * of_re - x_im * of_im, b = n * (x_re * of_im + x_im * of_re);
         y += a;
         s1 -= b;
         a *= n_2, b *= n_2;
@@ -350,6 +359,27 @@ struct FollowTop {
         s3 += b;
         s4 += n_2 * a;
         s5 -= n_2 * b;
+      };
+      take_part(tops->away, first, away);
+      if (power_re) {
+        for (int k = 0; k < count; ++k) {
+          take_part(power_re[k], first, p_re), take_part(power_im[k], first, p_im);
+          add(multiples[k], k, p_re, p_im);
+        }
+      } else {
+        Part odd_re, odd_im;
+        take_part(tops->point[0], first, p_re), take_part(tops->point[1], first, p_im);
+        turn(p_re, p_im, away, odd_re, odd_im);
+        const Part two_re = odd_re * odd_re - odd_im * odd_im, two_im = 2.0 * odd_re * odd_im;
+        p_re = two_re, p_im = two_im;
+        for (int n = 1; n < count; n += 2) {
+          add(n, rows[n], odd_re, odd_im);
+          add(n + 1, rows[n + 1], p_re, p_im);
+          const Part next_odd = odd_re * two_re - odd_im * two_im, next = p_re * two_re - p_im * two_im;
+          odd_im = odd_re * two_im + odd_im * two_re;
+          p_im = p_re * two_im + p_im * two_re;
+          odd_re = next_odd, p_re = next;
+        }
       }
       const Part newton = -s1 / s2, third = 1.0 + 0.5 * newton * s3 / s2, half = Part{} + 0.5;
       Part d = newton / (third > half ? third : half);
@@ -361,9 +391,8 @@ struct FollowTop {
       const Part behind =
           y + d * (s1 + d * (0.5 * s2 +
                              d * ((1.0 / 6.0) * s3 + d * ((1.0 / 24.0) * s4 + d * (1.0 / 120.0) * s5))));
-      Part sign, start, away, value, before;
       take_part(tops->sign, first, sign), take_part(tops->start, first, start);
-      take_part(tops->away, first, away), take_part(tops->value, first, value);
+      take_part(tops->value, first, value);
       take_part(tops->state, first, before);
       const Part none{}, is_open = none + FollowedTops::kOpen, is_lost = none + FollowedTops::kLost;
       const Part there = away + d, size = d < none ? -d : d, from_start = there - start,

@@ -76,12 +76,17 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
       sines_.push_back(turned_im_[idx(n * p % points)]);
     }
   dense_ = highest_ <= 4 * static_cast<int>(multiples_.size());
-  for (LaneArray* rows : {&re_, &im_}) rows->resize(orders.size() * kSumSets);
-  for (LaneArray* rows : {&top_re_, &top_im_}) rows->resize(orders.size());
-  for (std::size_t k = 0; k < multiples_.size(); ++k)
-    places_.push_back(dense_ ? multiples_[k] : static_cast<int>(k));
-  for (LaneArray* rows : {&power_re_, &power_im_})
-    rows->resize(dense_ ? idx(highest_ + 2) : multiples_.size());
+  // One row more, which stays 0: that of the multiples that are none of the orders.
+  for (LaneArray* rows : {&re_, &im_}) rows->resize((orders.size() + 1) * kSumSets);
+  for (LaneArray* rows : {&top_re_, &top_im_}) rows->resize(orders.size() + 1);
+  places_.resize(orders.size());
+  if (dense_) places_of_n_.assign(idx(highest_ + 2), static_cast<int>(orders.size()));
+  for (std::size_t k = 0; k < multiples_.size(); ++k) {
+    places_[idx(static_cast<int>(rows_[k]))] = static_cast<int>(k);
+    if (dense_) places_of_n_[idx(multiples_[k])] = static_cast<int>(k);
+  }
+  if (!dense_)
+    for (LaneArray* rows : {&power_re_, &power_im_}) rows->resize(multiples_.size());
   samples_.resize(idx(points + 2 * kBeside) * kSumSets);
   for (auto& marks : marks_) marks.resize(idx((points + kMarksAWord - 1) / kMarksAWord) * kSumSets);
   // From sums of n^2 |a|, n^3 |a| and n^7 |a|: the bounds of MarkExtremes, and that of the polynomial's error.
@@ -90,28 +95,34 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
 
-void TrigonometricSum::find_powers(const FollowedTops& tops) {
-  if (dense_) {
-    run_widest<FindPowers>((highest_ + 2) / 2 * 2, tops.point, &tops.away, power_re_.data(),
-                           power_im_.data());
-    return;
-  }
-  for (std::size_t k = 0; k < multiples_.size(); ++k)
+void TrigonometricSum::step(int stride, const LaneRow* re, const LaneRow* im, FollowedTops& tops) {
+  for (std::size_t k = 0; !dense_ && k < multiples_.size(); ++k)
     for (int i = 0; i < kLanes; ++i) {
       power_re_[k].v[i] = std::cos(multiples_[k] * (tops.angle.v[i] + tops.away.v[i]));
       power_im_[k].v[i] = std::sin(multiples_[k] * (tops.angle.v[i] + tops.away.v[i]));
     }
+  const LaneRow *power_re = dense_ ? nullptr : power_re_.data(),
+                *power_im = dense_ ? nullptr : power_im_.data();
+  run_widest<FollowTop>(dense_ ? (highest_ + 1) / 2 * 2 : static_cast<int>(multiples_.size()), stride,
+                        places_of_n_.data(), multiples_.data(), re, im, power_re, power_im,
+                        kAngleTolerance * step_, step_, &tops);
 }
 
 BracketedMaximum TrigonometricSum::search(const Top& top, double shift) const {
   const double middle = step_ * top.point, near = 1e-9 * step_;
-  const auto row = [&](std::size_t k) { return k * kSumSets + idx(top.sum / kLanes); };
   const int lane = top.sum % kLanes;
   return bracketed_maximum(middle - step_, middle + step_ * shift, middle + step_, near, [&](double angle) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < multiples_.size(); ++k)
-      sum += re_[row(k)].v[lane] * std::cos(multiples_[k] * angle) -
-             im_[row(k)].v[lane] * std::sin(multiples_[k] * angle);
+    Complex wave = 1.0, spacing = 1.0;
+    for (std::size_t k = 0; k < multiples_.size(); ++k) {
+      // Multiples of even spacing are a rotation each.
+      const int before = k > 0 ? multiples_[k - 1] : 0, gap = multiples_[k] - before;
+      if (k < 2 || gap != before - multiples_[k - 2]) spacing = std::polar(1.0, gap * angle);
+      wave = {wave.real() * spacing.real() - wave.imag() * spacing.imag(),
+              wave.real() * spacing.imag() + wave.imag() * spacing.real()};
+      const auto row = k * kSumSets + idx(top.sum / kLanes);
+      sum += re_[row].v[lane] * wave.real() - im_[row].v[lane] * wave.imag();
+    }
     return sign_of(top) * sum;
   });
 }
@@ -134,9 +145,7 @@ void TrigonometricSum::follow(const std::array<int, kLanes>& places, int stride,
   tops.value.v = Lanes{} - std::numeric_limits<double>::infinity();
   bool any = true;
   for (int round = 0; round < kRefinements && any; ++round) {
-    find_powers(tops);
-    run_widest<FollowTop>(static_cast<int>(multiples_.size()), stride, multiples_.data(), places_.data(), re,
-                          im, power_re_.data(), power_im_.data(), kAngleTolerance * step_, step_, &tops);
+    step(stride, re, im, tops);
     any = false;
     for (int i = 0; i < kLanes; ++i) any |= tops.state.v[i] == FollowedTops::kOpen;
   }
@@ -160,16 +169,21 @@ void TrigonometricSum::follow(const std::array<int, kLanes>& places, int stride,
 void TrigonometricSum::sample(std::span<const Complex* const> sums) {
   const int used = static_cast<int>(sums.size());
   sets_ = (used + kLanes - 1) / kLanes;
-  for (std::size_t k = 0; k < multiples_.size(); ++k) {
-    LaneRow *re = &re_[k * kSumSets], *im = &im_[k * kSumSets];
-    if (used < sets_ * kLanes) re[sets_ - 1] = im[sets_ - 1] = {};
-    for (int i = 0; i < used; ++i) {
-      const Complex a = sums[idx(i)][rows_[k]];
-      re[i / kLanes].v[i % kLanes] = a.real();
-      im[i / kLanes].v[i % kLanes] = a.imag();
-    }
-  }
   const auto orders = static_cast<int>(multiples_.size());
+  for (int set = 0; set < sets_; ++set) {
+    const int count = std::min(kLanes, used - set * kLanes);
+    std::array<const double*, kLanes> columns;  // unused lanes repeat the first
+    for (int lane = 0; lane < kLanes; ++lane)
+      columns[idx(lane)] =
+          reinterpret_cast<const double*>(sums[idx(set * kLanes + (lane < count ? lane : 0))]);
+    run_widest<TakeColumns>(orders, columns.data(), places_.data(), &re_[idx(set)], &im_[idx(set)]);
+    for (int k = orders / 4 * 4; k < orders; ++k)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const auto row = idx(places_[idx(k)] * kSumSets + set);
+        re_[row].v[lane] = columns[idx(lane)][2 * k];
+        im_[row].v[lane] = columns[idx(lane)][2 * k + 1];
+      }
+  }
   run_widest<BoundSizes>(sets_, orders, powers_.data(), re_.data(), im_.data(), bounds_.data());
   for (std::size_t set = 0; set < kSumSets; ++set) {
     thirds_[set] = bounds_[kSumSets + set];

@@ -69,22 +69,23 @@ class TrigonometricSum {
   /// The largest value between a top's neighbours, by bracketing; used where the steps to y' = 0 do not
   /// converge. shift: where it starts, in steps from the point.
   BracketedMaximum search(const Top& top, double shift) const;
-  void find_powers(const FollowedTops& tops);
+  void step(int stride, const LaneRow* re, const LaneRow* im, FollowedTops& tops);
 
   double base_ = 0.0, step_ = 0.0;
   int highest_ = 0, points_ = 0, sets_ = 0;
-  std::vector<int> multiples_;                       // the n_k, in the sequence of SumEighths
-  int fours_ = 0, even_ = 0;                         // number of multiples of four, and of even ones
-  std::vector<Eigen::Index> rows_;                   // places of the orders given, in this sequence
-  std::vector<std::array<double, 3>> powers_;        // second, third and seventh powers of the multiples
-  std::array<double, 3> shares_{};                   // factors of the bounds
-  std::vector<double> cosines_, sines_;              // [point of a quarter][place in multiples_]
-  LaneArray re_, im_, samples_;                      // of the sets: amplitudes by multiple; values at points
-  LaneArray top_re_, top_im_;                        // amplitudes of the sums of tops, by multiple
-  LaneArray power_re_, power_im_;                    // exp(i n angle) at these tops
-  std::vector<int> places_;                          // place of each order in power_re_ and power_im_
+  std::vector<int> multiples_;                 // the n_k, in the sequence of SumEighths
+  int fours_ = 0, even_ = 0;                   // number of multiples of four, and of even ones
+  std::vector<Eigen::Index> rows_;             // places of the orders given, in this sequence
+  std::vector<std::array<double, 3>> powers_;  // second, third and seventh powers of the multiples
+  std::array<double, 3> shares_{};             // factors of the bounds
+  std::vector<double> cosines_, sines_;        // [point of a quarter][place in multiples_]
+  LaneArray re_, im_, samples_;                // of the sets: amplitudes by multiple; values at points
+  LaneArray top_re_, top_im_;                  // amplitudes of the sums of tops, by multiple
+  LaneArray power_re_, power_im_;  // exp(i n angle) at these tops, where the multiples are not dense
+  std::vector<int> places_;        // row of each order given in re_ and im_
+  std::vector<int> places_of_n_;   // row of each n, where they are dense
   std::vector<double> turned_re_, turned_im_;        // exp(i angle) of the points
-  bool dense_ = false;                               // true: powers are kept for all n, not only the n_k
+  bool dense_ = false;                               // true: powers are found for all n, not only the n_k
   std::array<std::vector<LaneWord>, kSigns> marks_;  // marks of the points that may be next to an extreme
   std::array<LaneRow, kSumSets> thirds_;             // sum n^3 |a| of each sum
   std::array<LaneRow, 3 * kSumSets> bounds_;         // those of MarkExtremes; excess over the polynomial
