@@ -49,10 +49,14 @@ void LinearResponse::solve_lanes(int used, const LaneDynamics<Value>& dynamics) 
   // For one or two frequencies lanes are slower than scalars.
   constexpr int kWorthLanes = 3;
   const int sets = (used + kLanes - 1) / kLanes;
-  lost_.fill({Lanes{} + 1.0});
-  if (used >= kWorthLanes)
+  if (used >= kWorthLanes) {
     lanes_->solve(sets, dynamics, w_.data(), p_re_.data(), p_im_.data(), re_.data(), im_.data(),
                   lost_.data());
+  } else {
+    for (std::size_t i = 0; i < re_.size(); i += kLaneSets) re_[i] = im_[i] = {};
+    lost_[0] = {};
+    for (int lane = 0; lane < used; ++lane) lost_[0].v[lane] = 1.0;
+  }
   for (int set = 0; set < sets; ++set)
     for (int lane = 0; lane < kLanes; ++lane) {
       double& lost = reinterpret_cast<double*>(&lost_[idx(set)].v)[lane];
