@@ -81,7 +81,7 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
       if (const Offset offset = term.force->offset(0.7 * i); offset.e != 0.0 || offset.de_dangle != 0.0) {
         refuse(name,
                "has a transmission error, which a linear sweep does not take; harmonic balance "
-               "(solve_periodic, drev run --start periodic) does");
+               "(solve_periodic, drev sweep without --contact closed) does");
         break;
       }
   }

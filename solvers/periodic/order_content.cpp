@@ -9,7 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -236,8 +237,7 @@ OrderContent::Content OrderContent::of_harmonics(const LoadTerm& term) const {
 OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& source, double speed) const {
   const double ratio = system_.ratio(term.node);
   const double spacing = std::abs(ratio) / source.turns;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   std::vector<double> torque;
   std::vector<Complex> lines;
   const auto content_with = [&](int samples) {
@@ -259,7 +259,7 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
     if (source.by_angle || std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
     for (const double value : torque) square += (value - content.mean) * (value - content.mean) / samples;
     content.rms = std::sqrt(square);
-    fft.fwd(lines, torque);
+    transform.forward(lines, torque);
     lines.resize(static_cast<std::size_t>(samples) / 2);  // without the Nyquist line
     for (Complex& line : lines) line *= 2.0 / samples;
     pick(lines, spacing, ratio > 0.0, content);
@@ -369,8 +369,7 @@ bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double
 void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const {
   const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
   const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   Eigen::MatrixXd values;
   const auto curves_with = [&](int samples) {
     std::vector<Content> curves;
@@ -390,7 +389,7 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
       content.mean = means[k];
       content.rms = std::sqrt(vary.col(k).squaredNorm() / samples);
       std::copy_n(vary.col(k).data(), samples, column.begin());
-      fft.fwd(lines, column);
+      transform.forward(lines, column);
       lines.resize(static_cast<std::size_t>(samples) / 2);
       for (Complex& line : lines) line *= 2.0 / samples;
       pick(lines, spacing, ratio > 0.0, content);
