@@ -14,20 +14,21 @@ namespace drev {
 namespace {
 
 constexpr int kFewestHarmonics = 24;
-constexpr int kMostRows = 1100;  // rows of Newton's matrix with more harmonics: 0.3 s a step
+constexpr int kMostRows = 1100;         // rows of Newton's matrix with more harmonics: 0.3 s a step
 constexpr int kMostExcitedRows = 2000;  // where the loads' highest harmonic takes more: 2 s a step
-constexpr double kCarried = 1e-2;  // part of a section's vibration that may lie beyond the harmonics of a curve
-constexpr double kOrder = 1e-3;    // part of a section's vibration from which an order is given by default
+constexpr double kCarried =
+    1e-2;                        // part of a section's vibration that may lie beyond the harmonics of a curve
+constexpr double kOrder = 1e-3;  // part of a section's vibration from which an order is given by default
 constexpr int kSampleSpeeds = 16;  // speeds at which the loads' content is looked at
-constexpr int kMostLaws = 50;    // laws, each 49 rows with the fewest harmonics: 3 s a step
-constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
-constexpr double kTail = 1e-5;   // part of the linear motion beyond the harmonics taken
+constexpr int kMostLaws = 50;      // laws, each 49 rows with the fewest harmonics: 3 s a step
+constexpr int kProbe = 192;        // harmonics of the linear motion that the first number is read from
+constexpr double kTail = 1e-5;     // part of the linear motion beyond the harmonics taken
 constexpr int kMostBranches = 12;
-constexpr double kSameFold = 1e-7;  // relative difference of speed of a fold found with more harmonics
-constexpr int kDefaultOrders = 12;       // harmonics of a cycle of up to kShortCycle turns
-constexpr int kHalfOrders = 24;          // 0.5 to 12 by halves
-constexpr int kMostOrders = 64;          // orders given by default
-constexpr double kShortCycle = 2.0;      // turns
+constexpr double kSameFold = 1e-7;   // relative difference of speed of a fold found with more harmonics
+constexpr int kDefaultOrders = 12;   // harmonics of a cycle of up to kShortCycle turns
+constexpr int kHalfOrders = 24;      // 0.5 to 12 by halves
+constexpr int kMostOrders = 64;      // orders given by default
+constexpr double kShortCycle = 2.0;  // turns
 
 using Kind = BranchEvent::Kind;
 
@@ -75,8 +76,7 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   if (!findings.empty()) throw ModelError(std::move(findings));
   sweep_.speeds = options.speeds;
   sweep_.orders = options.orders;
-  excited_ =
-      std::make_unique<ExcitedLines>(system, sweep_.turns, options.balance, sections_->sections());
+  excited_ = std::make_unique<ExcitedLines>(system, sweep_.turns, options.balance, sections_->sections());
   excited_harmonics_ = excited_->fewest(sample_speeds(), kCarried);
   if (sweep_.orders.empty()) set_orders();
   low_ = options.speeds.front();
@@ -374,8 +374,7 @@ void Sweeper::find_jumps() {
 void Sweeper::note_excess() {
   const SweepFamily& of = family(1);
   if (of.resolved) return;
-  const int most =
-      std::max(of.harmonics, (kMostExcitedRows / of.balance->inputs() - 1) / 2);
+  const int most = std::max(of.harmonics, (kMostExcitedRows / of.balance->inputs() - 1) / 2);
   sweep_.excess = {excited_harmonics_, most, excited_->share_beyond(sample_speeds(), most)};
 }
 

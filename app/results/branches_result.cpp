@@ -162,10 +162,10 @@ std::string runs_table(const NonlinearSweep& sweep) {
     }
   }
   if (rows.size() > 1)
-    text +=
-        std::string(sweep.excess.needed > 0
-                        ? "No curve of motions is followed (see below); what a run does:\n"
-                        : "Harmonic balance found no stable motion at these speeds; what a run does:\n") + columns_text(rows);
+    text += std::string(sweep.excess.needed > 0
+                            ? "No curve of motions is followed (see below); what a run does:\n"
+                            : "Harmonic balance found no stable motion at these speeds; what a run does:\n") +
+            columns_text(rows);
   return text;
 }
 
@@ -322,8 +322,7 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
           std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
           rpm_text(sweep.speeds.back()) + " rpm\n\n";
-  if (!sweep.branches.empty())
-    text += branches_table(sweep) + "\n";
+  if (!sweep.branches.empty()) text += branches_table(sweep) + "\n";
   if (const std::string largest = largest_table(sweep); !largest.empty()) text += largest + "\n";
   if (!sweep.branches.empty()) text += changes_table(sweep) + "\n";
   for (const std::string& part :

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -19,7 +20,8 @@ using Complex = std::complex<double>;
 constexpr int kFewestLines = 192, kMostLines = 1 << 13;
 constexpr double kLeftOut = 1e-3;    // part of a load's rms up to which no further harmonics are looked for
 constexpr double kConstant = 1e-12;  // variation of a law's force relative to it that is rounding
-constexpr double kRounding = 1e-9;   // vibration of a section beside that of others of its unit that is rounding
+constexpr double kRounding =
+    1e-9;  // vibration of a section beside that of others of its unit that is rounding
 
 }  // namespace
 
@@ -80,8 +82,7 @@ Eigen::MatrixXcd ExcitedLines::law_lines(double speed) {
   Vector x;
   if (!balance_.linear_start(speed, x)) return all;
   for (int i = 0; i < balance_.inputs(); ++i) x.segment(3 * i + 1, 2).setZero();
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   const int samples = 4 * lines_;
   std::vector<double> force(idx(samples));
   std::vector<Complex> spectrum;
@@ -91,7 +92,7 @@ Eigen::MatrixXcd ExcitedLines::law_lines(double speed) {
       force[idx(s)] = balance_.respond(terms[t], x, speed, kTwoPi * s / samples).y;
     const auto [low, high] = std::minmax_element(force.begin(), force.end());
     if (*high - *low <= kConstant * std::max(std::abs(*high), std::abs(*low))) continue;
-    fft.fwd(spectrum, force);
+    transform.forward(spectrum, force);
     for (int n = 1; n <= lines_; ++n)
       all(n - 1, static_cast<Eigen::Index>(t)) = 2.0 / samples * spectrum[idx(n)];
   }

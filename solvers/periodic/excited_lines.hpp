@@ -45,7 +45,7 @@ class ExcitedLines {
   double turns_;
   std::vector<SectionRows> rows_;  // sections, then laws
   Eigen::Index sections_ = 0;
-  std::vector<Finding> none_;      // what a sweep refuses was found before
+  std::vector<Finding> none_;  // what a sweep refuses was found before
   LawBalance balance_;
   int lines_ = 0;
   std::optional<OrderContent> content_;
