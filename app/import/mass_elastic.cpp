@@ -123,7 +123,8 @@ class MassElasticReader {
       }
       for (const Header& other : headers_)
         if (!header.name.empty() && other.name == header.name)
-          fault(line, "the columns " + other.column + " and " + cell + " state the same; one of them must go");
+          fault(line,
+                "the columns " + other.column + " and " + cell + " state the same; one of them must go");
       if (header.name.empty()) {
         bool refused = false;
         const auto refuse = [&](const std::string& what) {

@@ -79,7 +79,8 @@ class OpenTorsionReader {
     const Json elements = components_.at(component)->value("elements", Json::array());
     if (elements.is_array())
       for (const Json& element : elements)
-        if (element.is_object() && element.value("name", Json()).is_string()) names.push_back(element["name"]);
+        if (element.is_object() && element.value("name", Json()).is_string())
+          names.push_back(element["name"]);
     return names;
   }
 
@@ -90,9 +91,8 @@ class OpenTorsionReader {
     if (!components_.contains(component)) {
       std::vector<std::string> names;
       for (const auto& [name, json] : components_) names.push_back(name);
-      fault(place,
-            "names " + end + ", which is none of the components; there are " + join(names) +
-                did_you_mean(component, names));
+      fault(place, "names " + end + ", which is none of the components; there are " + join(names) +
+                       did_you_mean(component, names));
       return false;
     }
     std::vector<std::string> ends;
@@ -101,7 +101,8 @@ class OpenTorsionReader {
     if (dot == end.npos)
       fault(place, "names " + end + ", a component, in place of one of its elements, " + join(ends));
     else
-      fault(place, "names " + end + ", which is none of the elements " + join(ends) + did_you_mean(end, ends));
+      fault(place,
+            "names " + end + ", which is none of the elements " + join(ends) + did_you_mean(end, ends));
     return false;
   }
 
