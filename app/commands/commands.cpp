@@ -238,6 +238,7 @@ const std::vector<CommandEntry>& commands() {
              one,
              {"rest", "static", "periodic"}},
             {"--duration", "SECONDS", "Length of the runs; default: the model's"},
+            {"--settle", "0", "For a model whose [run] has a settle: figures are of the whole run"},
             {"--record", "CHANNEL,...", "Channels whose largest and least values are figures, too", commas},
             {"--jobs", "N", "Threads; default: one per processor"},
             {"--out", "DIR", "Creates DIR with tried.csv, every variant computed, and optimum.json"},

@@ -3,10 +3,12 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -385,4 +387,23 @@ TEST_CASE("Both folds of a gear pair to eight digits by the command", "[sweep]")
   std::sort(folds.begin(), folds.end());
   CHECK(folds[0] == Approx(0.7080316187).epsilon(2e-9));
   CHECK(folds[1] == Approx(0.8284639844).epsilon(2e-9));
+}
+
+TEST_CASE("A sweep and a class calculation that are interrupted say so, write nothing and end with 130",
+          "[sweep]") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const bool judged = GENERATE(false, true);
+  const drev::test::TemporaryFolder folder;
+  const std::string genset = DREV_SOURCE_DIR "/models/genset/genset.toml";
+  const drev::test::Process process({judged ? "class" : "sweep", genset, "--speeds", "1200:0.001:1700",
+                                     "--contact", "closed", "--balance", "generator", "--report",
+                                     (folder / "s.html").string()});
+  for (int i = 0; i < 6000 && !std::filesystem::exists(folder / "s.partial.html"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  process.send(signal);
+  const auto outcome = process.wait();
+  CHECK(outcome.exit_code == 130);
+  CHECK(contains(outcome.err, "drev: interrupted; nothing is written"));
+  CHECK(outcome.out.empty());
+  CHECK_FALSE(std::filesystem::exists(folder / "s.html"));
 }
