@@ -21,6 +21,16 @@ void put_motion(const SweptMotion& motion, Eigen::Index section, Eigen::Index at
   s.twist_half_range[at] = 0.5 * (motion.twist_maximum[section] - motion.twist_minimum[section]);
 }
 
+void put_motion(const SweptMotion& motion, double half_range, SweepPeak& peak) {
+  const auto section = static_cast<Eigen::Index>(peak.section);
+  peak.speed = motion.speed, peak.half_range = half_range;
+  peak.mean = motion.mean[section];
+  peak.maximum = motion.maximum[section] - motion.mean[section];
+  peak.minimum = motion.minimum[section] - motion.mean[section];
+  peak.heat = motion.heat[section];
+  peak.twist_half_range = 0.5 * (motion.twist_maximum[section] - motion.twist_minimum[section]);
+}
+
 SweepSection empty_section(const NonlinearSweep::Section& given, std::size_t orders, std::size_t speeds) {
   SweepSection s;
   s.name = given.name, s.unit = given.unit, s.twist_unit = given.twist_unit, s.contact = given.contact;
@@ -37,15 +47,15 @@ void add_peaks(const NonlinearSweep& given, LinearSweep& sweep) {
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
     const Vector half = sweep.sections[c].half_range();
     for (std::size_t i = 0; i + 1 < sweep.speeds.size(); ++i) {
-      SweepPeak best{static_cast<int>(c), 0.0,
-                     std::max(half[static_cast<Eigen::Index>(i)], half[static_cast<Eigen::Index>(i + 1)]),
-                     false};
+      SweepPeak best;
+      best.section = static_cast<int>(c);
+      best.half_range = std::max(half[static_cast<Eigen::Index>(i)], half[static_cast<Eigen::Index>(i + 1)]);
       for (const SweptBranch& branch : given.branches)
         for (const SweptMotion& motion : branch.motions) {
           if (!may_stay(motion) || motion.speed <= sweep.speeds[i] || motion.speed >= sweep.speeds[i + 1])
             continue;
           const double here = motion.half_range()[static_cast<Eigen::Index>(c)];
-          if (here > best.half_range) best.speed = motion.speed, best.half_range = here;
+          if (here > best.half_range) put_motion(motion, here, best);
         }
       if (best.speed > 0.0) sweep.peaks.push_back(best);
     }

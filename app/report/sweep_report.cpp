@@ -33,9 +33,7 @@ std::string amplitudes(const SweepSection& section) {
 
 /// Local maxima of the half range, including those between the speeds; the largest first.
 Json peaks_of(const LinearSweep& sweep, int number_of_section) {
-  const Vector half = sweep.sections[static_cast<std::size_t>(number_of_section)].half_range();
-  Eigen::Index at = 0;
-  const double largest = half.maxCoeff(&at), speed = sweep.speeds[static_cast<std::size_t>(at)];
+  const SweepLargest largest = largest_half_range(sweep, number_of_section);
   Json list = Json::array();
   for (const SweepPeak& peak : sweep.peaks)
     if (peak.section == number_of_section)
@@ -43,8 +41,9 @@ Json peaks_of(const LinearSweep& sweep, int number_of_section) {
   const double first = list.empty()                      ? 0.0
                        : list[0]["half_range"].is_null() ? HUGE_VAL
                                                          : list[0]["half_range"].get<double>();
-  if (list.empty() || first < largest)
-    list.insert(list.begin(), Json{{"speed_rpm", number(to_rpm(speed))}, {"half_range", number(largest)}});
+  if (list.empty() || first < largest.value)
+    list.insert(list.begin(),
+                Json{{"speed_rpm", number(to_rpm(largest.speed))}, {"half_range", number(largest.value)}});
   return list;
 }
 
@@ -77,7 +76,7 @@ Json sweep_data(const std::string& name, const std::vector<double>& speeds_rpm, 
                         {"mean", floats(rounded_means(s, largest_mean))},
                         {"heat", floats(s.heat)},
                         {"amplitude", amplitudes(s)},
-                        {"unbounded", !s.half_range().allFinite()},
+                        {"unbounded", std::isinf(largest_half_range(sweep, static_cast<int>(c)).value)},
                         {"peaks", peaks_of(sweep, static_cast<int>(c))},
                         {"limits", std::move(drawn)}});
   }

@@ -15,17 +15,20 @@ namespace {
 
 constexpr int kSignificant = 6;
 
+/// Below kRounding the damping ratio of an undamped mode: 0 without a sign.
 double damping_ratio_of(std::complex<double> lambda) {
-  return std::abs(lambda) > 0.0 ? -lambda.real() / std::abs(lambda) : 0.0;
+  constexpr double kRounding = 1e-12;
+  const double ratio = std::abs(lambda) > 0.0 ? -lambda.real() / std::abs(lambda) : 0.0;
+  return std::abs(ratio) > kRounding ? ratio : 0.0;
 }
 
-/// Amplitude of a critical speed relative to the largest finite one [-]; 1 where it is infinite.
+/// Amplitude of a critical speed that comes from its mode relative to the largest finite one [-]; 1 where it is infinite.
 double relative(const LinearSweep& sweep, const SweepCritical& critical) {
   double largest = 0.0;
   for (const SweepCritical& c : sweep.criticals)
-    if (std::isfinite(c.amplitude)) largest = std::max(largest, c.amplitude);
-  if (!std::isfinite(critical.amplitude)) return 1.0;
-  return largest > 0.0 ? critical.amplitude / largest : 0.0;
+    if (std::isfinite(c.own_amplitude)) largest = std::max(largest, c.own_amplitude);
+  if (!std::isfinite(critical.own_amplitude)) return 1.0;
+  return largest > 0.0 ? critical.own_amplitude / largest : 0.0;
 }
 
 /// Frequencies as a range where they depend on the speed.
@@ -52,13 +55,14 @@ std::string campbell_as_text(const SweepRequest& request, const LinearSweep& swe
   text += columns_text(modes) + "\n";
   if (sweep.criticals.empty())
     return text + "No order that the loads hold meets a natural frequency within the speeds.\n";
-  std::vector<std::vector<std::string>> rows{
-      {"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio", "amplitude", "relative", "in"}};
+  std::vector<std::vector<std::string>> rows{{"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio",
+                                              "amplitude", "of the mode", "relative", "in"}};
   for (const SweepCritical& c : sweep.criticals)
     rows.push_back({digits(to_rpm(c.speed), kSignificant), short_digits(c.order, kSignificant),
                     std::to_string(c.mode + 1), digits(c.frequency_Hz, kSignificant),
                     digits(c.damping_ratio, 3),
                     std::isfinite(c.amplitude) ? digits(c.amplitude, kSignificant) : "unbounded",
+                    std::isfinite(c.own_amplitude) ? digits(c.own_amplitude, kSignificant) : "unbounded",
                     digits(relative(sweep, c), 3), sweep.sections[static_cast<std::size_t>(c.section)].name});
   return text + columns_text(rows);
 }

@@ -26,24 +26,48 @@ std::string rpm_range(double from, double to) {
   return digits(to_rpm(from), 4) + " to " + digits(to_rpm(to), 4) + " rpm";
 }
 
+/// What may be done in a range in which the limit for continuous running is exceeded.
+std::string passing_text(ExceededRange::Passing passing) {
+  switch (passing) {
+    case ExceededRange::Passing::permitted:
+      return "may be barred and passed quickly";
+    case ExceededRange::Passing::near_rated:
+      return "must not be passed: it reaches 0.8 of the rated speed, no barred range";
+    case ExceededRange::Passing::above_limit:
+      return "must not be passed: it exceeds the limit for passing, no barred range";
+    case ExceededRange::Passing::no_limit:
+      return "whether it may be passed is not judged: no limit for passing is given";
+    case ExceededRange::Passing::no_rated_speed:
+      return "whether it may be passed is not judged: no rated speed is given";
+  }
+  return "";
+}
+
+std::string percent(double part, int significant) {
+  return std::isfinite(part) ? digits(100.0 * part, significant) + " %" : "unbounded";
+}
+
+std::string bounded(double value, int significant) {
+  return std::isinf(value) ? "unbounded" : digits(value, significant);
+}
+
 std::string exceeded_text(const ExceededRange& range) {
   return rpm_range(range.from, range.to) + (range.open_from || range.open_to ? " (and perhaps beyond)" : "") +
-         ", " + digits(100.0 * range.worst, 4) + " % at " + digits(to_rpm(range.worst_speed), 5) + " rpm" +
-         (range.may_be_passed ? "; may be barred and passed quickly"
-                              : "; must not be passed: no barred range");
+         ", " + percent(range.worst, 4) + " at " + digits(to_rpm(range.worst_speed), 5) + " rpm; " +
+         passing_text(range.passing);
 }
 
 Json range_object(const ExceededRange& range) {
   return {{"from_rpm", number(to_rpm(range.from))}, {"to_rpm", number(to_rpm(range.to))},
           {"open_from", range.open_from},           {"open_to", range.open_to},
           {"worst", number(range.worst)},           {"worst_rpm", number(to_rpm(range.worst_speed))},
-          {"may_be_passed", range.may_be_passed}};
+          {"may_be_passed", range.may_be_passed()}, {"passing", to_text(range.passing)}};
 }
 
 Json barred_object(const LinearSweep& sweep, const RuleBarredRange& barred) {
   const SweepCritical& critical = sweep.criticals[static_cast<std::size_t>(barred.critical)];
   const bool permitted = barred.to > 0.0;
-  return {{"critical_rpm", number(to_rpm(critical.speed))},
+  return {{"critical_rpm", number(to_rpm(barred.speed))},
           {"order", number(critical.order)},
           {"mode", critical.mode + 1},
           {"speed_ratio", number(barred.speed_ratio)},
@@ -55,23 +79,28 @@ const SectionStrength& strength_of(const ClassCase& c, const SectionJudgement& j
   return c.request.model.model_case.strength->sections[static_cast<std::size_t>(judged.strength)];
 }
 
-/// Half range [N m], stress [Pa] and limit [N m] where the utilisation is largest, also between the speeds; of a section that is not
-/// judged the largest of the speeds, without a limit. Not a number: not known.
+/// Half range [N m], stresses [Pa] and limit [N m] where the utilisation is largest, also between the speeds; of a section
+/// that is not judged the largest half range, without a limit. Not a number: not known.
 struct WorstVibration {
-  double half_range, stress, permissible;
+  double half_range, local_stress, nominal_stress, permissible;
 };
+
+/// The stress that the section's rule limits: M68 the nominal one.
+bool by_nominal_stress(const SectionJudgement& judged) { return judged.rule == "IACS UR M68.5"; }
 
 WorstVibration worst_vibration(const ClassCase& c, const SectionJudgement& judged) {
   const SectionStrength& data = strength_of(c, judged);
-  WorstVibration worst{.half_range = 0.0, .stress = 0.0, .permissible = std::nan("")};
+  WorstVibration worst{
+      .half_range = 0.0, .local_stress = 0.0, .nominal_stress = 0.0, .permissible = std::nan("")};
   if (judged.judged()) {
     const double rated = c.request.model.model_case.strength->rated_speed;
     worst.permissible = torque_limit(data, judged.utilisation_speed / rated).continuous;
     worst.half_range = judged.utilisation * worst.permissible;
   } else {
-    worst.half_range = c.sweep.sections[static_cast<std::size_t>(judged.section)].half_range().maxCoeff();
+    worst.half_range = largest_half_range(c.sweep, judged.section).value;
   }
-  worst.stress = worst.half_range * data.stress_concentration / judged.modulus;
+  worst.nominal_stress = worst.half_range / judged.modulus;
+  worst.local_stress = data.stress_concentration * worst.nominal_stress;
   return worst;
 }
 
@@ -99,13 +128,17 @@ Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
           {"utilisation", judged.judged() ? number(judged.utilisation) : Json()},
           {"utilisation_at_rpm", judged.judged() ? number(to_rpm(judged.utilisation_speed)) : Json()},
           {"worst_half_range_Nm", number(worst.half_range)},
-          {"worst_stress_Pa", number(worst.stress)},
+          {"worst_stress_Pa", number(worst.local_stress)},
+          {"worst_nominal_stress_Pa", number(worst.nominal_stress)},
           {"worst_permissible_Nm", number(worst.permissible)},
           {"rule", text_or_null(judged.rule)},
+          {"stress_of_rule", by_nominal_stress(judged) ? "nominal" : "local"},
+          {"unbounded", std::isinf(worst.half_range)},
           {"exceeded", std::move(exceeded)},
           {"barred_by_rule", std::move(barred)},
           {"heat_W", number(judged.heat)},
           {"heat_at_rpm", number(to_rpm(judged.heat_speed))},
+          {"heat_exceeds", judged.heat_exceeds()},
           {"permissible_heat_W", number(data.permissible_heat)}};
 }
 
@@ -115,6 +148,7 @@ Json case_object(const ClassCase& c) {
   for (const ChatterRange& range : c.judgement.chatter) {
     Json object = range_object(range.range);
     object.erase("may_be_passed");
+    object.erase("passing");
     object["section"] = c.sweep.sections[static_cast<std::size_t>(range.section)].name;
     object["separated_speeds"] = range.separated;
     chatter.push_back(std::move(object));
@@ -141,26 +175,29 @@ std::string case_text(const ClassCase& c) {
     const SectionStrength& data = strength_of(c, j);
     const SweepSection& s = c.sweep.sections[static_cast<std::size_t>(j.section)];
     const WorstVibration worst = worst_vibration(c, j);
-    rows.push_back({s.name, digits(worst.half_range, kShown),
-                    std::isnan(worst.stress) ? "" : digits(worst.stress / kMega, 4),
-                    j.judged() ? digits(worst.permissible, kShown) : "",
-                    j.judged() ? digits(100.0 * j.utilisation, 3) + " %" : "",
-                    j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
-                    (std::isnan(j.heat) ? "-" : digits(j.heat, 4)) +
-                        (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
-                    j.rule.empty() ? "not judged" : j.rule});
+    const double stress = by_nominal_stress(j) ? worst.nominal_stress : worst.local_stress;
+    const std::string by_torque = j.rule.empty() ? "torque not judged" : j.rule;
+    rows.push_back(
+        {s.name, bounded(worst.half_range, kShown),
+         std::isnan(stress) ? ""
+                            : bounded(stress / kMega, 4) + (by_nominal_stress(j) ? " nominal" : " local"),
+         j.judged() ? digits(worst.permissible, kShown) : "", j.judged() ? percent(j.utilisation, 3) : "",
+         j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
+         (std::isnan(j.heat) ? "-" : digits(j.heat, 4)) +
+             (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
+         by_torque + (j.heat_judged() ? ", permissible heat" : "")});
     for (const ExceededRange& range : j.exceeded)
       ranges += wrap(s.name + ": exceeded from " + exceeded_text(range), 2);
     for (const RuleBarredRange& b : j.barred) {
       const SweepCritical& critical = c.sweep.criticals[static_cast<std::size_t>(b.critical)];
-      ranges += wrap(s.name + ": critical at " + digits(to_rpm(critical.speed), 5) + " rpm (order " +
+      ranges += wrap(s.name + ": critical at " + digits(to_rpm(b.speed), 5) + " rpm (order " +
                          short_digits(critical.order, 4) + ", mode " + std::to_string(critical.mode + 1) +
                          "), speed ratio " + digits(b.speed_ratio, 3) +
                          (b.to > 0.0 ? ": barred by IACS UR M68.5 from " + rpm_range(b.from, b.to)
                                      : ": IACS UR M68.5 permits no barred range from a ratio of 0.8 on"),
                      2);
     }
-    if (j.heat > data.permissible_heat)
+    if (j.heat_exceeds())
       ranges += wrap(
           s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);
   }
@@ -168,11 +205,11 @@ std::string case_text(const ClassCase& c) {
     ranges +=
         wrap(c.sweep.sections[static_cast<std::size_t>(range.section)].name +
                  ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
-                 ", up to " + digits(range.range.worst, 3) + " times at " +
+                 ", up to " + bounded(range.range.worst, 3) + " times at " +
                  digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer" +
-                 (c.request.options.close_contacts
-                      ? "; without '--contact closed' the teeth are followed"
-                      : "; they separate at " + std::to_string(range.separated) + " of the speeds in it"),
+                 (c.request.options.close_contacts ? "; without '--contact closed' the teeth are followed"
+                                                   : "; they separate at " + std::to_string(range.separated) +
+                                                         " of the speeds and peaks in it"),
              2);
   std::string text = columns_text(rows);
   if (!ranges.empty()) text += "\n" + ranges;

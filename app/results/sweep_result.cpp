@@ -38,16 +38,13 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
   for (const SweepSection& s : sweep.sections) largest_mean = std::max(largest_mean, largest(s.mean));
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
     const SweepSection& s = sweep.sections[c];
-    const Vector half = s.half_range();
+    const auto section = static_cast<int>(c);
+    const SweepLargest half = largest_half_range(sweep, section);
     const double mean = largest(s.mean) > kRounding * largest_mean ? largest(s.mean) : 0.0;
-    Eigen::Index at = 0;
-    double value = half.maxCoeff(&at), speed = sweep.speeds[static_cast<std::size_t>(at)];
-    for (const SweepPeak& peak : sweep.peaks)
-      if (peak.section == static_cast<int>(c) && peak.half_range > value)
-        value = peak.half_range, speed = peak.speed;
-    rows.push_back({s.name, bounded(value), digits(to_rpm(speed), kDigits), digits(mean, kDigits),
-                    s.twist_unit.empty() ? "" : bounded(s.twist_half_range.maxCoeff()) + " " + s.twist_unit,
-                    bounded(s.heat.maxCoeff())});
+    rows.push_back(
+        {s.name, bounded(half.value), digits(to_rpm(half.speed), kDigits), digits(mean, kDigits),
+         s.twist_unit.empty() ? "" : bounded(largest_twist(sweep, section).value) + " " + s.twist_unit,
+         bounded(largest_heat(sweep, section).value)});
     if (request.absolute_sum) rows.back().push_back(bounded(absolute_sum(s).maxCoeff()));
   }
   return columns_text(rows);
@@ -60,7 +57,7 @@ std::string criticals_text(const LinearSweep& sweep) {
     return "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<SweepCritical> shown = sweep.criticals;
   std::stable_sort(shown.begin(), shown.end(),
-                   [](const auto& a, const auto& b) { return a.amplitude > b.amplitude; });
+                   [](const auto& a, const auto& b) { return a.own_amplitude > b.own_amplitude; });
   if (shown.size() > kCriticalsShown) shown.resize(kCriticalsShown);
   std::stable_sort(shown.begin(), shown.end(),
                    [](const auto& a, const auto& b) { return a.speed < b.speed; });
@@ -101,6 +98,8 @@ Json section_object(const SweepRequest& request, const SweepSection& s) {
           {"minimum_at_deg", numbers(s.minimum_angle, to_deg(1.0))},
           {"mean", numbers(s.mean)},
           {"heat_W", numbers(s.heat)},
+          {"heat_peak_W", number(s.heat_peak)},
+          {"heat_peak_rpm", number(to_rpm(s.heat_peak_speed))},
           {"twist", twist},
           {"separates", separates},
           {"absolute_sum", request.absolute_sum ? numbers(absolute_sum(s)) : Json()},
@@ -177,13 +176,20 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
                     " % of what alternates in it (rms) is in none of the orders");
-  for (const SweepSection& section : sweep.sections) {
+  for (std::size_t c = 0; c < sweep.sections.size() && request.options.close_contacts; ++c) {
+    const SweepSection& section = sweep.sections[c];
     Eigen::Index count = 0;
     for (Eigen::Index i = 0; i < section.mean.size(); ++i) count += section.separates(i) ? 1 : 0;
-    if (count > 0 && request.options.close_contacts)
+    std::vector<std::string> between;
+    for (const SweepPeak& peak : sweep.peaks)
+      if (peak.section == static_cast<int>(c) && !peak.at_end &&
+          section.separates(peak.mean, peak.maximum, peak.minimum))
+        between.push_back(digits(to_rpm(peak.speed), kDigits));
+    if (count > 0 || !between.empty())
       notes.push_back(section.name + ": changes its sign at " + std::to_string(count) + " of " +
-                      std::to_string(section.mean.size()) +
-                      " speeds: the teeth separate there, and what is said of these speeds does not hold; "
+                      std::to_string(section.mean.size()) + " speeds" +
+                      (between.empty() ? "" : " and at its peaks at " + join(between) + " rpm") +
+                      ": the teeth separate there, and what is said of these speeds does not hold; "
                       "'drev sweep' without '--contact closed' follows them");
   }
   if (request.options.close_contacts) note_bent_laws(request.model.system, sweep, notes);
@@ -198,6 +204,7 @@ Json critical_object(const LinearSweep& sweep, const SweepCritical& c) {
           {"damping_ratio", number(c.damping_ratio)},
           {"section", name_of(sweep, c.section)},
           {"amplitude", number(c.amplitude)},
+          {"own_amplitude", number(c.own_amplitude)},
           {"half_range", number(c.half_range)}};
 }
 
@@ -229,6 +236,11 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
     peaks.push_back({{"section", name_of(sweep, peak.section)},
                      {"speed_rpm", number(to_rpm(peak.speed))},
                      {"half_range", number(peak.half_range)},
+                     {"maximum", number(peak.maximum)},
+                     {"minimum", number(peak.minimum)},
+                     {"mean", number(peak.mean)},
+                     {"twist_half_range", number(peak.twist_half_range)},
+                     {"heat_W", number(peak.heat)},
                      {"at_end", peak.at_end}});
   for (const SweepCritical& critical : sweep.criticals) criticals.push_back(critical_object(sweep, critical));
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f)
@@ -296,11 +308,13 @@ std::string orders_as_csv(const SweepRequest& request, const LinearSweep& sweep)
 }
 
 std::string criticals_as_csv(const LinearSweep& sweep) {
-  std::string text = "speed_rpm,order,mode,frequency_Hz,damping_ratio,section,amplitude,half_range\n";
+  std::string text =
+      "speed_rpm,order,mode,frequency_Hz,damping_ratio,section,amplitude,own_amplitude,half_range\n";
   for (const SweepCritical& c : sweep.criticals)
     text += to_text(to_rpm(c.speed)) + "," + to_text(c.order) + "," + std::to_string(c.mode + 1) + "," +
             to_text(c.frequency_Hz) + "," + to_text(c.damping_ratio) + "," +
-            csv_cell(name_of(sweep, c.section)) + "," + cell(c.amplitude) + "," + cell(c.half_range) + "\n";
+            csv_cell(name_of(sweep, c.section)) + "," + cell(c.amplitude) + "," + cell(c.own_amplitude) +
+            "," + cell(c.half_range) + "\n";
   return text;
 }
 

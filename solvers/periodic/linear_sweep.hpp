@@ -35,6 +35,7 @@
 
 #include <complex>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,20 +64,27 @@ struct SweepSection {
   Vector mean, maximum, minimum, maximum_angle, minimum_angle;
   Vector twist_mean, twist_half_range;
   Vector heat;  ///< mean heat at each speed [W]; 0 for a section without a damper
+  /// Largest heat between the speeds [W] and its speed [rad/s]; not a number: none was located.
+  double heat_peak = std::numeric_limits<double>::quiet_NaN(), heat_peak_speed = heat_peak;
   bool contact = false;
   Vector half_range() const { return 0.5 * (maximum - minimum); }
-  /// Whether the closed contact's force changes its sign in the cycle at speed number s.
-  bool separates(Eigen::Index s) const {
-    return contact && (mean[s] + maximum[s]) * (mean[s] + minimum[s]) <= 0.0;
+  /// Whether the closed contact's force changes its sign in the cycle, with extremes without the mean.
+  bool separates(double its_mean, double its_maximum, double its_minimum) const {
+    return contact && (its_mean + its_maximum) * (its_mean + its_minimum) <= 0.0;
   }
+  /// The same at speed number s.
+  bool separates(Eigen::Index s) const { return separates(mean[s], maximum[s], minimum[s]); }
 };
 
 /// A speed at which a section's half range has a local maximum.
 struct SweepPeak {
   int section = 0;
   double speed = 0.0;       ///< speed of the reference shaft [rad/s]
-  double half_range = 0.0;  ///< half range in the section's unit
+  double half_range = 0.0;  ///< half range in the section's unit; infinite: nothing damps it
   bool at_end = false;      ///< true: at the first or last speed; it may rise further beyond
+  /// Values of the section at that speed, as in SweepSection; not a number: not known.
+  double mean = std::numeric_limits<double>::quiet_NaN(), maximum = mean, minimum = mean;
+  double twist_half_range = mean, heat = mean;
 };
 
 /// An order that meets a damped natural frequency within the speeds.
@@ -88,10 +96,16 @@ struct SweepCritical {
   double speed = 0.0;
   double frequency_Hz = 0.0,
          damping_ratio = 0.0;  ///< damped natural frequency and damping ratio at that speed
-  /// Section in which the order's amplitude is largest relative to the section's largest half range.
+  /// Section in which the mode's own part of the order's amplitude is largest, of those with the first one's unit.
   int section = 0;
   double amplitude = 0.0;   ///< amplitude of the order in `section` at that speed; infinite: nothing damps it
   double half_range = 0.0;  ///< half range of `section` at that speed
+  /// The mode's own part of that amplitude: |r| / |Re lambda| of the pole r / (i o w - lambda), without what other modes
+  /// and the quasi-static torque add. Infinite: nothing damps it.
+  double own_amplitude = 0.0;
+  /// For each section the speed as `speed` is for `section`, from the pole and a straight line for the rest; where the
+  /// mode's own part is below a tenth of the amplitude, speed at which the order meets the mode. Empty: not known.
+  std::vector<double> section_speeds = {};
 };
 
 /// The elastic modes over the speeds, tracked by their shapes. One column where nothing depends on the speed.
@@ -121,6 +135,16 @@ struct LinearSweep {
   };
   std::vector<LeftOut> left_out;  ///< loads with a share above 0.1 % at the highest speed
 };
+
+/// A value and its speed [rad/s]; not a number: it is not known at any speed.
+struct SweepLargest {
+  double value = std::numeric_limits<double>::quiet_NaN(), speed = value;
+};
+/// Largest values of a section at the speeds and at the peaks that were located between them. A twist is that at the
+/// peaks of the half range; heat has a peak of its own.
+SweepLargest largest_half_range(const LinearSweep& sweep, int section);
+SweepLargest largest_twist(const LinearSweep& sweep, int section);
+SweepLargest largest_heat(const LinearSweep& sweep, int section);
 
 /// Throws ModelError with all faults of options and model; SolverError where the stiffness matrix cannot be
 /// eliminated.

@@ -30,6 +30,10 @@ constexpr double kTooDamped = 0.7;      // damping ratio above which an order ha
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
 constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
+constexpr double kNear = 1e-6;          // distance from an undamped resonance relative to its speed [-]
+constexpr double kAway = 1e-4;    // larger distance, beside which the mode's growth towards it shows [-]
+constexpr double kGrowth = 10.0;  // growth from kAway to kNear above which the mode moves a section [-]
+constexpr double kOwnPart = 0.1;  // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// For each mode of `last` the number of the mode of `next` it has become, by shape: largest |x' y| / (|x|
@@ -142,9 +146,13 @@ class Search {
     find_content();
     for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
       const Vector curve = sweep.sections[c].half_range();
-      for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
-        curves_[sweep.speeds[i]].push_back(curve[static_cast<Eigen::Index>(i)]);
-      largest_.push_back(curve.maxCoeff());
+      largest_.push_back(0.0);
+      for (std::size_t i = 0; i < sweep.speeds.size(); ++i) {
+        Values& here = curves_[sweep.speeds[i]];
+        here.half_range.push_back(curve[static_cast<Eigen::Index>(i)]);
+        here.heat.push_back(sweep.sections[c].heat[static_cast<Eigen::Index>(i)]);
+        note_largest(c, here.half_range.back());
+      }
     }
   }
 
@@ -161,10 +169,13 @@ class Search {
         critical.order = sweep_.orders[k];
         critical.speed = speed;
         critical.frequency_Hz = to_hz(lambda.imag());
-        critical.damping_ratio = ratio;
+        critical.damping_ratio = std::abs(ratio) > kUndamped ? ratio : 0.0;
         sweep_.criticals.push_back(critical);
         numbers_.push_back(static_cast<int>(k));
-        if (!(ratio > kUndamped)) continue;
+        if (!(ratio > kUndamped)) {
+          unbounded(speed, static_cast<int>(k));
+          continue;
+        }
         const double width = std::abs(lambda.real()) / sweep_.orders[k];
         for (const double at : {speed - width, speed, speed + width})
           if (at > low_ && at < high_) all_sections(at);
@@ -172,16 +183,18 @@ class Search {
   }
 
   void find_peaks() {
-    const std::vector<std::pair<double, std::vector<double>>> points(curves_.begin(), curves_.end());
+    const std::vector<std::pair<double, Values>> points(curves_.begin(), curves_.end());
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
       std::vector<SweepPeak> peaks;
       for (std::size_t i = 0; i < points.size(); ++i) {
-        const double here = points[i].second[c];
+        const double here = points[i].second.half_range[c];
         const bool first = i == 0, last = i + 1 == points.size();
-        const bool top =
-            (first || here >= points[i - 1].second[c]) && (last || here > points[i + 1].second[c]);
+        const bool top = (first || here >= points[i - 1].second.half_range[c]) &&
+                         (last || here > points[i + 1].second.half_range[c]);
         if (!top || !(here > kSmallPeak * largest_[c])) continue;
-        SweepPeak peak{static_cast<int>(c), points[i].first, here, first || last};
+        SweepPeak peak;
+        peak.section = static_cast<int>(c), peak.speed = points[i].first, peak.half_range = here;
+        peak.at_end = first || last;
         if (!peak.at_end && std::isfinite(here)) {
           const BracketedMaximum found =
               bracketed_maximum(points[i - 1].first, points[i].first, points[i + 1].first,
@@ -193,8 +206,31 @@ class Search {
       std::stable_sort(peaks.begin(), peaks.end(),
                        [](const SweepPeak& a, const SweepPeak& b) { return a.half_range > b.half_range; });
       if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
-      if (!peaks.empty()) largest_[c] = std::max(largest_[c], peaks.front().half_range);
+      for (SweepPeak& peak : peaks) add_values(peak);
       sweep_.peaks.insert(sweep_.peaks.end(), peaks.begin(), peaks.end());
+    }
+  }
+
+  /// Locates the largest heat of each section between the speeds.
+  void find_heat() {
+    const std::vector<std::pair<double, Values>> points(curves_.begin(), curves_.end());
+    for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
+      std::size_t top = 0;
+      for (std::size_t i = 1; i < points.size(); ++i)
+        if (points[i].second.heat[c] > points[top].second.heat[c]) top = i;
+      const double here = points[top].second.heat[c];
+      if (top == 0 || top + 1 == points.size() || !(here > 0.0) || !std::isfinite(here)) continue;
+      const double speed = points[top].first;
+      const BracketedMaximum found = bracketed_maximum(points[top - 1].first, speed, points[top + 1].first,
+                                                       kPeakSpeed * speed, [&](double at) {
+                                                         pause_();
+                                                         response_.vibration(at, point_);
+                                                         return point_.heat[static_cast<Eigen::Index>(c)];
+                                                       });
+      SweepSection& section = sweep_.sections[c];
+      const bool higher = found.value >= here;
+      section.heat_peak = higher ? found.value : here;
+      section.heat_peak_speed = higher ? found.at : speed;
     }
   }
 
@@ -203,11 +239,12 @@ class Search {
       SweepCritical& critical = sweep_.criticals[i];
       const int order = numbers_[i];
       if (!(critical.damping_ratio > kUndamped)) {
-        critical.amplitude = critical.half_range = kInfinite;
-        critical.section = most_moved(critical.speed, order, 1.0 + 1e-6);
+        critical.amplitude = critical.half_range = critical.own_amplitude = kInfinite;
+        response_.vibration((1.0 + kNear) * critical.speed, point_, order);
+        critical.section = most_moved(point_.amplitude.row(order));
         continue;
       }
-      critical.section = most_moved(critical.speed, order, 1.0);
+      find_own_parts(critical, order);
       const auto section = static_cast<Eigen::Index>(critical.section);
       const auto amplitude = [&](double speed) {
         response_.vibration(speed, point_, order);
@@ -222,6 +259,7 @@ class Search {
       const bool top = found.at > from + 2.0 * width && found.at < to - 2.0 * width;
       if (top) critical.speed = found.at;
       critical.amplitude = top ? found.value : amplitude(critical.speed);
+      critical.section_speeds[static_cast<std::size_t>(critical.section)] = critical.speed;
       critical.half_range = one(critical.speed, static_cast<std::size_t>(critical.section));
     }
     std::stable_sort(sweep_.criticals.begin(), sweep_.criticals.end(),
@@ -229,6 +267,13 @@ class Search {
   }
 
  private:
+  struct Values {
+    std::vector<double> half_range, heat;  // by section
+  };
+
+  void note_largest(std::size_t section, double half_range) {
+    if (std::isfinite(half_range)) largest_[section] = std::max(largest_[section], half_range);
+  }
   /// Finds the orders in which any load has content, at either end of the speed range.
   void find_content() {
     has_content_.assign(sweep_.orders.size(), false);
@@ -252,11 +297,49 @@ class Search {
     pause_();
     response_.vibration(speed, point_);
     sum_.extremes(point_.amplitude, extremes_);
-    std::vector<double>& here = curves_[speed];
+    Values& here = curves_[speed];
     for (std::size_t c = 0; c < extremes_.size(); ++c) {
-      here.push_back(extremes_[c].half_range());
-      largest_[c] = std::max(largest_[c], here.back());
+      here.half_range.push_back(extremes_[c].half_range());
+      here.heat.push_back(point_.heat[static_cast<Eigen::Index>(c)]);
+      note_largest(c, here.half_range.back());
     }
+  }
+  /// Enters an infinite half range at a speed at which an order meets an undamped mode, for each section that the mode
+  /// moves: its amplitude grows towards the speed as one over the distance.
+  void unbounded(double speed, int order) {
+    const double away = (1.0 + kAway) * speed;
+    all_sections(away);
+    const Values beside = curves_.at(away);
+    if (std::find(sweep_.speeds.begin(), sweep_.speeds.end(), away) == sweep_.speeds.end())
+      curves_.erase(away);
+    response_.vibration(away, point_, order);
+    const Vector at_away = point_.amplitude.row(order).cwiseAbs();
+    response_.vibration((1.0 + kNear) * speed, point_, order);
+    const Vector at_near = point_.amplitude.row(order).cwiseAbs();
+    Values& here = curves_.try_emplace(speed, beside).first->second;
+    for (std::size_t c = 0; c < here.half_range.size(); ++c)
+      if (const auto s = static_cast<Eigen::Index>(c); at_near[s] > kGrowth * at_away[s])
+        here.half_range[c] = kInfinite;
+  }
+  /// Adds mean, extremes, twist and heat at the peak's speed.
+  void add_values(SweepPeak& peak) {
+    const auto c = static_cast<Eigen::Index>(peak.section);
+    const bool twists = !sweep_.sections[static_cast<std::size_t>(peak.section)].twist_unit.empty();
+    pause_();
+    response_.vibration(peak.speed, point_);
+    response_.mean(peak.speed, point_);
+    peak.mean = point_.mean[c];
+    if (!std::isfinite(peak.half_range)) {
+      peak.maximum = kInfinite, peak.minimum = -kInfinite;
+      if (twists) peak.twist_half_range = kInfinite;
+      return;
+    }
+    peak.heat = point_.heat[c];
+    sum_.extremes(point_.amplitude.col(c), extremes_);
+    peak.maximum = extremes_.front().max, peak.minimum = extremes_.front().min;
+    if (!twists) return;
+    sum_.extremes(point_.twist.col(c), extremes_);
+    peak.twist_half_range = extremes_.front().half_range();
   }
   double one(double speed, std::size_t section) {
     pause_();
@@ -265,18 +348,42 @@ class Search {
     sum_.extremes(std::span(&column, 1), extremes_);
     return extremes_.front().half_range();
   }
-  /// The section in which the order is largest relative to its scale, among those with the unit of the first
-  /// one.
-  int most_moved(double speed, int order, double beside) {
-    response_.vibration(beside * speed, point_, order);
+  /// The section with the largest amplitude, among those with the unit of the first one.
+  int most_moved(const Eigen::RowVectorXcd& amplitudes) const {
     int best = 0;
     double most = -1.0;
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
-      const double part = std::abs(point_.amplitude(order, static_cast<Eigen::Index>(c)));
+      const double part = std::abs(amplitudes[static_cast<Eigen::Index>(c)]);
       if (sweep_.sections[c].unit == sweep_.sections.front().unit && part > most)
         most = part, best = static_cast<int>(c);
     }
     return best;
+  }
+  /// Finds section, own amplitude and the sections' speeds of a critical at which the order meets a damped mode. In
+  /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x, from its values at x = -1, 0, 1.
+  void find_own_parts(SweepCritical& critical, int order) {
+    const std::complex<double> lambda = sweep_.modes.at(critical.mode, critical.speed), i(0.0, 1.0);
+    const double width = std::abs(lambda.real()) / critical.order;
+    const auto at = [&](double x) -> Eigen::RowVectorXcd {
+      pause_();
+      response_.vibration(critical.speed + x * width, point_, order);
+      return point_.amplitude.row(order);
+    };
+    const Eigen::RowVectorXcd below = at(-1.0), here = at(0.0), above = at(1.0);
+    const Eigen::RowVectorXcd own = 2.0 * here - above - below, rest = here - own,
+                              slope = 0.5 * (above - below) + 0.5 * i * own;
+    critical.section = most_moved(own);
+    critical.own_amplitude = std::abs(own[critical.section]);
+    for (Eigen::Index c = 0; c < own.size(); ++c) {
+      const auto amplitude = [&](double x) {
+        return std::abs(own[c] / (1.0 + i * x) + rest[c] + slope[c] * x);
+      };
+      constexpr double kTolerance = 1e-6;
+      const bool mine = std::abs(own[c]) > kOwnPart * std::abs(here[c]);
+      const double x = mine ? bracketed_maximum(-1.0, 0.0, 1.0, kTolerance, amplitude).at : 0.0;
+      const bool top = std::abs(x) < 1.0 - 2.0 * kTolerance;
+      critical.section_speeds.push_back(critical.speed + (top ? x * width : 0.0));
+    }
   }
 
   LinearResponse& response_;
@@ -284,8 +391,8 @@ class Search {
   const std::function<void()>& pause_;
   LinearSweep& sweep_;
   double low_, high_;
-  std::map<double, std::vector<double>> curves_;  // half ranges of all sections by speed
-  std::vector<double> largest_;                   // half range of each section
+  std::map<double, Values> curves_;  // half ranges and heat of all sections by speed
+  std::vector<double> largest_;      // largest finite half range of each section
   std::vector<bool> has_content_;
   std::vector<int> numbers_;  // number of the order of each critical speed
   LinearResponse::Point point_;
@@ -315,6 +422,7 @@ void find_sweep_peaks(const System& system, LinearResponse& response, Trigonomet
   Search search(response, sum, pause, sweep);
   search.seed();
   search.find_peaks();
+  search.find_heat();
   search.find_criticals();
 }
 

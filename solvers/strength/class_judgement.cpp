@@ -19,21 +19,29 @@ struct CurvePoint {
   double speed = 0.0, half_range = 0.0;
 };
 
-/// Half ranges of a section at the speeds of the sweep and at its peaks, by ascending speed.
-std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section) {
-  const Vector half = sweep.sections[static_cast<std::size_t>(section)].half_range();
+/// Values at the speeds of the sweep and at the section's peaks whose value is known, by ascending speed; the larger one
+/// where a peak is at one of the speeds.
+std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section, const Vector& at_speeds,
+                                 const std::function<double(const SweepPeak&)>& at_peak) {
   std::vector<CurvePoint> curve;
   for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
-    curve.push_back({sweep.speeds[i], half[static_cast<Eigen::Index>(i)]});
-  for (const SweepPeak& peak : sweep.peaks)
-    if (peak.section == section && !std::count(sweep.speeds.begin(), sweep.speeds.end(), peak.speed))
-      curve.push_back({peak.speed, peak.half_range});
+    curve.push_back({sweep.speeds[i], at_speeds[static_cast<Eigen::Index>(i)]});
+  for (const SweepPeak& peak : sweep.peaks) {
+    if (peak.section != section || std::isnan(at_peak(peak))) continue;
+    const auto at = std::find(sweep.speeds.begin(), sweep.speeds.end(), peak.speed);
+    if (at == sweep.speeds.end()) {
+      curve.push_back({peak.speed, at_peak(peak)});
+      continue;
+    }
+    double& value = curve[static_cast<std::size_t>(at - sweep.speeds.begin())].half_range;
+    value = std::max(value, at_peak(peak));
+  }
   std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
   return curve;
 }
 
-/// Speed ranges where ratio(speed, half range) > 1, with ends by linear interpolation; not a number: there is
-/// no limit.
+/// Speed ranges where ratio(speed, half range) > 1, with ends by linear interpolation; beside an infinite ratio, which
+/// grows as one over the distance, by linear interpolation of one over the ratio. Not a number: there is no limit.
 std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
                                            const std::function<double(const CurvePoint&)>& ratio) {
   std::vector<ExceededRange> ranges;
@@ -41,7 +49,8 @@ std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
   double last = 0.0;
   bool inside = false;
   const auto crossing = [&](const CurvePoint& p, double now) {
-    if (!std::isfinite(last) || !std::isfinite(now)) return std::isfinite(last) ? before->speed : p.speed;
+    if (std::isinf(now)) return before->speed + (p.speed - before->speed) * (1.0 - last);
+    if (std::isinf(last)) return before->speed + (p.speed - before->speed) * now;
     return before->speed + (p.speed - before->speed) * (1.0 - last) / (now - last);
   };
   for (const CurvePoint& p : curve) {
@@ -49,7 +58,9 @@ std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
     const bool over = now > 1.0;
     if (over && !inside) {
       const bool open = before == nullptr || std::isnan(last);
-      ranges.push_back({open ? p.speed : crossing(p, now), p.speed, open, false, 0.0, 0.0, false});
+      ExceededRange& range = ranges.emplace_back();
+      range.from = open ? p.speed : crossing(p, now), range.to = p.speed;
+      range.open_from = open;
     }
     if (!over && inside) {
       ranges.back().open_to = std::isnan(now);
@@ -90,7 +101,8 @@ class Judge {
       found.stress = data.stress_concentration / found.modulus * s.half_range();
     }
     for (const double speed : sweep_.speeds) found.limits.push_back(limit(data, speed));
-    const std::vector<CurvePoint> curve = curve_of(sweep_, section);
+    const std::vector<CurvePoint> curve =
+        curve_of(sweep_, section, s.half_range(), [](const SweepPeak& peak) { return peak.half_range; });
     for (const CurvePoint& p : curve) {
       const TorqueLimit at = limit(data, p.speed);
       const double used = p.half_range / at.continuous;
@@ -99,33 +111,28 @@ class Judge {
     }
     found.exceeded = exceeded_ranges(
         curve, [&](const CurvePoint& p) { return p.half_range / limit(data, p.speed).continuous; });
-    for (ExceededRange& range : found.exceeded) {
-      range.may_be_passed = range.to / strength_.rated_speed < iacs_m68::kNoBarredRange;
-      for (const CurvePoint& p : curve)
-        if (p.speed >= range.from && p.speed <= range.to)
-          range.may_be_passed = range.may_be_passed && p.half_range <= limit(data, p.speed).transient;
-    }
+    for (ExceededRange& range : found.exceeded) range.passing = passing(data, range, curve);
     add_barred(data, section, found);
-    for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
-      if (const double heat = s.heat[static_cast<Eigen::Index>(i)];
-          !(heat <= found.heat) && !std::isnan(heat))
-        found.heat = heat, found.heat_speed = sweep_.speeds[i];
+    const SweepLargest heat = largest_heat(sweep_, section);
+    found.heat = heat.value, found.heat_speed = heat.speed;
+    found.permissible_heat = data.permissible_heat;
     return found;
   }
 
   void add_chatter(int section, std::vector<ChatterRange>& chatter) const {
     const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
-    std::vector<CurvePoint> curve;  // ratio itself at the speeds, where the mean is known
-    for (std::size_t i = 0; i < sweep_.speeds.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      curve.push_back({sweep_.speeds[i], s.half_range()[at] / std::abs(s.mean[at])});
-    }
+    const std::vector<CurvePoint> curve = curve_of(  // the ratio itself
+        sweep_, section, (s.half_range().array() / s.mean.array().abs()).matrix(),
+        [](const SweepPeak& peak) { return peak.half_range / std::abs(peak.mean); });
     for (const ExceededRange& range :
          exceeded_ranges(curve, [](const CurvePoint& p) { return p.half_range; })) {
       ChatterRange found{section, range, 0};
+      const auto inside = [&range](double speed) { return speed >= range.from && speed <= range.to; };
       for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
-        if (sweep_.speeds[i] >= range.from && sweep_.speeds[i] <= range.to &&
-            s.separates(static_cast<Eigen::Index>(i)))
+        if (inside(sweep_.speeds[i]) && s.separates(static_cast<Eigen::Index>(i))) ++found.separated;
+      for (const SweepPeak& peak : sweep_.peaks)
+        if (peak.section == section && !peak.at_end && inside(peak.speed) &&
+            s.separates(peak.mean, peak.maximum, peak.minimum))
           ++found.separated;
       chatter.push_back(found);
     }
@@ -136,20 +143,37 @@ class Judge {
     return torque_limit(data, speed / strength_.rated_speed);
   }
 
+  ExceededRange::Passing passing(const SectionStrength& data, const ExceededRange& range,
+                                 const std::vector<CurvePoint>& curve) const {
+    using Passing = ExceededRange::Passing;
+    if (range.to / strength_.rated_speed >= iacs_m68::kNoBarredRange) return Passing::near_rated;
+    bool given = true;
+    for (const CurvePoint& p : curve) {
+      if (p.speed < range.from || p.speed > range.to) continue;
+      const double transient = limit(data, p.speed).transient;
+      if (p.half_range > transient) return Passing::above_limit;
+      given = given && !std::isnan(transient);
+    }
+    if (!given) return Passing::no_limit;
+    return std::isnan(strength_.rated_speed) ? Passing::no_rated_speed : Passing::permitted;
+  }
+
   void add_barred(const SectionStrength& data, int section, SectionJudgement& found) const {
     if (std::isnan(data.tensile_strength) || std::isnan(strength_.rated_speed)) return;
     for (std::size_t c = 0; c < sweep_.criticals.size(); ++c) {
       const SweepCritical& critical = sweep_.criticals[c];
       // Whether the critical speed is in a range in which this section's limit is exceeded.
-      const bool inside = std::any_of(found.exceeded.begin(), found.exceeded.end(), [&](const auto& range) {
-        return critical.speed >= range.from && critical.speed <= range.to;
-      });
-      if (!inside || section < 0) continue;
-      const double ratio = critical.speed / strength_.rated_speed;
-      const iacs_m68::BarredRange by_rule = ratio < iacs_m68::kNoBarredRange
-                                                ? iacs_m68::barred_range(critical.speed, ratio)
-                                                : iacs_m68::BarredRange{};
-      found.barred.push_back({static_cast<int>(c), ratio, by_rule.from, by_rule.to});
+      const double speed = critical.section_speeds.empty()
+                               ? critical.speed
+                               : critical.section_speeds[static_cast<std::size_t>(section)];
+      const bool inside =
+          std::any_of(found.exceeded.begin(), found.exceeded.end(),
+                      [speed](const auto& range) { return speed >= range.from && speed <= range.to; });
+      if (!inside) continue;
+      const double ratio = speed / strength_.rated_speed;
+      const iacs_m68::BarredRange by_rule =
+          ratio < iacs_m68::kNoBarredRange ? iacs_m68::barred_range(speed, ratio) : iacs_m68::BarredRange{};
+      found.barred.push_back({static_cast<int>(c), speed, ratio, by_rule.from, by_rule.to});
     }
   }
 
@@ -159,8 +183,25 @@ class Judge {
 
 }  // namespace
 
+const char* to_text(ExceededRange::Passing passing) {
+  switch (passing) {
+    case ExceededRange::Passing::permitted:
+      return "permitted";
+    case ExceededRange::Passing::near_rated:
+      return "near rated speed";
+    case ExceededRange::Passing::above_limit:
+      return "above transient limit";
+    case ExceededRange::Passing::no_limit:
+      return "no transient limit given";
+    case ExceededRange::Passing::no_rated_speed:
+      return "no rated speed given";
+  }
+  return "";
+}
+
 bool ClassJudgement::accepted() const {
-  return std::all_of(sections.begin(), sections.end(), [](const auto& s) { return s.exceeded.empty(); });
+  return std::all_of(sections.begin(), sections.end(),
+                     [](const auto& s) { return s.exceeded.empty() && !s.heat_exceeds(); });
 }
 
 TorqueLimit torque_limit(const SectionStrength& s, double speed_ratio) {
@@ -246,7 +287,7 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength) {
       used[k] = true;
       if (!findings.empty()) continue;
       found.sections.push_back(judge.section(static_cast<int>(c), static_cast<int>(k)));
-      judged = judged || found.sections.back().judged();
+      judged = judged || found.sections.back().judged() || found.sections.back().heat_judged();
     }
     if (s.contact) judge.add_chatter(static_cast<int>(c), found.chatter);
     if (!judged) found.not_judged.push_back(s.name);

@@ -5,7 +5,10 @@
 /// Vibratory torque: half range of the sum of all orders with their phases. If a section has several limits,
 /// the lowest applies, each expressed as a torque: tau W by IACS UR M68 (nominal stress), tau W / K of a
 /// given stress (local stress, K the stress concentration), a given torque. Between speeds of the sweep and
-/// its located peaks the torque is interpolated linearly.
+/// its located peaks the torque is interpolated linearly; beside an unbounded peak as one over the distance from it.
+///
+/// Heat and chatter are judged at the speeds of the sweep and at the located peaks, too: heat at its own peak; the ratio
+/// of chatter at the peaks of the half range, where it is largest but for the slope of the mean.
 #include <drev/core/error.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
@@ -30,13 +33,23 @@ struct ExceededRange {
   bool open_from = false,
        open_to = false;                   ///< true: it begins or ends with the sweep or the limit
   double worst = 0.0, worst_speed = 0.0;  ///< largest ratio to the limit in it [-], and its speed [rad/s]
-  /// True: the transient limit is met throughout, and the range is below 0.8 of the rated speed.
-  bool may_be_passed = false;
+  /// Whether it may be barred and passed quickly.
+  enum class Passing {
+    permitted,       ///< the transient limit is met throughout, and the range is below 0.8 of the rated speed
+    near_rated,      ///< it reaches 0.8 of the rated speed
+    above_limit,     ///< the transient limit is exceeded
+    no_limit,        ///< no transient limit is given, nothing can be said
+    no_rated_speed,  ///< no rated speed is given, nothing can be said
+  };
+  Passing passing = Passing::no_limit;
+  bool may_be_passed() const { return passing == Passing::permitted; }
 };
+const char* to_text(ExceededRange::Passing passing);
 
 /// A barred speed range by IACS UR M68.5 around a critical speed at which the continuous limit is exceeded.
 struct RuleBarredRange {
-  int critical = 0;  ///< number in LinearSweep::criticals
+  int critical = 0;    ///< number in LinearSweep::criticals
+  double speed = 0.0;  ///< n_c: where the critical's order has its top in this section [rad/s]
   double speed_ratio = 0.0;
   double from = 0.0, to = 0.0;  ///< rad/s; both 0 from a speed ratio of 0.8 on, where none is permitted
 };
@@ -54,21 +67,26 @@ struct SectionJudgement {
   std::vector<RuleBarredRange> barred;
   /// Largest heat [W], and its speed [rad/s]; NaN: it is not known at any speed.
   double heat = std::numeric_limits<double>::quiet_NaN(), heat_speed = heat;
-  bool judged() const { return utilisation > 0.0; }
+  double permissible_heat = SectionStrength::kNone;  ///< [W]; not a number: no limit
+  bool heat_exceeds() const { return heat > permissible_heat; }
+  bool heat_judged() const { return heat <= permissible_heat || heat_exceeds(); }
+  bool judged() const { return utilisation > 0.0; }  ///< whether the torque is
 };
 
 /// A speed range in which the vibratory force of a mesh exceeds its mean force, so that the teeth hammer.
 struct ChatterRange {
   int section = 0;
   ExceededRange range;  ///< worst: largest half range over |mean| [-]
-  long separated = 0;   ///< number of its speeds at which the closed contact's force changes its sign
+  long separated =
+      0;  ///< number of its speeds, and peaks between them, at which the contact's force changes its sign
 };
 
 struct ClassJudgement {
   std::vector<SectionJudgement> sections;
   std::vector<ChatterRange> chatter;
   std::vector<std::string> not_judged;  ///< names of the sections of the sweep without a limit
-  bool accepted() const;                ///< whether no judged section exceeds its limit in continuous running
+  /// Whether no judged section exceeds its limit in continuous running, of torque or of heat.
+  bool accepted() const;
 };
 
 /// Throws ModelError where data of a section are out of range or belong to no section of the sweep.

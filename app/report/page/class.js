@@ -14,7 +14,7 @@ function showJudgement() {
           "section",
           "d [mm]",
           "half range [N m]",
-          "stress [MPa]",
+          "stress [MPa], half range",
           "permissible [N m]",
           "used",
           "at [rpm]",
@@ -22,17 +22,20 @@ function showJudgement() {
           "by",
         ],
         one.sections.map((s) => {
+          const unbounded = (value, text) => (s.unbounded && value === null ? "unbounded" : text(value));
+          const stress = s.stress_of_rule === "nominal" ? s.worst_nominal_stress_Pa : s.worst_stress_Pa;
           const heat = sig(s.heat_W) + (s.permissible_heat_W === null ? "" : ` of ${sig(s.permissible_heat_W)}`);
           return [
             s.section,
             s.diameter_m === null ? "–" : sig(1e3 * s.diameter_m) + (s.bore_m ? ` / ${sig(1e3 * s.bore_m)}` : ""),
-            sig(s.worst_half_range_Nm, 5),
-            s.worst_stress_Pa === null ? "–" : sig(s.worst_stress_Pa / 1e6),
+            unbounded(s.worst_half_range_Nm, (value) => sig(value, 5)),
+            s.diameter_m === null ? "–" : unbounded(stress, (value) => `${sig(value / 1e6)} ${s.stress_of_rule}`),
             s.worst_permissible_Nm === null ? "–" : sig(s.worst_permissible_Nm),
-            s.utilisation === null ? "–" : percent(s.utilisation),
-            s.utilisation === null ? "–" : sig(s.utilisation_at_rpm, 5),
-            heat,
-            s.rule ?? "not judged",
+            s.rule === null ? "–" : unbounded(s.utilisation, percent),
+            s.rule === null ? "–" : sig(s.utilisation_at_rpm, 5),
+            s.heat_exceeds ? `${heat}, exceeded at ${sig(s.heat_at_rpm, 5)} rpm` : heat,
+            (s.rule ?? "torque not judged") +
+              (s.permissible_heat_W === null || s.heat_W === null ? "" : ", permissible heat"),
           ];
         }),
       ),
@@ -42,9 +45,9 @@ function showJudgement() {
         s.section,
         `${r.open_from ? "≤ " : ""}${sig(r.from_rpm, 5)}`,
         `${r.open_to ? "≥ " : ""}${sig(r.to_rpm, 5)}`,
-        percent(r.worst),
+        r.worst === null ? "unbounded" : percent(r.worst),
         sig(r.worst_rpm, 5),
-        r.may_be_passed ? "yes" : "no",
+        { permitted: "yes", "no transient limit given": "not judged: no limit for passing is given", "no rated speed given": "not judged: no rated speed is given" }[r.passing] ?? "no",
       ]),
     );
     if (exceeded.length)
@@ -84,7 +87,7 @@ function showJudgement() {
             r.section,
             sig(r.from_rpm, 5),
             sig(r.to_rpm, 5),
-            sig(r.worst, 3),
+            r.worst === null ? "unbounded" : sig(r.worst, 3),
             sig(r.worst_rpm, 5),
             r.separated_speeds,
           ]),
