@@ -165,7 +165,8 @@ SweepFamily& Sweeper::family(int cycles) {
   }
   SweepFamily& again = families_[cycles];
   const int excited = cycles * excited_harmonics_;
-  again.resolved = excited <= most || again.balance->inputs() * (2 * excited + 1) <= kMostExcitedRows;
+  again.resolved = excited_harmonics_ <= excited_->lines() &&
+                   (excited <= most || again.balance->inputs() * (2 * excited + 1) <= kMostExcitedRows);
   again.harmonics = std::max(std::min(needed, most), again.resolved ? excited : 0);
   again.balance->set_harmonics(again.harmonics);
   return again;
@@ -374,8 +375,10 @@ void Sweeper::find_jumps() {
 void Sweeper::note_excess() {
   const SweepFamily& of = family(1);
   if (of.resolved) return;
+  const bool enough = excited_harmonics_ <= excited_->lines();
   const int most = std::max(of.harmonics, (kMostExcitedRows / of.balance->inputs() - 1) / 2);
-  sweep_.excess = {excited_harmonics_, most, excited_->share_beyond(sample_speeds(), most)};
+  sweep_.excess = {true, enough ? excited_harmonics_ : 0, most,
+                   excited_->share_beyond(sample_speeds(), most)};
 }
 
 NonlinearSweep Sweeper::run() {

@@ -126,10 +126,12 @@ struct NonlinearSweep {
   std::vector<SweptRun> runs;               ///< by speed
   std::vector<double> unsolved;             ///< speeds at which no periodic motion was found [rad/s]
   std::vector<std::string> floating_parts;  ///< a node of each
-  /// Where no curve is followed since loads excite higher harmonics than can be solved for; needed 0: there are enough.
+  /// Why no curve is followed: loads excite higher harmonics than can be solved for.
   struct Excess {
-    int needed = 0, most = 0;  ///< harmonics of the cycle
-    double left_out = 0.0;     ///< largest part of the rms of a vibration that the most would leave out [-]
+    bool found = false;
+    int needed = 0;         ///< harmonics of the cycle; 0: no number is enough, a load does not repeat in it
+    int most = 0;           ///< that can be solved for
+    double left_out = 0.0;  ///< largest part of the rms of a vibration that these would leave out [-]
   };
   Excess excess;
 };

@@ -162,7 +162,7 @@ std::string runs_table(const NonlinearSweep& sweep) {
     }
   }
   if (rows.size() > 1)
-    text += std::string(sweep.excess.needed > 0
+    text += std::string(sweep.excess.found
                             ? "No curve of motions is followed (see below); what a run does:\n"
                             : "Harmonic balance found no stable motion at these speeds; what a run does:\n") +
             columns_text(rows);
@@ -244,21 +244,29 @@ Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
 
 std::string table_cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
 
+std::string excess_sentence(const NonlinearSweep& sweep) {
+  const NonlinearSweep::Excess& excess = sweep.excess;
+  const std::string turns = short_digits(sweep.turns, kFigureDigits) + " turns";
+  const std::string why = excess.needed > 0
+                              ? "in a cycle of " + turns + " the loads excite harmonics up to " +
+                                    std::to_string(excess.needed) + " (order " +
+                                    short_digits(excess.needed / sweep.turns, kFigureDigits) +
+                                    "), and at most " + std::to_string(excess.most) + " can be solved for"
+                              : "a load does not repeat in a cycle of " + turns;
+  return "No curve of motions is followed: " + why + ". A curve would leave out " +
+         digits(100.0 * excess.left_out, 2) +
+         " % of the vibration of a section or mesh (rms, with closed contacts)." +
+         (excess.needed > 0
+              ? " Loads over the nominal angle (twist_feedback = false) leave room for more harmonics."
+              : "");
+}
+
 }  // namespace
 
 std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
   std::vector<std::string> notes;
   double error = 0.0;
   bool judged = true, unknown = false;
-  if (sweep.excess.needed > 0)
-    notes.push_back("No curve of motions is followed: in a cycle of " +
-                    short_digits(sweep.turns, kFigureDigits) + " turns the loads excite harmonics up to " +
-                    std::to_string(sweep.excess.needed) + " (order " +
-                    short_digits(sweep.excess.needed / sweep.turns, kFigureDigits) + "), and at most " +
-                    std::to_string(sweep.excess.most) + " can be solved for. They would leave out " +
-                    digits(100.0 * sweep.excess.left_out, 2) +
-                    " % of the vibration of a section or mesh (rms, contacts closed). Loads over the "
-                    "nominal angle (twist_feedback = false) leave room for more harmonics.");
   for (const SweptBranch& branch : sweep.branches)
     for (const SweptMotion& motion : branch.motions) {
       if (motion.asked && std::isfinite(motion.error)) error = std::max(error, motion.error);
@@ -292,7 +300,7 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
       notes.push_back("Curve " + std::to_string(b + 1) + " could not be followed to its end.");
-  if (!sweep.unsolved.empty() && sweep.excess.needed == 0) {
+  if (!sweep.unsolved.empty() && !sweep.excess.found) {
     std::vector<std::string> speeds;
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
@@ -303,6 +311,7 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
 
 std::vector<std::string> left_over_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
   std::vector<std::string> notes;
+  if (sweep.excess.found) notes.push_back(excess_sentence(sweep));
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
     const LeftOver left = left_over_of(sweep, f);
     if (left.most > kLeftOver)
@@ -378,10 +387,11 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
   object["changes"] = std::move(changes);
   object["runs"] = std::move(runs);
   object["largest"] = largest_object(sweep);
-  object["excess"] = sweep.excess.needed > 0 ? Json({{"needed", sweep.excess.needed},
-                                                     {"most", sweep.excess.most},
-                                                     {"left_out", number(sweep.excess.left_out)}})
-                                             : Json();
+  const NonlinearSweep::Excess& excess = sweep.excess;
+  object["excess"] = excess.found ? Json({{"needed", excess.needed > 0 ? Json(excess.needed) : Json()},
+                                          {"most", excess.most},
+                                          {"left_out", number(excess.left_out)}})
+                                  : Json();
   object["unsolved_rpm"] = std::move(unsolved);
   object["floating_parts"] = std::move(floating);
   object["balance"] = text_or_null(options.balance);

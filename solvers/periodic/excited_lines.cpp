@@ -17,10 +17,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kFewestLines = 192, kMostLines = 1 << 13;
-constexpr double kLeftOut = 1e-3;    // part of a load's rms up to which no further harmonics are looked for
-constexpr double kConstant = 1e-12;  // variation of a law's force relative to it that is rounding
-constexpr double kRounding =
+constexpr int kLeastLines = 192, kMostLines = 1 << 13;
+constexpr double kPastLines = 1e-3;  // part of a load's rms up to which no further harmonics are looked for
+constexpr double kUnvaried = 1e-12;  // variation of a law's force relative to it that is rounding
+constexpr double kNoVibration =
     1e-9;  // vibration of a section beside that of others of its unit that is rounding
 
 }  // namespace
@@ -49,7 +49,7 @@ ExcitedLines::ExcitedLines(const System& system, double turns, const std::string
 
 /// As many as the loads that state their harmonics have, and for others until little is left out.
 void ExcitedLines::find_lines() {
-  double highest = kFewestLines;
+  double highest = kLeastLines;
   std::vector<bool> stated;
   for (const LoadTerm& term : system_.loads()) {
     if (system_.node_map(term.node).prescribed >= 0) continue;
@@ -69,7 +69,7 @@ void ExcitedLines::find_lines() {
     const auto& contents = content_->at(balance_.direction() * speed);
     bool enough = true;
     for (std::size_t l = 0; l < contents.size(); ++l)
-      enough = enough && (stated[l] || contents[l].left_out <= kLeftOut * contents[l].rms);
+      enough = enough && (stated[l] || contents[l].left_out <= kPastLines * contents[l].rms);
     if (enough || lines_ == kMostLines) break;
   }
   for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system_.row_of(load->node));
@@ -91,7 +91,7 @@ Eigen::MatrixXcd ExcitedLines::law_lines(double speed) {
     for (int s = 0; s < samples; ++s)
       force[idx(s)] = balance_.respond(terms[t], x, speed, kTwoPi * s / samples).y;
     const auto [low, high] = std::minmax_element(force.begin(), force.end());
-    if (*high - *low <= kConstant * std::max(std::abs(*high), std::abs(*low))) continue;
+    if (*high - *low <= kUnvaried * std::max(std::abs(*high), std::abs(*low))) continue;
     transform.forward(spectrum, force);
     for (int n = 1; n <= lines_; ++n)
       all(n - 1, static_cast<Eigen::Index>(t)) = 2.0 / samples * spectrum[idx(n)];
@@ -139,7 +139,7 @@ Eigen::MatrixXd ExcitedLines::shares(double speed) {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     auto column = squares.col(static_cast<Eigen::Index>(r));
     const double sum = column.sum();
-    if (sum > kRounding * kRounding * largest[rows_[r].unit])
+    if (sum > kNoVibration * kNoVibration * largest[rows_[r].unit])
       column /= sum;
     else
       column.setZero();
