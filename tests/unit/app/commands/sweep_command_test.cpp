@@ -402,7 +402,6 @@ TEST_CASE("Both folds of a gear pair to eight digits by the command", "[sweep]")
   CHECK(folds[1] == Approx(0.8284639844).epsilon(2e-9));
 }
 
-<<<<<<< HEAD
 TEST_CASE("A sweep and a class calculation that are interrupted say so, write nothing and end with 130",
           "[sweep]") {
   const int signal = GENERATE(SIGINT, SIGTERM);
@@ -420,7 +419,8 @@ TEST_CASE("A sweep and a class calculation that are interrupted say so, write no
   CHECK(contains(outcome.err, "drev: interrupted; nothing is written"));
   CHECK(outcome.out.empty());
   CHECK_FALSE(std::filesystem::exists(folder / "s.html"));
-=======
+}
+
 TEST_CASE(
     "Loads beyond the harmonics that can be solved for: the runs are told as the largest, with the reason",
     "[sweep]") {
@@ -471,5 +471,4 @@ input = { permissible_torque_Nm = 2.5 }
   const Json verdict = Json::parse(judged.out).at("cases")[0];
   CHECK(verdict.at("accepted") == false);
   CHECK(contains(verdict.at("notes").dump(), "harmonics up to 664 (order 24)"));
->>>>>>> 4c9c375d3335dc99aa910df1cb706737b9150251
 }
