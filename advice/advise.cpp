@@ -318,9 +318,13 @@ FigureOptions figure_options(const ModelCase& model_case, const System& system,
   else if (channel.find('.') != std::string::npos)
     figure.channels = {channel};
   else
-    check.fail("figure", options.figure, "",
-               "must be 'peak deflection', 'peak torque' (where the model has one) or 'peak CHANNEL', "
-               "each also with 'steady ' before it");
+    check.fail(
+        "figure", options.figure, "",
+        std::string(text == "peak deflection" ? "the model states no deflection ([run] deflection)"
+                    : text == "peak torque"   ? "the model has no torques among which it is sought"
+                                              : "is no figure") +
+            "; it may be 'peak deflection' or 'peak torque' where the model has one, or 'peak CHANNEL', "
+            "each also with 'steady ' before it");
   if (!findings.empty()) throw ModelError(findings);
   find_channels(system, figure.channels);
   return figure;

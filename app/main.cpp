@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
 #include "app/cli/command_line.hpp"
 #include "app/cli/exit_codes.hpp"
@@ -46,6 +47,7 @@ std::vector<std::string> command_words(int argc, char** argv) {
 
 int guarded_main(int argc, char** argv) {
   try {
+    end_on_signals();
     register_fmu();
     if (argc > 1 && std::string_view(argv[1]) == "__complete") {
       std::string text;
@@ -66,6 +68,9 @@ int guarded_main(int argc, char** argv) {
   } catch (const ModelError& error) {
     complain(error);
     return kBadInput;
+  } catch (const Interruption&) {
+    std::fprintf(stderr, "drev: interrupted; nothing is written\n");
+    return kInterrupted;
   } catch (const OutputError& error) {
     std::fprintf(stderr, "drev: %s\n", error.what());
     return kNotWritten;

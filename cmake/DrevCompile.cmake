@@ -41,6 +41,9 @@ endif()
 # Headers that are slow to read and never change. Sources include what they use all the same; build
 # with -DDREV_PRECOMPILE=OFF to see that they do.
 set(DREV_PRECOMPILED <Eigen/Dense> <Eigen/SparseCore> <functional> <memory> <string> <vector>)
+if(SKBUILD)  # Nothing changes between pip's units: what most of them read of drev itself is precompiled, too.
+  list(APPEND DREV_PRECOMPILED <drev/core/assembler.hpp>)
+endif()
 
 # Whose precompiled header those use that compute little.
 set(DREV_COLD drev_core)
@@ -75,6 +78,7 @@ function(drev_make_cold)
   set_target_properties(drev_cold PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(drev_cold PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json)
   target_compile_definitions(drev_cold PRIVATE $<TARGET_PROPERTY:drev_core,INTERFACE_COMPILE_DEFINITIONS>)
+  target_include_directories(drev_cold PRIVATE $<TARGET_PROPERTY:drev_core,INTERFACE_INCLUDE_DIRECTORIES>)
   target_compile_options(drev_cold PRIVATE ${DREV_COLD_OPTIONS})
   drev_compile(drev_cold ${DREV_PRECOMPILED} <nlohmann/json.hpp>)
 endfunction()

@@ -1,6 +1,7 @@
 #include <drev/elements/time_table.hpp>
 
 #include <algorithm>
+#include <functional>
 
 namespace drev {
 
@@ -15,6 +16,7 @@ CurvePoint TimeTable::at(double t) const {
 }
 
 std::vector<double> TimeTable::breakpoints() const {
+  if (std::adjacent_find(values_.begin(), values_.end(), std::not_equal_to<>()) == values_.end()) return {};
   std::vector<double> knots = times_;
   knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
   return knots;

@@ -22,7 +22,7 @@ class TimeTable {
   CurvePoint at(double t) const;
   const std::vector<double>& times() const { return times_; }
   const std::vector<double>& values() const { return values_; }
-  std::vector<double> breakpoints() const;  ///< the knots, each once [s]
+  std::vector<double> breakpoints() const;  ///< the knots, each once [s]; none of a constant
   void check(ParameterCheck& check, const std::string& parameter, const std::string& value_unit) const;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "solvers/sweeper.hpp"
 
@@ -13,13 +14,21 @@ namespace drev {
 namespace {
 
 constexpr int kFewestHarmonics = 24;
-constexpr int kMostRows = 1100;  // rows of Newton's matrix with more harmonics: 0.3 s a step
-constexpr int kMostLaws = 50;    // laws, each 49 rows with the fewest harmonics: 3 s a step
-constexpr int kProbe = 192;      // harmonics of the linear motion that the first number is read from
-constexpr double kTail = 1e-5;   // part of the linear motion beyond the harmonics taken
+constexpr int kMostRows = 1100;         // rows of Newton's matrix with more harmonics: 0.3 s a step
+constexpr int kMostExcitedRows = 2000;  // where the loads' highest harmonic takes more: 2 s a step
+constexpr double kCarried =
+    1e-2;                        // part of a section's vibration that may lie beyond the harmonics of a curve
+constexpr double kOrder = 1e-3;  // part of a section's vibration from which an order is given by default
+constexpr int kSampleSpeeds = 16;  // speeds at which the loads' content is looked at
+constexpr int kMostLaws = 50;      // laws, each 49 rows with the fewest harmonics: 3 s a step
+constexpr int kProbe = 192;        // harmonics of the linear motion that the first number is read from
+constexpr double kTail = 1e-5;     // part of the linear motion beyond the harmonics taken
 constexpr int kMostBranches = 12;
-constexpr double kSameFold = 1e-7;  // relative difference of speed of a fold found with more harmonics
-constexpr int kDefaultOrders = 12;
+constexpr double kSameFold = 1e-7;   // relative difference of speed of a fold found with more harmonics
+constexpr int kDefaultOrders = 12;   // harmonics of a cycle of up to kShortCycle turns
+constexpr int kHalfOrders = 24;      // 0.5 to 12 by halves
+constexpr int kMostOrders = 64;      // orders given by default
+constexpr double kShortCycle = 2.0;  // turns
 
 using Kind = BranchEvent::Kind;
 
@@ -67,14 +76,49 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
   if (!findings.empty()) throw ModelError(std::move(findings));
   sweep_.speeds = options.speeds;
   sweep_.orders = options.orders;
-  if (sweep_.orders.empty())
-    for (int n = 1; n <= kDefaultOrders; ++n) sweep_.orders.push_back(n / sweep_.turns);
+  excited_ = std::make_unique<ExcitedLines>(system, sweep_.turns, options.balance, sections_->sections());
+  excited_harmonics_ = excited_->fewest(sample_speeds(), kCarried);
+  if (sweep_.orders.empty()) set_orders();
   low_ = options.speeds.front();
   high_ = options.speeds.back();
   for (const SectionRows& rows : sections_->sections())
     sweep_.sections.push_back({rows.name, rows.unit, rows.twist_unit, rows.contact});
   sweep_.floating_parts = balance.mean().floating();
   if (system.size() <= FloquetProduct::kMostUnknowns) stability_ = std::make_unique<FloquetProduct>(system);
+}
+
+/// Some of the speeds asked for, with the first and the last.
+std::vector<double> Sweeper::sample_speeds() const {
+  const std::size_t count = std::min<std::size_t>(options_.speeds.size(), kSampleSpeeds);
+  std::vector<double> some;
+  for (std::size_t i = 0; i < count; ++i)
+    some.push_back(options_.speeds[i * (options_.speeds.size() - 1) / (count - 1)]);
+  return some;
+}
+
+/// Orders that are harmonics of the cycle: those by halves, the first of a short cycle, and what loads and laws excite.
+void Sweeper::set_orders() {
+  std::set<int> lines;
+  for (int half = 1; half <= kHalfOrders; ++half) {
+    const double line = 0.5 * half * sweep_.turns;
+    if (std::abs(line - std::round(line)) < 1e-9 * line) lines.insert(static_cast<int>(std::round(line)));
+  }
+  for (int n = 1; n <= kDefaultOrders && sweep_.turns <= kShortCycle; ++n) lines.insert(n);
+  for (const int n : excited_->excited(sample_speeds(), kOrder))
+    if (lines.size() < kMostOrders) lines.insert(n);
+  for (const int n : lines) sweep_.orders.push_back(n / sweep_.turns);
+}
+
+/// Difference of a motion from that with half the harmonics, or what loads excite beyond its harmonics, whichever is more.
+double Sweeper::error_of(const MotionSections::Figures& coarse, const MotionSections::Figures& fine,
+                         int cycles, int harmonics, double speed) {
+  const Vector beyond = excited_->beyond(speed, harmonics / cycles);
+  double error = largest_difference(coarse, fine);
+  for (Eigen::Index c = 0; c < beyond.size(); ++c) {
+    const double size = fine.samples.col(c).cwiseAbs().maxCoeff();
+    if (size > 0.0) error = std::max(error, beyond[c] / size);
+  }
+  return error;
 }
 
 /// Of curves: with twice as many Newton's matrix has its most rows.
@@ -120,7 +164,9 @@ SweepFamily& Sweeper::family(int cycles) {
     needed = cycles * family(1).harmonics;
   }
   SweepFamily& again = families_[cycles];
-  again.harmonics = std::min(needed, most);
+  const int excited = cycles * excited_harmonics_;
+  again.resolved = excited <= most || again.balance->inputs() * (2 * excited + 1) <= kMostExcitedRows;
+  again.harmonics = std::max(std::min(needed, most), again.resolved ? excited : 0);
   again.balance->set_harmonics(again.harmonics);
   return again;
 }
@@ -174,8 +220,9 @@ bool Sweeper::holds(int cycles, double speed, Vector& x) {
   double error = NAN;
   while (sections_->find(balance, x, speed, of.lines, coarse)) {
     const auto wide = widened(balance, speed, x);
-    error = wide && sections_->find(balance, *wide, speed, of.lines, fine) ? largest_difference(coarse, fine)
-                                                                           : NAN;
+    error = wide && sections_->find(balance, *wide, speed, of.lines, fine)
+                ? error_of(coarse, fine, cycles, balance.harmonics(), speed)
+                : NAN;
     if (!first || !(error > kTraced) || balance.size() > kMostRows) break;
     of.harmonics *= 2;
     x = *wide;
@@ -187,6 +234,7 @@ bool Sweeper::holds(int cycles, double speed, Vector& x) {
 /// A curve from the motion with closed contacts, where there is one that is not known.
 bool Sweeper::start_at(double speed) {
   Vector x;
+  if (!family(1).resolved) return false;
   BranchTracer tracer = this->tracer(1);
   if (!family(1).balance->linear_start(speed, x) || !tracer.solve(speed, x)) return false;
   if (!holds(1, speed, x)) return false;
@@ -232,7 +280,7 @@ SweptMotion Sweeper::asked_for(int cycles, const BranchPoint& point) {
     if (!wide || !sections_->find(balance, *wide, point.speed, of.lines, fine)) break;
     const BranchPoint judged = tracer.judged(point.speed, *wide);
     static_cast<MotionFigures&>(motion) = fine;
-    motion.error = largest_difference(coarse, fine);
+    motion.error = error_of(coarse, fine, cycles, judged.harmonics, point.speed);
     motion.harmonics = judged.harmonics;
     motion.multiplier = judged.multiplier;
     motion.stable = judged.stable;
@@ -322,7 +370,16 @@ void Sweeper::find_jumps() {
   }
 }
 
+/// Where no curve can contain all that loads excite: what it would take, and what would be missing.
+void Sweeper::note_excess() {
+  const SweepFamily& of = family(1);
+  if (of.resolved) return;
+  const int most = std::max(of.harmonics, (kMostExcitedRows / of.balance->inputs() - 1) / 2);
+  sweep_.excess = {excited_harmonics_, most, excited_->share_beyond(sample_speeds(), most)};
+}
+
 NonlinearSweep Sweeper::run() {
+  note_excess();
   start_at(high_);
   if (tell(0.25)) start_at(low_);
   for (const double speed : options_.speeds)

@@ -18,8 +18,12 @@
 ///
 /// Refused: loads in time, given motions, general elements.
 ///
+/// Harmonics: at least up to the highest that loads and laws excite with closed contacts
+/// (solvers/periodic/excited_lines.hpp), but for 1 % of a section's vibration. Where Newton's matrix would have too many
+/// rows for that, no curve is followed, and runs answer.
+///
 /// Errors: of a motion, difference from that with half the harmonics, largest over the cycle and the sections,
-/// beside each section's largest value. Of the speed of a fold or a change of stability, the same difference.
+/// beside each section's largest value; or what the loads excite beyond its harmonics, where that is more. Of the speed of a fold or a change of stability, the same difference.
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/periodic/motion_figures.hpp>
 
@@ -33,7 +37,9 @@ namespace drev {
 
 struct NonlinearSweepOptions {
   std::vector<double> speeds = {};  ///< of the reference shaft, > 0, ascending, at least two [rad/s]
-  /// Orders whose amplitudes are given, a revolution of the reference shaft; empty: the first 12 of the cycle.
+  /// Orders whose amplitudes are given, a revolution of the reference shaft; empty: those of the cycle's harmonics that
+  /// are among 0.5 to 12 by halves, the first 12 harmonics of a cycle of up to 2 turns, and those that loads and laws
+  /// excite to more than 1e-3 of a section's vibration, up to 64.
   std::vector<double> orders = {};
   std::vector<std::string> sections = {};  ///< as in LinearSweepOptions
   std::string balance = {};                ///< as in LinearSweepOptions
@@ -120,6 +126,12 @@ struct NonlinearSweep {
   std::vector<SweptRun> runs;               ///< by speed
   std::vector<double> unsolved;             ///< speeds at which no periodic motion was found [rad/s]
   std::vector<std::string> floating_parts;  ///< a node of each
+  /// Where no curve is followed since loads excite higher harmonics than can be solved for; needed 0: there are enough.
+  struct Excess {
+    int needed = 0, most = 0;  ///< harmonics of the cycle
+    double left_out = 0.0;     ///< largest part of the rms of a vibration that the most would leave out [-]
+  };
+  Excess excess;
 };
 
 /// Throws ModelError with everything wrong with options and model; SolverError where a static stiffness is singular.

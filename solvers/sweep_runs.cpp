@@ -82,15 +82,16 @@ bool Sweeper::start_from(const CycleRunResult& result) {
   const int cycles = result.run.repeats;
   if (cycles == 0) return false;
   SweepFamily& of = family(cycles);
+  if (!of.resolved) return false;
   LawBalance& balance = *of.balance;
-  const int most = most_harmonics(balance), before = of.harmonics;
+  const int before = of.harmonics, most = std::max(most_harmonics(balance), before);
   const bool first = first_of(cycles);
-  const Vector all = harmonics_of(result.motion, balance, std::max(most, before));
+  const Vector all = harmonics_of(result.motion, balance, most);
   Vector x;
   double away = INFINITY;
   while (true) {
     balance.set_harmonics(of.harmonics);
-    x = balance.resized(all, std::max(most, before), of.harmonics);
+    x = balance.resized(all, most, of.harmonics);
     away = away_from(result.run, balance, x, of.lines);
     if (!first || away <= kTraced || of.harmonics >= most) break;
     of.harmonics = std::min(2 * of.harmonics, most);
@@ -112,7 +113,7 @@ void Sweeper::fill_with_runs() {
   const double count = static_cast<double>(left.size());
   CycleRunOptions of{.cycles = options_.run_cycles, .tolerance = options_.tolerance};
   for (const SectionRows& row : sections_->sections()) of.channels.push_back(row.name);
-  of.samples = 4 * most_harmonics(*family(1).balance);
+  of.samples = 4 * std::max(most_harmonics(*family(1).balance), family(1).harmonics);
   of.floating = floating_parts_of(system_, family(1).balance->mean());
   for (std::size_t round = 1; !left.empty(); round = std::min(round, left.size())) {
     std::vector<RunStart> starts;

@@ -10,6 +10,7 @@
 
 #include "solvers/cycle_run.hpp"
 #include "solvers/periodic/branch_tracer.hpp"
+#include "solvers/periodic/excited_lines.hpp"
 #include "solvers/periodic/motion_sections.hpp"
 
 namespace drev {
@@ -18,6 +19,7 @@ namespace drev {
 struct SweepFamily {
   std::unique_ptr<LawBalance> balance;
   int harmonics = 0;
+  bool resolved = true;    ///< the harmonics that loads excite are among them
   std::vector<int> lines;  ///< harmonics of the orders asked for; beyond all: none
 };
 
@@ -55,6 +57,11 @@ class Sweeper {
   double away_from(const SweptRun& run, LawBalance& balance, const Vector& x,
                    const std::vector<int>& lines) const;
   int most_harmonics(const LawBalance& balance) const;
+  std::vector<double> sample_speeds() const;
+  void set_orders();
+  double error_of(const MotionSections::Figures& coarse, const MotionSections::Figures& fine, int cycles,
+                  int harmonics, double speed);
+  void note_excess();
   bool first_of(int cycles) const;
   void find_jumps();
 
@@ -63,6 +70,8 @@ class Sweeper {
   double low_ = 0.0, high_ = 0.0;
   std::unique_ptr<MotionSections> sections_;
   std::unique_ptr<FloquetProduct> stability_;
+  std::unique_ptr<ExcitedLines> excited_;  // of a single cycle
+  int excited_harmonics_ = 1;              // that a motion of a single cycle must contain
   mutable std::map<int, SweepFamily> families_;
   std::vector<TracedBranch> traced_;
   NonlinearSweep sweep_;

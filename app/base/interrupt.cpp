@@ -26,7 +26,24 @@ void give_up(int /*signal*/) {
   ::_exit(130);
 }
 
+void end_at_once(int /*signal*/) {
+  constexpr char kText[] = "drev: interrupted; nothing is written\n";
+  const ssize_t ignored = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+  static_cast<void>(ignored);
+  ::_exit(130);
+}
+
 }  // namespace
+
+void end_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    sigaction(signal, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;
+    action.sa_handler = end_at_once;
+    sigaction(signal, &action, nullptr);
+  }
+}
 
 void watch_signals() {
   if (source != nullptr) return;

@@ -11,6 +11,9 @@ namespace drev::app {
 /// program has signals of its own.
 void watch_signals();
 bool interrupted();
+/// Until watch_signals(): either signal ends the process at once, with a sentence and exit code 130. One that is ignored
+/// already (nohup) stays so.
+void end_on_signals();
 
 /// A computation that was ended so.
 class Interruption : public std::runtime_error {

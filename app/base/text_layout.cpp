@@ -64,7 +64,7 @@ std::string wrap(const std::string& text, std::size_t indent) {
 }
 
 std::string labelled(const std::string& label, const std::string& text) {
-  return pad_right(label, kLabel) + wrap(text, kLabel);
+  return pad_right(label, kLabel) + (label.size() < kLabel ? "" : "  ") + wrap(text, kLabel);
 }
 
 std::string columns_text(const std::vector<std::vector<std::string>>& rows) {

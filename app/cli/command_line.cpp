@@ -68,9 +68,13 @@ bool looks_like_option(const std::string& text) {
 
 /// "; did you mean ..." or the command that has the option.
 std::string option_hint(const std::string& name, const CLI::App& sub) {
+  const std::vector<std::string> names = option_names(sub);
+  const std::string nearest = nearest_name(name, names);
   for (const CLI::App* other : sub.get_parent()->get_subcommands({}))
-    if (other->get_option_no_throw(name) != nullptr) return "; drev " + other->get_name() + " has it";
-  return did_you_mean(name, option_names(sub));
+    if (other->get_option_no_throw(name) != nullptr)
+      return (nearest.starts_with(name) ? did_you_mean(name, names) + " (" : "; ") + "drev " +
+             other->get_name() + " has " + (nearest.starts_with(name) ? name + ")" : "it");
+  return did_you_mean(name, names);
 }
 
 /// What stands on the command line and is known to nobody.
@@ -134,12 +138,19 @@ void take_sets(const Raw& raw, CommandLine& line) {
   }
 }
 
-/// A finding if an option has choices and the value is none of them.
-void check_choice(const OptionEntry& option, const std::string& value, std::vector<Finding>& findings) {
+/// False, and a finding, if an option has choices and the value is none of them.
+bool check_choice(const OptionEntry& option, const std::string& value, std::vector<Finding>& findings) {
   const std::vector<std::string>& choices = option.choices;
-  if (choices.empty() || std::count(choices.begin(), choices.end(), value) > 0) return;
+  if (choices.empty() || std::count(choices.begin(), choices.end(), value) > 0) return true;
   findings.push_back({kCommandLine, option.name, value, "",
                       "must be " + join(choices, " or ") + did_you_mean(value, choices)});
+  return false;
+}
+
+/// A name that ends as a file does is no directory's: the option is of another command, or its value meant otherwise.
+bool names_file(const OptionEntry& option, const std::string& value) {
+  return option.type == std::string("DIR") && (value.ends_with(".csv") || value.ends_with(".json") ||
+                                               value.ends_with(".html") || value.ends_with(".pdf"));
 }
 
 void take_option(const OptionEntry& option, const std::vector<std::string>& given, CommandLine& line) {
@@ -157,12 +168,11 @@ void take_option(const OptionEntry& option, const std::vector<std::string>& give
       report(given[1], "was given already, as " + given[0]);
     else if (given[0].empty() || given[0].starts_with("--"))
       report(given[0], "needs a value");
-    else
+    else if (names_file(option, given[0]))
+      report(given[0], "must be the name of a directory, which several files are written into");
+    else if (check_choice(option, given[0], line.findings))
       taken = given;
-    if (taken.empty())
-      line.options.erase(option.name);
-    else
-      check_choice(option, taken.front(), line.findings);
+    if (taken.empty()) line.options.erase(option.name);
     return;
   }
   const bool commas = option.values == OptionEntry::Values::commas;
@@ -205,6 +215,11 @@ int no_command(const CLI::App& app, const std::vector<CommandEntry>& commands) {
 
 }  // namespace
 
+bool blamed(const std::vector<Finding>& findings, const std::string& option) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [&](const Finding& finding) { return finding.parameter == option; });
+}
+
 ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<CommandEntry>& commands) {
   CLI::App app("drev: torsional dynamics of drivetrains", "drev");
   app.set_version_flag("--version", "drev " DREV_VERSION);
@@ -215,6 +230,10 @@ ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<Co
     add_options(*app.add_subcommand(command.name, command.summary), command, raw);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string said = error.what();
+    std::cerr << "drev: " << kCommandLine << ": " << said.substr(0, said.find(':')) << ", needs a value\n";
+    return {.exit_code = kBadInput};
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // help, version
       std::ostringstream text;

@@ -40,6 +40,9 @@ struct CommandLine {
   }
 };
 
+/// Whether one of the findings is of the option already.
+bool blamed(const std::vector<Finding>& findings, const std::string& option);
+
 /// Either a command to be done, or the exit code of a process that has done what was asked (help, version)
 /// or could not make out what was (its errors are on stderr).
 struct ParsedCommandLine {

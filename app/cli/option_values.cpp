@@ -86,18 +86,21 @@ std::vector<double> read_rising(const char* option, const std::string& text, con
   constexpr double kMost = 1e6;
   std::vector<double> values;
   std::string wrong;
+  const std::string numbers = ", numbers" + (unit.empty() ? "" : " of " + unit) + " without unit";
   if (text.find(':') != text.npos) {
     wrong = read_steps(text, kMost, values);
+    if (wrong.starts_with("must be")) wrong += numbers;
   } else {
     for (const std::string& part : split(text, ',')) {
       values.push_back(0.0);
-      if (!read_number(part, values.back())) wrong = "must be FIRST:STEP:LAST or A,B,C, numbers without unit";
+      if (!read_number(part, values.back())) wrong = "must be FIRST:STEP:LAST or A,B,C" + numbers;
     }
   }
   for (std::size_t i = 0; i < values.size() && wrong.empty(); ++i)
     if (!std::isfinite(values[i]) || !(values[i] > (i > 0 ? values[i - 1] : 0.0)))
       wrong = "must be > 0 and rise from each to the next";
-  if (!wrong.empty()) findings.push_back({kCommandLine, option, text, unit, wrong});
+  if (!wrong.empty())
+    findings.push_back({kCommandLine, option, text, wrong.ends_with(numbers) ? "" : unit, wrong});
   return values;
 }
 

@@ -17,13 +17,13 @@ namespace {
 
 struct AdviseRequest {
   ModelRequest model;
-  AdviseOptions options{.pause = end_if_interrupted};
+  AdviseOptions options;
 };
 
 AdviseRequest request_advise(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   std::optional<ModelRequest> model = build_model(line, findings);
-  AdviseOptions options;
+  AdviseOptions options{.pause = end_if_interrupted};
   options.figure = line.option("--for").value_or(options.figure);
   if (const std::optional<std::string> text = line.option("--within"))
     if (const double within = read_part("--within", *text, AdviseOptions::kWithin, "", findings);
@@ -106,6 +106,7 @@ Json as_json(const AdviseRequest& request, const Advice& advice) {
 
 int advise_command(const CommandLine& line) {
   const AdviseRequest request = request_advise(line);
+  watch_signals();
   const Advice advice = advise(request.model.model_case, request.options);
   print(line.json ? json_text(as_json(request, advice)) : as_text(request, advice));
   return kSuccess;

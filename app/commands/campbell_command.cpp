@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/interrupt.hpp"
 #include "app/base/output_file.hpp"
 #include "app/cli/exit_codes.hpp"
 #include "app/cli/print.hpp"
@@ -18,8 +19,13 @@ namespace drev::app {
 
 int campbell_command(const CommandLine& line) {
   const SweepRequest request = request_sweep(line, {"/modes.csv", "/criticals.csv", "/summary.json"});
+  if (!request.options.close_contacts && !request.model.system.scalars().empty())
+    throw ModelError({{kCommandLine, "--contact", "", "",
+                       "must be closed: modes over speed are of a linear train, and " +
+                           request.model.entry->name + " has laws that are no straight lines"}});
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
+  watch_signals();
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);
   if (sweep.modes.lambda.size() == 0 && !sweep.modes_note.empty())
     throw SolverError("campbell of " + request.model.entry->name + ": " + sweep.modes_note);

@@ -38,12 +38,10 @@ void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
   std::vector<NonlinearSweep> sweeps;
   std::vector<double> missing;
   for (ClassCase& c : cases) {
-    std::vector<Finding> findings;
-    const NonlinearSweepOptions options = nonlinear_options(line, c.request, findings);
-    if (!findings.empty()) throw ModelError(std::move(findings));
+    const NonlinearSweepOptions options = nonlinear_options(line, c.request);
     sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
-    c.notes = left_over_notes(options, sweeps.back());
     end_if_interrupted();
+    c.notes = left_over_notes(options, sweeps.back());
     for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
   }
   std::sort(missing.begin(), missing.end());
@@ -109,8 +107,9 @@ int class_command(const CommandLine& line) {
   const std::shared_ptr<const Strength> strength = request.model.model_case.strength;
   if (!strength || strength->sections.empty())
     throw ModelError({{request.model.entry->name, "[class]", "", "",
-                       "is missing: say in the model file what sections may carry, [class.sections.NAME]; "
-                       "docs/class_report.md"}});
+                       std::string(strength ? "names no section" : "is missing") +
+                           ": say in the model file what sections may carry, [class.sections.NAME]; "
+                           "docs/class_report.md"}});
   CommandLine with_misfire = line;
   for (const auto& [name, value] : strength->misfire)
     with_misfire.parameters.emplace_back(name, to_text(value));
@@ -119,10 +118,10 @@ int class_command(const CommandLine& line) {
   const bool misfire = !strength->misfire.empty();
   cases.push_back({"normal", std::move(request), {}, {}});
   if (misfire) cases.push_back({"misfire", request_sweep(with_misfire, {}), {}, {}});
+  watch_signals();
   if (follows_contacts(cases.front().request)) {
     sweep_contacts(line, cases);
   } else {
-    refuse_nonlinear_options(line);
     for (ClassCase& c : cases) {
       c.sweep = sweep_linear(c.request.model.system, c.request.options);
       c.notes = sweep_notes(c.request, c.sweep);

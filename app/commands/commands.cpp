@@ -14,7 +14,9 @@ const std::vector<CommandEntry>& commands() {
   static const OptionEntry speeds{"--speeds", "RPM",
                                   "Speeds of the reference shaft, FIRST:STEP:LAST or A,B,C; must be given"};
   static const OptionEntry orders{
-      "--orders", "ORDERS", "Orders of the reference shaft, FIRST:STEP:LAST or A,B,C; default: 0.5:0.5:12"};
+      "--orders", "ORDERS",
+      "Orders of the reference shaft, FIRST:STEP:LAST or A,B,C; default: 0.5:0.5:12; of "
+      "contacts, those of them that are harmonics of the cycle, and what the loads excite"};
   static const OptionEntry linear{
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
   static const OptionEntry sections{"--record", "CHANNEL,...",
@@ -236,6 +238,7 @@ const std::vector<CommandEntry>& commands() {
              one,
              {"rest", "static", "periodic"}},
             {"--duration", "SECONDS", "Length of the runs; default: the model's"},
+            {"--settle", "0", "For a model whose [run] has a settle: figures are of the whole run"},
             {"--record", "CHANNEL,...", "Channels whose largest and least values are figures, too", commas},
             {"--jobs", "N", "Threads; default: one per processor"},
             {"--out", "DIR", "Creates DIR with tried.csv, every variant computed, and optimum.json"},

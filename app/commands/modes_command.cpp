@@ -120,7 +120,7 @@ std::string damped_as_text(const ModesRequest& request, const DampedModeSet& set
   if (count == 0) text += "no mode that swings\n";
   if (count > 0)
     text +=
-        "mode   frequency [Hz]    undamped [Hz]    damping ratio   Re lambda [1/s]   most elastic energy, "
+        "mode   frequency [Hz]    |lambda| [Hz]    damping ratio   Re lambda [1/s]   most elastic energy, "
         "most heat\n";
   for (std::size_t i = 0; i < count; ++i) {
     const DampedMode& mode = set.modes[i];
@@ -170,7 +170,7 @@ Json damped_object(const ModesRequest& request, const DampedModeSet& set, const 
     modes.push_back({{"real_per_s", number(mode.lambda.real())},
                      {"imaginary_per_s", number(mode.lambda.imag())},
                      {"frequency_Hz", number(mode.frequency_Hz)},
-                     {"undamped_Hz", number(mode.natural_frequency_Hz)},
+                     {"modulus_Hz", number(mode.natural_frequency_Hz)},
                      {"damping_ratio", number(mode.damping_ratio)},
                      {"shape", shape},
                      {"energy", shares_object(energy, column)}});
@@ -187,7 +187,7 @@ Json damped_object(const ModesRequest& request, const DampedModeSet& set, const 
 
 /// A row a mode.
 std::string damped_modes_as_csv(const DampedModeSet& set, std::size_t count) {
-  std::string text = "mode,real_per_s,imaginary_per_s,frequency_Hz,undamped_Hz,damping_ratio\n";
+  std::string text = "mode,real_per_s,imaginary_per_s,frequency_Hz,modulus_Hz,damping_ratio\n";
   for (std::size_t i = 0; i < count; ++i) {
     const DampedMode& mode = set.modes[i];
     text += std::to_string(i + 1);

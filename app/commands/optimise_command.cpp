@@ -1,6 +1,7 @@
 #include <drev/core/version.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "app/base/csv_cell.hpp"
@@ -60,21 +61,28 @@ OptimumRequest request_optimum(const CommandLine& line) {
     combinations *= v.count() == 0 ? HUGE_VAL : static_cast<double>(v.count());
   }
   CommandLine asked = line;
-  asked.findings.insert(asked.findings.end(), findings.begin(), findings.end());
   if (combinations > static_cast<double>(options.variants))
     asked.options["--sample"] = {"lhs:" + std::to_string(first_sample(options.variants)) + ":" +
                                  std::to_string(options.seed)};
-  OptimumRequest request{study_of(asked), std::move(options)};
-  std::vector<std::string> names;
-  for (const FigureColumn& column : request.study.figures()) names.push_back(column.name);
-  const auto at = std::find(names.begin(), names.end(), figure);
-  if (at == names.end())
-    throw ModelError(std::vector<Finding>{{kCommandLine, largest ? "--maximise" : "--minimise", figure, "",
-                                           "is no figure of the model; there are " + join(names) +
-                                               did_you_mean(figure, names) +
-                                               "; --record CHANNEL adds CHANNEL.max and CHANNEL.min"}});
-  request.options.figure = static_cast<std::size_t>(at - names.begin());
-  return request;
+  std::optional<VariantStudy> study;
+  try {
+    study.emplace(study_of(asked));
+  } catch (const ModelError& error) {
+    findings.insert(findings.begin(), error.findings().begin(), error.findings().end());
+  }
+  if (study && !figure.empty()) {
+    std::vector<std::string> names;
+    for (const FigureColumn& column : study->figures()) names.push_back(column.name);
+    const auto at = std::find(names.begin(), names.end(), figure);
+    options.figure = static_cast<std::size_t>(at - names.begin());
+    if (at == names.end())
+      findings.push_back({kCommandLine, largest ? "--maximise" : "--minimise", figure, "",
+                          "is no figure of the model; there are " + join(names) +
+                              did_you_mean(figure, names) +
+                              "; --record CHANNEL adds CHANNEL.max and CHANNEL.min"});
+  }
+  if (!findings.empty()) throw ModelError(std::move(findings));
+  return {std::move(*study), std::move(options)};
 }
 
 Json values_object(const ParameterValues& values) {
@@ -117,6 +125,10 @@ Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
 std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) {
   const FigureColumn& figure = request.study.figures()[request.options.figure];
   const std::string unit = figure.unit.empty() ? "" : " " + figure.unit;
+  // "deflection_deg" has it in its name.
+  std::string suffix = "_" + figure.unit;
+  std::erase(suffix, ' ');
+  const std::string in_head = figure.name.ends_with(suffix) ? "" : unit;
   std::string text =
       labelled("variants", std::to_string(optimum.tried.size()) + " of " + request.study.request().words +
                                (optimum.all ? ", all combinations"
@@ -134,7 +146,7 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
                                   ? "yes: every combination was computed"
                                   : "no: a search proves nothing; see whether another --seed finds less") +
           "\nThe best variants\n";
-  std::vector<std::vector<std::string>> rows{{"parameters", figure.name + unit}};
+  std::vector<std::vector<std::string>> rows{{"parameters", figure.name + in_head}};
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
     const TriedVariant& tried = optimum.tried[optimum.order[i]];
     rows.push_back({values_text(tried.values), digits(tried.figure, 8)});

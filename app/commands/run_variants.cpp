@@ -159,7 +159,8 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
 VariantStudy study_of(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   const auto models = line.list("MODEL").value_or(std::vector<std::string>{});
-  if (models.size() > 1 || (models.size() == 1 && is_model_directory(models.front())))
+  const bool several = models.size() > 1 || (models.size() == 1 && is_model_directory(models.front()));
+  if (several)
     findings.push_back({kCommandLine, "--table", "", "", "is of one model's variants; give one MODEL"});
   for (const auto& [option, why] : kWithout)
     if (line.list(option) && *line.option(option) != "0")
@@ -171,23 +172,29 @@ VariantStudy study_of(const CommandLine& line) {
     for (const auto& [name, value] : line.parameters)
       if (word.starts_with(name + "="))
         findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
+  const std::size_t before = findings.size();
   const bool sampled = line.option("--sample").has_value();
   std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
   std::optional<Sampling> sampling;
   if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
   std::vector<Correlation> correlations =
       read_correlations(line.list("--correlate").value_or(std::vector<std::string>{}), findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
-  VariantPlan plan(std::move(varied), sampling, std::move(correlations), findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
+  if (several) throw ModelError(std::move(findings));
+  std::optional<VariantPlan> plan;
+  if (findings.size() == before) plan.emplace(std::move(varied), sampling, std::move(correlations), findings);
 
-  CommandLine first = line;  // What is wrong with all variants is said once.
+  CommandLine first = line;  // What is wrong with all variants is said once, with what is wrong above.
   for (const char* option : {"--out", "--report", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
     first.options.erase(option);
   first.keeps_history = true;       // --record needs no file
   first.options["--table"] = {""};  // no method by trial, which may find another one another time
-  const ParameterValues values = plan.parameters(0);
-  first.parameters.insert(first.parameters.end(), values.begin(), values.end());
+  for (const auto& [option, why] : kWithout)
+    if (blamed(findings, option)) first.options.erase(option);
+  if (plan && findings.size() == before) {
+    const ParameterValues values = plan->parameters(0);
+    first.parameters.insert(first.parameters.end(), values.begin(), values.end());
+  }
+  first.findings = findings;
   RunRequest request = request_run(first);
   if (const auto report = line.option("--report")) {
     if (const auto why = why_no_report(*report))
@@ -203,7 +210,7 @@ VariantStudy study_of(const CommandLine& line) {
     throw ModelError(std::vector<Finding>{{kCommandLine, "--settle", "", "",
                                            "of the model's [run] is for single runs: figures of a table are "
                                            "of the whole run; give --settle 0"}});
-  return {std::move(request), std::move(plan), line.list("--record").has_value()};
+  return {std::move(request), std::move(*plan), line.list("--record").has_value()};
 }
 
 bool means_variants(const CommandLine& line) {

@@ -63,7 +63,7 @@ std::vector<StudyEntry> chosen(const CommandLine& line) {
 int study_command(const CommandLine& line) {
   const std::vector<StudyEntry> entries = chosen(line);
   const auto out = line.option("--out");
-  if (out) create_directory(*out + "/" + kPictures);
+  if (out) create_directory(*out);
   watch_signals();
   // Side by side, the longest first: what one leaves of the processors at its end, another takes.
   std::vector<std::size_t> by_work(entries.size());
@@ -90,9 +90,11 @@ int study_command(const CommandLine& line) {
     throw;
   }
   if (out) {
-    for (const StudyGroup& group : groups)
+    for (const StudyGroup& group : groups) {
+      if (!group.pictures.empty()) create_directory(*out + "/" + kPictures);
       for (const StudyPicture& picture : group.pictures)
         write_file(*out + "/" + kPictures, "study_" + picture.name, "svg", picture.svg);
+    }
     write_file(*out, "study", "md", study_as_markdown(groups, kPictures));
   }
   print(study_as_text(groups));

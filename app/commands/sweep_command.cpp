@@ -70,6 +70,34 @@ std::string in_shell(const std::string& value) {
   return plain ? value : "'" + join(split(value, '\''), "'\\''") + "'";
 }
 
+void read_nonlinear(const CommandLine& line, NonlinearSweepOptions& options, std::vector<Finding>& findings) {
+  if (const auto turns = line.option("--cycle"))
+    options.turns = read_plain("--cycle", *turns, {1e-6, 1000.0}, findings);
+  if (const auto tolerance = line.option("--tolerance"))
+    options.tolerance = read_plain("--tolerance", *tolerance, {1e-12, 0.1}, findings);
+  if (const auto jobs = line.option("--jobs"))
+    options.threads = read_count("--jobs", *jobs, kMostThreads, "", findings);
+}
+
+/// They have a meaning for a train with laws that are no straight lines alone.
+void check_nonlinear(const CommandLine& line, const System& system, bool closed,
+                     std::vector<Finding>& findings) {
+  const bool straight = system.scalars().empty();
+  NonlinearSweepOptions unused;
+  if (!straight && !closed) {
+    if (line.options.contains("--absolute-sum"))
+      findings.push_back(
+          {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
+    return read_nonlinear(line, unused, findings);
+  }
+  for (const char* option : {"--cycle", "--tolerance", "--jobs"})
+    if (const auto value = line.option(option))
+      findings.push_back({kCommandLine, option, *value, "",
+                          straight
+                              ? "is for models that are not linear"
+                              : "is for models that are not linear, which --contact closed makes this one"});
+}
+
 }  // namespace
 
 SweepRequest request_sweep(const CommandLine& line, const std::vector<std::string>& written) {
@@ -79,7 +107,7 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
   std::vector<double> speeds_rpm;
   if (const auto speeds = line.option("--speeds"))
     speeds_rpm = read_rising("--speeds", *speeds, "rpm", findings);
-  else
+  else if (!blamed(findings, "--speeds"))
     findings.push_back({kCommandLine, "--speeds", "", "rpm",
                         "is missing: the speeds of the reference shaft, such as 300:10:1800"});
   for (const double speed : speeds_rpm) options.speeds.push_back(rpm(speed));
@@ -97,6 +125,7 @@ SweepRequest request_sweep(const CommandLine& line, const std::vector<std::strin
     if (model) check_output("--report", *report, model->model_case.files, findings);
   }
   if (model) check_names(model->system, options, findings);
+  if (model) check_nonlinear(line, model->system, options.close_contacts, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*model), std::move(options), std::move(speeds_rpm),
           line.options.contains("--absolute-sum")};
@@ -119,19 +148,14 @@ std::string words_of(const CommandLine& line) {
   return words;
 }
 
-NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequest& request,
-                                        std::vector<Finding>& findings) {
+NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequest& request) {
   NonlinearSweepOptions options;
   options.speeds = request.options.speeds;
   options.orders = request.options.orders;
   options.sections = request.options.sections;
   options.balance = request.options.balance;
-  if (const auto turns = line.option("--cycle"))
-    options.turns = read_plain("--cycle", *turns, {1e-6, 1000.0}, findings);
-  if (const auto tolerance = line.option("--tolerance"))
-    options.tolerance = read_plain("--tolerance", *tolerance, {1e-12, 0.1}, findings);
-  if (const auto jobs = line.option("--jobs"))
-    options.threads = read_count("--jobs", *jobs, kMostThreads, "", findings);
+  std::vector<Finding> none;  // request_sweep() has found them
+  read_nonlinear(line, options, none);
   const auto shown = std::make_shared<Progress>();
   options.progress = [shown](double part) {
     shown->update(part);
@@ -140,30 +164,15 @@ NonlinearSweepOptions nonlinear_options(const CommandLine& line, const SweepRequ
   return options;
 }
 
-void refuse_nonlinear_options(const CommandLine& line) {
-  std::vector<Finding> findings;
-  for (const char* option : {"--cycle", "--tolerance", "--jobs"})
-    if (line.option(option))
-      findings.push_back({kCommandLine, option, "", "", "is for models that are not linear"});
-  if (!findings.empty()) throw ModelError(std::move(findings));
-}
-
 namespace {
 
 /// A model with laws that are no straight lines, as it is.
 int sweep_branches(const CommandLine& line, const SweepRequest& request) {
-  std::vector<Finding> findings;
-  const NonlinearSweepOptions options = nonlinear_options(line, request, findings);
-  if (request.absolute_sum)
-    findings.push_back(
-        {kCommandLine, "--absolute-sum", "", "", "is for linear models (or --contact closed)"});
+  const NonlinearSweepOptions options = nonlinear_options(line, request);
   const auto out = line.option("--out");
-  if (out)
-    for (const char* name : {"/branches.csv", "/changes.csv"})
-      check_output("--out", is_hdf5(*out) ? *out : *out + name, request.model.model_case.files, findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
+  watch_signals();
   const NonlinearSweep sweep = sweep_nonlinear(request.model.system, options);
   end_if_interrupted();
   const Json object = line.json || out ? branches_object(request.model, options, sweep) : Json();
@@ -186,11 +195,11 @@ int sweep_branches(const CommandLine& line, const SweepRequest& request) {
 }  // namespace
 
 int sweep_command(const CommandLine& line) {
-  const SweepRequest request =
-      request_sweep(line, {"/sweep.csv", "/orders.csv", "/criticals.csv", "/summary.json"});
+  const SweepRequest request = request_sweep(line, {"/sweep.csv", "/branches.csv", "/orders.csv",
+                                                    "/criticals.csv", "/changes.csv", "/summary.json"});
   if (!request.options.close_contacts && !request.model.system.scalars().empty())
     return sweep_branches(line, request);
-  refuse_nonlinear_options(line);
+  watch_signals();
   std::optional<ReportFile> report;
   if (const auto file = line.option("--report")) report.emplace(*file);
   const LinearSweep sweep = sweep_linear(request.model.system, request.options);

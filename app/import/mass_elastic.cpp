@@ -3,6 +3,7 @@
 #include <drev/models/parameters.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -34,6 +35,26 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\"") + 1 - first);
 }
 
+/// "; did you mean ...?" for a column by another spelling, or by its symbol in the literature; empty: it is like none.
+std::string column_hint(const std::string& cell) {
+  constexpr std::pair<const char*, const char*> kSymbols[] = {
+      {"j", "inertia"}, {"k", "stiffness"}, {"c", "damping"}, {"d", "diameter"}};
+  std::string lower = cell;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const std::string name = lower.substr(0, lower.find_first_of(" [(/_"));
+  std::vector<std::string> names;
+  for (const MassElasticColumn& column : kColumns) names.emplace_back(column.name);
+  std::string nearest = name.size() > 3 ? nearest_name(name, names) : "";
+  for (const auto& [symbol, meaning] : kSymbols)
+    if (name == symbol) nearest = meaning;
+  for (const MassElasticColumn& column : kColumns)
+    if (lower.starts_with(column.name)) nearest = column.name;
+  for (const MassElasticColumn& column : kColumns)
+    if (column.name == nearest) return "; did you mean " + spellings(column.name, column.dimension) + "?";
+  return {};
+}
+
 class MassElasticReader {
  public:
   MassElasticReader(const std::string& text, std::string file)
@@ -53,6 +74,9 @@ class MassElasticReader {
     if (headers_.empty()) fault(0, "has no line with the names of its columns");
     if (findings_.empty() && rows_.size() < 2) fault(number, "has fewer than two masses");
     if (findings_.empty()) build();
+    // A column that is not taken may be what the train lacks.
+    for (const auto& [line, sentence] : unknown_)
+      findings_.empty() ? model_.not_taken(sentence) : fault(line, sentence);
     if (!findings_.empty()) throw ModelError(std::move(findings_));
     return std::move(model_);
   }
@@ -89,7 +113,7 @@ class MassElasticReader {
       known.push_back(spellings(column.name, column.dimension));
     for (const std::string& cell : cells) {
       Header header;
-      if (cell == "node" || cell == "name") header.name = "node";
+      if (cell == "node" || cell == "name") header = {"node", 1.0, 0.0, cell};
       for (const MassElasticColumn& column : kColumns) {
         if (column.dimension == Dimension::none && cell == column.name)
           header = {column.name, 1.0, column.low, cell};
@@ -97,16 +121,27 @@ class MassElasticReader {
           if (cell == std::string(column.name) + "_" + unit.suffix)
             header = {column.name, unit.factor, column.low, cell};
       }
+      for (const Header& other : headers_)
+        if (!header.name.empty() && other.name == header.name)
+          fault(line,
+                "the columns " + other.column + " and " + cell + " state the same; one of them must go");
       if (header.name.empty()) {
+        bool refused = false;
+        const auto refuse = [&](const std::string& what) {
+          fault(line, what);
+          refused = true;
+        };
         for (const MassElasticColumn& column : kColumns) {
           if (cell == column.name)
-            fault(line,
-                  "the column " + cell + " has no unit; write " + spellings(column.name, column.dimension));
+            refuse("the column " + cell + " has no unit; write " + spellings(column.name, column.dimension));
           else if (column.dimension != Dimension::none && cell.starts_with(std::string(column.name) + "_"))
-            fault(line, "the column " + cell + " has a unit that it cannot have; write " +
-                            spellings(column.name, column.dimension));
+            refuse("the column " + cell + " has a unit that it cannot have; write " +
+                   spellings(column.name, column.dimension));
         }
-        model_.not_taken("the column \"" + cell + "\"; there are " + join(known, "; "));
+        const std::string hint = column_hint(cell);
+        const std::string sentence =
+            "the column \"" + cell + "\"" + (hint.empty() ? "; there are " + join(known, "; ") : hint);
+        if (!refused) unknown_.emplace_back(line, sentence);
       }
       headers_.push_back(header);
     }
@@ -180,6 +215,7 @@ class MassElasticReader {
   std::string file_;
   ImportedModel model_;
   std::vector<Header> headers_;
+  std::vector<std::pair<int, std::string>> unknown_;  ///< columns: their line, and a sentence each
   std::vector<Row> rows_;
   std::vector<Finding> findings_;
 };

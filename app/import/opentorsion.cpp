@@ -1,5 +1,6 @@
 #include <drev/core/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,7 +15,6 @@ namespace drev::app {
 namespace {
 
 constexpr double kShearModulus = 80e9, kDensity = 8000.0;  // of openTorsion, where none is given
-constexpr int kMostConnected = 1000;                       // components in one chain
 const std::map<std::string, const char*> kUnits{
     {"inertia", "kg m^2"}, {"stiffness", "N m/rad"}, {"damping", "N m s/rad"}, {"length", "mm"},
     {"diameter", "mm"},    {"outerDiameter", "mm"},  {"innerDiameter", "mm"},  {"density", "kg/m^3"}};
@@ -27,18 +27,19 @@ class OpenTorsionReader {
   ImportedModel read() {
     if (!json_.is_object() || !json_.contains("components") || !json_["components"].is_array())
       throw ModelError({{file_, "components", "", "", "is missing: this is no JSON of openTorsion"}});
-    for (const Json& component : json_["components"])
-      if (component.is_object() && component.value("name", Json()).is_string())
-        components_[component["name"].get<std::string>()] = &component;
-      else
-        fault(numbered("components", &component - &json_["components"].front()), "has no name");
+    read_components();
     read_structure();
     for (const auto& [name, component] : components_)
       if (!ends_.contains(name)) starts_.push_back(name);
     if (starts_.size() != 1)
       fault("structure", "must connect all components into one train; " + std::to_string(starts_.size()) +
                              " of them begin one: " + join(starts_));
-    if (findings_.empty()) add_component(starts_.front(), new_node(), 0);
+    if (starts_.size() == 1) add_component(starts_.front(), new_node());
+    for (const auto& [name, component] : components_) {
+      if (added_.contains(name)) continue;
+      if (starts_.size() == 1) fault("structure", "connects " + name + " with no part of the train");
+      add_component(name, new_node());  // for what is wrong inside
+    }
     if (!findings_.empty()) throw ModelError(std::move(findings_));
     return std::move(model_);
   }
@@ -56,6 +57,55 @@ class OpenTorsionReader {
     return list + "[" + std::to_string(number) + "]";
   }
 
+  void read_components() {
+    std::ptrdiff_t number = 0;
+    for (const Json& component : json_["components"]) {
+      const std::string place = numbered("components", number++);
+      if (!component.is_object() || !component.value("name", Json()).is_string()) {
+        fault(place, "has no name");
+        continue;
+      }
+      const std::string name = component["name"];
+      if (!components_.emplace(name, &component).second)
+        fault(place, "has the name " + name + ", which another component has already");
+      else if (!component.value("elements", Json()).is_array())
+        fault(name, "has no list of elements");
+    }
+  }
+
+  /// Names of its elements, in their order.
+  std::vector<std::string> elements_of(const std::string& component) const {
+    std::vector<std::string> names;
+    const Json elements = components_.at(component)->value("elements", Json::array());
+    if (elements.is_array())
+      for (const Json& element : elements)
+        if (element.is_object() && element.value("name", Json()).is_string())
+          names.push_back(element["name"]);
+    return names;
+  }
+
+  /// Whether "component.element" is one of the file.
+  bool check_end(const std::string& place, const std::string& end) {
+    const std::size_t dot = end.find('.');
+    const std::string component = end.substr(0, dot);
+    if (!components_.contains(component)) {
+      std::vector<std::string> names;
+      for (const auto& [name, json] : components_) names.push_back(name);
+      fault(place, "names " + end + ", which is none of the components; there are " + join(names) +
+                       did_you_mean(component, names));
+      return false;
+    }
+    std::vector<std::string> ends;
+    for (const std::string& element : elements_of(component)) ends.push_back(component + "." + element);
+    if (std::find(ends.begin(), ends.end(), end) != ends.end()) return true;
+    if (dot == end.npos)
+      fault(place, "names " + end + ", a component, in place of one of its elements, " + join(ends));
+    else
+      fault(place,
+            "names " + end + ", which is none of the elements " + join(ends) + did_you_mean(end, ends));
+    return false;
+  }
+
   /// [["component.element", "component.element"], ...]
   void read_structure() {
     if (!json_.contains("structure")) return;
@@ -68,11 +118,15 @@ class OpenTorsionReader {
       }
       const std::string from = pair[0], to = pair[1];
       const std::string next = to.substr(0, to.find('.'));
-      if (!components_.contains(next)) fault(place, "names " + to + ", which is none of the components");
-      if (!components_.contains(from.substr(0, from.find('.'))))
-        fault(place, "names " + from + ", which is none of the components");
-      connections_[from].push_back(next);
-      ends_.insert(next);
+      const bool known = check_end(place, from);
+      if (components_.contains(next) && !ends_.insert(next).second)
+        fault(place, "connects " + next + " a second time; a component begins in one place");
+      if (check_end(place, to)) {
+        if (const std::string first = next + "." + elements_of(next).front(); to != first)
+          fault(place, "names " + to + "; a component is connected by its first element, " + first);
+        else if (known)
+          connections_[from].push_back(next);
+      }
     }
   }
 
@@ -97,9 +151,11 @@ class OpenTorsionReader {
     return found.get<double>();
   }
 
-  void add_component(const std::string& name, std::string node, int depth) {
-    if (depth > kMostConnected) return fault("structure", "connects components in a ring");
+  /// Each component once: a ring of them is begun by none.
+  void add_component(const std::string& name, std::string node) {
+    if (!added_.insert(name).second) return;
     const Json elements = components_[name]->value("elements", Json::array());
+    if (!elements.is_array()) return;  // blamed
     for (const Json& element : elements) {
       if (!element.is_object() || !element.value("name", Json()).is_string() ||
           !element.value("type", Json()).is_string()) {
@@ -108,12 +164,11 @@ class OpenTorsionReader {
       }
       const std::string own = element["name"], place = name + "." + own;
       add_element(element, place, name + "_" + own, node);
-      nodes_[place] = node;
       if (element.contains("excitation"))
         model_.not_taken("the excitation of " + place +
                          "; write it as an engine_order_torque or applied_torque");
       if (const auto next = connections_.find(place); next != connections_.end())
-        for (const std::string& connected : next->second) add_component(connected, node, depth + 1);
+        for (const std::string& connected : next->second) add_component(connected, node);
     }
   }
 
@@ -187,9 +242,8 @@ class OpenTorsionReader {
   ImportedModel model_;
   std::map<std::string, const Json*> components_;
   std::map<std::string, std::vector<std::string>> connections_;
-  std::map<std::string, std::string> nodes_;
   std::map<std::string, std::pair<std::string, double>> gears_;  ///< node, and teeth or diameter
-  std::set<std::string> ends_;
+  std::set<std::string> ends_, added_;
   std::vector<std::string> starts_;
   std::vector<Finding> findings_;
 };
@@ -197,8 +251,17 @@ class OpenTorsionReader {
 }  // namespace
 
 ImportedModel import_opentorsion(const std::string& text, const std::string& file) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw ModelError({{file, "", "", "", "is no JSON"}});
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::size_t at = std::min(error.byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::string said = error.what();
+    const std::size_t why = said.find("unexpected ");
+    throw ModelError({{file + ":" + std::to_string(line), "", "", "",
+                       "is no JSON" + (why == said.npos ? "" : ": " + said.substr(why))}});
+  }
   return OpenTorsionReader(json, file).read();
 }
 

@@ -2,11 +2,13 @@
 
 #include <drev/core/channel.hpp>
 #include <drev/core/element.hpp>
+#include <drev/core/system.hpp>
 #include <drev/elements/not_given.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace drev::app {
 
@@ -16,18 +18,22 @@ using D = Dimension;
 
 constexpr std::size_t kMostNodesRecorded = 20;
 
-/// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques.
+/// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques. A load, and the
+/// torque of a governor, act on the train; they are none of them.
 std::vector<std::string> carried(const System& system) {
   std::unordered_map<std::string, std::string_view> types;
   for (const ElementInstance& placement : system.element_instances())
     types[placement.name] = placement.element->type();
+  std::unordered_set<std::string> loads;
+  for (const LoadTerm& load : system.loads())
+    loads.insert(system.element_instances()[static_cast<std::size_t>(index(load.element))].name +
+                 (load.suffix.empty() ? "" : "_" + load.suffix));
   const auto carries = [&](const std::string& object) {
-    const auto whole = types.find(object);
-    if (whole != types.end())
-      return whole->second != "applied torque" && whole->second != "cam torque" &&
-             whole->second != "engine order torque";
+    if (loads.contains(object)) return false;
+    if (const auto whole = types.find(object); whole != types.end()) return whole->second != "speed governor";
     const auto segments = types.find(object.substr(0, object.rfind('_')));
-    return segments != types.end() && segments->second == "distributed shaft";
+    return segments != types.end() &&
+           (segments->second == "distributed shaft" || segments->second == "contour shaft");
   };
   std::vector<std::string> torques, forces;
   for (const Channel& channel : all_channels(system)) {

@@ -70,27 +70,57 @@ std::string branches_table(const NonlinearSweep& sweep) {
   return columns_text(rows);
 }
 
-/// Table of the largest half range of each section at the given speeds, among the motions that a train can
-/// have.
+/// The largest half range of a section at the given speeds, among the motions that a train can have and the runs.
+struct Largest {
+  double half_range = -1.0, speed = 0.0, lowest = 0.0, highest = 0.0, heat = 0.0;
+  int curve = 0;  ///< from 1; 0: a run
+};
+
+Largest largest_at(const NonlinearSweep& sweep, Eigen::Index section) {
+  Largest largest;
+  const auto note = [&largest](const Largest& one) {
+    if (one.half_range > largest.half_range) largest = one;
+  };
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    for (const SweptMotion& motion : sweep.branches[b].motions)
+      if (motion.asked && (motion.stable || !motion.judged))
+        note({motion.half_range()[section], motion.speed, motion.minimum[section], motion.maximum[section],
+              motion.heat[section], static_cast<int>(b) + 1});
+  for (const SweptRun& run : sweep.runs)
+    if (run.reason.empty())
+      note({0.5 * (run.highest[section] - run.lowest[section]), run.speed, run.lowest[section],
+            run.highest[section], std::nan(""), 0});
+  return largest;
+}
+
 std::string largest_table(const NonlinearSweep& sweep) {
   std::vector<std::vector<std::string>> rows{
       {"section", "half range", "at [rpm]", "curve", "lowest", "highest", "heat [W]"}};
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
-    const auto at = static_cast<Eigen::Index>(c);
-    const SweptMotion* best = nullptr;
-    std::size_t curve = 0;
-    for (std::size_t b = 0; b < sweep.branches.size(); ++b)
-      for (const SweptMotion& motion : sweep.branches[b].motions)
-        if (motion.asked && (motion.stable || !motion.judged) &&
-            (best == nullptr || motion.half_range()[at] > best->half_range()[at]))
-          best = &motion, curve = b;
-    if (best == nullptr) continue;
-    rows.push_back({sweep.sections[c].name, digits(best->half_range()[at], kFigureDigits),
-                    rpm_text(best->speed), std::to_string(curve + 1),
-                    digits(best->minimum[at], kFigureDigits), digits(best->maximum[at], kFigureDigits),
-                    digits(best->heat[at], kFigureDigits)});
+    const Largest largest = largest_at(sweep, static_cast<Eigen::Index>(c));
+    if (largest.half_range < 0.0) continue;
+    rows.push_back({sweep.sections[c].name, digits(largest.half_range, kFigureDigits),
+                    rpm_text(largest.speed), largest.curve > 0 ? std::to_string(largest.curve) : "run",
+                    digits(largest.lowest, kFigureDigits), digits(largest.highest, kFigureDigits),
+                    std::isfinite(largest.heat) ? digits(largest.heat, kFigureDigits) : "-"});
   }
-  return columns_text(rows);
+  return rows.size() > 1 ? columns_text(rows) : std::string();
+}
+
+Json largest_object(const NonlinearSweep& sweep) {
+  Json list = Json::array();
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    const Largest largest = largest_at(sweep, static_cast<Eigen::Index>(c));
+    if (largest.half_range < 0.0) continue;
+    list.push_back({{"section", sweep.sections[c].name},
+                    {"half_range", number(largest.half_range)},
+                    {"speed_rpm", number(to_rpm(largest.speed))},
+                    {"branch", largest.curve > 0 ? Json(largest.curve) : Json()},
+                    {"lowest", number(largest.lowest)},
+                    {"highest", number(largest.highest)},
+                    {"heat_W", number(largest.heat)}});
+  }
+  return list;
 }
 
 /// An error bound as the next higher power of ten, since no digit of an error is reliable.
@@ -132,8 +162,10 @@ std::string runs_table(const NonlinearSweep& sweep) {
     }
   }
   if (rows.size() > 1)
-    text +=
-        "Harmonic balance found no stable motion at these speeds; what a run does:\n" + columns_text(rows);
+    text += std::string(sweep.excess.needed > 0
+                            ? "No curve of motions is followed (see below); what a run does:\n"
+                            : "Harmonic balance found no stable motion at these speeds; what a run does:\n") +
+            columns_text(rows);
   return text;
 }
 
@@ -218,6 +250,15 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
   std::vector<std::string> notes;
   double error = 0.0;
   bool judged = true, unknown = false;
+  if (sweep.excess.needed > 0)
+    notes.push_back("No curve of motions is followed: in a cycle of " +
+                    short_digits(sweep.turns, kFigureDigits) + " turns the loads excite harmonics up to " +
+                    std::to_string(sweep.excess.needed) + " (order " +
+                    short_digits(sweep.excess.needed / sweep.turns, kFigureDigits) + "), and at most " +
+                    std::to_string(sweep.excess.most) + " can be solved for. They would leave out " +
+                    digits(100.0 * sweep.excess.left_out, 2) +
+                    " % of the vibration of a section or mesh (rms, contacts closed). Loads over the "
+                    "nominal angle (twist_feedback = false) leave room for more harmonics.");
   for (const SweptBranch& branch : sweep.branches)
     for (const SweptMotion& motion : branch.motions) {
       if (motion.asked && std::isfinite(motion.error)) error = std::max(error, motion.error);
@@ -251,7 +292,7 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
       notes.push_back("Curve " + std::to_string(b + 1) + " could not be followed to its end.");
-  if (!sweep.unsolved.empty()) {
+  if (!sweep.unsolved.empty() && sweep.excess.needed == 0) {
     std::vector<std::string> speeds;
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
@@ -281,8 +322,9 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
           std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
           rpm_text(sweep.speeds.back()) + " rpm\n\n";
-  if (!sweep.branches.empty())
-    text += branches_table(sweep) + "\n" + largest_table(sweep) + "\n" + changes_table(sweep) + "\n";
+  if (!sweep.branches.empty()) text += branches_table(sweep) + "\n";
+  if (const std::string largest = largest_table(sweep); !largest.empty()) text += largest + "\n";
+  if (!sweep.branches.empty()) text += changes_table(sweep) + "\n";
   for (const std::string& part :
        {runs_table(sweep), notes_text(options, sweep), wrap(model.model_case.note, 0)})
     if (!part.empty() && part != "\n") text += part + "\n";
@@ -335,6 +377,11 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
   object["branches"] = std::move(branches);
   object["changes"] = std::move(changes);
   object["runs"] = std::move(runs);
+  object["largest"] = largest_object(sweep);
+  object["excess"] = sweep.excess.needed > 0 ? Json({{"needed", sweep.excess.needed},
+                                                     {"most", sweep.excess.most},
+                                                     {"left_out", number(sweep.excess.left_out)}})
+                                             : Json();
   object["unsolved_rpm"] = std::move(unsolved);
   object["floating_parts"] = std::move(floating);
   object["balance"] = text_or_null(options.balance);

@@ -17,6 +17,7 @@ namespace {
 constexpr int kDigits = 6;
 constexpr std::size_t kCriticalsShown = 20;
 constexpr double kRounding = 1e-12;  // mean relative to the largest mean that is rounding [-]
+constexpr double kBent = 1e-3;       // force off the straight line that is reported, relative to it [-]
 constexpr double kBalanced = 1e-6;   // unbalanced torque relative to the mean torques that is reported [-]
 
 Vector absolute_sum(const SweepSection& section) { return section.amplitude.cwiseAbs().colwise().sum(); }
@@ -129,6 +130,35 @@ std::string left_over_sentence(const LeftOver& left, const std::string& part, co
          (balance.empty() ? moving : "It is taken up at " + balance + ".");
 }
 
+namespace {
+
+/// Laws without a gap that are not the straight line through zero that a linear sweep takes them for, at the torques found.
+void note_bent_laws(const System& system, const LinearSweep& sweep, std::vector<std::string>& notes) {
+  for (const ScalarTerm& term : system.scalars()) {
+    const double k = term.force->closed_stiffness();
+    if (term.force->gap() || !(k > 0.0)) continue;
+    const std::string& element =
+        system.element_instances()[static_cast<std::size_t>(index(term.element))].name;
+    for (const SweepSection& section : sweep.sections) {
+      if (!section.name.starts_with(element + ".")) continue;
+      double off = 0.0, at = 0.0;
+      for (Eigen::Index i = 0; i < section.mean.size(); ++i)
+        for (const double y : {section.mean[i] + section.maximum[i], section.mean[i] + section.minimum[i]}) {
+          const double beside = std::abs(term.force->evaluate({.x = y / k}).y - y);
+          if (std::isfinite(beside) && beside > kBent * std::abs(y) && beside > off) off = beside, at = y;
+        }
+      if (off > 0.0)
+        notes.push_back(section.name + ": taken as a straight line with the stiffness at zero deflection, " +
+                        digits(k, kDigits) + " " + (section.unit == "N" ? "N/m" : "N m/rad") +
+                        "; where that gives " + digits(at, 4) + " " + section.unit + ", the law gives " +
+                        digits(term.force->evaluate({.x = at / k}).y, 4) +
+                        ". 'drev sweep' without '--contact closed' follows it");
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
   std::vector<std::string> notes;
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
@@ -160,8 +190,9 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
                       std::to_string(section.mean.size()) + " speeds" +
                       (between.empty() ? "" : " and between them at " + join(between) + " rpm") +
                       ": the teeth separate there, and what is said of these speeds does not hold; "
-                      "'drev run --start periodic' follows them");
+                      "'drev sweep' without '--contact closed' follows them");
   }
+  if (request.options.close_contacts) note_bent_laws(request.model.system, sweep, notes);
   return notes;
 }
 

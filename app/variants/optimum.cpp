@@ -16,10 +16,10 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kLastPart = 0.25;   // part of the variants for continuous parameters besides others [-]
-constexpr double kNear = 1e-6;       // tolerance of a local search relative to a parameter's range [-]
-constexpr double kFirstStep = 0.1;   // first step relative to a parameter's range [-]
-constexpr std::size_t kStarts = 16;  // largest number of local searches
+constexpr double kLastPart = 0.25;        // part of the variants for continuous parameters besides others [-]
+constexpr double kLocalTolerance = 1e-6;  // tolerance of a local search relative to a parameter's range [-]
+constexpr double kFirstStep = 0.1;        // first step relative to a parameter's range [-]
+constexpr std::size_t kStarts = 16;       // largest number of local searches
 // Calls of NLopt allowed for each variant: most points of values and orders have been computed before.
 constexpr std::uint64_t kCallsPerVariant = 100;
 
@@ -187,7 +187,7 @@ class OptimumSearch {
     search_ = made.get();
     nlopt_set_lower_bounds1(search_, 0.0);
     nlopt_set_upper_bounds1(search_, 1.0);
-    nlopt_set_xtol_abs1(search_, kNear);
+    nlopt_set_xtol_abs1(search_, kLocalTolerance);
     nlopt_set_initial_step1(search_, kFirstStep);
     const std::uint64_t left = limit_ > result_.tried.size() ? limit_ - result_.tried.size() : 1;
     nlopt_set_maxeval(search_, static_cast<int>(kCallsPerVariant * left));

@@ -35,7 +35,11 @@ std::string read_values(const std::string& text, double most, std::vector<std::s
       }
     }
     for (const std::string& value : found) {
-      if (value.empty() || value.find('/') != value.npos) return kForm;
+      // One of the brackets alone: a distribution by another name, or among values.
+      const bool bracket = (value.find('(') == value.npos) != (value.find(')') == value.npos);
+      if (value.empty() || value.find('/') != value.npos || bracket) return kForm;
+      if (double number = 0.0; read_number(value, number) && std::isnan(number))
+        return "has a value that is no number";
       if (!known.insert(value).second) return "has " + value + " twice";
       values.push_back(value);
     }

@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -88,18 +89,15 @@ SteadyShaft::Waves SteadyShaft::respond(const Spectrum& force, double omega, con
     x.col(h) = outputs * (force.col(h).array() / dynamic).matrix();
   }
   Waves waves(kSamples, count);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::Unscaled);
-  std::vector<Complex> lines(kSamples), samples;
+  FourierTransform transform;
+  std::vector<Complex> lines(kSamples / 2 + 1);  // the last one, at half the rate of the samples, is zero
+  std::vector<double> samples;
   for (Eigen::Index c = 0; c < x.rows(); ++c) {
-    std::fill(lines.begin(), lines.end(), Complex());
-    lines[0] = x(c, 0).real();
-    for (int h = 1; h <= kHarmonics; ++h) {
-      lines[static_cast<std::size_t>(h)] = x(c, h);
-      lines[static_cast<std::size_t>(kSamples - h)] = std::conj(x(c, h));
-    }
-    fft.inv(samples, lines);
-    for (int s = 0; s < kSamples; ++s) waves(s, c) = samples[static_cast<std::size_t>(s)].real();
+    for (int h = 0; h <= kHarmonics; ++h)
+      lines[static_cast<std::size_t>(h)] = static_cast<double>(kSamples) * x(c, h);
+    lines[0] = lines[0].real();
+    transform.inverse(samples, lines, kSamples);
+    for (int s = 0; s < kSamples; ++s) waves(s, c) = samples[static_cast<std::size_t>(s)];
   }
   return waves;
 }

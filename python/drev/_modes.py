@@ -140,7 +140,7 @@ class DampedModes(_Table):
     def _columns(self):
         return {
             "frequency_Hz": self.frequency_Hz,
-            "undamped_Hz": self.natural_frequency_Hz,
+            "modulus_Hz": self.natural_frequency_Hz,
             "damping_ratio": self.damping_ratio,
         }
 

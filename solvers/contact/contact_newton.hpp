@@ -9,7 +9,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/contact/newton_options.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "solvers/contact/newton_result.hpp"
 

@@ -1,8 +1,11 @@
 #pragma once
-/// LaneElimination: ComplexElimination for kLanes circular frequencies at once, in a processor's widest vectors
-/// (core/lanes.hpp), each with one right side:
+/// LaneElimination: ComplexElimination for several sets of kLanes circular frequencies at once, in a processor's widest
+/// vectors (core/lanes.hpp), each frequency with one right side:
 ///
-///   (K + i w C - w^2 M) x = b        by L D L', places of all updates as ComplexElimination found them
+///   (K + i (w C + H) - w^2 M) x = b      by L D L', places of all updates as ComplexElimination found them
+///
+/// H: imaginary parts of complex stiffnesses, with the sign of w. The sets are eliminated side by side: along a chain
+/// each pivot waits for the one before, and the other sets fill that time. Row i of set s is at i kLaneSets + s.
 ///
 /// No lane seeks pivots. Those that lose one to cancellation (ComplexElimination::kLostPivot) are told, and are solved
 /// by ComplexElimination. Accuracy: as there.
@@ -12,25 +15,40 @@
 
 namespace drev {
 
+inline constexpr int kLaneSets = 4;  ///< largest number of sets
+
+/// Values of symmetric matrices on a pattern. Those of K and H are common to all lanes (Value double), or a row of
+/// kLaneSets each (LaneRow).
+template <class Value>
+struct LaneDynamics {
+  const double *m, *c;
+  const Value *k, *h;
+};
+
+/// The value of a slot for a set of lanes.
+[[gnu::always_inline]] inline const double& of_set(const double* values, int slot, int /*set*/) {
+  return values[slot];
+}
+[[gnu::always_inline]] inline const LaneRow& of_set(const LaneRow* values, int slot, int set) {
+  return values[slot * kLaneSets + set];
+}
+
 class LaneElimination {
  public:
   /// plan: outlives this.
   explicit LaneElimination(const ComplexElimination& plan);
 
-  /// m, c, k: values of symmetric matrices on the plan's pattern; re, im: b -> x, a row an unknown. lost: 1 in the
-  /// lanes whose x is not usable: a lost pivot, or values that are not finite; else 0.
-  void solve(const double* m, const double* c, const double* k, const Lanes& w, LaneArray& re, LaneArray& im,
-             Lanes& lost);
-  /// The same with a C and a K for each lane.
-  void solve(const double* m, const LaneRow* c, const LaneRow* k, const Lanes& w, LaneArray& re,
-             LaneArray& im, Lanes& lost);
+  /// sets: number of them in use. w: frequencies of each set. b, x: a row for each unknown of the pattern; those of x
+  /// that are held are left as they are. lost: for each set, 1 in the lanes whose x is not usable: a lost pivot, or
+  /// values that are not finite; else 0.
+  template <class Value>
+  void solve(int sets, const LaneDynamics<Value>& dynamics, const LaneRow* w, const LaneRow* b_re,
+             const LaneRow* b_im, LaneRow* x_re, LaneRow* x_im, LaneRow* lost);
   struct Work;  // arrays of its loops
 
  private:
-  Work work(LaneArray& re, LaneArray& im);
-
   const ComplexElimination& plan_;
-  LaneArray d_re_, d_im_, l_re_, l_im_, w_re_, w_im_, x_re_, x_im_;
+  LaneArray d_re_, d_im_, l_re_, l_im_;
 };
 
 }  // namespace drev

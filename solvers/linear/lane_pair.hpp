@@ -96,6 +96,73 @@ template <class L>
 [[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
   store(from, reinterpret_cast<double*>(&to.v));
 }
+/// Transposes eight rows: lane j of row i to lane i of row j.
+template <int kDistance>
+[[gnu::always_inline]] inline void exchange_blocks(Lanes& a, Lanes& b) {
+  const Lanes x = a, y = b;
+  if constexpr (kDistance == 1) {
+    a = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    b = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  } else if constexpr (kDistance == 2) {
+    a = __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13);
+    b = __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
+  } else {
+    a = __builtin_shufflevector(x, y, 0, 1, 2, 3, 8, 9, 10, 11);
+    b = __builtin_shufflevector(x, y, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+template <int kDistance>
+[[gnu::always_inline]] inline void exchange_blocks(LanePair& a, LanePair& b) {
+  const LanePair x = a, y = b;
+  if constexpr (kDistance == 1) {
+    a = {__builtin_shufflevector(x.low, y.low, 0, 4, 2, 6),
+         __builtin_shufflevector(x.high, y.high, 0, 4, 2, 6)};
+    b = {__builtin_shufflevector(x.low, y.low, 1, 5, 3, 7),
+         __builtin_shufflevector(x.high, y.high, 1, 5, 3, 7)};
+  } else if constexpr (kDistance == 2) {
+    a = {__builtin_shufflevector(x.low, y.low, 0, 1, 4, 5),
+         __builtin_shufflevector(x.high, y.high, 0, 1, 4, 5)};
+    b = {__builtin_shufflevector(x.low, y.low, 2, 3, 6, 7),
+         __builtin_shufflevector(x.high, y.high, 2, 3, 6, 7)};
+  } else {
+    a = {x.low, y.low};
+    b = {x.high, y.high};
+  }
+}
+template <class L>
+[[gnu::always_inline]] inline void transpose(L (&x)[kLanes]) {
+  for (int i = 0; i < kLanes; i += 2) exchange_blocks<1>(x[i], x[i + 1]);
+  for (int i = 0; i < kLanes; i += 4)
+    exchange_blocks<2>(x[i], x[i + 2]), exchange_blocks<2>(x[i + 1], x[i + 3]);
+  for (int i = 0; i < kLanes / 2; ++i) exchange_blocks<4>(x[i], x[i + 4]);
+}
+/// Numbers in pairs, as those of std::complex are, as two rows of lanes: the first of each pair and the second; and back.
+[[gnu::always_inline]] inline void take_pairs(const double* from, Lanes& first, Lanes& second) {
+  Lanes low, high;
+  load(from, low), load(from + kLanes, high);
+  first = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+  second = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+[[gnu::always_inline]] inline void take_pairs(const double* from, LanePair& first, LanePair& second) {
+  LanePair low, high;
+  load(from, low), load(from + kLanes, high);
+  first.low = __builtin_shufflevector(low.low, low.high, 0, 2, 4, 6);
+  first.high = __builtin_shufflevector(high.low, high.high, 0, 2, 4, 6);
+  second.low = __builtin_shufflevector(low.low, low.high, 1, 3, 5, 7);
+  second.high = __builtin_shufflevector(high.low, high.high, 1, 3, 5, 7);
+}
+[[gnu::always_inline]] inline void put_pairs(const Lanes& first, const Lanes& second, double* to) {
+  const Lanes low = __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
+              high = __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15);
+  store(low, to), store(high, to + kLanes);
+}
+[[gnu::always_inline]] inline void put_pairs(const LanePair& first, const LanePair& second, double* to) {
+  const LanePair low{__builtin_shufflevector(first.low, second.low, 0, 4, 1, 5),
+                     __builtin_shufflevector(first.low, second.low, 2, 6, 3, 7)},
+      high{__builtin_shufflevector(first.high, second.high, 0, 4, 1, 5),
+           __builtin_shufflevector(first.high, second.high, 2, 6, 3, 7)};
+  store(low, to), store(high, to + kLanes);
+}
 /// to = x with its halves, quarters or neighbours exchanged: lane l of x in lane l ^ distance.
 [[gnu::always_inline]] inline void exchange(const Lanes& x, int distance, Lanes& to) {
   to = distance == 4   ? __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3)

@@ -41,7 +41,7 @@ struct DampedModesOptions {
 struct DampedMode {
   std::complex<double> lambda;        ///< 1/s, the one with Im > 0
   double frequency_Hz = 0.0;          ///< of the oscillation, Im lambda / (2 pi)
-  double natural_frequency_Hz = 0.0;  ///< |lambda| / (2 pi)
+  double natural_frequency_Hz = 0.0;  ///< |lambda| / (2 pi): undamped only where damping is proportional
   double damping_ratio = 0.0;         ///< xi; negative: the mode grows
 };
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 #include <set>
-#include <unsupported/Eigen/FFT>
 
 #include "core/dense/factorization.hpp"
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -82,8 +82,7 @@ double HarmonicBalance::size(const Harmonics& z) const { return std::sqrt(inner(
 
 HarmonicBalance::Samples HarmonicBalance::motion(const Harmonics& z, int derivative, int samples) const {
   Samples all(z.rows(), samples);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   std::vector<Complex> lines(idx(samples / 2 + 1)), factors;
   for (Eigen::Index n = 0; n < z.cols(); ++n)
     factors.push_back((n == 0 ? 1.0 : 0.5) * samples *
@@ -92,7 +91,7 @@ HarmonicBalance::Samples HarmonicBalance::motion(const Harmonics& z, int derivat
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
     for (std::size_t n = 0; n < factors.size(); ++n)
       lines[n] = z(i, static_cast<Eigen::Index>(n)) * factors[n];
-    fft.inv(values, lines, samples);
+    transform.inverse(values, lines, samples);
     for (int s = 0; s < samples; ++s) all(i, s) = values[idx(s)];
   }
   return all;
@@ -101,13 +100,12 @@ HarmonicBalance::Samples HarmonicBalance::motion(const Harmonics& z, int derivat
 HarmonicBalance::Harmonics HarmonicBalance::to_harmonics(const Samples& samples, int harmonics) {
   Harmonics all(samples.rows(), harmonics + 1);
   const auto count = static_cast<int>(samples.cols());
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   std::vector<Complex> lines;
   std::vector<double> values(idx(count));
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
     for (int s = 0; s < count; ++s) values[idx(s)] = samples(i, s);
-    fft.fwd(lines, values);
+    transform.forward(lines, values);
     for (int n = 0; n <= harmonics; ++n) all(i, n) = lines[idx(n)] * ((n == 0 ? 1.0 : 2.0) / count);
   }
   return all;

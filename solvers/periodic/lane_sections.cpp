@@ -1,107 +1,164 @@
 #include "solvers/periodic/lane_sections.hpp"
 
+#include <algorithm>
+
 #include "solvers/linear/lane_pair.hpp"
 
 namespace drev {
 
+/// Rows with few entries, as the loops read them.
+struct LaneSections::Sparse {
+  const int *begin, *index;
+  const double* coeff;
+};
+
 namespace {
 
-/// Computes the products of rows with z.
-struct RowSums {
+using Sparse = LaneSections::Sparse;
+
+struct AddLoads {
   template <class L>
-  [[gnu::always_inline]] static void run(int rows, const int* begin, const int* index, const double* coeff,
-                                         const LaneRow* re, const LaneRow* im, LaneRow* sums_re,
-                                         LaneRow* sums_im) {
-    for (int r = 0; r < rows; ++r) {
-      L sum_re{}, sum_im{}, x;
-      for (int e = begin[r]; e < begin[r + 1]; ++e) {
-        take(re[index[e]], x), sum_re += coeff[e] * x;
-        take(im[index[e]], x), sum_im += coeff[e] * x;
+  [[gnu::always_inline]] static void run(int sets, int loads, const Sparse* rows, const double* given,
+                                         LaneRow* p_re, LaneRow* p_im) {
+    for (int l = 0; l < loads; ++l, given += 2 * LaneSections::kFrequencies)
+      for (int set = 0; set < sets; ++set) {
+        L re, im, sum;
+        take_pairs(given + 2 * kLanes * set, re, im);
+        for (int e = rows->begin[l]; e < rows->begin[l + 1]; ++e) {
+          const int to = rows->index[e] * kLaneSets + set;
+          take(p_re[to], sum), put(sum + rows->coeff[e] * re, p_re[to]);
+          take(p_im[to], sum), put(sum + rows->coeff[e] * im, p_im[to]);
+        }
       }
-      put(sum_re, sums_re[r]), put(sum_im, sums_im[r]);
-    }
   }
 };
 
-/// Powers with damping values common to all lanes (Value: double), or with those of each lane (LaneRow).
-template <class Value>
-struct FindPowersOf {
-  template <class L>
-  [[gnu::always_inline]] static void run(int columns, const int* unknowns, const int* outer, const int* inner,
-                                         const int* slots, const Value* damping, const LaneRow* frequencies,
-                                         const LaneRow* p_re, const LaneRow* p_im, const LaneRow* re,
-                                         const LaneRow* im, LaneSections::Powers* found) {
-    L in{}, lost{}, w;
-    for (int j = 0; j < columns; ++j) {
-      const int unknown = unknowns[j];
-      L x_re, x_im, of_re, of_im, c, force_re{}, force_im{};
-      take(re[unknown], x_re), take(im[unknown], x_im);
-      take(p_re[unknown], of_re), take(p_im[unknown], of_im);
-      in += x_re * of_im - x_im * of_re;
-      for (int e = outer[j]; e < outer[j + 1]; ++e) {
-        take(damping[slots[e]], c), take(re[inner[e]], of_re), take(im[inner[e]], of_im);
-        force_re += c * of_re;
-        force_im += c * of_im;
-      }
-      lost += x_re * force_re + x_im * force_im;
-    }
-    take(*frequencies, w);
-    put(0.5 * w * in, found->input);
-    put(0.5 * w * w * lost, found->dissipated);
-  }
-};
-
-/// Torques, twists and heat from the products of rows with z. Rates are i w times the deflections. With a
+/// Torques, twists and heat from the products of a section's rows with z. Rates are i w times the deflections. With a
 /// frequency term, the torque is that of the matrices plus the part beyond them, and heat = w/2 Im(T conj x).
-struct Torques {
+struct FindSections {
   template <class L>
-  [[gnu::always_inline]] static void run(int sections, const int* term, const LaneRow* re, const LaneRow* im,
-                                         const LaneRow* frequencies, const LaneRow* k_re, const LaneRow* k_im,
-                                         LaneSections::Result* results) {
+  [[gnu::always_inline]] static void run(int sets, int sections, const Sparse* rows, const int* terms,
+                                         const LaneSections::Motion* z, const LaneRow* k_re,
+                                         const LaneRow* k_im, double* torques, double* twists,
+                                         double* heats) {
     using Rows = LaneSections;
-    L w;
-    take(*frequencies, w);
-    for (int s = 0; s < sections; ++s, re += Rows::kRows, im += Rows::kRows) {
-      L twist_re, twist_im, torque_re, torque_im, row_re, row_im;
-      take(re[Rows::twist], twist_re), take(im[Rows::twist], twist_im);
-      take(re[Rows::stiffness], torque_re), take(im[Rows::stiffness], torque_im);
-      take(re[Rows::damping], row_re), take(im[Rows::damping], row_im);
-      torque_re -= w * row_im;
-      torque_im += w * row_re;
-      take(re[Rows::damper], row_re), take(im[Rows::damper], row_im);
-      L heat = 0.5 * w * w * (row_re * twist_re + row_im * twist_im);
-      if (term[s] >= 0) {
-        L a, b;
-        take(k_re[term[s]], a), take(k_im[term[s]], b);
-        take(re[Rows::beyond], row_re), take(im[Rows::beyond], row_im);
-        torque_re += a * row_re - b * row_im;
-        torque_im += a * row_im + b * row_re;
-        heat = 0.5 * w * (torque_im * twist_re - torque_re * twist_im);
+    for (int s = 0; s < sections; ++s) {
+      const int* begin = rows->begin + s * Rows::kRows;
+      L all_heat{};
+      for (int set = 0; set < sets; ++set) {
+        const auto product = [&](int row, L& re, L& im) __attribute__((always_inline)) {
+          L x;
+          re = im = L{};
+          for (int e = begin[row]; e < begin[row + 1]; ++e) {
+            const int from = rows->index[e] * kLaneSets + set;
+            take(z->re[from], x), re += rows->coeff[e] * x;
+            take(z->im[from], x), im += rows->coeff[e] * x;
+          }
+        };
+        L w, twist_re, twist_im, torque_re, torque_im, row_re, row_im;
+        take(z->w[set], w);
+        product(Rows::twist, twist_re, twist_im);
+        product(Rows::stiffness, torque_re, torque_im);
+        product(Rows::damping, row_re, row_im);
+        torque_re -= w * row_im;
+        torque_im += w * row_re;
+        L heat;
+        if (terms[s] >= 0) {
+          L a, b;
+          take(k_re[terms[s] * kLaneSets + set], a), take(k_im[terms[s] * kLaneSets + set], b);
+          product(Rows::beyond, row_re, row_im);
+          torque_re += a * row_re - b * row_im;
+          torque_im += a * row_im + b * row_re;
+          heat = 0.5 * w * (torque_im * twist_re - torque_re * twist_im);
+        } else {
+          product(Rows::damper, row_re, row_im);
+          heat = 0.5 * w * w * (row_re * twist_re + row_im * twist_im);
+        }
+        all_heat += heat;
+        const int at = 2 * (s * Rows::kFrequencies + set * kLanes);
+        put_pairs(torque_re, torque_im, torques + at);
+        put_pairs(twist_re, twist_im, twists + at);
       }
-      put(torque_re, results[s].torque.re), put(torque_im, results[s].torque.im);
-      put(twist_re, results[s].twist.re), put(twist_im, results[s].twist.im);
-      put(heat, results[s].heat);
+      heats[s] = sum_of(all_heat);
     }
   }
 };
 
-struct AddAtSlots {
+/// The columns of a matrix without those of held unknowns.
+struct Columns {
+  int count;
+  const int *unknowns, *outer, *inner, *slots;
+};
+
+template <class Value>
+struct FindPowers {
   template <class L>
-  [[gnu::always_inline]] static void run(int count, const int* slots, const int* terms, const double* times,
-                                         const LaneRow* additions, const double* common, LaneRow* values) {
-    L x, sum;
-    for (int i = 0; i < count; ++i) take(common[slots[i]], x), put(x, values[slots[i]]);
-    for (int i = 0; i < count; ++i) {
-      take(additions[terms[i]], x), take(values[slots[i]], sum);
-      put(sum + times[i] * x, values[slots[i]]);
+  [[gnu::always_inline]] static void run(int sets, const Columns* a, const LaneSections::Motion* z,
+                                         const LaneDynamics<Value>* s, LaneSections::Powers* found) {
+    L all_in{}, all_lost{};
+    for (int set = 0; set < sets; ++set) {
+      L in{}, lost{}, w;
+      take(z->w[set], w);
+      for (int j = 0; j < a->count; ++j) {
+        const int unknown = a->unknowns[j] * kLaneSets + set;
+        L x_re, x_im, of_re, of_im, h, force_re{}, force_im{};
+        take(z->re[unknown], x_re), take(z->im[unknown], x_im);
+        take(z->p_re[unknown], of_re), take(z->p_im[unknown], of_im);
+        in += x_re * of_im - x_im * of_re;
+        for (int e = a->outer[j]; e < a->outer[j + 1]; ++e) {
+          const int from = a->inner[e] * kLaneSets + set;
+          take(of_set(s->h, a->slots[e], set), h);
+          h += w * s->c[a->slots[e]];
+          take(z->re[from], of_re), take(z->im[from], of_im);
+          force_re += h * of_re;
+          force_im += h * of_im;
+        }
+        lost += x_re * force_re + x_im * force_im;
+      }
+      all_in += 0.5 * w * in;
+      all_lost += 0.5 * w * lost;
     }
+    *found = {sum_of(all_in), sum_of(all_lost)};
   }
 };
+
+struct SpreadAtSlots {
+  template <class L>
+  [[gnu::always_inline]] static void run(int sets, int values, int additions, const int* slots,
+                                         const int* terms, const double* times, const LaneRow* re,
+                                         const LaneRow* im, const double* common, LaneRow* k, LaneRow* h) {
+    L x, sum;
+    for (int v = 0; v < values; ++v)
+      for (int set = 0; set < sets; ++set) {
+        take(common[v], x);
+        put(x, k[v * kLaneSets + set]), put(L{}, h[v * kLaneSets + set]);
+      }
+    for (int i = 0; i < additions; ++i)
+      for (int set = 0; set < sets; ++set) {
+        const int from = terms[i] * kLaneSets + set, to = slots[i] * kLaneSets + set;
+        take(re[from], x), take(k[to], sum), put(sum + times[i] * x, k[to]);
+        take(im[from], x), take(h[to], sum), put(sum + times[i] * x, h[to]);
+      }
+  }
+};
+
+double* numbers_of(std::vector<std::complex<double>>& values) {
+  return reinterpret_cast<double*>(values.data());
+}
 
 }  // namespace
 
-LaneSections::LaneSections(const System& system, const std::vector<SectionRows>& sections,
-                           const std::vector<bool>& held) {
+void LaneSections::RowList::add(const std::vector<Entry>& row, const std::vector<bool>& held) {
+  for (const Entry& e : row) {
+    if (held[idx(e.index)]) continue;
+    index.push_back(e.index);
+    coeff.push_back(e.coeff);
+  }
+  begin.push_back(static_cast<int>(index.size()));
+}
+
+LaneSections::LaneSections(const System& system, const std::vector<std::vector<Entry>>& loads,
+                           const std::vector<SectionRows>& sections, const std::vector<bool>& held) {
   const SparseMatrix& pattern = system.pattern();
   outer_.push_back(0);
   for (int j = 0; j < system.size(); ++j) {
@@ -112,65 +169,58 @@ LaneSections::LaneSections(const System& system, const std::vector<SectionRows>&
         inner_.push_back(row), slots_.push_back(slot);
     outer_.push_back(static_cast<int>(inner_.size()));
   }
-  begin_.push_back(0);
-  const auto add = [&](const std::vector<Entry>& row) {
-    for (const Entry& e : row) {
-      if (held[idx(e.index)]) continue;
-      index_.push_back(e.index);
-      coeff_.push_back(e.coeff);
-    }
-    begin_.push_back(static_cast<int>(index_.size()));
-  };
+  for (const std::vector<Entry>& load : loads) loads_.add(load, held);
+  loaded_ = loads_.index;
+  std::sort(loaded_.begin(), loaded_.end());
+  loaded_.erase(std::unique(loaded_.begin(), loaded_.end()), loaded_.end());
   for (const SectionRows& s : sections) {
-    add(s.stiffness);
-    add(s.damping);
-    add(s.twist);
-    add(s.damper);
+    rows_.add(s.stiffness, held);
+    rows_.add(s.damping, held);
+    rows_.add(s.twist, held);
+    rows_.add(s.damper, held);
     term_.push_back(s.frequency_term);
-    add(s.frequency_term < 0 ? std::vector<Entry>{} : system.frequency_terms()[idx(s.frequency_term)].z);
+    rows_.add(s.frequency_term < 0 ? std::vector<Entry>{} : system.frequency_terms()[idx(s.frequency_term)].z,
+              held);
   }
-  re_.resize(begin_.size() - 1);
-  im_.resize(begin_.size() - 1);
-  results_.resize(sections.size());
+  heat_.resize(sections.size());
+  for (auto* values : {&torque_, &twist_}) values->resize(sections.size() * kFrequencies);
 }
 
-void add_at_slots(const std::vector<int>& slots, const std::vector<int>& terms,
-                  const std::vector<double>& times, const LaneArray& additions, const double* common,
-                  LaneRow* values) {
-  run_widest<AddAtSlots>(static_cast<int>(slots.size()), slots.data(), terms.data(), times.data(),
-                         additions.data(), common, values);
+void LaneSections::add_loads(int sets, const std::vector<std::complex<double>>& given, LaneRow* p_re,
+                             LaneRow* p_im) const {
+  for (const int unknown : loaded_)
+    for (int set = 0; set < sets; ++set)
+      p_re[unknown * kLaneSets + set] = p_im[unknown * kLaneSets + set] = {};
+  const Sparse rows{loads_.begin.data(), loads_.index.data(), loads_.coeff.data()};
+  run_widest<AddLoads>(sets, static_cast<int>(loads_.begin.size()) - 1, &rows,
+                       reinterpret_cast<const double*>(given.data()), p_re, p_im);
 }
 
-void LaneSections::find(const LaneArray& re, const LaneArray& im, const Lanes& w, const LaneArray& k_re,
-                        const LaneArray& k_im) {
-  const auto rows = static_cast<int>(re_.size());
-  const LaneRow frequencies{w};
-  run_widest<RowSums>(rows, begin_.data(), index_.data(), coeff_.data(), re.data(), im.data(), re_.data(),
-                      im_.data());
-  run_widest<Torques>(static_cast<int>(term_.size()), term_.data(), re_.data(), im_.data(), &frequencies,
-                      k_re.data(), k_im.data(), results_.data());
+void LaneSections::find(int sets, const Motion& motion, const LaneArray& k_re, const LaneArray& k_im) {
+  const Sparse rows{rows_.begin.data(), rows_.index.data(), rows_.coeff.data()};
+  run_widest<FindSections>(sets, static_cast<int>(term_.size()), &rows, term_.data(), &motion, k_re.data(),
+                           k_im.data(), numbers_of(torque_), numbers_of(twist_), heat_.data());
 }
 
-LaneSections::Powers LaneSections::powers(const double* damping, const Lanes& w, const LaneArray& p_re,
-                                          const LaneArray& p_im, const LaneArray& re,
-                                          const LaneArray& im) const {
-  const LaneRow frequencies{w};
+template <class Value>
+LaneSections::Powers LaneSections::powers(int sets, const Motion& motion,
+                                          const LaneDynamics<Value>& dynamics) const {
+  const Columns columns{static_cast<int>(unknowns_.size()), unknowns_.data(), outer_.data(), inner_.data(),
+                        slots_.data()};
   Powers found;
-  run_widest<FindPowersOf<double>>(static_cast<int>(unknowns_.size()), unknowns_.data(), outer_.data(),
-                                   inner_.data(), slots_.data(), damping, &frequencies, p_re.data(),
-                                   p_im.data(), re.data(), im.data(), &found);
+  run_widest<FindPowers<Value>>(sets, &columns, &motion, &dynamics, &found);
   return found;
 }
 
-LaneSections::Powers LaneSections::powers(const LaneRow* damping, const Lanes& w, const LaneArray& p_re,
-                                          const LaneArray& p_im, const LaneArray& re,
-                                          const LaneArray& im) const {
-  const LaneRow frequencies{w};
-  Powers found;
-  run_widest<FindPowersOf<LaneRow>>(static_cast<int>(unknowns_.size()), unknowns_.data(), outer_.data(),
-                                    inner_.data(), slots_.data(), damping, &frequencies, p_re.data(),
-                                    p_im.data(), re.data(), im.data(), &found);
-  return found;
+template LaneSections::Powers LaneSections::powers(int, const Motion&, const LaneDynamics<double>&) const;
+template LaneSections::Powers LaneSections::powers(int, const Motion&, const LaneDynamics<LaneRow>&) const;
+
+void spread_at_slots(int sets, const std::vector<int>& slots, const std::vector<int>& terms,
+                     const std::vector<double>& times, const LaneArray& re, const LaneArray& im,
+                     const Vector& common, LaneArray& k, LaneArray& h) {
+  run_widest<SpreadAtSlots>(sets, static_cast<int>(common.size()), static_cast<int>(slots.size()),
+                            slots.data(), terms.data(), times.data(), re.data(), im.data(), common.data(),
+                            k.data(), h.data());
 }
 
 }  // namespace drev

@@ -50,7 +50,7 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   const std::vector<bool> held = find_held();
   elimination_.emplace(system.pattern(), held);
   lanes_.emplace(*elimination_);
-  rows_.emplace(system_, sections_, held);
+  rows_.emplace(system_, load_rows_, sections_, held);
   z_.resize(idx(system.size()));
   carried_.resize(system.frequency_terms().size());
   for (const FrequencyTerm& term : system.frequency_terms()) {
@@ -59,7 +59,8 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   }
   all_constant_ = !follows_mean_ && !follows_amplitude_ &&
                   std::find(term_constant_.begin(), term_constant_.end(), false) == term_constant_.end();
-  for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()));
+  for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()) * kLaneSets);
+  given_.resize(load_rows_.size() * LaneSections::kFrequencies);
 }
 
 void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& findings) const {
@@ -81,7 +82,7 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
       if (const Offset offset = term.force->offset(0.7 * i); offset.e != 0.0 || offset.de_dangle != 0.0) {
         refuse(name,
                "has a transmission error, which a linear sweep does not take; harmonic balance "
-               "(solve_periodic, drev run --start periodic) does");
+               "(solve_periodic, drev sweep without --contact closed) does");
         break;
       }
   }
@@ -108,33 +109,33 @@ void LinearResponse::add_frequency_terms(double omega) {
   }
 }
 
-void LinearResponse::spread_frequency_terms(const Lanes& w) {
-  const bool anew = !spread_;
-  if (anew) {
-    damping_lanes_.resize(static_cast<std::size_t>(damping_here_.size()));
-    stiffness_lanes_.resize(damping_lanes_.size());
-    for (std::size_t e = 0; e < damping_lanes_.size(); ++e) {
-      damping_lanes_[e].v = Lanes{} + damping_here_[static_cast<Eigen::Index>(e)];
-      stiffness_lanes_[e].v = Lanes{} + stiffness_here_[static_cast<Eigen::Index>(e)];
+void LinearResponse::spread_frequency_terms(int sets) {
+  if (all_constant_ && spread_) return;
+  const auto used = all_constant_ ? kLaneSets : sets;
+  for (std::size_t t = 0; t < carried_.size(); ++t)
+    for (int lane = 0; lane < used * kLanes; ++lane) {
+      const auto row = t * kLaneSets + idx(lane / kLanes);
+      const double w = w_[all_constant_ ? 0 : idx(lane / kLanes)].v[all_constant_ ? 0 : lane % kLanes];
+      const Complex k = beyond(t, std::abs(w));
+      beyond_re_[row].v[lane % kLanes] = k.real();
+      // At a negative w, k* is the complex conjugate.
+      beyond_im_[row].v[lane % kLanes] = w < 0.0 ? -k.imag() : k.imag();
     }
-    spread_ = true;
+  if (!all_constant_) {
+    for (LaneArray* values : {&stiffness_lanes_, &loss_lanes_})
+      values->resize(static_cast<std::size_t>(stiffness_here_.size()) * kLaneSets);
+    spread_at_slots(sets, slots_, slot_terms_, slot_times_, beyond_re_, beyond_im_, stiffness_here_,
+                    stiffness_lanes_, loss_lanes_);
+    return;
   }
-  const Lanes size = w[0] < 0.0 ? -w : w;
-  for (std::size_t t = 0; t < beyond_re_.size(); ++t) {
-    Lanes re{}, im{};
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Complex k = term_constant_[t] && lane > 0 ? Complex(re[0], im[0]) : beyond(t, size[lane]);
-      re[lane] = k.real();
-      im[lane] = k.imag();
-    }
-    beyond_re_[t].v = re;
-    beyond_im_[t].v = w[0] < 0.0 ? -im : im;  // at a negative w, k* is the complex conjugate
-    beyond_over_[t].v = im / size;
+  stiffness_common_ = stiffness_here_;
+  loss_common_.setZero(stiffness_here_.size());
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const auto row = idx(slot_terms_[i]) * kLaneSets;
+    stiffness_common_[slots_[i]] += slot_times_[i] * beyond_re_[row].v[0];
+    loss_common_[slots_[i]] += slot_times_[i] * beyond_im_[row].v[0];
   }
-  if (anew || !all_constant_)
-    add_at_slots(slots_, slot_terms_, slot_times_, beyond_re_, stiffness_here_.data(),
-                 stiffness_lanes_.data());
-  add_at_slots(slots_, slot_terms_, slot_times_, beyond_over_, damping_here_.data(), damping_lanes_.data());
+  spread_ = true;
 }
 
 Complex LinearResponse::beyond(std::size_t term, double omega) const {
@@ -158,7 +159,7 @@ std::vector<bool> LinearResponse::find_held() {
         slot_terms_.push_back(static_cast<int>(t));
         slot_times_.push_back(r.coeff * c.coeff);
       }
-  for (LaneArray* rows : {&beyond_re_, &beyond_im_, &beyond_over_}) rows->resize(terms.size());
+  for (LaneArray* rows : {&beyond_re_, &beyond_im_}) rows->resize(terms.size() * kLaneSets);
   const auto use = [&](const std::vector<Entry>& row) {
     for (const Entry& e : row) used[idx(e.index)] = true;
   };
@@ -314,7 +315,8 @@ void LinearResponse::find_active(double speed, int only) {
 
 double LinearResponse::amplitude_of(std::size_t t, double speed) {
   twist_squares_.assign(carried_.size(), 0.0);
-  for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, trial_);
+  for (std::size_t first = 0; first < active_.size(); first += LaneSections::kFrequencies)
+    solve_orders(speed, first, trial_);
   return std::sqrt(twist_squares_[t]);
 }
 
@@ -400,101 +402,8 @@ void LinearResponse::vibration(double speed, Point& point, int only) {
   }
   point.heat.setZero(count);
   point.input_power = point.dissipated_power = 0.0;
-  for (std::size_t first = 0; first < active_.size(); first += kLanes) solve_orders(speed, first, point);
-}
-
-bool LinearResponse::solve_lane(int lane, double omega) {
-  for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = {p_re_[i].v[lane], p_im_[i].v[lane]};
-  const bool own = !system_.frequency_terms().empty();
-  if (own) add_frequency_terms(std::abs(omega));
-  const bool solved = elimination_->factorize(mass_, own ? damping_at_omega_ : damping_here_,
-                                              own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
-  if (solved)
-    elimination_->solve(z_.data());
-  else
-    std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
-  for (std::size_t i = 0; i < z_.size(); ++i) {
-    re_[i].v[lane] = z_[i].real();
-    im_[i].v[lane] = z_[i].imag();
-  }
-  return solved;
-}
-
-void LinearResponse::solve_orders(double speed, std::size_t first, Point& point) {
-  const auto& contents = content_->at(direction_ * speed);
-  const int used = static_cast<int>(std::min<std::size_t>(kLanes, active_.size() - first));
-  Lanes w{};
-  // Unused lanes repeat the first.
-  for (int lane = 0; lane < kLanes; ++lane)
-    w[lane] = direction_ * orders_[idx(active_[first + idx(lane < used ? lane : 0)])] * speed;
-  std::fill(p_re_.begin(), p_re_.end(), LaneRow{});
-  std::fill(p_im_.begin(), p_im_.end(), LaneRow{});
-  for (std::size_t l = 0; l < contents.size(); ++l) {
-    LaneRow re, im;
-    for (int lane = 0; lane < used; ++lane) {
-      const Complex c = contents[l].amplitudes[idx(active_[first + idx(lane)])];
-      re.v[lane] = c.real();
-      im.v[lane] = c.imag();
-    }
-    for (const Entry& e : load_rows_[l]) {
-      p_re_[idx(e.index)].v += e.coeff * re.v;
-      p_im_[idx(e.index)].v += e.coeff * im.v;
-    }
-  }
-  re_ = p_re_;
-  im_ = p_im_;
-  const bool own = !system_.frequency_terms().empty();
-  if (own) spread_frequency_terms(w);
-  // For one or two frequencies lanes are slower than scalars.
-  constexpr int kWorthLanes = 3;
-  Lanes lost = Lanes{} + 1.0;
-  if (used >= kWorthLanes && own)
-    lanes_->solve(mass_.data(), damping_lanes_.data(), stiffness_lanes_.data(), w, re_, im_, lost);
-  else if (used >= kWorthLanes)
-    lanes_->solve(mass_.data(), damping_here_.data(), stiffness_here_.data(), w, re_, im_, lost);
-  std::array<bool, kLanes> singular{};
-  for (int lane = 0; lane < used; ++lane)
-    if (lost[lane] != 0.0) singular[idx(lane)] = !solve_lane(lane, w[lane]);
-  if (follows_amplitude_) {
-    twist_squares_.resize(carried_.size());
-    for (std::size_t t = 0; t < carried_.size(); ++t) {
-      Lanes re{}, im{};
-      for (const Entry& e : system_.frequency_terms()[t].z) {
-        re += e.coeff * re_[idx(e.index)].v;
-        im += e.coeff * im_[idx(e.index)].v;
-      }
-      for (int lane = 0; lane < used; ++lane)
-        twist_squares_[t] += singular[idx(lane)] ? std::numeric_limits<double>::infinity()
-                                                 : re[lane] * re[lane] + im[lane] * im[lane];
-    }
-  }
-  rows_->find(re_, im_, w, beyond_re_, beyond_im_);
-  const auto each_lane = [&](const auto& task) {
-    for (int lane = 0; lane < used; ++lane) task(lane, static_cast<Eigen::Index>(active_[first + idx(lane)]));
-  };
-  for (std::size_t s = 0; s < sections_.size(); ++s) {
-    const LaneSections::Result& found = rows_->of(s);
-    const auto c = static_cast<Eigen::Index>(s);
-    Complex *amplitude = point.amplitude.col(c).data(), *twist = point.twist.col(c).data();
-    double heat = 0.0;
-    each_lane([&](int lane, Eigen::Index k) {
-      amplitude[k] = {found.torque.re.v[lane], found.torque.im.v[lane]};
-      twist[k] = {found.twist.re.v[lane], found.twist.im.v[lane]};
-      heat += found.heat.v[lane];
-    });
-    point.heat[c] += heat;
-  }
-  const LaneSections::Powers powers = own ? rows_->powers(damping_lanes_.data(), w, p_re_, p_im_, re_, im_)
-                                          : rows_->powers(damping_here_.data(), w, p_re_, p_im_, re_, im_);
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  each_lane([&](int lane, Eigen::Index k) {
-    point.input_power += powers.input.v[lane];
-    point.dissipated_power += powers.dissipated.v[lane];
-    if (!singular[idx(lane)]) return;
-    point.amplitude.row(k).setConstant(kInfinite);
-    point.twist.row(k).setConstant(kInfinite);
-    point.heat.setConstant(kInfinite);
-  });
+  for (std::size_t first = 0; first < active_.size(); first += LaneSections::kFrequencies)
+    solve_orders(speed, first, point);
 }
 
 }  // namespace drev

@@ -62,17 +62,25 @@ class LinearResponse {
   /// Finds the mean results of each load alone, at a mean of 1, and those of the drag at a speed of 1 rad/s.
   void find_mean_of_parts(Eigen::Index loads);
   void find_active(double speed, int only);
-  /// Adds the complex stiffnesses at the frequencies of all lanes to damping_lanes_ and stiffness_lanes_.
-  void spread_frequency_terms(const Lanes& w);
+  /// Adds the complex stiffnesses at the frequencies w_ to the stiffness and to the imaginary part of the sets.
+  void spread_frequency_terms(int sets);
   /// Complex stiffness of a frequency term beyond that of the matrices, with the held internal nodes at rest.
   std::complex<double> beyond(std::size_t term, double omega) const;
   /// Finds the internal nodes to hold at 0: those of elements that know their complex stiffness without them,
   /// if no other element acts on these nodes.
   std::vector<bool> find_held();
-  /// Solves for the amplitudes at up to kLanes of the orders numbered in active_, from place `first` on.
+  /// Solves for the amplitudes at up to LaneSections::kFrequencies of the orders numbered in active_, from place
+  /// `first` on.
   void solve_orders(double speed, std::size_t first, Point& point);
+  /// Finds frequencies and right sides of these orders; returns their number. Lanes of the last set that are not used
+  /// repeat the first frequency, without load.
+  int give_orders(double speed, std::size_t first);
+  /// Solves the orders given, those with a lost pivot one by one; lost_: not 0 where the matrix is singular.
+  template <class Value>
+  void solve_lanes(int used, const LaneDynamics<Value>& dynamics);
   /// Solves one lane by the elimination with pivoting, b -> x; false: the matrix is singular, and x = 0.
-  bool solve_lane(int lane, double omega);
+  bool solve_lane(int set, int lane);
+  void add_twist_squares(int used);
 
   const System& system_;
   Assembler assembler_;
@@ -99,11 +107,15 @@ class LinearResponse {
   Point trial_;
   std::optional<LaneSections> rows_;
   std::vector<int> active_;  // numbers of the orders in which any load has content
-  LaneArray damping_lanes_,
-      stiffness_lanes_;                            // values of each lane with complex stiffnesses, if any
-  bool spread_ = false;                            // true: these hold the values of this speed
-  LaneArray beyond_re_, beyond_im_, beyond_over_;  // beyond() of each frequency term: Re, Im, Im over |w|
-  LaneArray re_, im_, p_re_, p_im_;                // the solution, and the right side
+  /// Real parts of the complex stiffnesses with the rest of K, and their imaginary parts: common to all frequencies
+  /// where they do not depend on these, otherwise of each lane.
+  Vector stiffness_common_, loss_common_;
+  LaneArray stiffness_lanes_, loss_lanes_;
+  bool spread_ = false;              // true: the common ones hold the values of this speed
+  LaneArray beyond_re_, beyond_im_;  // beyond() of each frequency term at w_
+  LaneArray re_, im_, p_re_, p_im_;  // the solution, and the right side, of each set of lanes
+  std::array<LaneRow, kLaneSets> w_{}, lost_{};
+  std::vector<std::complex<double>> given_;  // amplitudes of each load at w_
   std::optional<MeanEquilibrium> mean_;
   /// One column for each load and one for the speed. mean_of_parts_: means of the sections, of their twists,
   /// and Point::unbalanced; sum_of_parts_: Point::load_sum.

@@ -52,57 +52,69 @@ SweepSection to_section(const LinearResponse::Section& given, Eigen::Index order
   return section;
 }
 
-void put(const LinearResponse::Point& point, const std::vector<SumExtremes>& extremes,
-         const std::vector<SumExtremes>& twists, Eigen::Index at, LinearSweep& sweep) {
-  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
-    SweepSection& section = sweep.sections[c];
-    const auto column = static_cast<Eigen::Index>(c);
-    section.amplitude.col(at) = point.amplitude.col(column);
-    section.mean[at] = point.mean[column];
-    section.maximum[at] = extremes[c].max;
-    section.minimum[at] = extremes[c].min;
-    section.maximum_angle[at] = extremes[c].max_angle;
-    section.minimum_angle[at] = extremes[c].min_angle;
-    section.heat[at] = point.heat[column];
-    if (section.twist.size() == 0) continue;
-    section.twist.col(at) = point.twist.col(column);
-    section.twist_mean[at] = point.twist_mean[column];
-    section.twist_half_range[at] = twists[c].half_range();
-  }
-}
-
-/// Sections whose torque is their twist times one factor need no separate sum for the twist.
-struct TwistSums {
-  std::vector<double> factor;  // half range of the twist over that of the section; 0: summed separately
-  std::vector<Eigen::Index> columns;
-
-  explicit TwistSums(const std::vector<LinearResponse::Section>& sections) {
+/// Extremes of the sums of torques and of twists. Sections whose torque is their twist times one factor need no separate
+/// sum for the twist.
+class SectionExtremes {
+ public:
+  explicit SectionExtremes(const std::vector<LinearResponse::Section>& sections) {
     for (std::size_t c = 0; c < sections.size(); ++c) {
       const LinearResponse::Section& s = sections[c];
       const bool damped =
           std::any_of(s.damping.begin(), s.damping.end(), [](const Entry& e) { return e.coeff != 0.0; });
       const bool proportional = !damped && s.twist.size() == s.stiffness.size() && !s.twist.empty();
-      factor.push_back(proportional ? std::abs(s.twist.front().coeff / s.stiffness.front().coeff) : 0.0);
-      if (!proportional && !s.twist.empty()) columns.push_back(static_cast<Eigen::Index>(c));
+      factor_.push_back(proportional ? std::abs(s.twist.front().coeff / s.stiffness.front().coeff) : 0.0);
+      if (!proportional && !s.twist.empty()) summed_.push_back(c);
     }
   }
-  void find(const LinearResponse::Point& point, const std::vector<SumExtremes>& sections,
-            TrigonometricSum& sum, std::vector<SumExtremes>& twists) const {
-    twists.assign(sections.size(), {});
-    std::vector<SumExtremes> found;
-    if (!columns.empty()) sum.extremes(point.twist(Eigen::all, columns), found);
-    for (std::size_t c = 0; c < sections.size(); ++c)
-      if (factor[c] > 0.0) twists[c] = {factor[c] * sections[c].max, factor[c] * sections[c].min};
-    for (std::size_t i = 0; i < columns.size(); ++i) twists[static_cast<std::size_t>(columns[i])] = found[i];
+  void find(const LinearResponse::Point& point, TrigonometricSum& sum) {
+    sums_.clear();
+    for (Eigen::Index c = 0; c < point.amplitude.cols(); ++c) sums_.push_back(point.amplitude.col(c).data());
+    for (const std::size_t c : summed_) sums_.push_back(point.twist.col(static_cast<Eigen::Index>(c)).data());
+    sum.extremes(sums_, found_);
+    twist_half_range_.assign(factor_.size(), 0.0);
+    for (std::size_t c = 0; c < factor_.size(); ++c)
+      twist_half_range_[c] = factor_[c] * found_[c].half_range();
+    for (std::size_t i = 0; i < summed_.size(); ++i)
+      twist_half_range_[summed_[i]] = found_[factor_.size() + i].half_range();
   }
+  const SumExtremes& of(std::size_t section) const { return found_[section]; }
+  double twist_half_range(std::size_t section) const { return twist_half_range_[section]; }
+
+ private:
+  std::vector<double> factor_;       // half range of the twist over that of the section; 0: summed separately
+  std::vector<std::size_t> summed_;  // sections with a separate sum for the twist
+  std::vector<const std::complex<double>*> sums_;
+  std::vector<SumExtremes> found_;
+  std::vector<double> twist_half_range_;
 };
+
+void put(const LinearResponse::Point& point, const SectionExtremes& extremes, Eigen::Index at,
+         LinearSweep& sweep) {
+  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
+    SweepSection& section = sweep.sections[c];
+    const auto column = static_cast<Eigen::Index>(c);
+    section.amplitude.col(at) = point.amplitude.col(column);
+    section.mean[at] = point.mean[column];
+    const SumExtremes& found = extremes.of(c);
+    section.maximum[at] = found.max;
+    section.minimum[at] = found.min;
+    section.maximum_angle[at] = found.max_angle;
+    section.minimum_angle[at] = found.min_angle;
+    section.heat[at] = point.heat[column];
+    if (section.twist.size() == 0) continue;
+    section.twist.col(at) = point.twist.col(column);
+    section.twist_mean[at] = point.twist_mean[column];
+    section.twist_half_range[at] = extremes.twist_half_range(c);
+  }
+}
 
 /// Data that each thread has separately.
 struct Worker {
-  explicit Worker(const TrigonometricSum& given) : sum(given) {}
+  Worker(const TrigonometricSum& sums, const std::vector<LinearResponse::Section>& sections)
+      : sum(sums), extremes(sections) {}
   TrigonometricSum sum;
+  SectionExtremes extremes;
   LinearResponse::Point point;
-  std::vector<SumExtremes> extremes, twists;
 };
 
 /// Number of threads. Each thread has to build the equations again, which pays off for many speeds only.
@@ -162,12 +174,11 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
   sweep.unbalanced.assign(sweep.floating_parts.size(), Vector::Zero(speeds));
   sweep.input_power.setZero(speeds);
   sweep.dissipated_power.setZero(speeds);
-  const TwistSums twist_sums(response.sections());
   std::vector<Vector> load_sums(sweep.unbalanced.size(), Vector::Zero(speeds));
   std::vector<std::unique_ptr<Worker>> workers(threads_for(system, options, sweep.orders.size()));
   std::atomic<bool> ended{false};
   for_all(workers.size(), static_cast<int>(workers.size()), [&](std::size_t w, std::size_t thread) {
-    workers[w] = std::make_unique<Worker>(sum);
+    workers[w] = std::make_unique<Worker>(sum, response.sections());
     Worker& worker = *workers[w];
     std::optional<LinearResponse> own;
     std::vector<Finding> none;
@@ -185,9 +196,8 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
       const double speed = sweep.speeds[static_cast<std::size_t>(i)];
       here.vibration(speed, worker.point);
       here.mean(speed, worker.point);
-      worker.sum.extremes(worker.point.amplitude, worker.extremes);
-      twist_sums.find(worker.point, worker.extremes, worker.sum, worker.twists);
-      put(worker.point, worker.extremes, worker.twists, i, sweep);
+      worker.extremes.find(worker.point, worker.sum);
+      put(worker.point, worker.extremes, i, sweep);
       sweep.input_power[i] = worker.point.input_power;
       sweep.dissipated_power[i] = worker.point.dissipated_power;
       for (std::size_t f = 0; f < sweep.unbalanced.size(); ++f) {

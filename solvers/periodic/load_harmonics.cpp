@@ -6,7 +6,8 @@
 
 #include <array>
 #include <cmath>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -141,15 +142,14 @@ void LoadHarmonics::add(double w, const Eigen::MatrixXd& q, const Eigen::MatrixX
     for (int m = 0; m < kMoments; ++m, power *= std::complex<double>(0.0, -1.0))
       weights(n, m) = power * ((n == 0 ? 0.5 : 1.0) * (2 * m + 1) * spherical_bessel(m, x));
   }
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   Eigen::MatrixXd mu;
   std::vector<std::complex<double>> lines;
   for (const int l : taken_) {
     moments(l, w, q, v, mu);
     for (int m = 0; m < kMoments; ++m) {
       const std::vector<double> of_m(mu.row(m).begin(), mu.row(m).end());
-      fft.fwd(lines, of_m);
+      transform.forward(lines, of_m);
       for (Eigen::Index n = 0; n < out.cols(); ++n)
         for (const Entry& e : rows_[idx(l)])
           out(e.index, n) += e.coeff * weights(n, m) * lines[static_cast<std::size_t>(n)];

@@ -9,7 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -55,9 +56,11 @@ OrderContent::OrderContent(const System& system, std::vector<double> orders, std
   for (const LoadTerm& term : system.loads()) {
     if (system.node_map(term.node).prescribed >= 0) continue;  // the reaction carries it
     Source source;
-    if (const Source* relative = family_source(term))
-      (source = *relative).scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
-    else if (!inspect(term, source, findings))
+    if (const Source* relative = family_source(term)) {
+      source = *relative;
+      source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
+      source.relative = static_cast<int>(relative - sources_.data());
+    } else if (!inspect(term, source, findings))
       continue;
     follows_speed_ = follows_speed_ || source.follows_speed;
     loads_.push_back(&term);
@@ -236,8 +239,7 @@ OrderContent::Content OrderContent::of_harmonics(const LoadTerm& term) const {
 OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& source, double speed) const {
   const double ratio = system_.ratio(term.node);
   const double spacing = std::abs(ratio) / source.turns;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   std::vector<double> torque;
   std::vector<Complex> lines;
   const auto content_with = [&](int samples) {
@@ -259,7 +261,7 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
     if (source.by_angle || std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
     for (const double value : torque) square += (value - content.mean) * (value - content.mean) / samples;
     content.rms = std::sqrt(square);
-    fft.fwd(lines, torque);
+    transform.forward(lines, torque);
     lines.resize(static_cast<std::size_t>(samples) / 2);  // without the Nyquist line
     for (Complex& line : lines) line *= 2.0 / samples;
     pick(lines, spacing, ratio > 0.0, content);
@@ -286,12 +288,11 @@ void OrderContent::find_curves(std::size_t load, double speed) {
   const LoadTerm& term = *loads_[load];
   const auto& scaled = dynamic_cast<const SpeedScaledLoad&>(*term.load);
   const double ratio = system_.ratio(term.node);
-  if (const Source* relative = family_source(term); relative && !relative->curves.empty()) {
-    const auto& first = dynamic_cast<const SpeedScaledLoad&>(
-        *loads_[static_cast<std::size_t>(relative - sources_.data())]->load);
-    const double behind = scaled.family().start - first.family().start;
-    source.curves = relative->curves;
-    source.products = relative->products;
+  if (source.relative >= 0 && sources_[idx(source.relative)].curves.empty()) source.relative = -1;
+  if (source.relative >= 0) {
+    const Source& relative = sources_[idx(source.relative)];
+    const double behind = scaled.family().start - relative.scaled->family().start;
+    source.curves = relative.curves;
     for (std::size_t k = 0; k < orders_.size(); ++k) {
       const Complex turned = std::polar(1.0, -orders_[k] / ratio * behind);
       for (Content& curve : source.curves) curve.amplitudes[k] *= turned;
@@ -369,8 +370,7 @@ bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double
 void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const {
   const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
   const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  FourierTransform transform;
   Eigen::MatrixXd values;
   const auto curves_with = [&](int samples) {
     std::vector<Content> curves;
@@ -390,7 +390,7 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
       content.mean = means[k];
       content.rms = std::sqrt(vary.col(k).squaredNorm() / samples);
       std::copy_n(vary.col(k).data(), samples, column.begin());
-      fft.fwd(lines, column);
+      transform.forward(lines, column);
       lines.resize(static_cast<std::size_t>(samples) / 2);
       for (Complex& line : lines) line *= 2.0 / samples;
       pick(lines, spacing, ratio > 0.0, content);
@@ -412,27 +412,40 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
   }
 }
 
-/// The content of the load at a speed: the sum of its scaled curves.
-void OrderContent::sum_curves(const LoadTerm& term, const Source& source, double speed, Content& sum) const {
-  const std::vector<double> factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
-  const Eigen::Map<const Vector> f(factors.data(), static_cast<Eigen::Index>(factors.size()));
+/// The content of the load at a speed: the sum of its scaled curves. Loads of a family differ in phase only.
+void OrderContent::sum_curves(std::size_t load, double speed) {
+  Source& source = sources_[load];
+  Content& sum = content_[load];
+  const LoadTerm& term = *loads_[load];
+  const bool first = source.relative < 0;
+  if (first) source.factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
+  const std::vector<double>& factors = first ? source.factors : sources_[idx(source.relative)].factors;
   sum.node = term.node;
-  sum.mean = 0.0;
   sum.amplitudes.resize(orders_.size());
-  sum.rms = std::sqrt(std::max(0.0, f.dot(source.products * f)));
   const auto orders = static_cast<Eigen::Index>(orders_.size());
   Eigen::Map<Eigen::VectorXcd> amplitudes(sum.amplitudes.data(), orders);
   for (std::size_t k = 0; k < factors.size(); ++k) {
-    const Content& curve = source.curves[k];
-    const Eigen::Map<const Eigen::VectorXcd> part(curve.amplitudes.data(), orders);
-    sum.mean += factors[k] * curve.mean;
+    const Eigen::Map<const Eigen::VectorXcd> part(source.curves[k].amplitudes.data(), orders);
     if (k == 0)
       amplitudes = factors[k] * part;
     else
       amplitudes += factors[k] * part;
   }
-  const double taken = 0.5 * amplitudes.squaredNorm();
-  sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - taken));
+  if (!first) {
+    const Content& same = content_[idx(source.relative)];
+    sum.mean = same.mean, sum.rms = same.rms, sum.left_out = same.left_out;
+    return;
+  }
+  sum.mean = 0.0;
+  double square = 0.0;
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    sum.mean += factors[k] * source.curves[k].mean;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+      square += factors[k] * factors[j] *
+                source.products(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
+  }
+  sum.rms = std::sqrt(std::max(0.0, square));
+  sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - 0.5 * amplitudes.squaredNorm()));
   if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
 }
 
@@ -455,7 +468,7 @@ const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
       content_[l] = of_table(term);
     } else if (no_slope && source.scaled) {
       find_curves(l, speed);
-      sum_curves(term, source, speed, content_[l]);
+      sum_curves(l, speed);
     } else {
       content_[l] = of_samples(term, source, speed);
     }

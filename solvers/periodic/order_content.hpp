@@ -56,8 +56,10 @@ class OrderContent {
     bool constant = false, follows_speed = false, known = false;
     bool harmonics = false, table = false;  // true: the load gives its harmonics, or its table
     const SpeedScaledLoad* scaled = nullptr;
-    bool by_angle = false;  // true: a deviation acts in the same way as the nominal angle
-    int samples = 0;        // number of samples with which its content has converged; 0: not known yet
+    int relative = -1;            // number of the first load of its family, if that is another one
+    std::vector<double> factors;  // factors of its curves at the speed last asked for; of a relative, empty
+    bool by_angle = false;        // true: a deviation acts in the same way as the nominal angle
+    int samples = 0;              // number of samples with which its content has converged; 0: not known yet
     /// Content of each curve of a load whose torque is a sum of curves scaled by the speed (SpeedScaledLoad).
     std::vector<Content> curves;
     Eigen::MatrixXd products;  // means of the products of two curves, without their means
@@ -77,7 +79,7 @@ class OrderContent {
   /// Largest difference of mean and amplitudes, relative to the largest of them in `fine` [-].
   static double difference(const Content& coarse, const Content& fine);
   void sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const;
-  void sum_curves(const LoadTerm& term, const Source& source, double speed, Content& sum) const;
+  void sum_curves(std::size_t load, double speed);
   void pick(const std::vector<std::complex<double>>& lines, double spacing, bool forward,
             Content& content) const;
 

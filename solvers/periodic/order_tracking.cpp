@@ -3,9 +3,11 @@
 #include <drev/solvers/periodic/order_tracking.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -169,9 +171,9 @@ void OrderTracking::add_trends(Window& window, double w0, double w1, double t_be
 /// Least-squares fit of a parabola and one order: A exp(i p) from sum = int w y exp(-i o phi) dphi.
 OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::size_t trend, std::size_t order,
                                                    Complex sum) const {
-  Eigen::Matrix3d m;
-  Eigen::Vector3d y;
-  Eigen::Matrix<double, 3, 2> v;  // moments of the cosine and of the sine
+  Eigen::MatrixXd m(3, 3);
+  Vector y(3);
+  Eigen::MatrixXd v(3, 2);  // moments of the cosine and of the sine
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     for (int j = 0; j < 3; ++j) m(i, j) = window.moments[at + static_cast<std::size_t>(j)];
@@ -179,10 +181,11 @@ OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::si
     v(i, 0) = window.waves[order][at].real();
     v(i, 1) = -window.waves[order][at].imag();
   }
-  const Eigen::Matrix<double, 3, 2> parts = m.ldlt().solve(v);
-  const Eigen::Matrix2d normal = 0.5 * window.weights * Eigen::Matrix2d::Identity() - v.transpose() * parts;
-  const Eigen::Vector2d right = Eigen::Vector2d(sum.real(), -sum.imag()) - parts.transpose() * y;
-  const Eigen::Vector2d wave = normal.ldlt().solve(right);
+  const Eigen::MatrixXd parts = ldlt_solve(m, v);
+  const Eigen::MatrixXd normal =
+      0.5 * window.weights * Eigen::MatrixXd::Identity(2, 2) - v.transpose() * parts;
+  const Vector right = Eigen::Vector2d(sum.real(), -sum.imag()) - parts.transpose() * y;
+  const Vector wave = ldlt_solve(normal, right);
   return {wave[0], -wave[1]};
 }
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <unsupported/Eigen/FFT>
+
+#include "core/dense/fourier.hpp"
 
 namespace drev {
 
@@ -81,8 +82,8 @@ Spectrum spectrum(const std::vector<double>& samples, double dt, const SpectrumO
     window_sum += w;
   }
   std::vector<std::complex<double>> lines;
-  Eigen::FFT<double> fft;
-  fft.fwd(lines, windowed);
+  FourierTransform transform;
+  transform.forward(lines, windowed);
 
   Spectrum result;
   result.window = options.window;

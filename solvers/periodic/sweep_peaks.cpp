@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "solvers/periodic/bracketed_maximum.hpp"
 #include "solvers/periodic/damped_pairs.hpp"
@@ -343,7 +344,8 @@ class Search {
   double one(double speed, std::size_t section) {
     pause_();
     response_.vibration(speed, point_);
-    sum_.extremes(point_.amplitude.col(static_cast<Eigen::Index>(section)), extremes_);
+    const std::complex<double>* column = point_.amplitude.col(static_cast<Eigen::Index>(section)).data();
+    sum_.extremes(std::span(&column, 1), extremes_);
     return extremes_.front().half_range();
   }
   /// The section with the largest amplitude, among those with the unit of the first one.

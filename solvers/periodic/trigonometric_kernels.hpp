@@ -1,5 +1,7 @@
 #pragma once
 /// The loops of TrigonometricSum over kLanes sums at a time, for run_widest(). Internal to trigonometric_sum.cpp.
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -7,14 +9,26 @@
 
 namespace drev {
 
+/// Sets of kLanes sums that are processed side by side: row i of set s is at i kSumSets + s.
+inline constexpr int kSumSets = 2;
+
 /// The vector type that fills one register where lanes have the type L.
 template <class L>
 struct RegisterOf {
   using Type = Lanes;
+  static constexpr int kRegisters = 1;  // that lanes take
+  using Bits =
+      std::uint64_t __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
 };
 template <>
 struct RegisterOf<LanePair> {
   using Type = LanePair::Half;
+  static constexpr int kRegisters = 2;
+  using Bits = std::uint64_t __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
+};
+/// A word of 64 bits of each lane.
+struct LaneWord {
+  std::uint64_t of[kLanes] = {};
 };
 /// Loads the lanes of a row from number `first` on, as many as a register holds; and stores them.
 template <class Part>
@@ -26,213 +40,318 @@ template <class Part>
   std::memcpy(reinterpret_cast<double*>(&row.v) + first, &from, sizeof from);
 }
 
-/// Values y at all points of the cycle, from the sums over a quarter of it:
-///   cos n (pi - x) = (-1)^n cos n x, sin n (pi - x) = -(-1)^n sin n x, and both times (-1)^n at x + pi.
-/// ends: receives the highest and the lowest value.
-struct SumQuarters {
+/// Complex amplitudes of kLanes sums, one behind the other, as rows of lanes: number k of each to row places[k].
+/// Processes four at a time, up to count / 4 * 4.
+struct TakeColumns {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, int orders, int even, const double* cosines,
-                                         const double* sines, const LaneRow* re, const LaneRow* im,
-                                         LaneRow* y, LaneRow* ends) {
-    const int quarter = points / 4;
-    L most = L{} - std::numeric_limits<double>::infinity(), least = -1.0 * most;
-    // Two points at a time, so that each amplitude is read once for both.
-    for (int p = 0; p <= quarter; p += 2, cosines += 2 * orders, sines += 2 * orders) {
-      L ce{}, se{}, co{}, so{}, ce_2{}, se_2{}, co_2{}, so_2{}, x;
-      for (int k = 0; k < even; ++k) {
-        take(re[k], x), ce += cosines[k] * x, ce_2 += cosines[orders + k] * x;
-        take(im[k], x), se += sines[k] * x, se_2 += sines[orders + k] * x;
+  [[gnu::always_inline]] static void run(int count, const double* const* columns, const int* places,
+                                         LaneRow* re, LaneRow* im) {
+    constexpr int kAtOnce = kLanes / 2;
+    for (int k = 0; k + kAtOnce <= count; k += kAtOnce) {
+      L x[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) load(columns[lane] + 2 * k, x[lane]);
+      transpose(x);
+      for (int i = 0; i < kAtOnce; ++i) {
+        put(x[2 * i], re[places[k + i] * kSumSets]);
+        put(x[2 * i + 1], im[places[k + i] * kSumSets]);
       }
-      for (int k = even; k < orders; ++k) {
-        take(re[k], x), co += cosines[k] * x, co_2 += cosines[orders + k] * x;
-        take(im[k], x), so += sines[k] * x, so_2 += sines[orders + k] * x;
-      }
-      const auto write = [&](int at, const L& value) __attribute__((always_inline)) {
-        raise(most, value), sink(least, value);
-        put(value, y[at]);
-      };
-      const auto write_four = [&](int at, const L& cos_even, const L& sin_even, const L& cos_odd,
-                                  const L& sin_odd) __attribute__((always_inline)) {
-        write(at, cos_even + cos_odd - (sin_even + sin_odd));
-        write(2 * quarter - at, cos_even - cos_odd + (sin_even - sin_odd));
-        write(2 * quarter + at, cos_even - cos_odd - (sin_even - sin_odd));
-        write(at > 0 ? points - at : 0, cos_even + cos_odd + (sin_even + sin_odd));
-      };
-      write_four(p, ce, se, co, so);
-      if (p < quarter) write_four(p + 1, ce_2, se_2, co_2, so_2);
     }
-    put(most, ends[0]), put(least, ends[1]);
   }
 };
 
-/// Number of points in a word of marks: the bits of a double's significand.
-inline constexpr int kMarksAWord = 52;
-
-/// Marks the points within half a step of which the largest value may be, and those for the smallest: bit
-/// p % kMarksAWord of tops[p / kMarksAWord], and of bottoms, in each lane. slack: S = B h^3 / 15.5 by which
-/// the sum may exceed the parabola through three points, with B a bound of the third derivative; ends:
-/// highest and lowest value of the points; y: values, with the points before and after the cycle.
+/// Values y at all points of the cycle, from sums over an eighth of it for even n, over a quarter for odd n. Both
+/// follow, with x in the first eighth, from
 ///
-/// A maximum at x in [-1/2, 1/2] has slope 0 and no upward curvature. With the errors B h^3 / 6 of the
-/// parabola's slope and B h^3 / 2 of its curvature, the middle point is at most 2/3 B h^3 = 10.4 S below its
-/// neighbours. With c the downward curvature, the parabola rises above the middle point by at most c/8 where
-/// its vertex is in this interval, otherwise by |slope|/2 - c/8.
+///   cos n (pi/2 - x) = (-1)^(n/2) cos n x, sin n (pi/2 - x) = -(-1)^(n/2) sin n x     (n even)
+///   cos n (pi - x)   = (-1)^n cos n x,     sin n (pi - x)   = -(-1)^n sin n x         and (-1)^n at x + pi.
+///
+/// Amplitudes: `fours` of multiples of four first, then those of other even numbers up to `even`, then of odd ones.
+/// cosines, sines: [point of a quarter][amplitude]. ends: receives the highest values of all sets, then the lowest.
+struct SumEighths {
+  template <class L>
+  struct Sums {
+    L cosine{}, sine{};
+  };
+  /// The sums over the amplitudes [from, to) at two points, for kTile sets from number `set` on: each cosine and each
+  /// amplitude is read once for all of them.
+  template <int kTile, class L>
+  [[gnu::always_inline]] static void sum(int from, int to, int set, const double* cosines_1,
+                                         const double* sines_1, const double* cosines_2,
+                                         const double* sines_2, const LaneRow* re, const LaneRow* im,
+                                         Sums<L> (&at_1)[kTile], Sums<L> (&at_2)[kTile]) {
+    L c_1[kTile], s_1[kTile], c_2[kTile], s_2[kTile];
+    clear(c_1), clear(s_1), clear(c_2), clear(s_2);
+    for (int k = from; k < to; ++k) {
+      L x, of_1, of_2;
+      take(cosines_1[k], of_1), take(cosines_2[k], of_2);
+      for (int i = 0; i < kTile; ++i)
+        take(re[k * kSumSets + set + i], x), c_1[i] += of_1 * x, c_2[i] += of_2 * x;
+      take(sines_1[k], of_1), take(sines_2[k], of_2);
+      for (int i = 0; i < kTile; ++i)
+        take(im[k * kSumSets + set + i], x), s_1[i] += of_1 * x, s_2[i] += of_2 * x;
+    }
+    for (int i = 0; i < kTile; ++i) at_1[i] = {c_1[i], s_1[i]}, at_2[i] = {c_2[i], s_2[i]};
+  }
+  template <int kTile, class L>
+  [[gnu::always_inline]] static void run_tile(int set, int points, int orders, int fours, int even,
+                                              const double* cosines, const double* sines, const LaneRow* re,
+                                              const LaneRow* im, LaneRow* y, LaneRow* ends) {
+    const int eighth = points / 8, quarter = points / 4, half = points / 2;
+    L most[kTile], least[kTile];
+    for (int i = 0; i < kTile; ++i)
+      most[i] = L{} - std::numeric_limits<double>::infinity(), least[i] = -1.0 * most[i];
+    const auto sum_at = [&](int from, int to, int point_1, int point_2, Sums<L>(&at_1)[kTile],
+                            Sums<L>(&at_2)[kTile]) __attribute__((always_inline)) {
+      sum<kTile, L>(from, to, set, cosines + point_1 * orders, sines + point_1 * orders,
+                    cosines + point_2 * orders, sines + point_2 * orders, re, im, at_1, at_2);
+    };
+    const auto write = [&](int i, int at, const L& value) __attribute__((always_inline)) {
+      raise(most[i], value), sink(least[i], value);
+      put(value, y[at * kSumSets + set + i]);
+    };
+    // The sums over even n at x and -x, and those over odd ones.
+    const auto write_four = [&](int i, int at, const L& here, const L& mirrored, const Sums<L>& odd)
+        __attribute__((always_inline)) {
+      const L apart = odd.cosine - odd.sine, together = odd.cosine + odd.sine;
+      write(i, at, here + apart);
+      write(i, half - at, mirrored - together);
+      write(i, half + at, here - apart);
+      write(i, at > 0 ? points - at : 0, mirrored + together);
+    };
+    const auto write_eight = [&](int p, const Sums<L>(&four)[kTile], const Sums<L>(&two)[kTile])
+        __attribute__((always_inline)) {
+      Sums<L> odd[kTile], odd_behind[kTile];
+      sum_at(even, orders, p, quarter - p, odd, odd_behind);
+      for (int i = 0; i < kTile; ++i) {
+        const L c_sum = four[i].cosine + two[i].cosine, s_sum = four[i].sine + two[i].sine;
+        const L c_rest = four[i].cosine - two[i].cosine, s_rest = four[i].sine - two[i].sine;
+        write_four(i, p, c_sum - s_sum, c_sum + s_sum, odd[i]);
+        write_four(i, quarter - p, c_rest + s_rest, c_rest - s_rest, odd_behind[i]);
+      }
+    };
+    for (int p = 0; p <= eighth; p += 2) {
+      Sums<L> four[kTile], two[kTile], four_next[kTile], two_next[kTile];
+      sum_at(0, fours, p, p + 1, four, four_next);
+      sum_at(fours, even, p, p + 1, two, two_next);
+      write_eight(p, four, two);
+      if (p < eighth) write_eight(p + 1, four_next, two_next);
+    }
+    for (int i = 0; i < kTile; ++i) put(most[i], ends[set + i]), put(least[i], ends[kSumSets + set + i]);
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(int sets, int points, int orders, int fours, int even,
+                                         const double* cosines, const double* sines, const LaneRow* re,
+                                         const LaneRow* im, LaneRow* y, LaneRow* ends) {
+    // Pairs of vectors fill the registers with one set alone.
+    if constexpr (RegisterOf<L>::kRegisters == 1)
+      if (sets == 2) {
+        run_tile<2, L>(0, points, orders, fours, even, cosines, sines, re, im, y, ends);
+        return;
+      }
+    for (int set = 0; set < sets; ++set)
+      run_tile<1, L>(set, points, orders, fours, even, cosines, sines, re, im, y, ends);
+  }
+};
+
+/// Number of points in a word of marks.
+inline constexpr int kMarksAWord = 64;
+
+/// Marks the points within half a step h of which the largest value may be, and those for the smallest: bit
+/// p % kMarksAWord of tops[p / kMarksAWord], and of bottoms, in each lane. bounds: B_2 h^2 / 8 and 2/3 B_3 h^3, with
+/// bounds B_2 and B_3 of the second and third derivatives; ends: highest and lowest value of the points; y: values,
+/// with the points before and after the cycle.
+///
+/// A maximum within half a step is above its middle point by at most B_2 h^2 / 8, since its slope is 0. Its curvature
+/// is not upwards: with the errors B_3 h^3 / 6 of the slope and B_3 h^3 / 2 of the curvature of the parabola through
+/// three points, the middle one is at most 2/3 B_3 h^3 below its neighbours.
 struct MarkExtremes {
   template <class L>
-  [[gnu::always_inline]] static void run(int points, const LaneRow* y, const LaneRow* slack,
-                                         const LaneRow* ends, LaneRow* tops, LaneRow* bottoms) {
+  [[gnu::always_inline]] static void run(int sets, int points, const LaneRow* y, const LaneRow* bounds,
+                                         const LaneRow* ends, LaneWord* tops, LaneWord* bottoms) {
     using Part = typename RegisterOf<L>::Type;
+    using Bits = typename RegisterOf<L>::Bits;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
-    for (int lane = 0; lane < kLanes; lane += kWidth) {
-      Part least, most, room, before, here, after;
-      take_part(*slack, lane, room), take_part(ends[0], lane, least), take_part(ends[1], lane, most);
-      least -= room, most += room;
-      const Part below_neighbours = 10.4 * room;
-      take_part(y[-1], lane, before), take_part(y[0], lane, here);
-      for (int first = 0; first < points; first += kMarksAWord) {
-        const int end = points - first < kMarksAWord ? points : first + kMarksAWord;
-        const Part none{};
-        Part top{}, bottom{}, bit = none + 1.0;
-        for (int p = first; p < end; ++p) {
-          take_part(y[p + 1], lane, after);
-          const Part rise = here - before, fall = here - after, eighth = 0.125 * (rise + fall),
-                     quarter = 0.25 * (rise - fall), steep = quarter > none ? quarter : -quarter,
-                     end_up = steep - eighth, end_down = steep + eighth,
-                     reach = here + (eighth > end_up ? eighth : end_up),
-                     depth = here - (-eighth > end_down ? -eighth : end_down);
-          // The smallest of three differences that must not be negative, and the largest of three that must
-          // not be positive; not a number: none. Written as choices between doubles, since GCC 12 splits
-          // masks of lanes.
-          Part over = rise < fall ? rise : fall, below = rise > fall ? rise : fall;
-          over += below_neighbours;
-          below -= below_neighbours;
-          const Part over_least = reach - least, under = depth - most;
-          over = over < over_least ? over : over_least;
-          below = below > under ? below : under;
-          top += over >= none ? bit : none;
-          bottom += below <= none ? bit : none;
-          bit += bit;
-          before = here;
-          here = after;
+    constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
+    // Shifts the words by a bit and sets the new one where x >= 0; it may be set where x is not a number.
+    const auto note = [&](const Part& x, Bits& word) __attribute__((always_inline)) {
+      word = (word >> 1U) | (~reinterpret_cast<Bits>(x) & kSign);
+    };
+    for (int set = 0; set < sets; ++set)
+      for (int lane = 0; lane < kLanes; lane += kWidth) {
+        const auto value = [&](int point, Part& to) __attribute__((always_inline)) {
+          take_part(y[point * kSumSets + set], lane, to);
+        };
+        Part least, most, room, below, before, here, after;
+        take_part(bounds[set], lane, room), take_part(bounds[kSumSets + set], lane, below);
+        take_part(ends[set], lane, least), take_part(ends[kSumSets + set], lane, most);
+        least -= room, most += room;
+        value(-1, before), value(0, here);
+        for (int first = 0; first < points; first += kMarksAWord) {
+          const int count = points - first < kMarksAWord ? points - first : kMarksAWord;
+          Bits top{}, bottom{};
+          for (int p = first; p < first + count; ++p) {
+            value(p + 1, after);
+            const Part rise = here - before, fall = here - after;
+            Part lowest = rise < fall ? rise : fall, highest = rise > fall ? rise : fall;
+            lowest += below, highest = below - highest;
+            const Part above = here - least, under = most - here;
+            note(lowest < above ? lowest : above, top);
+            note(highest < under ? highest : under, bottom);
+            before = here;
+            here = after;
+          }
+          top >>= static_cast<std::uint64_t>(kMarksAWord - count);
+          bottom >>= static_cast<std::uint64_t>(kMarksAWord - count);
+          const int word = first / kMarksAWord * kSumSets + set;
+          std::memcpy(&tops[word].of[lane], &top, sizeof top);
+          std::memcpy(&bottoms[word].of[lane], &bottom, sizeof bottom);
         }
-        put_part(top, lane, tops[first / kMarksAWord]), put_part(bottom, lane, bottoms[first / kMarksAWord]);
       }
-    }
   }
 };
 
-/// Tops at up to kLanes places, from the polynomial through the seven points around each, times its sign.
-/// at: place of its maximum within half a step, by Newton's method from a start, both in steps from the
-/// middle point; value: the polynomial there; reach: upper bound of the sum within half a step. Where the
-/// polynomial is concave throughout, the bound is the highest value of its tangent plus the largest
-/// contribution of the seventh derivative: |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh.
-struct LookBetween {
+/// kLanes places of tops: the values at seven points around each, times its sign, and what LookBetween finds.
+struct TopRows {
   static constexpr int kSides = 3;
+  LaneRow y[2 * kSides + 1];
+  LaneRow
+      rest;  ///< largest excess of the sum within half a step over the polynomial through the seven points
+  LaneRow shift;  ///< place of the polynomial's maximum within half a step, in steps from the middle point
+  LaneRow value;  ///< the polynomial there
+  LaneRow reach;  ///< upper bound of the sum within half a step
+};
+
+/// Tops from the polynomial p through seven points: its maximum by Newton's method from that of the parabola through
+/// three points, both within half a step (|x| <= 1/2). With lower and upper bounds of p'' there, the sum is at most
+/// the rest above
+///
+///   the highest value of the tangent at the place found      where p'' <= 0 throughout,
+///   the higher end plus max(0, -p'')/8                       in any case.
+///
+/// The largest contribution of the seventh derivative is |x (x^2 - 1) (x^2 - 4) (x^2 - 9)| / 7! < kSeventh of it.
+struct LookBetween {
+  static constexpr int kSides = TopRows::kSides;
   static constexpr double kSeventh = 12.35 / 5040.0;
   template <class L>
-  [[gnu::always_inline]] static void run(const LaneRow* y, const LaneRow* rest, LaneRow* at, LaneRow* reach,
-                                         LaneRow* value) {
-    L middle, x, limit, right, left, d1, d2, d3, s1, s2, s3;
-    take(y[kSides], middle), take(*at, x), take(*reach, limit);
-    const auto sides = [&](int k, L& difference, L& sum) __attribute__((always_inline)) {
-      take(y[kSides + k], right), take(y[kSides - k], left);
-      difference = right - left;
-      sum = right + left - 2.0 * middle;
-    };
-    sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
-    // Derivatives at the middle point divided by their factorials.
-    const L c1 = 0.75 * d1 - 0.15 * d2 + d3 / 60.0, c2 = 0.75 * s1 - 0.075 * s2 + s3 / 180.0,
-            c3 = (8.0 * d2 - 13.0 * d1 - d3) / 48.0, c4 = (12.0 * s2 - 39.0 * s1 - s3) / 144.0,
-            c5 = (5.0 * d1 - 4.0 * d2 + d3) / 240.0, c6 = (15.0 * s1 - 6.0 * s2 + s3) / 720.0;
-    const auto slope = [&](L & to) __attribute__((always_inline)) {
-      to = c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5 + x * 6.0 * c6))));
-    };
-    L tilt, start = x, away;
-    for (int step = 0; step < 2; ++step) {
-      slope(tilt);
-      const L bend = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5 + x * 30.0 * c6)));
-      x -= tilt / bend;
-    }
-    // If the place is unreliable or not a number, take the start.
-    away = x - start;
-    magnitude(away);
-    const L half = L{} + 0.5;
-    keep_where_not_below(half, away, start, x);
-    sink(x, half), raise(x, -1.0 * half);
-    L addition, upwards;
-    slope(tilt);
-    upwards = tilt * (half - x);
-    raise(upwards, -1.0 * tilt * (half + x));
-    take(*rest, addition);
-    const L height = middle + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * (c5 + x * c6)))));
-    L bound = height + upwards + addition;
-    // Upper bound of the second derivative within half a step.
-    L b3 = c3, b4 = c4, b5 = c5, b6 = c6;
-    magnitude(b3), magnitude(b4), magnitude(b5), magnitude(b6);
-    const L bends = 2.0 * c2 + 3.0 * b3 + 3.0 * b4 + 2.5 * b5 + 1.875 * b6;
-    keep_where_not_below(L{}, bends, limit, bound);
-    sink(limit, bound);
-    put(x, *at), put(limit, *reach), put(height, *value);
-  }
-};
-
-/// Powers exp(i n angle), n = 0, 1, ... count - 1 (count even), with angle = point + away, exp(i point) given
-/// and |away| < 0.6 rad, by a series to rounding and products of every second power.
-struct FindPowers {
-  template <class L>
-  [[gnu::always_inline]] static void run(int count, const LaneRow* point, const LaneRow* away, LaneRow* re,
-                                         LaneRow* im) {
-    L x, point_re, point_im;
-    take(*away, x), take(point[0], point_re), take(point[1], point_im);
-    const L d = x * x;
-    const L c =
-        1.0 - 0.5 * d *
-                  (1.0 - d * (1.0 / 12.0) *
-                             (1.0 - d * (1.0 / 30.0) *
-                                        (1.0 - d * (1.0 / 56.0) *
-                                                   (1.0 - d * (1.0 / 90.0) * (1.0 - d * (1.0 / 132.0))))));
-    const L s =
-        x *
-        (1.0 - d * (1.0 / 6.0) *
-                   (1.0 - d * (1.0 / 20.0) *
-                              (1.0 - d * (1.0 / 42.0) *
-                                         (1.0 - d * (1.0 / 72.0) *
-                                                    (1.0 - d * (1.0 / 110.0) * (1.0 - d * (1.0 / 156.0)))))));
-    L odd_re = point_re * c - point_im * s, odd_im = point_re * s + point_im * c;
-    const L two_re = odd_re * odd_re - odd_im * odd_im, two_im = 2.0 * odd_re * odd_im;
-    L even_re = L{} + 1.0, even_im{};
-    for (int n = 0; n < count; n += 2) {
-      put(even_re, re[n]), put(even_im, im[n]);
-      put(odd_re, re[n + 1]), put(odd_im, im[n + 1]);
-      const L next_even = even_re * two_re - even_im * two_im, next_odd = odd_re * two_re - odd_im * two_im;
-      even_im = even_re * two_im + even_im * two_re;
-      odd_im = odd_re * two_im + odd_im * two_re;
-      even_re = next_even, odd_re = next_odd;
+  [[gnu::always_inline]] static void run(int count, TopRows* all) {
+    for (TopRows* rows = all; rows != all + count; ++rows) {
+      L middle, right, left, d1, d2, d3, s1, s2, s3;
+      take(rows->y[kSides], middle);
+      const auto sides = [&](int k, L& difference, L& sum) __attribute__((always_inline)) {
+        take(rows->y[kSides + k], right), take(rows->y[kSides - k], left);
+        difference = right - left;
+        sum = right + left - 2.0 * middle;
+      };
+      sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
+      // Derivatives at the middle point divided by their factorials.
+      const L c1 = 0.75 * d1 - 0.15 * d2 + d3 * (1.0 / 60.0),
+              c2 = 0.75 * s1 - 0.075 * s2 + s3 * (1.0 / 180.0),
+              c3 = (8.0 * d2 - 13.0 * d1 - d3) * (1.0 / 48.0),
+              c4 = (12.0 * s2 - 39.0 * s1 - s3) * (1.0 / 144.0),
+              c5 = (5.0 * d1 - 4.0 * d2 + d3) * (1.0 / 240.0),
+              c6 = (15.0 * s1 - 6.0 * s2 + s3) * (1.0 / 720.0);
+      const L half = L{} + 0.5;
+      const auto inside = [&](L & place) __attribute__((always_inline)) {
+        sink(place, half), raise(place, -1.0 * half);
+      };
+      const auto slope = [&](const L& at, L& to) __attribute__((always_inline)) {
+        to = c1 + at * (2.0 * c2 + at * (3.0 * c3 + at * (4.0 * c4 + at * (5.0 * c5 + at * 6.0 * c6))));
+      };
+      // The parabola's maximum; its end that is higher where it has none inside, or none at all.
+      L start = -0.5 * d1 / s1, tilt, end;
+      inside(start);
+      choose(d1, -1.0 * half, half, end);
+      choose(s1, start, end, start);
+      L x = start;
+      for (int step = 0; step < 2; ++step) {
+        slope(x, tilt);
+        const L bend = 2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5 + x * 30.0 * c6)));
+        x -= tilt / bend;
+      }
+      // If the place is unreliable or not a number, take the start.
+      L away = x - start;
+      magnitude(away);
+      keep_where_not_below(half, away, start, x);
+      inside(x);
+      slope(x, tilt);
+      L rest;
+      take(rows->rest, rest);
+      const L height = middle + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * (c5 + x * c6)))));
+      L upwards = tilt * (half - x);
+      raise(upwards, -1.0 * tilt * (half + x));
+      const L by_tangent = height + upwards;
+      // p'' at the middle point, and by how much it may differ within half a step.
+      L b3 = c3, b4 = c4, b5 = c5, b6 = c6;
+      magnitude(b3), magnitude(b4), magnitude(b5), magnitude(b6);
+      const L bend = 2.0 * c2, varies = 3.0 * b3 + 3.0 * b4 + 2.5 * b5 + 1.875 * b6;
+      L odd = 0.5 * c1 + 0.125 * c3 + 0.03125 * c5, downwards = varies - bend;
+      magnitude(odd), raise(downwards, L{});
+      L reach = middle + 0.25 * c2 + 0.0625 * c4 + 0.015625 * c6 + odd + 0.125 * downwards;
+      L lower = by_tangent;
+      sink(lower, reach);
+      choose(bend + varies, lower, reach, reach);
+      put(x, rows->shift), put(height, rows->value), put(reach + rest, rows->reach);
     }
   }
 };
 
-/// From an angle whose powers exp(i n angle) are given by place: the value and five derivatives there, and
-/// the step to the place where the slope of that Taylor polynomial is 0: Halley's step, unless it reverses
-/// Newton's, followed by one Newton step.
+/// kLanes tops that are followed to y' = 0, each in a lane, times its sign.
+struct FollowedTops {
+  /// States; lost: the steps do not lead to a maximum near the start.
+  static constexpr double kDone = 0.0, kOpen = 1.0, kLost = 2.0;
+  LaneRow point[2];     ///< exp(i angle) of the nearest point
+  LaneRow angle, sign;  ///< of that point [rad]; 1 for a maximum, -1 for a minimum
+  LaneRow start, away;  ///< distances from the point [rad]: first and present one
+  LaneRow value;        ///< largest value found, times the sign
+  LaneRow state;
+};
+
+/// exp(i (angle + away)), exp(i angle) given, |away| < 0.6 rad, by a series to rounding.
+template <class Part>
+[[gnu::always_inline]] inline void turn(const Part& point_re, const Part& point_im, const Part& away,
+                                        Part& re, Part& im) {
+  const Part d = away * away;
+  const Part c =
+      1.0 - 0.5 * d *
+                (1.0 - d * (1.0 / 12.0) *
+                           (1.0 - d * (1.0 / 30.0) *
+                                      (1.0 - d * (1.0 / 56.0) *
+                                                 (1.0 - d * (1.0 / 90.0) * (1.0 - d * (1.0 / 132.0))))));
+  const Part s =
+      away *
+      (1.0 - d * (1.0 / 6.0) *
+                 (1.0 - d * (1.0 / 20.0) *
+                            (1.0 - d * (1.0 / 42.0) *
+                                       (1.0 - d * (1.0 / 72.0) *
+                                                  (1.0 - d * (1.0 / 110.0) * (1.0 - d * (1.0 / 156.0)))))));
+  re = point_re * c - point_im * s;
+  im = point_re * s + point_im * c;
+}
+
+/// A step of tops: the value and five derivatives where they are, and the step to the place where the slope of that
+/// Taylor polynomial is 0: Halley's step, unless it reverses Newton's, followed by one Newton step. A top is done where
+/// the step is shorter than `near`; it is lost where the sum does not curve downwards, or farther than `far` from the
+/// start.
+///
+/// rows: row in re and im of each n = 1 ... count, count even. power_re, power_im: exp(i n angle) of each n; null: they
+/// are found here, from the products of every second one.
 struct FollowTop {
-  struct Found {
-    LaneRow value, bend, step, behind;  ///< behind: value of the sum after the step
-  };
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, const int* multiples, const int* places,
+  [[gnu::always_inline]] static void run(int count, int stride, const int* rows, const int* multiples,
                                          const LaneRow* re, const LaneRow* im, const LaneRow* power_re,
-                                         const LaneRow* power_im, Found* found) {
+                                         const LaneRow* power_im, double near, double far,
+                                         FollowedTops* tops) {
     // One register-wide vector at a time, so that all sums stay in registers.
     using Part = typename RegisterOf<L>::Type;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
     for (int first = 0; first < kLanes; first += kWidth) {
-      Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, x_re, x_im, p_re, p_im;
-      for (int k = 0; k < orders; ++k) {
-        const double n = multiples[k], n_2 = n * n;
-        take_part(re[k], first, x_re), take_part(im[k], first, x_im);
-        take_part(power_re[places[k]], first, p_re), take_part(power_im[places[k]], first, p_im);
-        Part a = x_re * p_re - x_im * p_im, b = n * (x_re * p_im + x_im * p_re);
+      Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, p_re, p_im, sign, start, away, value, before;
+      const auto add = [&](double n, int row, const Part& of_re, const Part& of_im)
+          __attribute__((always_inline)) {
+        Part x_re, x_im;
+        take_part(re[row * stride], first, x_re), take_part(im[row * stride], first, x_im);
+        const double n_2 = n * n;
+        Part a = x_re * of_re - x_im * of_im, b = n * (x_re * of_im + x_im * of_re);
         y += a;
         s1 -= b;
         a *= n_2, b *= n_2;
@@ -240,6 +359,27 @@ struct FollowTop {
         s3 += b;
         s4 += n_2 * a;
         s5 -= n_2 * b;
+      };
+      take_part(tops->away, first, away);
+      if (power_re) {
+        for (int k = 0; k < count; ++k) {
+          take_part(power_re[k], first, p_re), take_part(power_im[k], first, p_im);
+          add(multiples[k], k, p_re, p_im);
+        }
+      } else {
+        Part odd_re, odd_im;
+        take_part(tops->point[0], first, p_re), take_part(tops->point[1], first, p_im);
+        turn(p_re, p_im, away, odd_re, odd_im);
+        const Part two_re = odd_re * odd_re - odd_im * odd_im, two_im = 2.0 * odd_re * odd_im;
+        p_re = two_re, p_im = two_im;
+        for (int n = 1; n < count; n += 2) {
+          add(n, rows[n], odd_re, odd_im);
+          add(n + 1, rows[n + 1], p_re, p_im);
+          const Part next_odd = odd_re * two_re - odd_im * two_im, next = p_re * two_re - p_im * two_im;
+          odd_im = odd_re * two_im + odd_im * two_re;
+          p_im = p_re * two_im + p_im * two_re;
+          odd_re = next_odd, p_re = next;
+        }
       }
       const Part newton = -s1 / s2, third = 1.0 + 0.5 * newton * s3 / s2, half = Part{} + 0.5;
       Part d = newton / (third > half ? third : half);
@@ -251,28 +391,47 @@ struct FollowTop {
       const Part behind =
           y + d * (s1 + d * (0.5 * s2 +
                              d * ((1.0 / 6.0) * s3 + d * ((1.0 / 24.0) * s4 + d * (1.0 / 120.0) * s5))));
-      put_part(y, first, found->value), put_part(s2, first, found->bend);
-      put_part(d, first, found->step), put_part(behind, first, found->behind);
+      take_part(tops->sign, first, sign), take_part(tops->start, first, start);
+      take_part(tops->value, first, value);
+      take_part(tops->state, first, before);
+      const Part none{}, is_open = none + FollowedTops::kOpen, is_lost = none + FollowedTops::kLost;
+      const Part there = away + d, size = d < none ? -d : d, from_start = there - start,
+                 distance = from_start < none ? -from_start : from_start, bend = sign * s2;
+      Part best = sign * y, state = size < near ? none : is_open;
+      best = best > value ? best : value;
+      state = distance <= far ? state : is_lost;
+      state = bend < none ? state : is_lost;
+      Part end = sign * behind;
+      end = state == none ? end : best;
+      best = end > best ? end : best;
+      const Part to = state < is_lost ? there : away;
+      const auto change = [&](const Part& now, const Part& old, LaneRow& row) __attribute__((always_inline)) {
+        const Part kept = before == is_open ? now : old;
+        put_part(kept, first, row);
+      };
+      change(to, away, tops->away), change(best, value, tops->value), change(state, before, tops->state);
     }
   }
 };
 
-/// sums: upper bounds of the sums of weight |a| and of other |a|, from |a| <= larger + half of the smaller
-/// part. Not finite where an amplitude is not.
+/// bounds: upper bounds of sum n^2 |a|, sum n^3 |a| and sum n^7 |a|, each of all sets, from |a| <= larger + half of the
+/// smaller part. powers: these powers of each n. Not finite where an amplitude is not.
 struct BoundSizes {
   template <class L>
-  [[gnu::always_inline]] static void run(int orders, const double* weights, const double* others,
-                                         const LaneRow* re, const LaneRow* im, LaneRow* sums) {
-    L sum{}, other{}, a, b, apart;
-    for (int k = 0; k < orders; ++k) {
-      take(re[k], a), take(im[k], b);
-      magnitude(a), magnitude(b);
-      apart = a - b;
-      magnitude(apart);
-      a = 0.75 * (a + b) + 0.25 * apart;
-      sum += weights[k] * a, other += others[k] * a;
+  [[gnu::always_inline]] static void run(int sets, int orders, const std::array<double, 3>* powers,
+                                         const LaneRow* re, const LaneRow* im, LaneRow* bounds) {
+    for (int set = 0; set < sets; ++set) {
+      L second{}, third{}, seventh{}, a, b, apart;
+      for (int k = 0; k < orders; ++k) {
+        take(re[k * kSumSets + set], a), take(im[k * kSumSets + set], b);
+        magnitude(a), magnitude(b);
+        apart = a - b;
+        magnitude(apart);
+        a = 0.75 * (a + b) + 0.25 * apart;
+        second += powers[k][0] * a, third += powers[k][1] * a, seventh += powers[k][2] * a;
+      }
+      put(second, bounds[set]), put(third, bounds[kSumSets + set]), put(seventh, bounds[2 * kSumSets + set]);
     }
-    put(sum, sums[0]), put(other, sums[1]);
   }
 };
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <complex>
 #include <sstream>
-#include <unsupported/Eigen/FFT>
 
+#include "core/dense/fourier.hpp"
 #include "solvers/reduction/residual_vectors.hpp"
 #include "solvers/reduction/truncation_error.hpp"
 
@@ -39,12 +39,12 @@ class Predictor {
   Predictor(const System& system, const ModeSet& modes, double duration)
       : system_(system), modes_(modes), length_(spectrum_length(system, duration)) {
     const Eigen::MatrixXd loads = modes.vectors.transpose() * sampled_loads(system, length_, kSamples);
-    Eigen::FFT<double> fft;
+    FourierTransform transform;
     std::vector<double> samples(kSamples);
     for (Eigen::Index j = 0; loads.cols() > 0 && j < loads.rows(); ++j) {
       for (int i = 0; i < kSamples; ++i) samples[idx(i)] = loads(j, i);
       std::vector<Complex> lines;
-      fft.fwd(lines, samples);
+      transform.forward(lines, samples);
       lines.resize(kSamples / 2);
       for (Complex& c : lines) c *= 2.0 / kSamples;
       lines_.push_back(std::move(lines));
@@ -88,12 +88,14 @@ class Predictor {
 
  private:
   static double largest(const std::vector<Complex>& lines) {
-    Eigen::FFT<double> fft;
-    std::vector<Complex> padded(kSamples, 0.0), values;
+    FourierTransform transform;
+    std::vector<Complex> padded(kSamples / 2 + 1, 0.0);
     std::copy(lines.begin(), lines.end(), padded.begin());
-    fft.inv(values, padded);
+    padded[0] *= 2.0;  // The inverse counts every other line twice.
+    std::vector<double> values;
+    transform.inverse(values, padded, kSamples);
     double most = 0.0;
-    for (const Complex& c : values) most = std::max(most, kSamples * std::abs(c.real()));
+    for (const double value : values) most = std::max(most, 0.5 * kSamples * std::abs(value));
     return most;
   }
 

@@ -147,15 +147,20 @@ class Run final : public StepMotion {
       StepControl& control_;
     } coarse(*control_);
     State state = now_->state;
-    const RunSummary run =
-        simulate(system_,
-                 {.scheme = bathe(),
-                  .step = duration() / kCoarseSteps,
-                  .t_start = options_.t_start,
-                  .t_end = options_.t_end,
-                  .newton = options_.newton,
-                  .progress = [this](double) { return !options_.progress || options_.progress(0.0); }},
-                 state, {&coarse});
+    RunSummary run;
+    try {
+      run = simulate(system_,
+                     {.scheme = bathe(),
+                      .step = duration() / kCoarseSteps,
+                      .t_start = options_.t_start,
+                      .t_end = options_.t_end,
+                      .newton = options_.newton,
+                      .progress = [this](double) { return !options_.progress || options_.progress(0.0); }},
+                     state, {&coarse});
+    } catch (const SolverError& error) {
+      throw SolverError(error.what() + std::string(" (in the coarse run before the run by ") + scheme.name +
+                        ", which shows how large the motion will be)");
+    }
     if (run.status == RunStatus::interrupted) end_interrupted(summary_, system_.name(), now_->state.t);
     coarse_solves_ = run.solves;
     energy_floor_ = StepControl::kExpected * run.energy.scale;

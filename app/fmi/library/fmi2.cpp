@@ -6,12 +6,12 @@
 namespace {
 
 using namespace drev::app;
-using Logger = void (*)(void* environment, const char* instance, int status, const char* category,
-                        const char* message, ...);
+using Fmi2Logger = void (*)(void* environment, const char* instance, int status, const char* category,
+                            const char* message, ...);
 
 /// Callbacks of the importer; the memory functions and stepFinished are not used.
 struct Callbacks {
-  Logger logger;
+  Fmi2Logger logger;
   void* (*allocate)(std::size_t, std::size_t);
   void (*free)(void*);
   void (*step_finished)(void*, int);
@@ -42,7 +42,7 @@ std::string path_of(const std::string& uri) {
   return path;
 }
 
-int absent(void* component, const char* call) {
+int fmi2_absent(void* component, const char* call) {
   return guard(component, call,
                [](Component&) -> Status { throw FmuError("this FMU has nothing that the function is for"); });
 }
@@ -66,7 +66,7 @@ DREV_FMI int fmi2SetDebugLogging(void* component, int /*on*/, std::size_t count,
 
 DREV_FMI void* fmi2Instantiate(const char* name, int type, const char* guid, const char* resources,
                                const Callbacks* callbacks, int /*visible*/, int /*logging*/) {
-  const Logger logger = callbacks != nullptr ? callbacks->logger : nullptr;
+  const Fmi2Logger logger = callbacks != nullptr ? callbacks->logger : nullptr;
   void* environment = callbacks != nullptr ? callbacks->environment : nullptr;
   const auto log = [environment, logger, called = std::string(name != nullptr ? name : "")](
                        Status status, const char* category, const std::string& message) {
@@ -197,11 +197,11 @@ DREV_FMI int fmi2SetString(void* component, const unsigned* references, std::siz
 
 DREV_FMI int fmi2GetBoolean(void* component, const unsigned* /*references*/, std::size_t count,
                             int* /*values*/) {
-  return count == 0 ? kOk : absent(component, "fmi2GetBoolean");
+  return count == 0 ? kOk : fmi2_absent(component, "fmi2GetBoolean");
 }
 DREV_FMI int fmi2SetBoolean(void* component, const unsigned* /*references*/, std::size_t count,
                             const int* /*values*/) {
-  return count == 0 ? kOk : absent(component, "fmi2SetBoolean");
+  return count == 0 ? kOk : fmi2_absent(component, "fmi2SetBoolean");
 }
 
 DREV_FMI int fmi2SetRealInputDerivatives(void* component, const unsigned* references, std::size_t count,
@@ -218,7 +218,7 @@ DREV_FMI int fmi2SetRealInputDerivatives(void* component, const unsigned* refere
 
 DREV_FMI int fmi2GetRealOutputDerivatives(void* component, const unsigned* /*references*/,
                                           std::size_t /*count*/, const int* /*orders*/, double* /*values*/) {
-  return absent(component, "fmi2GetRealOutputDerivatives");
+  return fmi2_absent(component, "fmi2GetRealOutputDerivatives");
 }
 DREV_FMI int fmi2GetDirectionalDerivative(void* component, const unsigned* unknowns,
                                           std::size_t unknown_count, const unsigned* knowns,
@@ -228,21 +228,21 @@ DREV_FMI int fmi2GetDirectionalDerivative(void* component, const unsigned* unkno
                       {knowns, known_count, seed, known_count});
   });
 }
-DREV_FMI int fmi2CancelStep(void* component) { return absent(component, "fmi2CancelStep"); }
+DREV_FMI int fmi2CancelStep(void* component) { return fmi2_absent(component, "fmi2CancelStep"); }
 DREV_FMI int fmi2GetStatus(void* component, int /*kind*/, int* /*value*/) {
-  return absent(component, "fmi2GetStatus");
+  return fmi2_absent(component, "fmi2GetStatus");
 }
 DREV_FMI int fmi2GetRealStatus(void* component, int /*kind*/, double* /*value*/) {
-  return absent(component, "fmi2GetRealStatus");
+  return fmi2_absent(component, "fmi2GetRealStatus");
 }
 DREV_FMI int fmi2GetIntegerStatus(void* component, int /*kind*/, int* /*value*/) {
-  return absent(component, "fmi2GetIntegerStatus");
+  return fmi2_absent(component, "fmi2GetIntegerStatus");
 }
 DREV_FMI int fmi2GetBooleanStatus(void* component, int /*kind*/, int* /*value*/) {
-  return absent(component, "fmi2GetBooleanStatus");
+  return fmi2_absent(component, "fmi2GetBooleanStatus");
 }
 DREV_FMI int fmi2GetStringStatus(void* component, int /*kind*/, const char** /*value*/) {
-  return absent(component, "fmi2GetStringStatus");
+  return fmi2_absent(component, "fmi2GetStringStatus");
 }
 
 DREV_FMI int fmi2GetFMUstate(void* component, void** state) {

@@ -112,6 +112,9 @@ void FieldWriter::formula(const std::string& name, const std::vector<FormulaVari
 }
 
 bool FieldWriter::columns(const std::string& name, const std::vector<Column>& columns) {
+  // Without a row it is not given.
+  if (std::all_of(columns.begin(), columns.end(), [](const Column& c) { return c.values->empty(); }))
+    return true;
   std::string body;
   std::size_t count = 0;
   for (const Column& column : columns) {

@@ -1,11 +1,15 @@
 // Small full matrices beside closed forms: what Eigen's and LAPACK's routines give through core/dense.
-// Covers factorization.hpp, eigenvalues.hpp and lapack.hpp of core/dense.
+// Covers factorization.hpp, eigenvalues.hpp, fourier.hpp and lapack.hpp of core/dense.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "core/dense/eigenvalues.hpp"
 #include "core/dense/factorization.hpp"
+#include "core/dense/fourier.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -123,4 +127,31 @@ TEST_CASE("The exponential of turns, of every degree of the approximant, and of 
             .norm() < 1e-14);
   CHECK(exponential(Eigen::MatrixXd::Constant(2, 2, INFINITY)).array().isNaN().all());
   CHECK(exponential(Eigen::MatrixXd(0, 0)).size() == 0);
+}
+
+TEST_CASE("Fourier transforms of even and odd counts: the sums that define them, forward and back") {
+  FourierTransform transform;
+  // Multiples of four, other even counts and odd ones are transformed in different ways.
+  for (const int count : {2880, 12, 9, 10, 2}) {
+    CAPTURE(count);
+    std::vector<double> x;
+    for (int j = 0; j < count; ++j) x.push_back(std::sin(3.0 * j + 0.1 * j * j) + 0.2);
+    std::vector<std::complex<double>> lines;
+    transform.forward(lines, x);
+    REQUIRE(lines.size() == static_cast<std::size_t>(count / 2 + 1));
+    double worst = 0.0;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      std::complex<double> sum = 0.0;
+      for (std::size_t j = 0; j < x.size(); ++j)
+        sum +=
+            x[j] * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(j * k % x.size()) / count);
+      worst = std::max(worst, std::abs(lines[k] - sum));
+    }
+    CHECK(worst < 1e-13 * count);
+    std::vector<double> back;
+    transform.inverse(back, lines, count);
+    REQUIRE(back.size() == x.size());
+    for (std::size_t j = 0; j < x.size(); ++j) worst = std::max(worst, std::abs(back[j] - x[j]));
+    CHECK(worst < 1e-13 * count);
+  }
 }

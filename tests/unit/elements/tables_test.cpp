@@ -91,6 +91,8 @@ TEST_CASE("time table: ramp, jump, constant outside") {
   CHECK(table.at(9.0).slope == 0.0);
   CHECK(table.breakpoints() == std::vector<double>{1.0, 3.0, 4.0});
 
+  CHECK(TimeTable({0.0}, {5.0}).breakpoints().empty());
+  CHECK(TimeTable({0.0, 1.0, 4.0}, {5.0, 5.0, 5.0}).breakpoints().empty());
   const TimeTable step({2.0, 2.0}, {1.0, 7.0});
   CHECK(faults(step) == "");
   CHECK(step.at(1.9).value == 1.0);

@@ -103,3 +103,10 @@ TEST_CASE("Progress is told to who listens") {
   progress.update(0.6);
   CHECK(parts == std::vector<double>{0.5});
 }
+
+TEST_CASE("Advice ends where a program that holds the command wants it to") {
+  CommandLine line = line_of("advise", kDisc);
+  line.options["--for"] = {"peak disc.angle_rad"};
+  const InterruptSource stop([] { return true; });
+  CHECK_THROWS_AS(line.command->execute(line), Interruption);
+}

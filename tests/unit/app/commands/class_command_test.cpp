@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "solvers/strength/iacs_m68.hpp"
@@ -330,4 +331,27 @@ TEST_CASE("A run counts load cycles of sections with an S-N line and of channels
   }
   CHECK(drev_command({"run", kGensetFile, "--rainflow", "flnge.torque_Nm"}).exit_code == 2);
   CHECK(drev_command({"run", kGensetFile, "--duration", "-1"}).exit_code == 2);
+}
+
+TEST_CASE("Faults of [class] have one unit on both sides, and a [class] without sections is no missing one",
+          "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const auto said =
+      [&](const std::string& sections) {
+        std::ofstream(folder / "t.toml")
+            << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+               "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+               "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 3 }\n"
+               "s = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 10000 }\n"
+               "[class]\nrated_speed_rpm = 600\n"
+            << sections;
+        const auto outcome = drev_command({"class", (folder / "t.toml").string(), "--speeds", "500"});
+        CHECK(outcome.exit_code == 2);
+        return outcome.err;
+      };
+  CHECK(contains(said(""), "[class], names no section"));
+  const std::string faults =
+      said("[class.sections]\ns = { diameter_mm = -72, tensile_strength_MPa = 300, shape_factor = 1 }\n");
+  CHECK(contains(faults, "= -0.072 m"));
+  CHECK(contains(faults, "= 300 MPa, 400 to 800 MPa"));
 }

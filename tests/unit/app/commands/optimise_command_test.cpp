@@ -141,4 +141,39 @@ TEST_CASE("What is wrong with an optimisation is said at once") {
   CHECK(contains(figure.err, "did you mean 'max_mesh_force_N'"));
   CHECK(contains(figure.err, "front_contacts"));
   CHECK(drev_command({"optimise", "gear_drive", "--minimise", "max_mesh_force_N"}).exit_code == 2);
+  const auto both = drev_command({"optimise", "gear_drive", "--vary", "backlash_mm=0.1,0.2", "--minimise",
+                                  "max_mesh_force", "--variants", "0"});
+  CHECK(contains(both.err, "did you mean 'max_mesh_force_N'"));
+  CHECK(contains(both.err, "--variants = 0"));
+  const auto name = drev_command({"optimise", "gear_drive", "--vary", "backlsh_mm=0.1,0.2", "--minimise",
+                                  "max_mesh_force", "--variants", "0"});
+  CHECK(contains(name.err, "did you mean 'backlash_mm'"));
+  CHECK(contains(name.err, "--variants = 0"));
+}
+
+TEST_CASE("An optimisation of a model that settles has its figures of the whole runs, with --settle 0") {
+  const TemporaryFolder folder;
+  const std::string file = absorber_file(folder);
+  std::ofstream(file, std::ios::app) << "settle_s = 0.05\n";
+  const Words words = search(file, {"--vary", "k_Nm_per_rad=300,400", "--minimise", "disc.angle_rad.max"});
+  const auto settles = drev_command(words);
+  CHECK(settles.exit_code == 2);
+  CHECK(contains(settles.err, "give --settle 0"));
+  Words whole = words;
+  whole.insert(whole.end(), {"--settle", "0"});
+  const auto found = drev_command(whole);
+  INFO(found.err);
+  CHECK(found.exit_code == 0);
+  whole.back() = "0.01";
+  CHECK(contains(drev_command(whole).err, "is for single runs"));
+}
+
+TEST_CASE("The text of an optimisation keeps long figures apart from their values") {
+  const TemporaryFolder folder;
+  const auto found =
+      drev_command({"optimise", absorber_file(folder), "--start", "periodic", "--record", "shaft.torque_Nm",
+                    "--vary", "k_Nm_per_rad=300,400", "--minimise", "shaft.torque_Nm.max"});
+  INFO(found.err);
+  CHECK(found.exit_code == 0);
+  CHECK(contains(found.out, "least shaft.torque_Nm.max  "));
 }

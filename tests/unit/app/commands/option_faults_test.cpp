@@ -111,6 +111,18 @@ const std::vector<OptionFault>& faults() {
       {{"modes", "two_inertia", "--count", "2.5"}, {"--count = 2.5", "whole number"}},
       {{"modes", "two_inertia", "--count", "many"}, {"--count = many", "whole number"}},
       {{"modes", "camshaft", "--contact", "close"}, {"did you mean 'closed'?"}},
+      {{"sweep", "camshaft", "--speed", "500"}, {"did you mean '--speeds'?", "drev modes has --speed"}},
+      {{"chart", "two_inertia", "--methods"}, {"--methods, needs a value"}},
+      {{"sweep", "camshaft", "--speeds", "500rpm"},
+       {"--speeds = 500rpm, must be", "numbers of rpm without unit"}},
+      {{"campbell", DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml", "--speeds", "500"},
+       {"--contact, must be closed", "gear_pair"}},
+      {{"run", "two_inertia", "--out", "no_folder.csv"}, {"must be the name of a directory"}},
+      {{"run", "camshaft", "--vary", "engine_rpm=triangular(1,2)", "--out", "no_folder"},
+       {"uniform(LOW,HIGH)"}},
+      {{"run", "camshaft", "--vary", "engine_rpm=750,nan", "--out", "no_folder"},
+       {"has a value that is no number"}},
+      {{"class", "camshaft", "--speeds", "500"}, {"[class], is missing"}},
   };
   return all;
 }
@@ -149,4 +161,24 @@ TEST_CASE("Only the option that is wrong is blamed") {
   CHECK(within.exit_code == 2);
   CHECK_FALSE(contains(within.err, "--for"));
   CHECK_FALSE(contains(within.err, "2 faults"));
+}
+
+TEST_CASE("What is wrong with an option is said once, and beside all other faults") {
+  const auto said = [](const std::vector<std::string>& words) {
+    const auto run = drev_command(words);
+    CHECK(run.exit_code == 2);
+    return run.err;
+  };
+  CHECK_FALSE(contains(said({"run", "camshaft", "--start", "periodc"}), "faults"));
+  CHECK_FALSE(contains(said({"sweep", "camshaft", "--speeds", ""}), "faults"));
+  const std::string gear_pair = DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml";
+  const std::string open = said({"sweep", gear_pair, "--speeds", "500", "--tolerance", "nan", "--cycle",
+                                 "abc", "--jobs", "-3", "--balance", "hub,gen", "--absolute-sum"});
+  for (const char* part : {"--tolerance = nan", "--cycle = abc", "--jobs = -3", "hub,gen", "--absolute-sum"})
+    CHECK(contains(open, part));
+  const std::string closed = said({"sweep", gear_pair, "--speeds", "500", "--contact", "closed",
+                                   "--tolerance", "nan", "--cycle", "abc", "--balance", "hub,gen"});
+  for (const char* part : {"--tolerance = nan, is for models that are not linear, which --contact closed",
+                           "--cycle = abc", "hub,gen"})
+    CHECK(contains(closed, part));
 }

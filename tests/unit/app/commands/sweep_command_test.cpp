@@ -3,10 +3,12 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -73,6 +75,57 @@ TEST_CASE("A train whose rattle takes more harmonics than there are: no curve is
     CHECK(run.at("error").get<double>() <= 1e-5);
     CHECK(run.at("left_over_Nm").size() == json.at("floating_parts").size());
   }
+}
+
+TEST_CASE("A sweep takes constant torques, by one value or as a table", "[sweep]") {
+  for (const char* torque : {"torque_Nm = -100", "table = { time_s = [0, 1], torque_Nm = [-100, -100] }"}) {
+    const drev::test::TemporaryFolder folder;
+    std::ofstream(folder / "line.toml")
+        << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+           "J_1 = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+           "J_2 = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 3 }\n"
+           "shaft = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 1e4 }\n"
+           "drive = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 100, harmonics = "
+           "{ order = [2], amplitude_Nm = [50] } }\n"
+           "brake = { type = \"applied_torque\", node = \"b\", "
+        << torque << " }\n";
+    const auto swept = drev_command({"sweep", (folder / "line.toml").string(), "--speeds", "600", "--json"});
+    INFO(swept.err);
+    REQUIRE(swept.exit_code == 0);
+    const Json section = Json::parse(swept.out).at("sections").at(0);
+    CHECK(std::abs(section.at("mean")[0].get<double>()) == Approx(100.0));
+    // Two inertias: T J_2/J k_r/(k_r - w^2 J_1 J_2/J) at w = 2 x 600 rpm.
+    const double w = 40.0 * M_PI, reduced = 2.0 * 3.0 / 5.0;
+    CHECK(section.at("half_range")[0].get<double>() ==
+          Approx(std::abs(50.0 * 3.0 / 5.0 * 1e4 / (1e4 - w * w * reduced))));
+  }
+}
+
+TEST_CASE("A linear sweep says of a spring that bends below its mean torque what it is taken for",
+          "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "bent.toml")
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 900 }\nb = {}\n[elements]\n"
+         "J_1 = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+         "J_2 = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 2 }\n"
+         "spring = { type = \"polyline_spring\", nodes = [\"b\", \"a\"], points = { deflection_deg = "
+         "[-6, 0, 6, 12], torque_Nm = [-500, 0, 500, 2500] }, damping_Nms_per_rad = 2 }\n"
+         "drive = { type = \"engine_order_torque\", node = \"a\", mean_Nm = \"mean_Nm\" }\n"
+         "brake = { type = \"engine_order_torque\", node = \"b\", mean_Nm = \"-mean_Nm\" }\n"
+         "[parameters]\nmean_Nm = 1000\n";
+  const std::vector<std::string> words{
+      "sweep", (folder / "bent.toml").string(), "--speeds", "900", "--contact", "closed", "--set"};
+  const auto swept = [&](const char* mean) {
+    std::vector<std::string> all = words;
+    all.emplace_back(mean);
+    const auto printed = drev_command(all);
+    INFO(printed.err);
+    REQUIRE(printed.exit_code == 0);
+    return printed.out;
+  };
+  // 1000 N m over 500 N m / 6 deg is 12 deg, where the points say 2500 N m.
+  CHECK(contains(swept("mean_Nm=1000"), "where that gives 1000 N m, the law gives 2500"));
+  CHECK_FALSE(contains(swept("mean_Nm=400"), "straight line"));
 }
 
 TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
@@ -282,7 +335,7 @@ TEST_CASE("Damped modes as tables", "[sweep]") {
   std::istringstream table(read_file(out + "/modes.csv"));
   std::string line;
   std::getline(table, line);
-  CHECK(line == "mode,real_per_s,imaginary_per_s,frequency_Hz,undamped_Hz,damping_ratio");
+  CHECK(line == "mode,real_per_s,imaginary_per_s,frequency_Hz,modulus_Hz,damping_ratio");
   for (const Json& mode : json.at("modes")) {
     REQUIRE(std::getline(table, line));
     const std::size_t comma = line.find(',');
@@ -334,4 +387,23 @@ TEST_CASE("Both folds of a gear pair to eight digits by the command", "[sweep]")
   std::sort(folds.begin(), folds.end());
   CHECK(folds[0] == Approx(0.7080316187).epsilon(2e-9));
   CHECK(folds[1] == Approx(0.8284639844).epsilon(2e-9));
+}
+
+TEST_CASE("A sweep and a class calculation that are interrupted say so, write nothing and end with 130",
+          "[sweep]") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  const bool judged = GENERATE(false, true);
+  const drev::test::TemporaryFolder folder;
+  const std::string genset = DREV_SOURCE_DIR "/models/genset/genset.toml";
+  const drev::test::Process process({judged ? "class" : "sweep", genset, "--speeds", "1200:0.001:1700",
+                                     "--contact", "closed", "--balance", "generator", "--report",
+                                     (folder / "s.html").string()});
+  for (int i = 0; i < 6000 && !std::filesystem::exists(folder / "s.partial.html"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  process.send(signal);
+  const auto outcome = process.wait();
+  CHECK(outcome.exit_code == 130);
+  CHECK(contains(outcome.err, "drev: interrupted; nothing is written"));
+  CHECK(outcome.out.empty());
+  CHECK_FALSE(std::filesystem::exists(folder / "s.html"));
 }

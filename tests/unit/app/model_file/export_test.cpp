@@ -111,6 +111,7 @@ TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
     for (const auto& [name, value] : c.set) parameters.set(name, value);
     const ModelCase model_case = entry.build(parameters);
     const std::string text = app::export_model(entry, parameters, model_case);
+    CHECK(text.find("= []") == std::string::npos);  // columns without rows are not given
     INFO(c.model << (c.set.empty() ? "" : c.set.front().second) << "\n" << text.substr(0, 400));
     check_same(model_case, read_back(text), c.t_end);
   }

@@ -268,3 +268,17 @@ TEST_CASE("Every command takes a file") {
   const auto set = test::drev_command({"modes", path, "--set", "cylinders=2", "--json"});
   CHECK(contains(set.out, "\"cylinders\": 2"));
 }
+
+TEST_CASE("The torques of a run that names none are those of parts that carry them, not the loads") {
+  const ModelCase model_case = read(
+      "[nodes]\nm = { nominal_speed_rpm = 1000 }\nl = {}\n[elements]\n"
+      "Jm = { type = \"inertia\", node = \"m\", inertia_kg_m2 = 0.5 }\n"
+      "Jl = { type = \"inertia\", node = \"l\", inertia_kg_m2 = 1.5 }\n"
+      "s = { type = \"shaft_spring\", nodes = [\"m\", \"l\"], stiffness_Nm_per_rad = 20000 }\n"
+      "mot = { type = \"torque_curve\", node = \"m\", curve = { speed_rpm = [0, 1000], torque_Nm = [120, 0] "
+      "} }\n"
+      "puls = { type = \"engine_order_torque\", node = \"l\", harmonics = { order = [1], amplitude_Nm = [10] "
+      "} }\n"
+      "fan = { type = \"torque_function\", node = \"l\", expression = \"-0.002*speed_rad_per_s^2\" }\n");
+  CHECK(model_case.torques == std::vector<std::string>{"s.torque_Nm"});
+}

@@ -1,0 +1,130 @@
+// The orders of a LinearResponse at a speed, several sets of lanes at once.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/periodic/linear_response.hpp"
+
+namespace drev {
+
+using Complex = std::complex<double>;
+
+bool LinearResponse::solve_lane(int set, int lane) {
+  const auto row = [&](std::size_t unknown) { return unknown * kLaneSets + idx(set); };
+  const double omega = w_[idx(set)].v[lane];
+  for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = {p_re_[row(i)].v[lane], p_im_[row(i)].v[lane]};
+  const bool own = !system_.frequency_terms().empty();
+  if (own) add_frequency_terms(std::abs(omega));
+  const bool solved = elimination_->factorize(mass_, own ? damping_at_omega_ : damping_here_,
+                                              own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
+  if (solved)
+    elimination_->solve(z_.data());
+  else
+    std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    re_[row(i)].v[lane] = z_[i].real();
+    im_[row(i)].v[lane] = z_[i].imag();
+  }
+  return solved;
+}
+
+int LinearResponse::give_orders(double speed, std::size_t first) {
+  const auto& contents = content_->at(direction_ * speed);
+  const int used =
+      static_cast<int>(std::min<std::size_t>(LaneSections::kFrequencies, active_.size() - first));
+  const int sets = (used + kLanes - 1) / kLanes;
+  const auto order = [&](int lane) { return idx(active_[first + idx(lane)]); };
+  for (int lane = 0; lane < sets * kLanes; ++lane)
+    w_[idx(lane / kLanes)].v[lane % kLanes] = direction_ * orders_[order(lane < used ? lane : 0)] * speed;
+  for (std::size_t l = 0; l < contents.size(); ++l)
+    for (int lane = 0; lane < sets * kLanes; ++lane)
+      given_[l * LaneSections::kFrequencies + idx(lane)] =
+          lane < used ? contents[l].amplitudes[order(lane)] : 0.0;
+  rows_->add_loads(sets, given_, p_re_.data(), p_im_.data());
+  return used;
+}
+
+template <class Value>
+void LinearResponse::solve_lanes(int used, const LaneDynamics<Value>& dynamics) {
+  // For one or two frequencies lanes are slower than scalars.
+  constexpr int kWorthLanes = 3;
+  const int sets = (used + kLanes - 1) / kLanes;
+  if (used >= kWorthLanes) {
+    lanes_->solve(sets, dynamics, w_.data(), p_re_.data(), p_im_.data(), re_.data(), im_.data(),
+                  lost_.data());
+  } else {
+    for (std::size_t i = 0; i < re_.size(); i += kLaneSets) re_[i] = im_[i] = {};
+    lost_[0] = {};
+    for (int lane = 0; lane < used; ++lane) lost_[0].v[lane] = 1.0;
+  }
+  for (int set = 0; set < sets; ++set)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      double& lost = reinterpret_cast<double*>(&lost_[idx(set)].v)[lane];
+      if (lost == 0.0) continue;
+      if (set * kLanes + lane < used)
+        lost = solve_lane(set, lane) ? 0.0 : 1.0;
+      else
+        for (std::size_t i = idx(set); i < re_.size(); i += kLaneSets) re_[i].v[lane] = im_[i].v[lane] = 0.0;
+    }
+}
+
+void LinearResponse::solve_orders(double speed, std::size_t first, Point& point) {
+  const int used = give_orders(speed, first), sets = (used + kLanes - 1) / kLanes;
+  spread_frequency_terms(sets);
+  const LaneSections::Motion motion{p_re_.data(), p_im_.data(), re_.data(), im_.data(), w_.data()};
+  LaneSections::Powers powers;
+  const auto solve = [&](const auto& dynamics) {
+    solve_lanes(used, dynamics);
+    powers = rows_->powers(sets, motion, dynamics);
+  };
+  if (all_constant_)
+    solve(LaneDynamics<double>{mass_.data(), damping_here_.data(), stiffness_common_.data(),
+                               loss_common_.data()});
+  else
+    solve(LaneDynamics<LaneRow>{mass_.data(), damping_here_.data(), stiffness_lanes_.data(),
+                                loss_lanes_.data()});
+  if (follows_amplitude_) add_twist_squares(used);
+  rows_->find(sets, motion, beyond_re_, beyond_im_);
+  point.input_power += powers.input;
+  point.dissipated_power += powers.dissipated;
+  const int from = active_[first];
+  const bool in_a_row = active_[first + idx(used - 1)] - from == used - 1;
+  const auto put = [&](const Complex* found, Complex* column) {
+    if (in_a_row)
+      std::copy_n(found, used, column + from);
+    else
+      for (int lane = 0; lane < used; ++lane) column[active_[first + idx(lane)]] = found[lane];
+  };
+  for (std::size_t s = 0; s < sections_.size(); ++s) {
+    const auto c = static_cast<Eigen::Index>(s);
+    put(rows_->torques(s), point.amplitude.col(c).data());
+    put(rows_->twists(s), point.twist.col(c).data());
+    point.heat[c] += rows_->heat_of(s);
+  }
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (int lane = 0; lane < used; ++lane) {
+    if (lost_[idx(lane / kLanes)].v[lane % kLanes] == 0.0) continue;
+    const auto k = static_cast<Eigen::Index>(active_[first + idx(lane)]);
+    point.amplitude.row(k).setConstant(kInfinite);
+    point.twist.row(k).setConstant(kInfinite);
+    point.heat.setConstant(kInfinite);
+  }
+}
+
+void LinearResponse::add_twist_squares(int used) {
+  twist_squares_.resize(carried_.size());
+  for (std::size_t t = 0; t < carried_.size(); ++t)
+    for (int lane = 0; lane < used; ++lane) {
+      const auto set = idx(lane / kLanes);
+      const int in_set = lane % kLanes;
+      Complex twist = 0.0;
+      for (const Entry& e : system_.frequency_terms()[t].z) {
+        const auto row = idx(e.index) * kLaneSets + set;
+        twist += e.coeff * Complex(re_[row].v[in_set], im_[row].v[in_set]);
+      }
+      twist_squares_[t] +=
+          lost_[set].v[in_set] != 0.0 ? std::numeric_limits<double>::infinity() : std::norm(twist);
+    }
+}
+
+}  // namespace drev

@@ -1,0 +1,127 @@
+// Orders that a sweep solves side by side, in sets of lanes, against the same orders one by one, which are solved by
+// the elimination with pivoting. Covers solvers/periodic/linear_response.hpp, lane_sections.hpp and
+// solvers/linear/lane_elimination.hpp through sweep_linear().
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <cmath>
+#include <complex>
+
+#include "solvers/periodic/trigonometric_sum.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+/// Chain of four discs from a clock, with a rubber element; a torque of every order but each seventh one at disc 3, of
+/// every third one at disc 2.
+System chain(const ViscoelasticStiffness::Params& material, double speed, const std::vector<double>& orders) {
+  Model m("chain");
+  m.add_node("n0");
+  m.constant_speed("n0", speed);
+  for (int i = 1; i <= 4; ++i) {
+    const std::string node = "n" + std::to_string(i), before = "n" + std::to_string(i - 1);
+    m.add_node(node);
+    m.add<Inertia>("J" + node, {node}, {.inertia = 0.02 + 0.01 * i});
+    if (i == 2)
+      m.add<ElasticCoupling>("rubber", {before, node}, {.material = material});
+    else
+      m.add<ShaftSpring>("k" + std::to_string(i), {before, node},
+                         {.stiffness = 3e5 * i, .damping = i == 3 ? 4.0 : 0.0});
+  }
+  std::vector<Harmonic> at_3, at_2;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    if (k % 7 != 3) at_3.push_back({orders[k], 50.0 / (1.0 + static_cast<double>(k)), 0.4 * orders[k]});
+    if (k % 3 == 0 && k % 7 != 3) at_2.push_back({orders[k], 20.0, -0.3 * orders[k]});
+  }
+  m.add<EngineOrderTorque>("gas_3", {"n3"}, {.harmonics = at_3, .twist_feedback = false});
+  m.add<EngineOrderTorque>("gas_2", {"n2"}, {.harmonics = at_2, .twist_feedback = false});
+  return m.build();
+}
+
+}  // namespace
+
+TEST_CASE("Orders that are solved side by side are those that are solved one by one", "[linear_sweep]") {
+  std::vector<double> orders;
+  for (int k = 1; k <= 45; ++k) orders.push_back(0.5 * k);  // more than are solved at once
+  const ViscoelasticStiffness::Params constant{
+      .stiffness = 2e5, .loss_factor = 0.1, .lowest_frequency = 50, .highest_frequency = 200};
+  ViscoelasticStiffness::Params follows = constant;
+  follows.stiffness = kNotGiven, follows.loss_factor = 0.0, follows.permitted_error = 1.0;
+  follows.frequencies = {20.0, 100.0, 400.0};
+  follows.stiffnesses = {1.5e5, 2e5, 2.6e5};
+  follows.loss_factors = {0.15, 0.1, 0.05};
+  for (const auto& material : {constant, follows})
+    for (const double direction : {1.0, -1.0}) {
+      CAPTURE(material.frequencies.size(), direction);
+      const System system = chain(material, direction * 100.0, orders);
+      LinearSweepOptions options{.speeds = {60.0, 90.0, 140.0}, .orders = orders, .refine = false};
+      const LinearSweep together = sweep_linear(system, options);
+      Vector input = Vector::Zero(3), dissipated = input;
+      std::vector<Vector> heat(together.sections.size(), input);
+      for (std::size_t k = 0; k < orders.size(); ++k) {
+        options.orders = {orders[k]};
+        const LinearSweep alone = sweep_linear(system, options);
+        input += alone.input_power, dissipated += alone.dissipated_power;
+        const auto row = static_cast<Eigen::Index>(k);
+        for (std::size_t c = 0; c < together.sections.size(); ++c) {
+          const SweepSection &section = together.sections[c], &expected = alone.sections[c];
+          heat[c] += expected.heat;
+          CHECK((section.amplitude.row(row) - expected.amplitude.row(0)).norm() <=
+                1e-11 * expected.amplitude.norm());
+          CHECK(expected.amplitude.isZero(0.0) == (k % 7 == 3));
+          if (section.twist.size() > 0)
+            CHECK((section.twist.row(row) - expected.twist.row(0)).norm() <= 1e-11 * expected.twist.norm());
+        }
+      }
+      for (std::size_t c = 0; c < together.sections.size(); ++c)
+        CHECK((together.sections[c].heat - heat[c]).norm() <= 1e-11 * heat[c].norm());
+      CHECK((together.input_power - input).norm() < 1e-11 * input.norm());
+      CHECK((together.dissipated_power - dissipated).norm() < 1e-11 * dissipated.norm());
+      CHECK((input - dissipated).norm() < 1e-11 * input.norm());
+    }
+}
+
+TEST_CASE("Sums of orders have the same extremes alone and beside others", "[linear_sweep]") {
+  // 7 orders of which few are whole multiples of others; 21 sums: a full pair of sets of lanes, and a part of one.
+  for (const std::vector<double>& orders :
+       {std::vector<double>{1.0, 1.5, 2.0, 3.0, 4.5, 6.0, 7.5}, std::vector<double>{0.5, 3.0, 11.5, 40.0}}) {
+    const auto count = static_cast<Eigen::Index>(orders.size());
+    TrigonometricSum sum(orders, "test");
+    Eigen::MatrixXcd a(count, 21);
+    for (Eigen::Index s = 0; s < a.cols(); ++s)
+      for (Eigen::Index k = 0; k < count; ++k)
+        a(k, s) = s == 4 ? 0.0
+                         : std::polar(1.0 / (1.0 + static_cast<double>(k)),
+                                      1.7 * static_cast<double>(s * s + 3 * k));
+    a(1, 18) = std::numeric_limits<double>::infinity();
+    std::vector<SumExtremes> together, alone;
+    sum.extremes(a, together);
+    for (Eigen::Index s = 0; s < a.cols(); ++s) {
+      CAPTURE(orders.size(), s);
+      const Eigen::MatrixXcd one = a.col(s);
+      sum.extremes(one, alone);
+      const SumExtremes &e = together[static_cast<std::size_t>(s)], &expected = alone[0];
+      CHECK(e.max == expected.max);
+      CHECK(e.min == expected.min);
+      CHECK(e.max_angle == expected.max_angle);
+      CHECK(std::isfinite(e.max) == (s != 18));
+      if (s == 18) continue;
+      double most = 0.0, least = 0.0, at_max = 0.0;
+      for (int p = 0; p < 4000; ++p) {
+        double y = 0.0;
+        for (Eigen::Index k = 0; k < count; ++k)
+          y += (a(k, s) * std::polar(1.0, orders[static_cast<std::size_t>(k)] * sum.cycle() * p / 4000))
+                   .real();
+        most = std::max(most, y), least = std::min(least, y);
+      }
+      for (Eigen::Index k = 0; k < count; ++k)
+        at_max += (a(k, s) * std::polar(1.0, orders[static_cast<std::size_t>(k)] * e.max_angle)).real();
+      CHECK(std::abs(e.max - at_max) <= 1e-12);
+      CHECK((e.max >= most - 1e-13 && e.max <= most + 1e-2));
+      CHECK((e.min <= least + 1e-13 && e.min >= least - 1e-2));
+    }
+  }
+}
