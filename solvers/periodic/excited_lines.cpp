@@ -18,7 +18,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kFewestLines = 192, kMostLines = 1 << 13;
-constexpr double kLeftOut = 1e-3;    // part of a load's rms up to which no further harmonics are looked for
+constexpr double kLittleLeftOut =
+    1e-3;                            // part of a load's rms up to which no further harmonics are looked for
 constexpr double kConstant = 1e-12;  // variation of a law's force relative to it that is rounding
 constexpr double kRounding =
     1e-9;  // vibration of a section beside that of others of its unit that is rounding
@@ -69,7 +70,7 @@ void ExcitedLines::find_lines() {
     const auto& contents = content_->at(balance_.direction() * speed);
     bool enough = true;
     for (std::size_t l = 0; l < contents.size(); ++l)
-      enough = enough && (stated[l] || contents[l].left_out <= kLeftOut * contents[l].rms);
+      enough = enough && (stated[l] || contents[l].left_out <= kLittleLeftOut * contents[l].rms);
     if (enough || lines_ == kMostLines) break;
   }
   for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system_.row_of(load->node));

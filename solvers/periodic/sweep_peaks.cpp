@@ -32,7 +32,7 @@ constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
 constexpr double kNear = 1e-6;          // distance from an undamped resonance relative to its speed [-]
 constexpr double kAway = 1e-4;    // larger distance, beside which the mode's growth towards it shows [-]
-constexpr double kGrowth = 10.0;  // growth from kAway to kNear above which the mode moves a section [-]
+constexpr double kMoves = 10.0;   // growth from kAway to kNear above which the mode moves a section [-]
 constexpr double kOwnPart = 0.1;  // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -318,7 +318,7 @@ class Search {
     const Vector at_near = point_.amplitude.row(order).cwiseAbs();
     Values& here = curves_.try_emplace(speed, beside).first->second;
     for (std::size_t c = 0; c < here.half_range.size(); ++c)
-      if (const auto s = static_cast<Eigen::Index>(c); at_near[s] > kGrowth * at_away[s])
+      if (const auto s = static_cast<Eigen::Index>(c); at_near[s] > kMoves * at_away[s])
         here.half_range[c] = kInfinite;
   }
   /// Adds mean, extremes, twist and heat at the peak's speed.
