@@ -188,7 +188,7 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
     if (count > 0 || !between.empty())
       notes.push_back(section.name + ": changes its sign at " + std::to_string(count) + " of " +
                       std::to_string(section.mean.size()) + " speeds" +
-                      (between.empty() ? "" : " and at its peaks at " + join(between) + " rpm") +
+                      (between.empty() ? "" : " and between them at " + join(between) + " rpm") +
                       ": the teeth separate there, and what is said of these speeds does not hold; "
                       "'drev sweep' without '--contact closed' follows them");
   }

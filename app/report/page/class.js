@@ -4,6 +4,14 @@
 const judged = page.class;
 const caseTitle = (one) => (one.name === "normal" ? "Normal firing" : "One cylinder misfiring");
 
+const passingTexts = {
+  permitted: "yes",
+  "near rated speed": "no",
+  "above transient limit": "no",
+  "no transient limit given": "not judged: no limit for passing is given",
+  "no rated speed given": "not judged: no rated speed is given",
+};
+
 function showJudgement() {
   const section = byId("judgement");
   for (const one of judged.cases) {
@@ -47,7 +55,7 @@ function showJudgement() {
         `${r.open_to ? "≥ " : ""}${sig(r.to_rpm, 5)}`,
         r.worst === null ? "unbounded" : percent(r.worst),
         sig(r.worst_rpm, 5),
-        { permitted: "yes", "no transient limit given": "not judged: no limit for passing is given", "no rated speed given": "not judged: no rated speed is given" }[r.passing] ?? "no",
+        passingTexts[r.passing],
       ]),
     );
     if (exceeded.length)
@@ -82,7 +90,7 @@ function showJudgement() {
       section.append(
         make("p", {}, "Chatter: vibratory over mean force in a mesh above 1"),
         table(
-          ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", judged.contact === "closed" ? "speeds at which teeth would separate" : "speeds at which teeth separate"],
+          ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", judged.contact === "closed" ? "speeds and peaks at which teeth would separate" : "speeds and peaks at which teeth separate"],
           one.chatter.map((r) => [
             r.section,
             sig(r.from_rpm, 5),

@@ -58,19 +58,19 @@ function showFigures() {
           .slice(0, 3)
           .map(({ order }) => orderText(order))
           .join(", "),
-        sig(largest(s.heat)),
+        s.largest_heat === null ? "–" : sig(s.largest_heat),
       ]),
     ),
   );
-  const order = [...sweep.criticals].sort((a, b) => (b.amplitude ?? Infinity) - (a.amplitude ?? Infinity));
-  byId("figures").append(make("h3", {}, "Critical speeds, largest amplitude first"));
+  const order = [...sweep.criticals].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity));
+  byId("figures").append(make("h3", {}, "Critical speeds, largest amplitude of their own mode first"));
   if (!order.length)
     return byId("figures").append(
       make("p", {}, page.criticals_note || "No order that the loads hold meets a natural frequency within the speeds."),
     );
   byId("figures").append(
     table(
-      ["speed [rpm]", "order", "mode", "frequency [Hz]", "damping ratio", "amplitude", "half range", "in"],
+      ["speed [rpm]", "order", "mode", "frequency [Hz]", "damping ratio", "amplitude", "of the mode", "half range", "in"],
       order
         .slice(0, 30)
         .map((c) => [
@@ -80,6 +80,7 @@ function showFigures() {
           sig(c.frequency_Hz, 5),
           sig(c.damping_ratio, 3),
           c.amplitude === null ? "unbounded" : sig(c.amplitude, 5),
+          c.own_amplitude === null ? "unbounded" : sig(c.own_amplitude, 5),
           c.half_range === null ? "unbounded" : sig(c.half_range, 5),
           c.section,
         ]),
@@ -155,7 +156,7 @@ function sectionChart(parent, group, s, index) {
     underlay: (context, area, g) => {
       const text = new Labels(context, area);
       const inThis = sweep.criticals.filter((c) => c.section === s.name);
-      for (const c of [...inThis].sort((a, b) => (b.amplitude ?? Infinity) - (a.amplitude ?? Infinity)).slice(0, 6)) {
+      for (const c of [...inThis].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity)).slice(0, 6)) {
         const x = g.toDomXCoord(c.speed_rpm);
         if (x < area.x || x > area.x + area.w) continue;
         line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
@@ -231,7 +232,7 @@ function showDiagram() {
   };
   const met = [...new Set(sweep.criticals.map((x) => x.order))].sort((a, b) => a - b);
   const biggest = (order) =>
-    Math.max(...sweep.criticals.filter((x) => x.order === order).map((x) => x.amplitude ?? Infinity));
+    Math.max(...sweep.criticals.filter((x) => x.order === order).map((x) => x.own_amplitude ?? Infinity));
   const shown = [...met].sort((a, b) => biggest(b) - biggest(a)).slice(0, 10).sort((a, b) => a - b);
   const group = new Group([0, 1.05 * whole[1]], () => {});
   const end = 1.05 * whole[1];

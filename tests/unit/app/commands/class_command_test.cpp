@@ -179,6 +179,93 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
   CHECK(refused.exit_code == 2);
 }
 
+namespace {
+
+/// Two discs on a shaft, with a limit of torque and of heat, written to folder / name.
+std::string two_discs(const drev::test::TemporaryFolder& folder, const char* name, const char* damping,
+                      const char* limits) {
+  std::ofstream(folder / name)
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+         "J_a = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+         "J_b = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 3 }\n"
+         "s = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 10000"
+      << damping
+      << " }\ng = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 100, harmonics = { order = [1, "
+         "2, 3], "
+         "amplitude_Nm = [50, 40, 30], phase_deg = [10, 50, 100] }, twist_feedback = false }\n"
+         "l = { type = \"engine_order_torque\", node = \"b\", mean_Nm = -100 }\n"
+         "[class]\nrated_speed_rpm = 2000\n[class.sections]\ns = { "
+      << limits << " }\n";
+  return (folder / name).string();
+}
+
+}  // namespace
+
+TEST_CASE("A coarse grid gives the verdict of a fine one: heat at its peak", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = two_discs(folder, "two.toml", ", damping_Nms_per_rad = 5",
+                                     "permissible_torque_Nm = 3000, permissible_heat_W = 50");
+  // Of mu x'' + c x' + k x = mu/J_a p by a separate program: 90.06277 W at 871.7270 rpm; 30.5 W at the grid's speeds.
+  const nlohmann::json judged = class_json_of({"class", file, "--speeds", "300:100:1500"});
+  const nlohmann::json& s = judged["cases"][0]["sections"][0];
+  CHECK(s.at("heat_W").get<double>() == Approx(90.06277346).epsilon(1e-8));
+  CHECK(s.at("heat_at_rpm").get<double>() == Approx(871.7270173).epsilon(1e-6));
+  CHECK(s.at("heat_exceeds") == true);
+  CHECK(judged["cases"][0].at("accepted") == false);
+  const auto text = drev_command({"class", file, "--speeds", "300:100:1500"});
+  for (const char* part : {"90.06 of 50.00", "LIMITS EXCEEDED", "permissible torque, permissible heat"})
+    CHECK(contains(text.out, part));
+  const auto sweep = drev_command({"sweep", file, "--speeds", "300:100:1500"});
+  for (const char* part : {"0.0655420 rad", "90.0628"}) CHECK(contains(sweep.out, part));
+}
+
+TEST_CASE("An undamped resonance between two speeds is unbounded, and exceeds any limit", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = two_discs(folder, "free.toml", "", "permissible_torque_Nm = 300");
+  const nlohmann::json judged = class_json_of({"class", file, "--speeds", "300:100:1500"});
+  const nlohmann::json& s = judged["cases"][0]["sections"][0];
+  CHECK(s.at("unbounded") == true);
+  CHECK(s.at("utilisation").is_null());
+  // Where order 2 meets the mode, sqrt(k / mu) / 2 = 435.864 rpm. Half ranges of the closed form exceed 300 N m from
+  // 417.15 to 454.05 rpm; the grid has the ends within 4 rpm.
+  const auto range = std::find_if(
+      s.at("exceeded").begin(), s.at("exceeded").end(),
+      [](const nlohmann::json& r) { return std::abs(r.at("worst_rpm").get<double>() - 435.8637623) < 1e-5; });
+  REQUIRE(range != s.at("exceeded").end());
+  CHECK(range->at("worst").is_null());
+  CHECK(range->at("from_rpm").get<double>() == Approx(417.15).margin(4.0));
+  CHECK(range->at("to_rpm").get<double>() == Approx(454.05).margin(4.0));
+  CHECK(range->at("passing") == "no transient limit given");
+  CHECK(range->at("may_be_passed") == false);
+  const auto text = drev_command({"class", file, "--speeds", "300:100:1500"});
+  CHECK(contains(text.out, "unbounded at 435.86 rpm"));
+  CHECK(contains(text.out, "no limit for passing is"));
+  CHECK_FALSE(contains(text.out, "must not be passed"));
+  const auto sweep = drev_command({"sweep", file, "--speeds", "300:100:1500"});
+  CHECK(contains(sweep.out, "unbounded rad"));
+  CHECK_FALSE(contains(drev_command({"sweep", file, "--speeds", "300:100:1500", "--json"}).out, "-0.0,"));
+}
+
+TEST_CASE("The stress beside a limit is of its kind; a section judged by heat alone is judged", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file =
+      two_discs(folder, "rule.toml", ", damping_Nms_per_rad = 5",
+                "diameter_mm = 50, stress_concentration = 2, tensile_strength_MPa = 600, "
+                "shape_factor = 1");
+  const nlohmann::json judged = class_json_of({"class", file, "--speeds", "300:100:1500"});
+  const nlohmann::json& s = judged["cases"][0]["sections"][0];
+  const double nominal = s.at("worst_half_range_Nm").get<double>() / drev::polar_section_modulus(0.05);
+  CHECK(s.at("stress_of_rule") == "nominal");
+  CHECK(s.at("worst_nominal_stress_Pa").get<double>() == Approx(nominal));
+  CHECK(s.at("worst_stress_Pa").get<double>() == Approx(2.0 * nominal));
+  CHECK(contains(drev_command({"class", file, "--speeds", "300:100:1500"}).out, " nominal "));
+  const std::string hot =
+      two_discs(folder, "hot.toml", ", damping_Nms_per_rad = 5", "permissible_heat_W = 100");
+  const auto text = drev_command({"class", hot, "--speeds", "300:100:1500"});
+  CHECK(contains(text.out, "torque not judged, permissible heat"));
+  CHECK_FALSE(contains(text.out, "Without a limit, not judged"));
+}
+
 TEST_CASE("A model without [class] is told what it lacks", "[class]") {
   const auto refused =
       drev_command({"class", DREV_SOURCE_DIR "/models/engine/engine.toml", "--speeds", "900"});

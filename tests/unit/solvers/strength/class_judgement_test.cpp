@@ -109,6 +109,14 @@ TEST_CASE("Barred range by rule about a critical above the limit", "[strength]")
   CHECK(barred[0].speed_ratio == Approx(0.6));
   CHECK(barred[0].from == Approx(16.0 * 150.0 / 17.4));
   CHECK(barred[0].to == Approx(17.4 * 150.0 / 16.0));
+  // The section's own top of the order, where the critical's is another section's.
+  LinearSweep other = triangle();
+  other.criticals[0].section = 1, other.criticals[0].speed = 145.0;
+  other.criticals[0].section_speeds = {150.0, 145.0};
+  const auto own = judge_sweep(other, strength).sections.front().barred;
+  REQUIRE(own.size() == 1);
+  CHECK(own[0].speed == 150.0);
+  CHECK(own[0].from == Approx(16.0 * 150.0 / 17.4));
   strength.rated_speed = 180.0;  // ratio 0.83
   CHECK(judge_sweep(triangle(), strength).sections.front().barred[0].to == 0.0);
 }
@@ -124,6 +132,78 @@ TEST_CASE("Chatter: where the vibratory force of a mesh exceeds its mean", "[str
   CHECK(found.chatter[0].range.worst == Approx(800.0 / 600.0));
   CHECK(found.chatter[0].separated == 2);
   CHECK(found.accepted());
+}
+
+TEST_CASE("Heat and chatter are judged at the peaks between the speeds, too", "[strength]") {
+  LinearSweep sweep = triangle();
+  // The mesh's mean is 1,200 N, so that no speed of the grid has a ratio above 1; at 150 rad/s it is 1,500 / 1,200.
+  sweep.sections[1].mean.setConstant(-1200.0);
+  SweepPeak peak;
+  peak.section = 1, peak.speed = 150.0, peak.half_range = 1500.0, peak.mean = -1200.0;
+  peak.maximum = 1500.0, peak.minimum = -1500.0;
+  sweep.peaks.push_back(peak);
+  sweep.sections[0].heat_peak = 90.0, sweep.sections[0].heat_peak_speed = 151.0;
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_heat = 50.0;
+  const ClassJudgement found = judge_sweep(sweep, strength);
+  CHECK(found.sections[0].heat == 90.0);
+  CHECK(found.sections[0].heat_speed == 151.0);
+  CHECK(found.sections[0].heat_exceeds());
+  CHECK_FALSE(found.accepted());
+  CHECK(found.not_judged == std::vector<std::string>{"mesh.force_N"});  // the shaft's heat is judged
+  REQUIRE(found.chatter.size() == 1);
+  CHECK(found.chatter[0].range.worst == Approx(1.25));
+  CHECK(found.chatter[0].range.worst_speed == 150.0);
+  // Straight lines from 800 / 1200 at 140 and 160.
+  CHECK(found.chatter[0].range.from == Approx(140.0 + 10.0 * (1.0 / 3.0) / (1.25 - 2.0 / 3.0)));
+  CHECK(found.chatter[0].separated == 1);
+  // The heat at a peak of the half range counts as well.
+  sweep.peaks[0].heat = 95.0;
+  CHECK(judge_sweep(sweep, strength).sections[0].heat == 95.0);
+  CHECK(judge_sweep(sweep, strength).sections[0].heat_speed == 150.0);
+}
+
+TEST_CASE("Why a range may not be passed, or is not judged", "[strength]") {
+  using Passing = ExceededRange::Passing;
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  SectionStrength& shaft = strength.sections.front();
+  shaft.permissible_torque = 500.0;
+  const auto passing = [&strength](double transient, double rated) {
+    strength.sections.front().transient_torque = transient;
+    strength.rated_speed = rated;
+    return judge_sweep(triangle(), strength).sections.front().exceeded.at(0).passing;
+  };
+  const double none = SectionStrength::kNone;
+  CHECK(passing(1200.0, 300.0) == Passing::permitted);
+  CHECK(passing(950.0, 300.0) == Passing::above_limit);
+  CHECK(passing(none, 300.0) == Passing::no_limit);
+  CHECK(passing(none, 180.0) == Passing::near_rated);
+  CHECK(passing(1200.0, none) == Passing::no_rated_speed);
+  CHECK(to_text(Passing::no_limit) == std::string("no transient limit given"));
+}
+
+TEST_CASE("Beside an unbounded peak a range ends where a hyperbola meets the limit", "[strength]") {
+  LinearSweep sweep = triangle();
+  // 4,000 N m (rad/s) / |w - 150| at the speeds; at 500 N m the distance is 8 rad/s.
+  Vector half(6);
+  for (Eigen::Index i = 0; i < 6; ++i)
+    half[i] = 4000.0 / std::abs(sweep.speeds[static_cast<std::size_t>(i)] - 150.0);
+  sweep.sections[0].maximum = half, sweep.sections[0].minimum = -half;
+  sweep.peaks[0].half_range = HUGE_VAL;
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0;
+  const SectionJudgement s = judge_sweep(sweep, strength).sections.front();
+  CHECK(std::isinf(s.utilisation));
+  REQUIRE(s.exceeded.size() == 1);
+  CHECK(s.exceeded[0].from == Approx(142.0));
+  CHECK(s.exceeded[0].to == Approx(158.0));
+  CHECK(s.exceeded[0].worst_speed == 150.0);
+  // A peak at a speed of the grid replaces what rounding left there.
+  sweep.peaks[0].speed = 140.0;
+  CHECK(std::isinf(judge_sweep(sweep, strength).sections.front().utilisation));
 }
 
 TEST_CASE("Faults of strength data are listed at once", "[strength]") {

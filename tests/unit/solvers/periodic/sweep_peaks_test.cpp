@@ -1,0 +1,144 @@
+// Covers solvers/periodic/sweep_peaks.hpp: what is located between the speeds beside the half range, undamped resonances,
+// and the section of a critical, against closed forms of one and two degrees of freedom.
+#include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <complex>
+
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Discs of 2 and 3 kg m2 on a shaft of 10 kN m/rad: free, with orders 1, 2 and 3 of 50, 40 and 30 N m on the first.
+System two_discs(double damping) {
+  Model m("two discs");
+  m.add_node("a");
+  m.add_node("b");
+  m.set_reference("a", constant_speed(rpm(600.0)));
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 2.0});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 3.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1e4, .damping = damping});
+  m.add<EngineOrderTorque>(
+      "gas", {"a"},
+      {.harmonics = {{1.0, 50.0, deg(10.0)}, {2.0, 40.0, deg(50.0)}, {3.0, 30.0, deg(100.0)}},
+       .mean = 100.0,
+       .twist_feedback = false});
+  m.add<EngineOrderTorque>("load", {"b"}, {.mean = -100.0, .twist_feedback = false});
+  return m.build();
+}
+
+std::vector<double> rpm_speeds(double first, double step, double last) {
+  std::vector<double> speeds;
+  for (double here = first; here <= last; here += step) speeds.push_back(rpm(here));
+  return speeds;
+}
+
+}  // namespace
+
+TEST_CASE("Twist, heat and extremes are taken at the peaks between the speeds", "[sweep_peaks]") {
+  const LinearSweep coarse =
+      sweep_linear(two_discs(5.0), {.speeds = rpm_speeds(300.0, 100.0, 1500.0), .orders = {1.0, 2.0, 3.0}});
+  // mu x'' + c x' + k x = mu/J_a p, mu = 1.2: maxima of its sums by a separate program.
+  const SweepLargest half = largest_half_range(coarse, 0), twist = largest_twist(coarse, 0),
+                     heat = largest_heat(coarse, 0);
+  CHECK(half.value == Approx(656.0853417).epsilon(1e-8));
+  CHECK(to_rpm(half.speed) == Approx(871.2029223).epsilon(1e-6));
+  CHECK(twist.value == Approx(0.0655419845).epsilon(1e-6));
+  CHECK(heat.value == Approx(90.06277346).epsilon(1e-9));
+  CHECK(to_rpm(heat.speed) == Approx(871.7270173).epsilon(1e-6));
+  // The grid alone has less than six tenths of the twist and about a third of the heat.
+  CHECK(coarse.sections[0].twist_half_range.maxCoeff() == Approx(0.0372062).epsilon(1e-5));
+  CHECK(coarse.sections[0].heat.maxCoeff() == Approx(30.4965).epsilon(1e-5));
+  const SweepPeak& peak = coarse.peaks.front();
+  CHECK(peak.heat == Approx(90.00031947).epsilon(1e-6));
+  CHECK(std::abs(peak.mean) == Approx(100.0).epsilon(1e-9));
+  CHECK(0.5 * (peak.maximum - peak.minimum) == Approx(peak.half_range).epsilon(1e-12));
+}
+
+TEST_CASE("An order that meets an undamped mode is an infinite peak at their speed", "[sweep_peaks]") {
+  const LinearSweep sweep =
+      sweep_linear(two_discs(0.0), {.speeds = rpm_speeds(300.0, 100.0, 1500.0), .orders = {1.0, 2.0, 3.0}});
+  const double natural = std::sqrt(1e4 / 1.2);
+  int infinite = 0;
+  for (const SweepPeak& peak : sweep.peaks) {
+    // 1e9 N m would be the rounding of a frequency.
+    if (std::isfinite(peak.half_range)) CHECK(peak.half_range < 1e4);
+    if (std::isfinite(peak.half_range)) continue;
+    ++infinite;
+    const bool first = std::abs(peak.speed - natural) < 1e-9 * natural;
+    CHECK((first || peak.speed == Approx(0.5 * natural).epsilon(1e-9)));
+  }
+  CHECK(infinite == 2);
+  CHECK(std::isinf(largest_half_range(sweep, 0).value));
+  CHECK(std::isinf(largest_twist(sweep, 0).value));
+  REQUIRE(sweep.criticals.size() == 2);
+  for (const SweepCritical& critical : sweep.criticals) {
+    CHECK(critical.damping_ratio == 0.0);
+    CHECK_FALSE(std::signbit(critical.damping_ratio));
+  }
+}
+
+TEST_CASE("A critical is in the section that its mode moves, not in the one with the quasi-static torque",
+          "[sweep_peaks]") {
+  // Clock, soft coupling, engine of two discs on a stiff crank. Opposite torques on the discs twist the crank; a part of
+  // them is left for the coupling.
+  constexpr double soft = 9e3, stiff = 1.2e6, beta = 1.2e-3, first = 1.5, second = 0.4, torque = 800.0,
+                   rest = 8.0, order = 1.5;
+  Model m("engine on a soft coupling");
+  for (const char* node : {"clock", "a", "b"}) m.add_node(node);
+  m.constant_speed("clock", 150.0);
+  m.add<ShaftSpring>("coupling", {"clock", "a"}, {.stiffness = soft, .damping = beta * soft});
+  m.add<ShaftSpring>("crank", {"a", "b"}, {.stiffness = stiff, .damping = beta * stiff});
+  m.add<Inertia>("J_a", {"a"}, {.inertia = first});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = second});
+  m.add<EngineOrderTorque>("gas_a", {"a"}, {.harmonics = {{order, torque, 0.0}}, .twist_feedback = false});
+  m.add<EngineOrderTorque>("gas_b", {"b"},
+                           {.harmonics = {{order, torque - rest, kPi}}, .twist_feedback = false});
+  std::vector<double> speeds;
+  for (double speed = 30.0; speed <= 100.0; speed += 5.0) speeds.push_back(speed);
+  const LinearSweep sweep = sweep_linear(m.build(), {.speeds = speeds, .orders = {order}});
+  REQUIRE(sweep.criticals.size() == 1);
+  const SweepCritical& critical = sweep.criticals.front();
+  const auto number = static_cast<std::size_t>(critical.section);
+  CHECK(sweep.sections[number].name == "coupling.torque_Nm");
+  // The order is far larger in the crank.
+  CHECK(critical.amplitude < 0.2 * torque);
+
+  // The two unknowns solved by Cramer's rule: torque of the coupling at a speed.
+  const auto amplitude = [&](double speed) {
+    const Complex s(0.0, order * speed), damped = 1.0 + beta * s, k1 = soft * damped, k2 = stiff * damped;
+    const Complex a11 = k1 + k2 + first * s * s, a22 = k2 + second * s * s;
+    return std::abs(k1 * (torque * a22 - (torque - rest) * k2) / (a11 * a22 - k2 * k2));
+  };
+  double best = 0.0, at = 0.0;
+  for (double speed = 45.0; speed < 65.0; speed += 1e-4)
+    if (amplitude(speed) > best) best = amplitude(speed), at = speed;
+  CHECK(critical.speed == Approx(at).margin(2e-4));
+  CHECK(critical.amplitude == Approx(best).epsilon(1e-6));
+  CHECK(critical.section_speeds[number] == critical.speed);
+
+  // The mode's residue: C = beta K, so that mode n of the undamped train with omega has lambda^2 + beta omega^2 lambda +
+  // omega^2 = 0, and phi phi' p / (lambda - conj lambda) at the pole.
+  Eigen::Matrix2d mass = Eigen::Vector2d(first, second).asDiagonal(), stiffness;
+  stiffness << soft + stiff, -stiff, -stiff, stiff;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> modes(stiffness, mass);
+  const double omega = std::sqrt(modes.eigenvalues()[0]), decay = 0.5 * beta * omega * omega,
+               damped = std::sqrt(omega * omega - decay * decay);
+  const Eigen::Vector2d phi = modes.eigenvectors().col(0);
+  const double force = phi.dot(Eigen::Vector2d(torque, -(torque - rest)));
+  const Complex pole(-decay, damped);
+  const double own = std::abs(soft * (1.0 + beta * pole) * phi[0] * force / (2.0 * damped)) / decay;
+  const double ratio = decay / omega;
+  CHECK(critical.damping_ratio == Approx(ratio).epsilon(1e-9));
+  // The second difference keeps what bends the rest: the conjugate pole, ratio^2.
+  CHECK(critical.own_amplitude == Approx(own).epsilon(2.0 * ratio * ratio));
+  // In the crank the mode's part is below a tenth of the quasi-static torque: it has no speed of its own.
+  CHECK(critical.section_speeds[1 - number] == Approx(damped / order).epsilon(1e-6));
+}
