@@ -34,10 +34,11 @@ class OpenTorsionReader {
     if (starts_.size() != 1)
       fault("structure", "must connect all components into one train; " + std::to_string(starts_.size()) +
                              " of them begin one: " + join(starts_));
+    const bool structured = findings_.empty();  // else what is not reached follows from what is said
     if (starts_.size() == 1) add_component(starts_.front(), new_node());
     for (const auto& [name, component] : components_) {
       if (added_.contains(name)) continue;
-      if (starts_.size() == 1) fault("structure", "connects " + name + " with no part of the train");
+      if (structured) fault("structure", "connects " + name + " with no part of the train");
       add_component(name, new_node());  // for what is wrong inside
     }
     if (!findings_.empty()) throw ModelError(std::move(findings_));

@@ -105,8 +105,9 @@ TEST_CASE("Progress is told to who listens") {
 }
 
 TEST_CASE("Advice ends where a program that holds the command wants it to") {
-  CommandLine line = line_of("advise", kDisc);
-  line.options["--for"] = {"peak disc.angle_rad"};
+  CommandLine line = line_of("advise", "");
+  line.model = "two_mass_backlash";
+  line.text.reset();
   const InterruptSource stop([] { return true; });
   CHECK_THROWS_AS(line.command->execute(line), Interruption);
 }

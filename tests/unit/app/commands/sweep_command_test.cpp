@@ -408,7 +408,7 @@ TEST_CASE("A sweep and a class calculation that are interrupted say so, write no
   const bool judged = GENERATE(false, true);
   const drev::test::TemporaryFolder folder;
   const std::string genset = DREV_SOURCE_DIR "/models/genset/genset.toml";
-  const drev::test::Process process({judged ? "class" : "sweep", genset, "--speeds", "1200:0.001:1700",
+  const drev::test::Process process({judged ? "class" : "sweep", genset, "--speeds", "1200:0.01:1700",
                                      "--contact", "closed", "--balance", "generator", "--report",
                                      (folder / "s.html").string()});
   for (int i = 0; i < 6000 && !std::filesystem::exists(folder / "s.partial.html"); ++i)
