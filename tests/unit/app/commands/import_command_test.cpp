@@ -121,22 +121,24 @@ TEST_CASE("Faults of what is imported are named, all at once", "[import]") {
 
 TEST_CASE("Every connection of an openTorsion train is between elements that are there", "[import]") {
   const drev::test::TemporaryFolder folder;
-  const auto said = [&](const std::string& structure, const std::string& last) {
-    std::ofstream(folder / "t.json")
-        << R"({"components": [{"name": "A", "elements": [{"type": "Disk", "name": "d1", "inertia": 2},
+  const auto said =
+      [&](const std::string& structure, const std::string& last) {
+        std::ofstream(folder / "t.json")
+            << R"({"components": [{"name": "A", "elements": [{"type": "Disk", "name": "d1", "inertia": 2},
         {"type": "ShaftDiscrete", "name": "s1", "stiffness": 1e4}, {"type": "Disk", "name": "d2", "inertia": 3}]},
         {"name": "B", "elements": [{"type": "ShaftDiscrete", "name": "s", "stiffness": 2e4},
         {"type": "Disk", "name": "d3", "inertia": )"
-        << last << R"(}]}], "structure": )" << structure << "}";
-    const auto outcome = drev_command({"import", (folder / "t.json").string()});
-    CHECK(outcome.exit_code == (structure == R"([["A.d2", "B.s"]])" && last == "1" ? 0 : 2));
-    return outcome.err;
-  };
+            << last << R"(}]}], "structure": )" << structure << "}";
+        const auto outcome = drev_command({"import", (folder / "t.json").string()});
+        CHECK(outcome.exit_code == (structure == R"([["A.d2", "B.s"]])" && last == "1" ? 0 : 2));
+        return outcome.err;
+      };
   CHECK(said(R"([["A.d2", "B.s"]])", "1").empty());
   CHECK(contains(said(R"([["A.nosuch", "B.s"]])", "1"),
                  "structure[0]: names A.nosuch, which is none of the elements A.d1, A.s1, A.d2"));
   CHECK(contains(said(R"([["A.d2", "B.zs"]])", "1"), "did you mean 'B.s'?"));
-  CHECK(contains(said(R"([["A.d2", "b.s"]])", "1"), "names b.s, which is none of the components; there are A, B"));
+  CHECK(contains(said(R"([["A.d2", "b.s"]])", "1"),
+                 "names b.s, which is none of the components; there are A, B"));
   CHECK(contains(said(R"([["A.d2", "B.d3"]])", "1"), "connected by its first element, B.s"));
   CHECK(contains(said(R"([["A.d2", "A.d1"]])", "1"), "connects A with no part of the train"));
   CHECK(contains(said(R"([["A.d2", "B.s"], ["A.d1", "B.s"]])", "1"), "connects B a second time"));
@@ -146,7 +148,8 @@ TEST_CASE("Every connection of an openTorsion train is between elements that are
     CHECK(contains(train, part));
 }
 
-TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt otherwise, are named", "[import]") {
+TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt otherwise, are named",
+          "[import]") {
   const drev::test::TemporaryFolder folder;
   const auto said = [&](const std::string& text) {
     std::ofstream(folder / "t.csv") << text;
@@ -162,5 +165,6 @@ TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt other
   CHECK(contains(said("J [kgm2],stiffness_Nm_per_rad\n1,5\n2,\n"),
                  "the column \"J [kgm2]\"; did you mean inertia_kg_m2"));
   std::ofstream(folder / "t.json") << "{\n\"components\": [\n}";
-  CHECK(contains(drev_command({"import", (folder / "t.json").string()}).err, "t.json:3: is no JSON: unexpected"));
+  CHECK(contains(drev_command({"import", (folder / "t.json").string()}).err,
+                 "t.json:3: is no JSON: unexpected"));
 }
