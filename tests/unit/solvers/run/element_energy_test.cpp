@@ -18,15 +18,15 @@ using namespace drev;
 
 namespace {
 
-constexpr double kInertia = 2.0, kStiffness = 800.0, kDamping = 4.0, kStart = 0.05;
+constexpr double kSwingInertia = 2.0, kSwingStiffness = 800.0, kSwingDamping = 4.0, kSwingStart = 0.05;
 
 /// J q'' + c q' + k q = T cos(w t), on a wall.
 System oscillator(double torque, double w, double start) {
   Model m("oscillator");
   m.add_node("disc");
-  m.add<Inertia>("J", {"disc"}, {.inertia = kInertia});
-  m.add<GroundSpring>("spring", {"disc"}, {.stiffness = kStiffness});
-  m.add<Dashpot>("damper", {"disc"}, {.damping = kDamping});
+  m.add<Inertia>("J", {"disc"}, {.inertia = kSwingInertia});
+  m.add<GroundSpring>("spring", {"disc"}, {.stiffness = kSwingStiffness});
+  m.add<Dashpot>("damper", {"disc"}, {.damping = kSwingDamping});
   m.add<AppliedTorque>("drive", {"disc"}, {.torque = [=](double t) { return torque * std::cos(w * t); }});
   m.set_initial("disc", start, 0.0);
   return m.build();
@@ -50,18 +50,19 @@ std::string message_of(const Task& task) {
 
 TEST_CASE("Heat of a damped oscillator is the energy that it has lost", "[element_energy]") {
   // q = A exp(-d t) cos(w t - p): energy and heat by the closed form.
-  const double d = kDamping / (2.0 * kInertia), w = std::sqrt(kStiffness / kInertia - d * d);
+  const double d = kSwingDamping / (2.0 * kSwingInertia),
+               w = std::sqrt(kSwingStiffness / kSwingInertia - d * d);
   const auto energies = [&](double t) {
-    const double e = kStart * std::exp(-d * t);
+    const double e = kSwingStart * std::exp(-d * t);
     const double q = e * (std::cos(w * t) + d / w * std::sin(w * t));
     const double v = -e * (w + d * d / w) * std::sin(w * t);
-    return std::pair{0.5 * kStiffness * q * q, 0.5 * kInertia * v * v};
+    return std::pair{0.5 * kSwingStiffness * q * q, 0.5 * kSwingInertia * v * v};
   };
-  const double all = 0.5 * kStiffness * kStart * kStart;
+  const double all = 0.5 * kSwingStiffness * kSwingStart * kSwingStart;
   for (const std::string name : {"exact", "average_acceleration"}) {
     INFO(name);
     const double tolerance = name == "exact" ? 1e-11 : 2e-6;  // the other: second order at h w = 2e-3
-    const System system = oscillator(0.0, 1.0, kStart);
+    const System system = oscillator(0.0, 1.0, kSwingStart);
     Recorder recorder(system,
                       {"damper.dissipated_J", "spring.stored_J", "J.kinetic_J", "damper.dissipation_W",
                        "spring.work_J", "damper.power_W", "damper.work_J"},
@@ -75,7 +76,7 @@ TEST_CASE("Heat of a damped oscillator is the energy that it has lost", "[elemen
       CHECK(at(0) == Approx(all - stored - kinetic).margin(tolerance * all));
       CHECK(at(1) == Approx(stored).margin(tolerance * all));
       CHECK(at(2) == Approx(kinetic).margin(tolerance * all));
-      CHECK(at(3) == Approx(2.0 * kDamping / kInertia * kinetic).margin(10.0 * tolerance * all));
+      CHECK(at(3) == Approx(2.0 * kSwingDamping / kSwingInertia * kinetic).margin(10.0 * tolerance * all));
       CHECK(at(4) == Approx(all - stored).margin(tolerance * all));
       CHECK(at(5) == -at(3));
       CHECK(at(6) == Approx(-at(0)).margin(1e-15 * all));
@@ -84,7 +85,8 @@ TEST_CASE("Heat of a damped oscillator is the energy that it has lost", "[elemen
     const double t = std::atan2(w, d) / w;
     const double kinetic = energies(t).second;
     CHECK(peaks.peaks()[1].max == Approx(kinetic).epsilon(10.0 * tolerance));
-    CHECK(peaks.peaks()[0].max == Approx(2.0 * kDamping / kInertia * kinetic).epsilon(10.0 * tolerance));
+    CHECK(peaks.peaks()[0].max ==
+          Approx(2.0 * kSwingDamping / kSwingInertia * kinetic).epsilon(10.0 * tolerance));
     CHECK(peaks.peaks()[0].max_time == Approx(t).epsilon(name == "exact" ? 1e-6 : 1e-3));
   }
 }
@@ -97,8 +99,8 @@ TEST_CASE("Power in is heat, cycle by cycle, of a forced oscillator that starts 
   Recorder recorder(system, {"drive.work_J", "damper.dissipated_J", "spring.work_J"}, t_0);
   Recorder later(system, {"drive.work_J", "damper.dissipated_J"}, t_0 + cycle);
   run_method(system, method_of("exact"), {.t_end = t_0 + cycle}, {&recorder, &later});
-  const double amplitude = torque / std::hypot(kStiffness - kInertia * w * w, kDamping * w);
-  const double heat = 0.5 * kDamping * w * w * amplitude * amplitude * cycle;
+  const double amplitude = torque / std::hypot(kSwingStiffness - kSwingInertia * w * w, kSwingDamping * w);
+  const double heat = 0.5 * kSwingDamping * w * w * amplitude * amplitude * cycle;
   const auto over_cycle = [&](std::size_t c) { return later.samples(c).back() - recorder.samples(c).back(); };
   CHECK(over_cycle(0) == Approx(heat).epsilon(1e-9));
   CHECK(over_cycle(1) == Approx(heat).epsilon(1e-9));
