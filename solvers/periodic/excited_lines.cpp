@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/dense/fourier.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kLeastLines = 192, kMostLines = 1 << 13;
+constexpr double kWhole = 1e-9;      // relative distance from a whole line, as OrderContent takes it
 constexpr double kPastLines = 1e-3;  // part of a load's rms up to which no further harmonics are looked for
 constexpr double kUnvaried = 1e-12;  // variation of a law's force relative to it that is rounding
 constexpr double kNoVibration =
@@ -50,26 +52,33 @@ ExcitedLines::ExcitedLines(const System& system, double turns, const std::string
 /// As many as the loads that state their harmonics have, and for others until little is left out.
 void ExcitedLines::find_lines() {
   double highest = kLeastLines;
-  std::vector<bool> stated;
+  std::set<double> strays;
   for (const LoadTerm& term : system_.loads()) {
     if (system_.node_map(term.node).prescribed >= 0) continue;
     const auto* load = dynamic_cast<const HarmonicLoad*>(term.load);
-    stated.push_back(load != nullptr);
+    stated_.push_back(load != nullptr);
     if (load != nullptr)
-      for (const LoadOrder& of : load->orders().terms)
-        highest = std::max(highest, std::round(of.order * std::abs(system_.ratio(term.node)) * turns_));
+      for (const LoadOrder& of : load->orders().terms) {
+        const double order = of.order * std::abs(system_.ratio(term.node)), line = order * turns_;
+        if (std::abs(line - std::round(line)) > kWhole * line || line > kMostLines)
+          strays.insert(order);
+        else
+          highest = std::max(highest, std::round(line));
+      }
   }
+  std::vector<Finding> none;
+  strays_.assign(strays.begin(), strays.end());
+  stray_content_.emplace(system_, strays_, none);
   for (lines_ = static_cast<int>(std::min<double>(highest, kMostLines));;
        lines_ = std::min(2 * lines_, kMostLines)) {
     std::vector<double> orders;
     for (int n = 1; n <= lines_; ++n) orders.push_back(n / turns_);
-    std::vector<Finding> none;
     content_.emplace(system_, std::move(orders), none);
     const double speed = system_.reference_speed() > 0.0 ? system_.reference_speed() : 1.0;
     const auto& contents = content_->at(balance_.direction() * speed);
     bool enough = true;
     for (std::size_t l = 0; l < contents.size(); ++l)
-      enough = enough && (stated[l] || contents[l].left_out <= kPastLines * contents[l].rms);
+      enough = enough && (stated_[l] || contents[l].left_out <= kPastLines * contents[l].rms);
     if (enough || lines_ == kMostLines) break;
   }
   for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system_.row_of(load->node));
@@ -106,26 +115,38 @@ const Eigen::MatrixXd& ExcitedLines::at(double speed) {
   const auto& contents = content_->at(balance_.direction() * speed);
   const Eigen::MatrixXcd laws = law_lines(speed);
   Eigen::VectorXcd z(system_.size());
-  for (int line = 1; line <= lines_ + 1; ++line) {
-    const int n = std::min(line, lines_);
-    z.setZero();
-    for (std::size_t l = 0; l < contents.size(); ++l)
-      for (const Entry& e : load_rows_[l])
-        z[e.index] += e.coeff * (line == n ? contents[l].amplitudes[idx(n - 1)]
-                                           : Complex(std::sqrt(2.0) * contents[l].left_out));
-    for (std::size_t t = 0; line == n && t < balance_.terms().size(); ++t)
-      for (const Entry& e : balance_.terms()[t].row)
-        z[e.index] -= e.coeff * laws(n - 1, static_cast<Eigen::Index>(t));
-    if (z.isZero(0.0)) continue;
-    const Complex rate(0.0, balance_.direction() * n * speed / turns_);
-    if (!elimination_.factorize(system_.mass_values(), damping_, stiffness_, rate)) continue;
+  const auto add_load = [&](std::size_t l, Complex amplitude) {
+    for (const Entry& e : load_rows_[l]) z[e.index] += e.coeff * amplitude;
+  };
+  const auto answer = [&](double order, Eigen::Index row) {
+    if (z.isZero(0.0)) return;
+    const Complex rate(0.0, balance_.direction() * order * speed);
+    if (!elimination_.factorize(system_.mass_values(), damping_, stiffness_, rate)) return;
     elimination_.solve(z.data());
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       Complex sum = 0.0;
       for (const Entry& e : rows_[r].stiffness) sum += e.coeff * z[e.index];
       for (const Entry& e : rows_[r].damping) sum += rate * e.coeff * z[e.index];
-      amplitudes_(line - 1, static_cast<Eigen::Index>(r)) = std::abs(sum);
+      amplitudes_(row, static_cast<Eigen::Index>(r)) += std::abs(sum);
     }
+  };
+  for (int n = 1; n <= lines_; ++n) {
+    z.setZero();
+    for (std::size_t l = 0; l < contents.size(); ++l) add_load(l, contents[l].amplitudes[idx(n - 1)]);
+    for (std::size_t t = 0; t < balance_.terms().size(); ++t)
+      for (const Entry& e : balance_.terms()[t].row)
+        z[e.index] -= e.coeff * laws(n - 1, static_cast<Eigen::Index>(t));
+    answer(n / turns_, n - 1);
+  }
+  z.setZero();
+  for (std::size_t l = 0; l < contents.size(); ++l)
+    if (!stated_[l]) add_load(l, std::sqrt(2.0) * contents[l].left_out);
+  answer(lines_ / turns_, lines_);
+  for (std::size_t k = 0; k < strays_.size(); ++k) {
+    z.setZero();
+    const auto& of = stray_content_->at(balance_.direction() * speed);
+    for (std::size_t l = 0; l < of.size(); ++l) add_load(l, of[l].amplitudes[k]);
+    answer(strays_[k], lines_);
   }
   return amplitudes_;
 }

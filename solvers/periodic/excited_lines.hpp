@@ -5,8 +5,9 @@
 ///   a_n = |stiffness' z_n + i n W damping' z_n|   of each section
 ///
 /// p_n: content of the loads (order_content.hpp). F_n: harmonics of each law's force at its mean deflection, which
-/// are those of its transmission error and of its stiffness over the phase. A load's content beyond the last harmonic
-/// answers as if it were in that one, at its rms times sqrt(2).
+/// are those of its transmission error and of its stiffness over the phase. Beyond the last harmonic: orders of loads that are
+/// no harmonic of the cycle, each at its own frequency, and what else loads that do not state their orders leave out, at
+/// the frequency of the last, with its rms times sqrt(2).
 ///
 /// It tells how many harmonics a motion needs before any motion is known: harmonic balance with fewer shows no sign
 /// of those that it does not contain, since half as many lack them, too.
@@ -48,7 +49,9 @@ class ExcitedLines {
   std::vector<Finding> none_;  // what a sweep refuses was found before
   LawBalance balance_;
   int lines_ = 0;
-  std::optional<OrderContent> content_;
+  std::vector<bool> stated_;    // whether a load states its orders
+  std::vector<double> strays_;  // orders stated that are no harmonic of the cycle, or beyond the last
+  std::optional<OrderContent> content_, stray_content_;
   std::vector<std::vector<Entry>> load_rows_;
   ComplexElimination elimination_;
   Vector stiffness_, damping_;

@@ -460,14 +460,13 @@ input = { permissible_torque_Nm = 2.5 }
   const Json& largest = json["largest"][0];
   CHECK(largest.at("branch").is_null());
   // Closed form with closed teeth at 4000 rpm, without what the twist changes of the loads: 3.03386 N m.
-  const Json& run = json.at("runs")[largest.at("speed_rpm") == 4000.0 ? 1 : 0];
+  const Json& run = json.at("runs")[largest.at("speed_rpm").get<double>() > 3995.0 ? 1 : 0];
   CHECK(largest.at("half_range").get<double>() == Approx(3.03386).epsilon(0.02));
   CHECK(largest.at("half_range").get<double>() ==
         0.5 * (run.at("highest")[0].get<double>() - run.at("lowest")[0].get<double>()));
   CHECK(contains(drev_command(words).out, "  run  "));
   // A curve without order 24 has 1.8645 N m.
-  const auto judged =
-      drev_command({"class", file, "--speeds", "3990,4000", "--record", "input.torque_Nm", "--json"});
+  const auto judged = drev_command({"class", file, "--speeds", "3990,4000", "--json"});
   const Json verdict = Json::parse(judged.out).at("cases")[0];
   CHECK(verdict.at("accepted") == false);
   CHECK(contains(verdict.at("notes").dump(), "harmonics up to 664 (order 24)"));
