@@ -119,6 +119,10 @@ with open("pair.toml", "w") as file:  # folds
                'damping_law = "always", transmission_error = { order = [1], amplitude_m = [0.05] } }\n')
 with open("pair.toml") as file, open("chaos.toml", "w") as copied:  # no stable motion
     copied.write(file.read().replace("amplitude_m = [0.05]", "amplitude_m = [0.5]"))
+with open("pair.toml") as file, open("uneven.toml", "w") as copied:  # a load that does not repeat in the cycle given
+    copied.write(file.read() + """
+uneven = { type = "engine_order_torque", node = "b", harmonics = { order = [0.3], amplitude_Nm = [0.05] } }
+""")
 
 with open("gears.toml", "w") as file:
     file.write('[geometry]\nmodule_mm = 4\nload_N_per_mm = 100\npoints = 10\n'
@@ -156,6 +160,7 @@ results = {
                         "--balance", "b"),
     "statistics of runs": printed("sweep", "chaos.toml", "--speeds", "9.549,9.55", "--orders", "1", "--tolerance",
                                   "1e-2"),
+    "load beyond the cycle": printed("sweep", "uneven.toml", "--speeds", "7.6,8.2", "--cycle", "1"),
     "class": printed("class", "class.toml", "--speeds", "300:10:1000", "--orders", "2", "--contact", "closed"),
     "shaft": printed("shaft", "shaft.toml"),
     "counted": printed("run", "class.toml", "--rainflow", "z.force_N", "--energy"),
