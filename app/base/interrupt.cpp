@@ -18,20 +18,19 @@ void remember(int /*signal*/) {
   ::alarm(kPatience);
 }
 
-/// No one has asked for so long: what goes on does not, and must not go on for ever.
-void give_up(int /*signal*/) {
-  constexpr char kText[] = "drev: interrupted in the midst of a computation that cannot be ended in order\n";
-  const ssize_t ignored = ::write(STDERR_FILENO, kText, sizeof kText - 1);
+template <std::size_t kSize>
+[[noreturn]] void end_saying(const char (&text)[kSize]) {
+  const ssize_t ignored = ::write(STDERR_FILENO, text, kSize - 1);
   static_cast<void>(ignored);
   ::_exit(130);
 }
 
-void end_at_once(int /*signal*/) {
-  constexpr char kText[] = "drev: interrupted; nothing is written\n";
-  const ssize_t ignored = ::write(STDERR_FILENO, kText, sizeof kText - 1);
-  static_cast<void>(ignored);
-  ::_exit(130);
+/// No one has asked for so long: what goes on does not, and must not go on for ever.
+void give_up(int /*signal*/) {
+  end_saying("drev: interrupted in the midst of a computation that cannot be ended in order\n");
 }
+
+void end_at_once(int /*signal*/) { end_saying("drev: interrupted; nothing is written\n"); }
 
 }  // namespace
 

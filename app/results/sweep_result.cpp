@@ -132,27 +132,33 @@ std::string left_over_sentence(const LeftOver& left, const std::string& part, co
 
 namespace {
 
-/// Laws without a gap that are not the straight line through zero that a linear sweep takes them for, at the torques found.
+/// The torque or force of a section at which its law is farthest off the straight line y = k x; 0: nowhere.
+double most_bent(const ScalarForce& law, double k, const SweepSection& section) {
+  double off = 0.0, at = 0.0;
+  for (Eigen::Index i = 0; i < section.mean.size(); ++i)
+    for (const double y : {section.mean[i] + section.maximum[i], section.mean[i] + section.minimum[i]}) {
+      const double beside = std::abs(law.evaluate({.x = y / k}).y - y);
+      if (std::isfinite(beside) && beside > kBent * std::abs(y) && beside > off) off = beside, at = y;
+    }
+  return at;
+}
+
+/// Laws without a gap that are not the straight line through zero that a linear sweep takes them for, at the torques found. Of
+/// stiffness that follows a phase it takes the mean.
 void note_bent_laws(const System& system, const LinearSweep& sweep, std::vector<std::string>& notes) {
   for (const ScalarTerm& term : system.scalars()) {
     const double k = term.force->closed_stiffness();
-    if (term.force->gap() || !(k > 0.0)) continue;
-    const std::string& element =
-        system.element_instances()[static_cast<std::size_t>(index(term.element))].name;
+    if (term.force->gap() || term.phase_node >= 0 || !(k > 0.0)) continue;
+    const std::string start =
+        system.element_instances()[static_cast<std::size_t>(index(term.element))].name + ".";
     for (const SweepSection& section : sweep.sections) {
-      if (!section.name.starts_with(element + ".")) continue;
-      double off = 0.0, at = 0.0;
-      for (Eigen::Index i = 0; i < section.mean.size(); ++i)
-        for (const double y : {section.mean[i] + section.maximum[i], section.mean[i] + section.minimum[i]}) {
-          const double beside = std::abs(term.force->evaluate({.x = y / k}).y - y);
-          if (std::isfinite(beside) && beside > kBent * std::abs(y) && beside > off) off = beside, at = y;
-        }
-      if (off > 0.0)
-        notes.push_back(section.name + ": taken as a straight line with the stiffness at zero deflection, " +
-                        digits(k, kDigits) + " " + (section.unit == "N" ? "N/m" : "N m/rad") +
-                        "; where that gives " + digits(at, 4) + " " + section.unit + ", the law gives " +
-                        digits(term.force->evaluate({.x = at / k}).y, 4) +
-                        ". 'drev sweep' without '--contact closed' follows it");
+      const double at = section.name.starts_with(start) ? most_bent(*term.force, k, section) : 0.0;
+      if (at == 0.0) continue;
+      notes.push_back(section.name + ": taken as a straight line with the stiffness at zero deflection, " +
+                      digits(k, kDigits) + " " + (section.unit == "N" ? "N/m" : "N m/rad") +
+                      "; where that gives " + digits(at, 4) + " " + section.unit + ", the law gives " +
+                      digits(term.force->evaluate({.x = at / k}).y, 4) +
+                      ". 'drev sweep' without '--contact closed' follows it");
     }
   }
 }

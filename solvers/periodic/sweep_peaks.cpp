@@ -336,18 +336,20 @@ class Search {
       return;
     }
     peak.heat = point_.heat[c];
-    sum_.extremes(point_.amplitude.col(c), extremes_);
-    peak.maximum = extremes_.front().max, peak.minimum = extremes_.front().min;
-    if (!twists) return;
-    sum_.extremes(point_.twist.col(c), extremes_);
-    peak.twist_half_range = extremes_.front().half_range();
+    const SumExtremes& found = extremes_of(point_.amplitude, c);
+    peak.maximum = found.max, peak.minimum = found.min;
+    if (twists) peak.twist_half_range = extremes_of(point_.twist, c).half_range();
+  }
+  /// Of the sum in a column alone.
+  const SumExtremes& extremes_of(const Eigen::MatrixXcd& amplitudes, Eigen::Index column) {
+    const std::complex<double>* sum = amplitudes.col(column).data();
+    sum_.extremes(std::span(&sum, 1), extremes_);
+    return extremes_.front();
   }
   double one(double speed, std::size_t section) {
     pause_();
     response_.vibration(speed, point_);
-    const std::complex<double>* column = point_.amplitude.col(static_cast<Eigen::Index>(section)).data();
-    sum_.extremes(std::span(&column, 1), extremes_);
-    return extremes_.front().half_range();
+    return extremes_of(point_.amplitude, static_cast<Eigen::Index>(section)).half_range();
   }
   /// The section with the largest amplitude, among those with the unit of the first one.
   int most_moved(const Eigen::RowVectorXcd& amplitudes) const {

@@ -139,6 +139,20 @@ TEST_CASE("A linear sweep says of a spring that bends below its mean torque what
   // 1000 N m over 500 N m / 6 deg is 12 deg, where the points say 2500 N m.
   CHECK(contains(swept("mean_Nm=1000"), "where that gives 1000 N m, the law gives 2500"));
   CHECK_FALSE(contains(swept("mean_Nm=400"), "straight line"));
+  // A mesh without backlash has its mean stiffness: no bent law.
+  std::ofstream(folder / "mesh.toml")
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 900 }\nb = {}\n[elements]\n"
+         "J_a = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 0.02 }\n"
+         "J_b = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 0.05 }\n"
+         "mesh = { type = \"gear_mesh\", nodes = [\"a\", \"b\"], module_mm = 3, teeth_1 = 20, teeth_2 = 40, "
+         "pressure_angle_deg = 20, stiffness_step = { single_N_per_um = 200, double_N_per_um = 300, "
+         "contact_ratio = 1.5 }, normal_backlash_um = 0 }\n"
+         "drive = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 60 }\n"
+         "brake = { type = \"engine_order_torque\", node = \"b\", mean_Nm = 120 }\n";
+  const auto meshed =
+      drev_command({"sweep", (folder / "mesh.toml").string(), "--speeds", "900", "--contact", "closed"});
+  REQUIRE(meshed.exit_code == 0);
+  CHECK_FALSE(contains(meshed.out, "straight line"));
 }
 
 TEST_CASE("A sweep as JSON and as tables: one set of numbers", "[sweep]") {
