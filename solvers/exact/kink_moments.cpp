@@ -166,9 +166,8 @@ struct NodesAndWeights {
 
 }  // namespace
 
-double* KinkMoments::add(int row, double knot, std::span<const double> force, double end, std::size_t terms) {
+void KinkMoments::add(int row, double knot, double factor, std::span<const double> force, double end) {
   const auto i = static_cast<std::size_t>(count_++);
-  terms_ = terms;
   const auto room = static_cast<std::size_t>(whole_lanes(count_));
   if (row_.size() < room) {
     row_.resize(room);
@@ -183,8 +182,7 @@ double* KinkMoments::add(int row, double knot, std::span<const double> force, do
   for (; powers_ < force.size(); ++powers_)  // those before have none of this power
     for (std::size_t k = 0; k < i; ++k) force_[k / kLanes * kForce + powers_ * kLanes + k % kLanes] = 0.0;
   double* own = force_.data() + i / kLanes * kForce + i % kLanes;
-  for (std::size_t q = 0; q < powers_; ++q) own[q * kLanes] = q < force.size() ? force[q] : 0.0;
-  return theta_.data() + i / kLanes * kGroup + i % kLanes;
+  for (std::size_t q = 0; q < powers_; ++q) own[q * kLanes] = q < force.size() ? factor * force[q] : 0.0;
 }
 
 KinkMoments::Force KinkMoments::force(int i, double behind) const {

@@ -23,11 +23,12 @@ class KinkMoments {
   int count() const { return count_; }
   /// All forces are straight.
   bool straight() const { return powers_ == 1; }
-  /// A kink whose theta has so many terms, as all listed with it, at most kMostTerms; theta passes `knot` once before the
-  /// end of the step, or of the part of it that is looked at, and monotonously, and stands at `end` there. Its terms are to be
-  /// written to the place returned, kLanes apart, before the next one is added.
-  /// force: the terms of f from the first power on, at most kMostPowers.
-  double* add(int row, double knot, std::span<const double> force, double end, std::size_t terms);
+  /// A kink: theta passes `knot` once before the end of the step, or of the part of it that is looked at, and monotonously, and
+  /// stands at `end` there. force: factor times these are the terms of f from the first power on, at most kMostPowers.
+  void add(int row, double knot, double factor, std::span<const double> force, double end);
+  /// theta of every kink has so many terms, at most kMostTerms, to be written to angle(), kLanes apart.
+  void set_terms(std::size_t terms) { terms_ = terms; }
+  double* angle(int i) { return theta_.data() + idx_of(i) / kLanes * kGroup + lane_of(i); }
   /// Adds the moments of all kinks over the whole step.
   void add_to(LegendreProjection& projection);
   /// Adds W_j = int_s^e (e - s)^j/j! f(theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0.
@@ -36,8 +37,6 @@ class KinkMoments {
   static constexpr std::array<int, 3> kSweepRules{4, 6, 8};
   /// Zeros to where add_to_sweep() added.
   void clear_rows(int degree, int stride, double* columns) const;
-  /// Only so many of theta's terms count from here on.
-  void use_terms(std::size_t terms) { terms_ = std::min(terms_, terms); }
   /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
   int row(int i) const { return row_[static_cast<std::size_t>(i)]; }

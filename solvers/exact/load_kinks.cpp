@@ -19,12 +19,19 @@ constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before 
 
 }  // namespace
 
+void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t terms) {
+  kinks_.set_terms(terms);
+  for (int i = 0; i < kinks_.count(); ++i)
+    expand_angle(*kink_sizes_[idx(i)].load, series, terms, kinks_.angle(i));
+}
+
 /// The terms of the load's angle, kLanes apart.
 void LoadSeries::expand_angle(const PlacedLoad& l, const TaylorSeries& series, std::size_t terms,
                               double* theta) const {
   const double* z = series.coefficients(0) + l.row;
   const std::size_t known = l.feedback ? std::min(terms, idx(series.degree()) + 1) : 1, stride = idx(stride_);
   theta[0] = l.angle;
+#pragma GCC unroll 4
   for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = l.coeff * z[k * stride];
   for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
   for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
@@ -35,6 +42,7 @@ double LoadSeries::find_kinks(TaylorSeries& series) {
   if (straight_.empty() && !expanded_.knotted()) return 0.0;
   find_ranges(series);
   list_kinks(series, 1.0, true);
+  expand_kinks(series, all_terms(series));
   kinks_.add_to(of_kinks_);
   double contraction = 0.0;
   for_knotted(
@@ -67,7 +75,6 @@ template <class Next>
 bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const TaylorSeries& series, double to,
                                bool projected, const Next& next) {
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
-  const auto terms = idx(std::max(series.degree(), 2) + 1);
   l.watched = false;
   l.contraction = 0.0;
   const auto row = idx(l.row);
@@ -104,9 +111,7 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const Tay
     }
     kinks_inside_ = std::max(kinks_inside_, inside);
     given_kinks_ |= !l.feedback;
-    force_.assign(behind->force.begin(), behind->force.end());
-    for (double& term : force_) term *= l.coeff;
-    expand_angle(l, series, terms, kinks_.add(l.row, bound, force_, end, terms));
+    kinks_.add(l.row, bound, l.coeff, behind->force, end);
     const double size = std::abs(l.coeff) * series.reach(l.row);
     kink_sizes_.push_back({&l, size * chord * std::abs(first),
                            l.feedback ? size * slope * std::abs(l.coeff) : 0.0,

@@ -71,6 +71,10 @@ class LoadSeries {
   /// the series stands at z_end; the loads are then on the stretches behind them. The whole step first. False: some
   /// angle may turn back, or its load has a kink in time.
   bool list_sweep_kinks(TaylorSeries& series, double end, const double* z_end);
+  /// Gives each kink listed the first so many terms of its load's angle.
+  void expand_kinks(const TaylorSeries& series, std::size_t terms);
+  /// All terms of an angle: the nominal motion has three of them.
+  static std::size_t all_terms(const TaylorSeries& series) { return idx(std::max(series.degree(), 2) + 1); }
   KinkMoments& kinks() { return kinks_; }
   const KinkMoments& kinks() const { return kinks_; }
   /// Puts the loads' slopes at s, behind the kinks listed, in place of those at the step's start; and those back.
@@ -191,7 +195,7 @@ class LoadSeries {
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
-  std::vector<double> power_, force_;
+  std::vector<double> power_;
   std::vector<double> ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
   std::vector<KinkSize> kink_sizes_;  // sizes of each of kinks_
   Vector z_, v_;

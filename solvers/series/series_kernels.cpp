@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -117,24 +118,22 @@ struct Polynomial {
 
 struct Sums {
   static constexpr int kTogether = 5;  // sums that stay in registers together
-  template <class L, int kCount, bool kSizes, bool kAdd>
-  [[gnu::always_inline]] static void some(int stride, int count, int per_column, const double* weight,
-                                          const double* f, double* out) {
-    L sum[kCount], x;
-    if constexpr (kAdd) {
-#pragma GCC unroll 5
-      for (int j = 0; j < kCount; ++j) load(out + j * stride, sum[j]);
-    } else {
-      clear(sum);
-    }
+  /// j: 0, 1, ... of the sums. Written out for each of them, since GCC 12 keeps an array that a loop walks over in memory.
+  template <class L, bool kSizes, bool kAdd, int... j>
+  [[gnu::always_inline]] static void some(std::integer_sequence<int, j...>, int stride, int count,
+                                          int per_column, const double* weight, const double* f,
+                                          double* out) {
+    L sum[sizeof...(j)], x;
+    if constexpr (kAdd)
+      (load(out + j * stride, sum[j]), ...);
+    else
+      ((sum[j] = L{}), ...);
     for (int q = 0; q < count; ++q, weight += per_column, f += stride) {
       load(f, x);
       if constexpr (kSizes) magnitude(x);
-#pragma GCC unroll 5
-      for (int j = 0; j < kCount; ++j) sum[j] += weight[j] * x;
+      ((sum[j] += weight[j] * x), ...);
     }
-#pragma GCC unroll 5
-    for (int j = 0; j < kCount; ++j) store(sum[j], out + j * stride);
+    (store(sum[j], out + j * stride), ...);
   }
   template <class L, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void all(int stride, int first, int last, int count, int per_column,
@@ -144,19 +143,20 @@ struct Sums {
       double* to = out + j * stride;
       switch (std::min(last - j, kTogether)) {
         case 1:
-          some<L, 1, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 1>(), stride, count, per_column, w, f, to);
           break;
         case 2:
-          some<L, 2, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 2>(), stride, count, per_column, w, f, to);
           break;
         case 3:
-          some<L, 3, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 3>(), stride, count, per_column, w, f, to);
           break;
         case 4:
-          some<L, 4, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 4>(), stride, count, per_column, w, f, to);
           break;
         default:
-          some<L, kTogether, kSizes, kAdd>(stride, count, per_column, w, f, to);
+          some<L, kSizes, kAdd>(std::make_integer_sequence<int, kTogether>(), stride, count, per_column, w, f,
+                                to);
       }
     }
   }

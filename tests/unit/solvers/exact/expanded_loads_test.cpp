@@ -108,8 +108,9 @@ TEST_CASE("Moments of a curved force behind a knot: in closed form along a strai
   const std::vector<double> force{3.0, -7.0, 11.0};
   const double theta[] = {0.1, 0.4}, place = 0.3, rate = 0.4, end = 0.9, r = end - place;
   KinkMoments kinks;
-  double* terms = kinks.add(1, 0.22, force, 0.1 + 0.4 * end, 2);
-  for (std::size_t k = 0; k < 2; ++k) terms[k * kLanes] = theta[k];
+  kinks.add(1, 0.22, 1.0, force, 0.1 + 0.4 * end);
+  kinks.set_terms(2);
+  for (std::size_t k = 0; k < 2; ++k) kinks.angle(0)[k * kLanes] = theta[k];
   constexpr int kDegree = 6, kStride = 8;
   std::vector<double> columns((kDegree + 1) * kStride);
   kinks.add_to_sweep(end, kDegree, 8, 2, kStride, columns.data());

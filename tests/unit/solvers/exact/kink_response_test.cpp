@@ -21,8 +21,9 @@ TEST_CASE("Moments of kinks for a sweep: in closed form along a quadratic path")
   const double place = -0.2 + std::sqrt(0.04 + 0.24), rate = 0.2 + place, jump = 30.0;
   for (const double end : {1.0, 0.7}) {
     KinkMoments kinks;
-    double* terms = kinks.add(2, 0.12, {&jump, 1}, end * (0.2 + 0.5 * end), theta.size());
-    for (std::size_t k = 0; k < theta.size(); ++k) terms[k * kLanes] = theta[k];
+    kinks.add(2, 0.12, 1.0, {&jump, 1}, end * (0.2 + 0.5 * end));
+    kinks.set_terms(theta.size());
+    for (std::size_t k = 0; k < theta.size(); ++k) kinks.angle(0)[k * kLanes] = theta[k];
     constexpr int kDegree = 9, kStride = 8;
     std::vector<double> columns((kDegree + 1) * kStride);
     kinks.add_to_sweep(end, kDegree, 8, theta.size(), kStride, columns.data());

@@ -49,9 +49,10 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
     for (int i = 0; i < 20; ++i) {
       places.push_back(i == 0 ? 0.0 : i == 19 ? 1.0 : 0.03 + 0.05 * i);
       const double jump = 500.0 + i;
-      double* terms = kinks.add(i, value(theta, places.back()), {&jump, 1}, value(theta, 1.0), theta.size());
-      for (std::size_t k = 0; k < theta.size(); ++k) terms[k * kLanes] = theta[k];
+      kinks.add(i, value(theta, places.back()), 1.0, {&jump, 1}, value(theta, 1.0));
+      for (std::size_t k = 0; k < theta.size(); ++k) kinks.angle(i)[k * kLanes] = theta[k];
     }
+    kinks.set_terms(theta.size());
     kinks.add_to(projection);
     for (int i = 0; i < 20; ++i)
       for (int j = 0; j < kProjectionTerms; ++j) {
