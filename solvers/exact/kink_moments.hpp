@@ -4,7 +4,6 @@
 /// once, in lanes; integrals by Gauss's nodes between there and the end.
 #include <drev/core/lanes.hpp>
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>

@@ -67,7 +67,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
                   0.0);  // zeros but for what a sweep at hand adds
   const Rule rule = rule_for(response, growth, kOfShare * share, scale, end);
-  loads_.expand_kinks(series_, std::min(rule.terms, LoadSeries::all_terms(series_)));
+  loads_.expand_kinks(series_, rule.terms);
   kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
   series_.sweep(moments_.data(), degree);
   const bool holds = end != 1.0 || find_limit(share - rest, scale);

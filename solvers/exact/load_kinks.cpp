@@ -19,22 +19,21 @@ constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before 
 
 }  // namespace
 
-void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t terms) {
+void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t most) {
+  const std::size_t of_motion = idx(series.degree()) + 1,
+                    terms = std::min(most, std::max<std::size_t>(of_motion, 3));
   kinks_.set_terms(terms);
-  for (int i = 0; i < kinks_.count(); ++i)
-    expand_angle(*kink_sizes_[idx(i)].load, series, terms, kinks_.angle(i));
-}
-
-/// The terms of the load's angle, kLanes apart.
-void LoadSeries::expand_angle(const PlacedLoad& l, const TaylorSeries& series, std::size_t terms,
-                              double* theta) const {
-  const double* z = series.coefficients(0) + l.row;
-  const std::size_t known = l.feedback ? std::min(terms, idx(series.degree()) + 1) : 1, stride = idx(stride_);
-  theta[0] = l.angle;
+  for (int i = 0; i < kinks_.count(); ++i) {
+    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
+    const double* z = series.coefficients(0) + l.row;
+    double* theta = kinks_.angle(i);
+    const std::size_t known = l.feedback ? std::min(terms, of_motion) : 1, stride = idx(stride_);
+    theta[0] = l.angle;
 #pragma GCC unroll 4
-  for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = l.coeff * z[k * stride];
-  for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
-  for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
+    for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = l.coeff * z[k * stride];
+    for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
+    for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
+  }
 }
 
 double LoadSeries::find_kinks(TaylorSeries& series) {
@@ -42,7 +41,7 @@ double LoadSeries::find_kinks(TaylorSeries& series) {
   if (straight_.empty() && !expanded_.knotted()) return 0.0;
   find_ranges(series);
   list_kinks(series, 1.0, true);
-  expand_kinks(series, all_terms(series));
+  expand_kinks(series, TaylorSeries::kMaxDegree + 1);
   kinks_.add_to(of_kinks_);
   double contraction = 0.0;
   for_knotted(

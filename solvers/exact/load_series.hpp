@@ -71,10 +71,9 @@ class LoadSeries {
   /// the series stands at z_end; the loads are then on the stretches behind them. The whole step first. False: some
   /// angle may turn back, or its load has a kink in time.
   bool list_sweep_kinks(TaylorSeries& series, double end, const double* z_end);
-  /// Gives each kink listed the first so many terms of its load's angle.
-  void expand_kinks(const TaylorSeries& series, std::size_t terms);
-  /// All terms of an angle: the nominal motion has three of them.
-  static std::size_t all_terms(const TaylorSeries& series) { return idx(std::max(series.degree(), 2) + 1); }
+  /// Gives each kink listed the terms of its load's angle, no more than so many, which are three at least: those of the nominal
+  /// motion.
+  void expand_kinks(const TaylorSeries& series, std::size_t most);
   KinkMoments& kinks() { return kinks_; }
   const KinkMoments& kinks() const { return kinks_; }
   /// Puts the loads' slopes at s, behind the kinks listed, in place of those at the step's start; and those back.
@@ -136,8 +135,6 @@ class LoadSeries {
   void add_kink_slopes(TaylorSeries& series, double factor) const;
   void move(double t, const Vector& z, const Vector& v);
   double angle_term(const PlacedLoad& load, const TaylorSeries& series, int k) const;
-  void expand_angle(const PlacedLoad& load, const TaylorSeries& series, std::size_t terms,
-                    double* theta) const;
   double find_kinks(TaylorSeries& series);
   double given_kink_work(const TaylorSeries& series, int kink, double end) const;
   void find_ranges(TaylorSeries& series);
