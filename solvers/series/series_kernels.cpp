@@ -117,60 +117,74 @@ struct Polynomial {
 };
 
 struct Sums {
-  static constexpr int kTogether = 5;  // sums that stay in registers together
-  /// j: 0, 1, ... of the sums. Written out for each of them, since GCC 12 keeps an array that a loop walks over in memory.
-  template <class L, bool kSizes, bool kAdd, int... j>
-  [[gnu::always_inline]] static void some(std::integer_sequence<int, j...>, int stride, int count,
-                                          int per_column, const double* weight, const double* f,
-                                          double* out) {
-    L sum[sizeof...(j)], x;
-    if constexpr (kAdd)
-      (load(out + j * stride, sum[j]), ...);
-    else
-      ((sum[j] = L{}), ...);
-    for (int q = 0; q < count; ++q, weight += per_column, f += stride) {
-      load(f, x);
-      if constexpr (kSizes) magnitude(x);
-      ((sum[j] += weight[j] * x), ...);
+  static constexpr int kTogether = 6;  // blocks of lanes whose sums stay in registers together
+  /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on. Written out for each of them, since GCC 12 keeps an array
+  /// that a loop walks over in memory.
+  template <class L, bool kSizes, bool kAdd, int... b>
+  [[gnu::always_inline]] static void some(std::integer_sequence<int, b...>, int stride, int first, int last,
+                                          int count, int per_column, const double* weights, const int* begin,
+                                          const double* f, double* out) {
+    for (int j = first; j < last; ++j) {
+      double* to = out + j * stride;
+      L sum[sizeof...(b)];
+      if constexpr (kAdd)
+        (load(to + b * kLanes, sum[b]), ...);
+      else
+        ((sum[b] = L{}), ...);
+      const int from = begin != nullptr ? begin[j] : 0;
+      const double *weight = weights + from * per_column + j, *x = f + from * stride;
+      for (int q = from; q < count; ++q, weight += per_column, x += stride) {
+        const auto add = [&](int block, L& to_block) __attribute__((always_inline)) {
+          L term;
+          load(x + block * kLanes, term);
+          if constexpr (kSizes) magnitude(term);
+          to_block += *weight * term;
+        };
+        (add(b, sum[b]), ...);
+      }
+      (store(sum[b], to + b * kLanes), ...);
     }
-    (store(sum[j], out + j * stride), ...);
   }
   template <class L, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void all(int stride, int first, int last, int count, int per_column,
-                                         const double* weight, const double* f, double* out) {
-    for (int j = first; j < last; j += kTogether) {
-      const double* w = weight + j;
-      double* to = out + j * stride;
-      switch (std::min(last - j, kTogether)) {
+                                         const double* weights, const int* begin, const double* f,
+                                         double* out) {
+    if (first == last) return;
+    for (int i = 0; i < stride; i += kTogether * kLanes) {
+      const auto take = [&]<int kBlocks>() __attribute__((always_inline)) {
+        some<L, kSizes, kAdd>(std::make_integer_sequence<int, kBlocks>(), stride, first, last, count,
+                              per_column, weights, begin, f + i, out + i);
+      };
+      switch (std::min(kTogether, (stride - i) / kLanes)) {
         case 1:
-          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 1>(), stride, count, per_column, w, f, to);
+          take.template operator()<1>();
           break;
         case 2:
-          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 2>(), stride, count, per_column, w, f, to);
+          take.template operator()<2>();
           break;
         case 3:
-          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 3>(), stride, count, per_column, w, f, to);
+          take.template operator()<3>();
           break;
         case 4:
-          some<L, kSizes, kAdd>(std::make_integer_sequence<int, 4>(), stride, count, per_column, w, f, to);
+          take.template operator()<4>();
+          break;
+        case 5:
+          take.template operator()<5>();
           break;
         default:
-          some<L, kSizes, kAdd>(std::make_integer_sequence<int, kTogether>(), stride, count, per_column, w, f,
-                                to);
+          take.template operator()<kTogether>();
       }
     }
   }
   template <class L>
   [[gnu::always_inline]] static void run(int stride, int terms, int sizes, int count, const double* weight,
-                                         const double* f, double* out, bool add) {
+                                         const int* begin, const double* f, double* out, bool add) {
     const int together = terms + sizes;
-    for (int i = 0; i < stride; i += kLanes) {
-      if (add)
-        all<L, false, true>(stride, 0, terms, count, together, weight, f + i, out + i);
-      else
-        all<L, false, false>(stride, 0, terms, count, together, weight, f + i, out + i);
-      all<L, true, false>(stride, terms, together, count, together, weight, f + i, out + i);
-    }
+    if (add)
+      all<L, false, true>(stride, 0, terms, count, together, weight, begin, f, out);
+    else
+      all<L, false, false>(stride, 0, terms, count, together, weight, begin, f, out);
+    all<L, true, false>(stride, terms, together, count, together, weight, begin, f, out);
   }
 };
 
@@ -315,9 +329,9 @@ void polynomial_values(int count, int terms, const double* c, const double* x, d
   run_widest<Polynomial>(count, terms, c, x, value, slope);
 }
 
-void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const double* f,
-                   double* out, bool add) {
-  run_widest<Sums>(stride, terms, sizes, count, weight, f, out, add);
+void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
+                   const double* f, double* out, bool add) {
+  run_widest<Sums>(stride, terms, sizes, count, weight, begin, f, out, add);
 }
 
 double work_of_moments(int stride, const double* p, const double* b, double s) {

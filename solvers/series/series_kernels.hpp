@@ -59,9 +59,10 @@ void series_at_nodes(int stride, int degree, const double* z_0, const double* s,
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope);
 
 /// out_j = sum_q w_qj f_q, j < terms, and behind those out_j = sum_q w_qj |f_q|, j < terms + sizes, q < count; w_qj at
-/// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. add: the first ones to what out holds.
-void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const double* f,
-                   double* out, bool add = false);
+/// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. begin, where it is not null: the w_qj before
+/// q = begin[j] are zero. add: the first ones to what out holds.
+void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
+                   const double* f, double* out, bool add = false);
 
 /// sum_i p_0i b_0i + p_1i s/2 (b_0i + b_1i) + p_2i s^2/6 (2 b_0i + 3 b_1i + b_2i) = int_0^s (p_0 + p_1 u + p_2 u^2) z' du with
 /// the moments b_k = int_0^s L_k z' du of Legendre polynomials over [0, s].

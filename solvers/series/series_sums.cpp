@@ -39,7 +39,14 @@ struct SumWeights {
   std::array<double, std::size_t{kLossTerms}* kLossTerms> swept = weights_of_swept<kLossTerms>();
   std::array<double, std::size_t{2} * kRangeTerms>
       range{};  // weights of the terms' sizes from the first on: of the value, of the slope
+  // Where the weights of a sum begin: end's are zero up to term j of moment j, swept's ahead of the moment's own row.
+  std::array<int, kSums> end_begin{};
+  std::array<int, kLossTerms> swept_begin{};
   SumWeights() {
+    for (int j = 0; j < kLossTerms; ++j) {
+      end_begin[idx(kMoments + j)] = j;
+      swept_begin[idx(j)] = kLossTerms - 1 - j;
+    }
     for (int k = 1; k <= TaylorSeries::kMaxDegree; ++k) {
       double* w = end.data() + k * kSums;
       w[kRateSum] = k;
@@ -114,7 +121,8 @@ const double* TaylorSeries::sums(double s) {
     weight = part_weights_.data();
   }
   step_sums_.resize(idx(kSums * stride_));
-  weighted_sums(stride_, kSums, 0, degree_, weight + kSums, coefficients(1), step_sums_.data());
+  weighted_sums(stride_, kSums, 0, degree_, weight + kSums, sum_weights().end_begin.data(), coefficients(1),
+                step_sums_.data());
   sums_at_ = s;
   return step_sums_.data();
 }
@@ -153,7 +161,7 @@ void TaylorSeries::add_tails(const Norm& tail, const Norm& other_tail, double* o
 void TaylorSeries::ranges(double* end, double* size) {
   std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
-  weighted_sums(stride_, 0, 2, terms, sum_weights().range.data(), coefficients(1), size);
+  weighted_sums(stride_, 0, 2, terms, sum_weights().range.data(), nullptr, coefficients(1), size);
   Norm tail{}, slope_tail{};
   for (int k = terms + 1; k <= degree_; ++k)
     for (std::size_t kind = 0; kind < tail.size(); ++kind) {
@@ -187,7 +195,8 @@ void TaylorSeries::beyond_cubic(double s, double* out) {
       rate_tail[kind] += of_rate * sizes_[idx(k)][kind];
     }
   }
-  weighted_sums(stride_, 0, 2, last - kFirstBeyond + 1, weight.data(), coefficients(kFirstBeyond), out);
+  weighted_sums(stride_, 0, 2, last - kFirstBeyond + 1, weight.data(), nullptr, coefficients(kFirstBeyond),
+                out);
   add_tails(tail, rate_tail, out);
 }
 
@@ -216,7 +225,8 @@ double TaylorSeries::loss(double s, bool swept_too) {
           part_weights_[idx((kLossTerms - 1 - m) * kLossTerms + k)] *= part;
       weight = part_weights_.data();
     }
-    weighted_sums(stride_, kLossTerms, 0, kLossTerms, weight, swept(kLossTerms - 1), of_y);
+    weighted_sums(stride_, kLossTerms, 0, kLossTerms, weight, sum_weights().swept_begin.data(),
+                  swept(kLossTerms - 1), of_y);
   }
   const int y_terms = swept_too ? kLossTerms : 0;
   double sum = 0.0;

@@ -1,6 +1,9 @@
 // The terms of a series, degree by degree.
 #include <drev/core/ids.hpp>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstddef>
 
 #include "solvers/linear/lane_pair.hpp"
@@ -14,32 +17,37 @@ namespace {
   return first + static_cast<std::ptrdiff_t>(k) * stride;
 }
 
-/// P_{m-2}; null: there is none.
-[[gnu::always_inline]] inline const double* right_side(const SeriesRecursion& r, int m) {
-  return m - 2 <= r.p_degree ? term_of(r.p, r.stride, m - 2 - r.p_first) : nullptr;
-}
+/// The next term is loaded from memory: a whole one has no room in registers, and GCC 12 would write it to its stack a second time.
+[[gnu::always_inline]] inline void end_term() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
-/// Runs Body::term<L, kForces>(recursion, m, largest) for the terms first ... last. Of a series with their sizes; of a sweep
-/// (derivatives), whose terms tell nothing by their sizes, without.
+/// Runs Body::term<L, kForces>(m, p, largest) for the terms first ... last, where p is P_{m-2} if there is one (kForces). Of a
+/// series with their sizes; of a sweep (derivatives), whose terms tell nothing by their sizes, without.
 template <class Body, class L>
-[[gnu::always_inline]] inline void all_terms(const SeriesRecursion& r, int first, int last, double* sizes) {
-  for (int m = first; m <= last; ++m) {
+[[gnu::always_inline]] inline void all_terms(const Body& body, int first, int last, double* sizes) {
+  const SeriesRecursion& r = body.r;
+  const auto size = [&](int m) -> double& { return sizes[m - first]; };
+  int m = first;
+  for (const int with = std::min(last, r.p_degree + 2); m <= with; ++m) {
     L largest{};
-    if (right_side(r, m) != nullptr)
-      Body::template term<L, true>(r, m, largest);
-    else
-      Body::template term<L, false>(r, m, largest);
-    if constexpr (!Body::kSweep) sizes[m - first] = largest_of(largest);
+    body.template term<L, true>(m, term_of(r.p, r.stride, m - 2 - r.p_first), largest);
+    if constexpr (!Body::kSweep) size(m) = largest_of(largest);
+    end_term();
+  }
+  for (; m <= last; ++m) {
+    L largest{};
+    body.template term<L, false>(m, nullptr, largest);
+    if constexpr (!Body::kSweep) size(m) = largest_of(largest);
+    end_term();
   }
   if constexpr (!Body::kSweep) {
     // Comparisons drop a NaN, but what is not finite in one term stays so in those behind it.
-    for (int m = last > first ? last - 1 : last; m <= last; ++m) {
+    for (m = last > first ? last - 1 : last; m <= last; ++m) {
       L not_finite{}, x;
       for (int i = 0; i < r.stride; i += kLanes) {
         load(term_of(r.z, r.stride, m) + i, x);
         not_finite += 0.0 * x;
       }
-      sizes[m - first] += sum_of(not_finite);
+      size(m) += sum_of(not_finite);
     }
   }
 }
@@ -67,12 +75,12 @@ template <class L>
 template <bool kOfSweep>
 struct Diagonals {
   static constexpr bool kSweep = kOfSweep;
+  const SeriesRecursion r;  // a copy, which stores to columns cannot change
   template <class L, bool kForces>
-  [[gnu::always_inline]] static void term(const SeriesRecursion& r, int m, L& largest) {
+  [[gnu::always_inline]] void term(int m, const double* p, L& largest) const {
     const double factor = r.factor(m), c_factor = r.damping_factor(m);
     const double *x_0 = term_of(r.z, r.stride, m - 2), *x_1 = term_of(r.z, r.stride, m - 1);
     double* next = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
-    const double* p = right_side(r, m);
     const DiagonalView *k = r.k.views, *c = r.c.views;
     for (int i = 0, block = 0; i < r.stride; i += kLanes, ++block) {
       L sum{}, damping{}, a, b;
@@ -100,18 +108,29 @@ struct Diagonals {
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
-    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
-    all_terms<Diagonals, L>(r, first, last, sizes);
+    all_terms<Diagonals, L>({*recursion}, first, last, sizes);
   }
 };
 
+/// What a chain has beside its neighbours' entries: nothing, and C has its main diagonal alone; the same with one view in a block
+/// of lanes at most; or any.
+enum class Beside { nothing, single_views, any };
+
 /// The same where K and C have their entries on the main diagonal and beside it, with a few elsewhere (k.views, c.views): the
 /// neighbours come from the lanes beside, so that no load overlaps what was stored just before. kBlocks: of lanes in a column,
-/// where that is known, so that loops over them are unrolled; 0: any number. kPlain: no entries are elsewhere, and C has its
-/// main diagonal alone.
-template <bool kOfSweep, int kBlocks, bool kPlain>
+/// where that is known, so that loops over them are unrolled; 0: any number.
+template <bool kOfSweep, int kBlocks, Beside kBeside>
 struct Chain {
   static constexpr bool kSweep = kOfSweep;
+  static constexpr bool kMainDamping = kBeside != Beside::any;
+  const SeriesRecursion r;                        // a copy, which stores to columns cannot change
+  std::array<DiagonalView, kBlocks> single = {};  // values null: none in the block
+  explicit Chain(const SeriesRecursion& recursion) : r(recursion) {
+    if constexpr (kBeside == Beside::single_views)
+      for (int b = 0; b < kBlocks; ++b)
+        if (const DiagonalView* view = r.k.views + r.k.begin[b]; r.k.begin[b + 1] > r.k.begin[b])
+          single[idx(b)] = {b * kLanes + view->offset, view->values + b * kLanes};
+  }
   /// sum = a x, a's diagonals below, on and above the main one.
   template <class L>
   [[gnu::always_inline]] static void multiply(const std::array<const double*, 3>& a, int i, const L& up,
@@ -135,13 +154,12 @@ struct Chain {
     }
   }
   template <class L, bool kForces>
-  [[gnu::always_inline]] static void term(const SeriesRecursion& r, int m, L& largest) {
+  [[gnu::always_inline]] void term(int m, const double* p, L& largest) const {
     const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
     const double factor = kSweep ? 1.0 : r.factor(m), c_factor = kSweep ? 1.0 : r.damping_factor(m);
     const double *x_0 = term_of(r.z, stride, m - 2), *x_1 = term_of(r.z, stride, m - 1);
     double* next = r.z + static_cast<std::ptrdiff_t>(m) * stride;
-    const double* p = kForces ? right_side(r, m) : nullptr;
-    const bool whole_c = !kPlain && r.c_chain[1] != nullptr;
+    const bool whole_c = !kMainDamping && r.c_chain[1] != nullptr;
     L before{}, x, behind{}, rate_before{}, rate, rate_behind{};
     load(x_0, x);
     load(x_1, rate);
@@ -154,7 +172,14 @@ struct Chain {
       move_up(before, x, up);
       move_down(x, behind, down);
       multiply(r.k_chain, i, up, x, down, sum);
-      if constexpr (!kPlain) add_far(r.k, block, x_0, sum);
+      if constexpr (kBeside == Beside::any) add_far(r.k, block, x_0, sum);
+      if constexpr (kBeside == Beside::single_views)
+        if (const DiagonalView& view = single[idx(block)]; view.values != nullptr) {
+          L a, b;
+          load(view.values, a);
+          load(x_0 + view.offset, b);
+          sum += a * b;
+        }
       if (whole_c) {
         L damping;
         rate_behind = L{};
@@ -166,7 +191,7 @@ struct Chain {
         sum += c_factor * damping;
         rate_before = rate;
         rate = rate_behind;
-      } else if (kPlain || r.c_main != nullptr) {
+      } else if (kMainDamping || r.c_main != nullptr) {
         L value;
         load(r.c_main + i, value);
         load(x_1 + i, rate);
@@ -183,17 +208,21 @@ struct Chain {
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
-    const SeriesRecursion r = *recursion;  // a copy, which stores to columns cannot change
-    all_terms<Chain, L>(r, first, last, sizes);
+    all_terms<Chain, L>(Chain(*recursion), first, last, sizes);
   }
 };
 
 template <bool kSweep, int kBlocks>
 void run_chain(const SeriesRecursion* r, int first, int last, double* sizes) {
-  if (r->k.begin[r->stride / kLanes] == 0 && r->c_main != nullptr)
-    run_widest<Chain<kSweep, kBlocks, true>>(r, first, last, sizes);
-  else
-    run_widest<Chain<kSweep, kBlocks, false>>(r, first, last, sizes);
+  const int blocks = r->stride / kLanes;
+  if (r->c_main == nullptr) return run_widest<Chain<kSweep, kBlocks, Beside::any>>(r, first, last, sizes);
+  if (r->k.begin[blocks] == 0)
+    return run_widest<Chain<kSweep, kBlocks, Beside::nothing>>(r, first, last, sizes);
+  if constexpr (kBlocks > 0)
+    if (std::adjacent_find(r->k.begin, r->k.begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
+        r->k.begin + blocks + 1)
+      return run_widest<Chain<kSweep, kBlocks, Beside::single_views>>(r, first, last, sizes);
+  run_widest<Chain<kSweep, kBlocks, Beside::any>>(r, first, last, sizes);
 }
 
 template <bool kSweep>
