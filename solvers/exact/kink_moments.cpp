@@ -4,6 +4,7 @@
 #include <array>
 
 #include "solvers/linear/lane_pair.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -42,10 +43,10 @@ template <class L>
     }
     L step = (value - target) / slope;
     s -= step;
-    double places[kLanes];
-    store(s, places);
-    for (double& at : places) at = at < 0.0 ? 0.0 : at > end ? end : at;
-    load(places, s);
+    L within{};
+    raise(within, s);
+    s = L{} + end;
+    sink(s, within);
     magnitude(step);
     load(lanes, x);
     step *= x;
@@ -121,7 +122,8 @@ struct Moments {
   }
 };
 
-/// Moments int_s^e (e - s)^j/j! f(theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes.
+/// Moments int_s^e (e - s)^j/j! f(theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes, whose weights times
+/// (1 - node)^j/j! are at weights + j kSweepNodes.
 template <int kSweepNodes>
 struct SweepMoments {
   template <class L>
@@ -136,24 +138,27 @@ struct SweepMoments {
     find_place(theta, place_terms, lanes, target, at_end, s_end, kSweepSettled, s);
     store(s, place);
     const L rest = s_end - s;
-    L f[kSweepNodes];
+    double f[kSweepNodes * kLanes];
     for (int q = 0; q < kSweepNodes; q += 2) {
-      angles(theta, terms, s + nodes[q] * rest, s + nodes[q + 1] * rest, f[q], f[q + 1]);
-      for (int node = q; node < q + 2; ++node) {
-        f[node] = f[node] - target;
-        take_force(force, powers, f[node]);
-        f[node] = weights[node] * f[node];
-      }
+      L f_0, f_1;
+      angles(theta, terms, s + nodes[q] * rest, s + nodes[q + 1] * rest, f_0, f_1);
+      f_0 = f_0 - target;
+      f_1 = f_1 - target;
+      take_force(force, powers, f_0);
+      take_force(force, powers, f_1);
+      store(f_0, f + q * kLanes);
+      store(f_1, f + (q + 1) * kLanes);
     }
-    L power = rest;  // rest^(j+1)/j!
-    for (int j = 0;; ++j) {
-      L sum = f[0] + f[1];
-      for (int q = 2; q < kSweepNodes; ++q) sum += f[q];
+    L power = rest;  // rest^(j+1)
+    for (int j = 0; j <= degree; ++j, weights += kSweepNodes) {
+      L sum{}, x;
+      for (int q = 0; q < kSweepNodes; ++q) {
+        load(f + q * kLanes, x);
+        sum += weights[q] * x;
+      }
       sum *= power;
       store(sum, moments + j * kLanes);
-      if (j == degree) break;
-      power *= (1.0 / (j + 1)) * rest;
-      for (int q = 0; q < kSweepNodes; ++q) f[q] = (1.0 - nodes[q]) * f[q];
+      power *= rest;
     }
   }
 };
@@ -162,6 +167,21 @@ template <int kNodes>
 struct NodesAndWeights {
   std::array<double, kNodes> nodes, weights;
   NodesAndWeights() { find_gauss_rule(kNodes, nodes.data(), weights.data()); }
+};
+
+/// The weights of SweepMoments.
+template <int kNodes>
+struct SweepRule : NodesAndWeights<kNodes> {
+  std::array<double, std::size_t{kNodes} * (TaylorSeries::kMostSwept + 1)> of_moments;
+  SweepRule() {
+    for (std::size_t q = 0; q < kNodes; ++q) {
+      double weight = this->weights[q];
+      for (std::size_t j = 0; j <= TaylorSeries::kMostSwept; ++j) {
+        of_moments[j * kNodes + q] = weight;
+        weight *= (1.0 - this->nodes[q]) / static_cast<double>(j + 1);
+      }
+    }
+  }
 };
 
 }  // namespace
@@ -220,7 +240,7 @@ void KinkMoments::add_to(LegendreProjection& projection) {
 
 template <int kNodes>
 void KinkMoments::find_sweep_moments(double end, std::size_t place_terms) {
-  static const NodesAndWeights<kNodes> rule;
+  static const SweepRule<kNodes> rule;
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
     run_widest<SweepMoments<kNodes>>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
@@ -228,7 +248,7 @@ void KinkMoments::find_sweep_moments(double end, std::size_t place_terms) {
                                      static_cast<const double*>(knot_.data() + at),
                                      static_cast<const double*>(force_.data() + at / kLanes * kForce),
                                      powers_, static_cast<const double*>(end_.data() + at), end,
-                                     rule.nodes.data(), rule.weights.data(), degree_, place_.data() + at,
+                                     rule.nodes.data(), rule.of_moments.data(), degree_, place_.data() + at,
                                      sweep_moments_.data() + at * idx_of(degree_ + 1));
   }
 }
