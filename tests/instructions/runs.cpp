@@ -1,10 +1,12 @@
-// Three small runs whose instructions are counted (count.sh): what is inside measured() is.
-//   instructions_runs held|gears|modes
+// Runs whose instructions are counted (count.sh): what is inside measured() is.
+//   instructions_runs held|gears|modes|main_job
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
@@ -17,13 +19,14 @@ extern "C" [[gnu::noinline]] void measured(const std::function<bool()>& run, boo
 
 namespace {
 
-constexpr double kDuration = 0.02;  // s
+constexpr double kDuration = 0.02, kLongDuration = 1.0;  // s
 
-System camshaft(const char* drive) {
+ModelCase camshaft_case(const char* drive) {
   Parameters parameters("camshaft", camshaft_entry().parameters);
   parameters.set("drive", drive);
-  return camshaft_entry().build(parameters).model.build();
+  return camshaft_entry().build(parameters);
 }
+System camshaft(const char* drive) { return camshaft_case(drive).model.build(); }
 
 System chain(int n) {
   Model m("chain");
@@ -49,6 +52,19 @@ int main(int argc, char** argv) {
   } else if (name == "gears") {
     const System system = camshaft("gears");
     measured([&] { return propagate(system, {.tolerance = 1e-6, .t_end = kDuration}).ok(); }, ok);
+  } else if (name == "main_job") {
+    const ModelCase model_case = camshaft_case("gears");
+    const System system = model_case.model.build();
+    Peaks torque(find_channels(system, model_case.torques));
+    Peaks deflection(find_channels(system, {model_case.deflection}));
+    ContactStatistics contacts(system);
+    measured(
+        [&] {
+          return propagate(system, {.tolerance = 1e-8, .t_end = kLongDuration},
+                           {&torque, &deflection, &contacts})
+              .ok();
+        },
+        ok);
   } else if (name == "modes") {
     const System system = chain(2000);
     measured([&] { return solve_modes(system, {.count = 10}).count() == 10; }, ok);
