@@ -44,6 +44,15 @@ struct LanePair {
   std::memcpy(to, &from.low, sizeof from.low);
   std::memcpy(to + kLanes / 2, &from.high, sizeof from.high);
 }
+/// to = from[index[lane]] by lanes.
+[[gnu::always_inline]] inline void gather(const double* from, const int* index, Lanes& to) {
+  to = Lanes{from[index[0]], from[index[1]], from[index[2]], from[index[3]],
+             from[index[4]], from[index[5]], from[index[6]], from[index[7]]};
+}
+[[gnu::always_inline]] inline void gather(const double* from, const int* index, LanePair& to) {
+  to.low = LanePair::Half{from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
+  to.high = LanePair::Half{from[index[4]], from[index[5]], from[index[6]], from[index[7]]};
+}
 [[gnu::always_inline]] inline void magnitude(LanePair& x) {
   using Bits = std::int64_t __attribute__((vector_size(kLanes * sizeof(double) / 2), aligned(8)));
   constexpr std::int64_t kAllButSign = std::numeric_limits<std::int64_t>::max();

@@ -3,7 +3,9 @@
 #include <drev/solvers/run/peaks.hpp>
 
 #include <algorithm>
+#include <limits>
 
+#include "solvers/linear/lane_pair.hpp"
 #include "solvers/run/cubic_peak.hpp"
 #include "solvers/run/peak_search.hpp"
 
@@ -36,33 +38,46 @@ Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
     : channels_(std::move(channels)),
       peaks_(channels_.size()),
       watched_(channels_.size()),
-      last_(channels_.size()),
-      ahead_(channels_.size()),
-      last_rate_(channels_.size()),
-      ahead_rate_(channels_.size()),
       inside_steps_(inside_steps) {
-  for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const std::vector<Entry>& row = channels_[c].z_row();
-    if (!channels_[c].is_linear() || row.size() > 2 || !channels_[c].v_row().empty()) {
+  for (std::size_t c = 0; c < channels_.size(); ++c)
+    if (channels_[c].is_linear() && channels_[c].z_row().size() <= 2 && channels_[c].v_row().empty())
+      add_pair(c);
+    else
       others_.push_back(c);
-      continue;
-    }
-    watched_[c].pair = static_cast<int>(pairs_.size());
-    Pair& pair = pairs_.emplace_back(Pair{c});
-    if (!row.empty()) pair.first = row[0];
-    if (row.size() == 2) pair.second = row[1];
+  for (std::size_t i = 0; i < pairs_.first.size(); i += kLanes) {
+    const auto follow = [i](const std::vector<int>& index) {
+      const auto from = index.begin() + static_cast<std::ptrdiff_t>(i);
+      return std::adjacent_find(from, from + kLanes, [](int a, int b) { return b != a + 1; }) ==
+             from + kLanes;
+    };
+    pairs_.in_a_row.push_back(follow(pairs_.first) && follow(pairs_.second) ? 1 : 0);
   }
+}
+
+void Peaks::add_pair(std::size_t c) {
+  const std::size_t i = pairs_.channel.size();
+  watched_[c].pair = static_cast<int>(i);
+  pairs_.channel.push_back(c);
+  const auto room = static_cast<std::size_t>(whole_lanes(static_cast<int>(i) + 1));
+  for (auto* list : {&pairs_.first, &pairs_.second}) list->resize(room, 0);
+  for (auto* list : {&pairs_.coeff_1, &pairs_.coeff_2, &pairs_.last, &pairs_.ahead, &pairs_.last_rate,
+                     &pairs_.ahead_rate, &pairs_.flag})
+    list->resize(room, 0.0);
+  pairs_.max.resize(room, std::numeric_limits<double>::infinity());
+  pairs_.min.resize(room, -std::numeric_limits<double>::infinity());
+  const std::vector<Entry>& row = channels_[c].z_row();
+  if (!row.empty()) pairs_.first[i] = row[0].index, pairs_.coeff_1[i] = row[0].coeff;
+  if (row.size() == 2) pairs_.second[i] = row[1].index, pairs_.coeff_2[i] = row[1].coeff;
 }
 
 double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const {
   const int pair = watched_[c].pair;
-  return pair >= 0 ? pairs_[idx(pair)].sum(point.state.z.data())
-                   : channels_[c].evaluate(assembler, point.state);
+  return pair >= 0 ? pairs_.sum(pair, point.state.z.data()) : channels_[c].evaluate(assembler, point.state);
 }
 
 std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
                                   const EvaluatedState& point) const {
-  if (const int pair = watched_[c].pair; pair >= 0) return pairs_[idx(pair)].sum(point.state.v.data());
+  if (const int pair = watched_[c].pair; pair >= 0) return pairs_.sum(pair, point.state.v.data());
   if (const int law = channels_[c].deflection_of(); law >= 0) return point.inputs[idx(law)].x_dot;
   // Known motions are those of the assembler's time, which may be another than the point's.
   if (!channels_[c].is_linear() && assembler.system().any_prescribed_moves()) return std::nullopt;
@@ -100,7 +115,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   double beyond = 0.0;
   if (channels_[c].is_linear()) {
     // Its rate reads the acceleration, which is the rate's rate.
-    reach = cubic_reach(last_[c], along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
+    reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
                         along(c, to.state.v, to.state.a), h);
     for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     for (const Entry& e : channels_[c].v_row())
@@ -122,24 +137,80 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
 }
 
+/// Values and rates at the step's end, and a flag where the value may pass its peaks: most are so far from them that no slope at an
+/// end leads there. What is not a number is flagged, too.
+struct Peaks::Pairs::Flag {
+  template <bool kInARow, class L>
+  [[gnu::always_inline]] static void take(const double* x, const int* index, L& to) {
+    if constexpr (kInARow)
+      load(x + index[0], to);
+    else
+      gather(x, index, to);
+  }
+  template <bool kInARow, class L>
+  [[gnu::always_inline]] static void some(Pairs& pairs, std::size_t i, const double* z, const double* v,
+                                          const double* beyond_cubic, double most_bulge, L& any) {
+    const int *first = pairs.first.data() + i, *second = pairs.second.data() + i;
+    L c_1, c_2, x_1{}, x_2{}, bulge, last, bound, flag{}, one{};
+    load(pairs.coeff_1.data() + i, c_1);
+    load(pairs.coeff_2.data() + i, c_2);
+    take<kInARow>(z, first, x_1);
+    take<kInARow>(z, second, x_2);
+    const L ahead = c_1 * x_1 + c_2 * x_2;
+    store(ahead, pairs.ahead.data() + i);
+    take<kInARow>(v, first, x_1);
+    take<kInARow>(v, second, x_2);
+    L rate = c_1 * x_1 + c_2 * x_2;
+    store(rate, pairs.ahead_rate.data() + i);
+    magnitude(rate);
+    load(pairs.last_rate.data() + i, bulge);
+    magnitude(bulge);
+    bulge = most_bulge * (bulge + rate);
+    take<kInARow>(beyond_cubic, first, x_1);
+    take<kInARow>(beyond_cubic, second, x_2);
+    magnitude(c_1);
+    magnitude(c_2);
+    bulge += c_1 * x_1 + c_2 * x_2;
+    one = 1.0 + one;
+    load(pairs.last.data() + i, last);
+    load(pairs.max.data() + i, bound);
+    keep_where_not_below(bound, ahead + bulge, one, flag);
+    keep_where_not_below(bound, last + bulge, one, flag);
+    load(pairs.min.data() + i, bound);
+    keep_where_not_below(ahead - bulge, bound, one, flag);
+    keep_where_not_below(last - bulge, bound, one, flag);
+    store(flag, pairs.flag.data() + i);
+    raise(any, flag);
+  }
+  template <class L>
+  [[gnu::always_inline]] static double run(Pairs* pairs, const double* z, const double* v,
+                                           const double* beyond_cubic, double most_bulge) {
+    L any{};
+    for (std::size_t i = 0; i < pairs->first.size(); i += kLanes)
+      if (pairs->in_a_row[i / kLanes] != 0)
+        some<true>(*pairs, i, z, v, beyond_cubic, most_bulge, any);
+      else
+        some<false>(*pairs, i, z, v, beyond_cubic, most_bulge, any);
+    return largest_of(any);
+  }
+};
+
 /// may_pass() of any channel of two entries. If none may, their values and rates at the step's end are kept.
 bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
-  const double *z = to.state.z.data(), *v = to.state.v.data(), *v_before = from.state.v.data();
-  const double h = to.state.t - from.state.t, most_bulge = kMostBulge * h;
-  for (const Pair& pair : pairs_) {
-    const std::size_t c = pair.channel;
-    const double last = last_[c], ahead = pair.sum(z), ahead_rate = pair.sum(v),
-                 rate = last_rates_ ? last_rate_[c] : pair.sum(v_before);
-    ahead_[c] = ahead;
-    ahead_rate_[c] = ahead_rate;
-    const double beyond = std::abs(pair.first.coeff) * beyond_cubic[pair.first.index] +
-                          std::abs(pair.second.coeff) * beyond_cubic[pair.second.index];
-    const double high = peaks_[c].max - beyond, low = peaks_[c].min + beyond;
-    // Most values are so far from their peaks that no slope at an end leads there.
-    const double bulge = most_bulge * (std::abs(rate) + std::abs(ahead_rate));
-    if (std::max(last, ahead) + bulge <= high && std::min(last, ahead) - bulge >= low) continue;
-    const Interval reach = cubic_reach(last, rate, ahead, ahead_rate, h);
-    if (!(reach.high <= high && reach.low >= low)) return true;
+  const auto count = static_cast<int>(pairs_.channel.size());
+  const double h = to.state.t - from.state.t;
+  if (!last_rates_)
+    for (int i = 0; i < count; ++i) pairs_.last_rate[idx(i)] = pairs_.sum(i, from.state.v.data());
+  if (run_widest<Pairs::Flag>(&pairs_, to.state.z.data(), to.state.v.data(), beyond_cubic, kMostBulge * h) ==
+      0.0)
+    return false;
+  for (std::size_t i = 0; i < pairs_.channel.size(); ++i) {
+    if (pairs_.flag[i] == 0.0) continue;
+    const double beyond = std::abs(pairs_.coeff_1[i]) * beyond_cubic[pairs_.first[i]] +
+                          std::abs(pairs_.coeff_2[i]) * beyond_cubic[pairs_.second[i]];
+    const Interval reach =
+        cubic_reach(pairs_.last[i], pairs_.last_rate[i], pairs_.ahead[i], pairs_.ahead_rate[i], h);
+    if (!(reach.high + beyond <= pairs_.max[i] && reach.low - beyond >= pairs_.min[i])) return true;
   }
   return false;
 }
@@ -160,7 +231,7 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const double y = value(c, assembler, point);
     peaks_[c] = {{y, point.state.t, y, point.state.t}};
-    last_[c] = y;
+    last(c) = y;
     set_bounds(c);
   }
   passed_over_ = last_rates_ = false;
@@ -169,8 +240,8 @@ void Peaks::start(const Assembler& assembler, const EvaluatedState& point) {
 void Peaks::restart(const Assembler& assembler, const EvaluatedState& point) {
   passed_over_ = last_rates_ = false;
   for (const std::size_t c : others_) {  // angles do not jump
-    last_[c] = value(c, assembler, point);
-    peaks_[c].note(last_[c], point.state.t);
+    last(c) = value(c, assembler, point);
+    peaks_[c].note(last(c), point.state.t);
     set_bounds(c);
   }
 }
@@ -181,17 +252,17 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
   if (passed_over_ && to.state.t < ahead_t_) return;
   last_rates_ = passed_over_;
   if (passed_over_) {
-    last_.swap(ahead_);
-    last_rate_.swap(ahead_rate_);
-    for (const std::size_t c : others_) last_[c] = value(c, assembler, to);
+    pairs_.last.swap(pairs_.ahead);
+    pairs_.last_rate.swap(pairs_.ahead_rate);
+    for (const std::size_t c : others_) last(c) = value(c, assembler, to);
     passed_over_ = false;
     return;
   }
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const Watched& w = watched_[c];
-    const double y = value(c, assembler, to), before = last_[c];
+    const double y = value(c, assembler, to), before = last(c);
     const double higher = std::max(y, before), lower = std::min(y, before);
-    last_[c] = y;
+    last(c) = y;
     if (higher <= w.high && lower >= w.low) continue;
     Peak& p = peaks_[c];
     p.note(y, to.state.t);
@@ -207,6 +278,10 @@ void Peaks::set_bounds(std::size_t c) {
   const double near = inside_steps_ ? kNear * (p.max - p.min) : 0.0;
   watched_[c].low = p.min + near;
   watched_[c].high = p.max - near;
+  if (const int pair = watched_[c].pair; pair >= 0) {
+    pairs_.max[idx(pair)] = p.max;
+    pairs_.min[idx(pair)] = p.min;
+  }
 }
 
 bool Peaks::needs_acceleration() const {

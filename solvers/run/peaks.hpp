@@ -46,24 +46,40 @@ class Peaks final : public Observer {
   void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
                    const EvaluatedState& to, double y_0, double y_1);
 
-  /// A channel of two entries: its value is the sum over z, its rate that over v. There are many steps and few new peaks.
-  struct Pair {
-    std::size_t channel;
-    Entry first{0, 0.0}, second{0, 0.0};
-    double sum(const double* x) const {
-      return first.coeff * x[first.index] + second.coeff * x[second.index];
+  /// Channels of two entries, in whole lanes: a value is the sum over z, its rate that over v. There are many steps and few new
+  /// peaks.
+  struct Pairs {
+    std::vector<std::size_t> channel;
+    std::vector<int> first, second;             ///< indices of the entries
+    std::vector<double> coeff_1, coeff_2;       ///< and their coefficients
+    std::vector<double> last, ahead;            ///< values at the last point, and at the step's end
+    std::vector<double> last_rate, ahead_rate;  ///< the same of the rates
+    std::vector<double> max, min;               ///< the peaks so far; infinite where there is no channel
+    std::vector<double> flag;                   ///< 0: the value does not pass its peaks in the step at hand
+    double sum(int i, const double* x) const {
+      const auto at = static_cast<std::size_t>(i);
+      return coeff_1[at] * x[first[at]] + coeff_2[at] * x[second[at]];
     }
+    std::vector<char>
+        in_a_row;  ///< by kLanes of them: each index is one more than the one before, as along a chain
+    struct Flag;
   };
   struct Watched {
-    int pair = -1;                 ///< of pairs_; -1: of another kind
+    int pair = -1;                 ///< its place among the pairs; -1: of another kind
+    double last = 0.0;             ///< value at the last point, of another kind
     std::vector<Entry> row;        ///< of the unknowns that a channel of a law follows
     double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
   };
   void set_bounds(std::size_t c);
+  void add_pair(std::size_t c);
+  double& last(std::size_t c) {
+    const int pair = watched_[c].pair;
+    return pair >= 0 ? pairs_.last[static_cast<std::size_t>(pair)] : watched_[c].last;
+  }
   void find_rows(const System& system);
   /// Of a linear channel: its row over the unknowns times x, and its row over their rates times x_dot.
   double along(std::size_t c, const Vector& x, const Vector& x_dot) const;
-  /// Whether the value may pass its peaks within a step.
+  /// Whether the value of a channel that is no pair may pass its peaks within a step.
   bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
                 const double* beyond_cubic) const;
   bool pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic);
@@ -71,9 +87,7 @@ class Peaks final : public Observer {
   std::vector<Channel> channels_;
   std::vector<Peak> peaks_;
   std::vector<Watched> watched_;
-  std::vector<Pair> pairs_;
-  std::vector<double> last_, ahead_;  // values by channel at the last point; of pairs at the step's end
-  std::vector<double> last_rate_, ahead_rate_;  // of pairs, by channel
+  Pairs pairs_;
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
   double longest_ = 0.0;             // step so far [s]
