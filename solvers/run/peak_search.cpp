@@ -12,6 +12,7 @@ namespace {
 constexpr int kMostLooks = 40;
 constexpr double kRounding = 4e-16;   // rounding of a value over the largest one
 constexpr double kSettled = 1e-13;    // gain of the last parabola over the range
+constexpr double kLeastGain = 1e-15;  // gain of a next look by the rates over the range
 constexpr double kCubicError = 0.25;  // error of a cubic over the rise that it shows,
 constexpr double kRangeError = 1e-6;  // and over the range
 constexpr double kCloser = 0.125;  // part of the way from an end to the middle, looked at where nothing shows
@@ -36,6 +37,10 @@ void search_by_rates(PeakSample a, PeakSample b, const Look& look, double range,
     peak.note(m.y, m.t);
     if (!m.rate || std::abs(m.y - cubic->value) <= kRounding * std::max(std::abs(m.y), range)) return;
     (*m.rate * sign > 0.0 ? a : b) = m;
+    // From here a rate that falls evenly to the other end's gains so much more.
+    const double other = *m.rate * sign > 0.0 ? *b.rate : *a.rate;
+    const double gain = 0.5 * (b.t - a.t) * *m.rate * *m.rate / (std::abs(*m.rate) + std::abs(other));
+    if (gain <= kLeastGain * range) return;
   }
 }
 
