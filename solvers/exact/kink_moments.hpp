@@ -38,6 +38,7 @@ class KinkMoments {
   void clear_rows(int degree, int stride, double* columns) const;
   /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
+  const double* places() const { return place_.data(); }  ///< of all, in whole lanes
   int row(int i) const { return row_[static_cast<std::size_t>(i)]; }
   double knot(int i) const { return knot_[static_cast<std::size_t>(i)]; }
   double end(int i) const { return end_[static_cast<std::size_t>(i)]; }

@@ -57,8 +57,8 @@ class KinkResponse {
     double error = 0.0;    // of the motion by the scale
     double between = 0.0;  // s between the two kinks that make most of it
   };
-  Others error_of_others(double end, double allowed) const;
-  double bound_of_rows_apart(double end, double beside, double apart) const;
+  Others error_of_others(double end, double allowed);
+  double bound_of_rows_apart(double end, double beside, double apart);
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double allowed, double scale);
@@ -70,6 +70,7 @@ class KinkResponse {
   bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
   std::vector<double> moments_;
+  std::vector<double> pulls_, gains_;  // of the kinks, in whole lanes
 };
 
 }  // namespace drev

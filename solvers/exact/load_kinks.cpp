@@ -25,12 +25,13 @@ void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t most) {
   kinks_.set_terms(terms);
   for (int i = 0; i < kinks_.count(); ++i) {
     const PlacedLoad& l = *kink_sizes_[idx(i)].load;
-    const double* z = series.coefficients(0) + l.row;
-    double* theta = kinks_.angle(i);
+    const double coeff = l.coeff;
+    const double* __restrict z = series.coefficients(0) + l.row;
+    double* __restrict theta = kinks_.angle(i);
     const std::size_t known = l.feedback ? std::min(terms, of_motion) : 1, stride = idx(stride_);
     theta[0] = l.angle;
 #pragma GCC unroll 4
-    for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = l.coeff * z[k * stride];
+    for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = coeff * z[k * stride];
     for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
     for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
   }
