@@ -8,6 +8,7 @@
 #include <drev/core/units.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/dense/fourier.hpp"
@@ -36,18 +37,6 @@ LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t
 
 /// Angles that no division of a turn into equal parts hits [rad].
 double probe_angle(int i) { return 0.37 + 0.911 * i; }
-
-/// Whether two ways to evaluate a load agree: compares torques and slopes, relative to the largest.
-template <class First, class Second>
-bool same_everywhere(const First& first, const Second& second) {
-  double size = 0.0, difference = 0.0;
-  for (int i = 0; i < kProbes; ++i) {
-    const LoadResponse a = first(probe_angle(i)), b = second(probe_angle(i));
-    size = std::max({size, std::abs(a.torque), std::abs(b.torque)});
-    difference = std::max(difference, std::abs(a.torque - b.torque));
-  }
-  return difference <= kSame * size;
-}
 
 }  // namespace
 
@@ -96,28 +85,37 @@ bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Fin
     return source.constant || ratio != 0.0 || refuse(does_not_turn);
   }
   const SpeedScaledLoad* scaled = source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
-  const auto now = [&](double angle) { return at_angle(term, angle, speed); };
+  std::array<double, kProbes> torques{};
+  double size = 0.0;
+  for (int i = 0; i < kProbes; ++i) {
+    torques[idx(i)] = at_angle(term, probe_angle(i), speed).torque;
+    size = std::max(size, std::abs(torques[idx(i)]));
+  }
+  // Whether another way to evaluate the load gives the same torques, to rounding of the largest.
+  const auto same = [&](const auto& other) {
+    for (int i = 0; i < kProbes; ++i)
+      if (std::abs(other(probe_angle(i)).torque - torques[idx(i)]) > kSame * size) return false;
+    return true;
+  };
   bool in_time = !term.load->frequencies().empty() || !term.load->breakpoints().empty();
   for (const double t : {0.0173, 0.291, 1.37, 11.3, 97.7})
-    in_time =
-        in_time || (!scaled && !same_everywhere(now, [&](double a) { return at_angle(term, a, speed, t); }));
+    in_time = in_time || (!scaled && !same([&](double a) { return at_angle(term, a, speed, t); }));
   if (in_time)
     return refuse(
         "is a function of the time and has no orders; a sweep takes loads that follow the angle, such as "
         "engine_order_torque and cam_torque, and constant ones");
   for (const double factor : {0.5, 1.7, 3.1})
-    source.follows_speed =
-        source.follows_speed ||
-        (scaled ? scaled->speed_factors(factor * speed) != scaled->speed_factors(speed)
-                : !same_everywhere(now, [&](double a) { return at_angle(term, a, factor * speed); }));
-  const auto standing = [&](double) { return at_angle(term, 0.0, speed); };
-  source.constant = ratio == 0.0 || same_everywhere(now, standing);
-  if (ratio == 0.0 && !same_everywhere(now, standing)) return refuse(does_not_turn);
+    source.follows_speed = source.follows_speed ||
+                           (scaled ? scaled->speed_factors(factor * speed) != scaled->speed_factors(speed)
+                                   : !same([&](double a) { return at_angle(term, a, factor * speed); }));
+  const bool standing = same([&](double) { return at_angle(term, 0.0, speed); });
+  source.constant = ratio == 0.0 || standing;
+  if (ratio == 0.0 && !standing) return refuse(does_not_turn);
   source.table = term.load->table().has_value();
   if (!source.constant && !source.table) {
     bool repeats = false;
     for (const int turns : {1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns}) {
-      repeats = same_everywhere(now, [&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
+      repeats = same([&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
       // Rounding of the angle changes a steep load by more than the rounding of its torque.
       if (!repeats) continue;
       source.turns = turns;
@@ -127,8 +125,7 @@ bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Fin
       return refuse("does not repeat within " + std::to_string(kMostTurns) + " turns of its node");
   }
   constexpr double kTurned = 0.3;  // rad
-  source.by_angle = same_everywhere([&](double a) { return at_angle(term, a + kTurned, speed); },
-                                    [&](double a) { return at_angle(term, a, speed, 0.0, kTurned); });
+  source.by_angle = same([&](double a) { return at_angle(term, a - kTurned, speed, 0.0, kTurned); });
   return true;
 }
 
