@@ -8,7 +8,8 @@ namespace drev {
 struct LaneElimination::Work {
   int n;
   const int *order, *diagonal_slot, *begin, *row, *slot, *target;
-  LaneRow *d_re, *d_im, *l_re, *l_im;  // pivots; columns, divided by their pivots once these are known
+  LaneRow *d_re, *d_im, *d_least;  // pivots; square of the smallest usable one
+  LaneRow *l_re, *l_im;            // columns, divided by their pivots once these are known
   const LaneRow *w, *b_re, *b_im;
   LaneRow *x_re, *x_im, *lost;
 };
@@ -21,29 +22,39 @@ template <class Value>
 struct Eliminate {
   template <class L>
   [[gnu::always_inline]] static void run(int sets, const Work* work, const LaneDynamics<Value>* dynamics) {
-    const Work& a = *work;
-    const LaneDynamics<Value>& s = *dynamics;
+    const Work a = *work;
+    const LaneDynamics<Value> s = *dynamics;
+    constexpr double kLeast = ComplexElimination::kLostPivot * ComplexElimination::kLostPivot;
     const auto place = [](int row, int set) { return row * kLaneSets + set; };
-    const auto entry = [&](int slot, int set, LaneRow& to_re, LaneRow& to_im) __attribute__((always_inline)) {
-      L re{}, im{};
+    // An entry, and the sum of the sizes of its terms.
+    const auto entry = [&](int slot, int set, LaneRow& to_re, LaneRow& to_im, L& size)
+        __attribute__((always_inline)) {
+      L re{}, im{}, inertia{};
       if (slot >= 0) {
         L w;
         take(a.w[set], w), take(of_set(s.k, slot, set), re), take(of_set(s.h, slot, set), im);
-        re -= w * w * s.m[slot];
+        inertia = w * w * s.m[slot];
         im += w * s.c[slot];
       }
-      put(re, to_re), put(im, to_im);
+      put(re - inertia, to_re), put(im, to_im);
+      magnitude(re), magnitude(im), magnitude(inertia);
+      size = re + im + inertia;
     };
+    L size, x;
     for (int e = 0; e < a.begin[a.n]; ++e)
       for (int set = 0; set < sets; ++set)
-        entry(a.slot[e], set, a.l_re[place(e, set)], a.l_im[place(e, set)]);
+        entry(a.slot[e], set, a.l_re[place(e, set)], a.l_im[place(e, set)], size);
     for (int j = 0; j < a.n; ++j)
       for (int set = 0; set < sets; ++set) {
-        entry(a.diagonal_slot[j], set, a.d_re[place(j, set)], a.d_im[place(j, set)]);
-        a.x_re[place(a.order[j], set)] = a.b_re[place(a.order[j], set)];
-        a.x_im[place(a.order[j], set)] = a.b_im[place(a.order[j], set)];
+        const int own = place(j, set), row = place(a.order[j], set);
+        entry(a.diagonal_slot[j], set, a.d_re[own], a.d_im[own], size);
+        const L least = kLeast * size * size;
+        size = L{} + std::numeric_limits<double>::min();
+        raise(size, least);
+        put(size, a.d_least[own]);
+        take(a.b_re[row], x), put(x, a.x_re[row]);
+        take(a.b_im[row], x), put(x, a.x_im[row]);
       }
-    const double least = ComplexElimination::kLostPivot * ComplexElimination::kLostPivot;
     const L one = L{} + 1.0, most = L{} + std::numeric_limits<double>::max();
     for (int set = 0; set < sets; ++set) a.lost[set] = {};
     int next_update = 0;
@@ -51,18 +62,11 @@ struct Eliminate {
       for (int set = 0; set < sets; ++set) {
         update = next_update;
         const int own = place(j, set), x = place(a.order[j], set);
-        L p_re, p_im, terms{}, lost;
-        take(a.d_re[own], p_re), take(a.d_im[own], p_im), take(a.lost[set], lost);
-        if (const int slot = a.diagonal_slot[j]; slot >= 0) {
-          L w, of_c, of_m;
-          take(a.w[set], w), take(of_set(s.k, slot, set), terms), take(of_set(s.h, slot, set), of_c);
-          of_c += w * s.c[slot], of_m = w * w * s.m[slot];
-          magnitude(terms), magnitude(of_c), magnitude(of_m);
-          terms += of_c + of_m;
-        }
-        const L size = p_re * p_re + p_im * p_im;
-        keep_where_not_below(size, L{} + std::numeric_limits<double>::min(), one, lost);
-        keep_where_not_below(size, least * terms * terms, one, lost);
+        L p_re, p_im, least, lost;
+        take(a.d_re[own], p_re), take(a.d_im[own], p_im), take(a.d_least[own], least);
+        take(a.lost[set], lost);
+        size = p_re * p_re + p_im * p_im;
+        keep_where_not_below(size, least, one, lost);
         keep_where_not_below(most, size, one, lost);
         put(lost, a.lost[set]);
         const L over = 1.0 / size, i_re = p_re * over, i_im = (-1.0 * p_im) * over;
@@ -112,7 +116,7 @@ struct Eliminate {
 }  // namespace
 
 LaneElimination::LaneElimination(const ComplexElimination& plan) : plan_(plan) {
-  for (LaneArray* rows : {&d_re_, &d_im_}) rows->resize(plan.order_.size() * kLaneSets);
+  for (LaneArray* rows : {&d_re_, &d_im_, &d_least_}) rows->resize(plan.order_.size() * kLaneSets);
   for (LaneArray* rows : {&l_re_, &l_im_}) rows->resize(plan.row_.size() * kLaneSets);
 }
 
@@ -129,6 +133,7 @@ void LaneElimination::solve(int sets, const LaneDynamics<Value>& dynamics, const
                   plan_.target_.data(),
                   d_re_.data(),
                   d_im_.data(),
+                  d_least_.data(),
                   l_re_.data(),
                   l_im_.data(),
                   w,

@@ -48,7 +48,7 @@ class LaneElimination {
 
  private:
   const ComplexElimination& plan_;
-  LaneArray d_re_, d_im_, l_re_, l_im_;
+  LaneArray d_re_, d_im_, d_least_, l_re_, l_im_;
 };
 
 }  // namespace drev

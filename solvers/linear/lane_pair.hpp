@@ -97,15 +97,27 @@ struct LanePair {
 [[gnu::always_inline]] inline void take(const LaneRow& from, LanePair& to) {
   load(reinterpret_cast<const double*>(&from.v), to);
 }
-template <class L>
-[[gnu::always_inline]] inline void take(double from, L& to) {
-  to = L{} + from;
+// Written out: the sum of a number and zeros is an addition, since it changes the sign of -0.
+[[gnu::always_inline]] inline void take(double from, Lanes& to) {
+  to = Lanes{from, from, from, from, from, from, from, from};
+}
+[[gnu::always_inline]] inline void take(double from, LanePair& to) {
+  const LanePair::Half each{from, from, from, from};
+  to = {each, each};
 }
 [[gnu::always_inline]] inline void put(const Lanes& from, LaneRow& to) { to.v = from; }
 [[gnu::always_inline]] inline void put(const LanePair& from, LaneRow& to) {
   store(from, reinterpret_cast<double*>(&to.v));
 }
-/// Transposes eight rows: lane j of row i to lane i of row j.
+/// Transposes as many registers as a register has lanes: lane j of x[i] to lane i of x[j].
+[[gnu::always_inline]] inline void transpose(LanePair::Half (&x)[kLanes / 2]) {
+  const LanePair::Half a = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6),
+                       b = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7),
+                       c = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6),
+                       d = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+  x[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5), x[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  x[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7), x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 template <int kDistance>
 [[gnu::always_inline]] inline void exchange_blocks(Lanes& a, Lanes& b) {
   const Lanes x = a, y = b;
@@ -120,26 +132,7 @@ template <int kDistance>
     b = __builtin_shufflevector(x, y, 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
-template <int kDistance>
-[[gnu::always_inline]] inline void exchange_blocks(LanePair& a, LanePair& b) {
-  const LanePair x = a, y = b;
-  if constexpr (kDistance == 1) {
-    a = {__builtin_shufflevector(x.low, y.low, 0, 4, 2, 6),
-         __builtin_shufflevector(x.high, y.high, 0, 4, 2, 6)};
-    b = {__builtin_shufflevector(x.low, y.low, 1, 5, 3, 7),
-         __builtin_shufflevector(x.high, y.high, 1, 5, 3, 7)};
-  } else if constexpr (kDistance == 2) {
-    a = {__builtin_shufflevector(x.low, y.low, 0, 1, 4, 5),
-         __builtin_shufflevector(x.high, y.high, 0, 1, 4, 5)};
-    b = {__builtin_shufflevector(x.low, y.low, 2, 3, 6, 7),
-         __builtin_shufflevector(x.high, y.high, 2, 3, 6, 7)};
-  } else {
-    a = {x.low, y.low};
-    b = {x.high, y.high};
-  }
-}
-template <class L>
-[[gnu::always_inline]] inline void transpose(L (&x)[kLanes]) {
+[[gnu::always_inline]] inline void transpose(Lanes (&x)[kLanes]) {
   for (int i = 0; i < kLanes; i += 2) exchange_blocks<1>(x[i], x[i + 1]);
   for (int i = 0; i < kLanes; i += 4)
     exchange_blocks<2>(x[i], x[i + 2]), exchange_blocks<2>(x[i + 1], x[i + 3]);

@@ -1,6 +1,8 @@
 #include "solvers/periodic/lane_sections.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -10,6 +12,7 @@ namespace drev {
 struct LaneSections::Sparse {
   const int *begin, *index;
   const double* coeff;
+  const double* of_twist = nullptr;  // multiple of the section's twist in each row, besides its entries
 };
 
 namespace {
@@ -44,18 +47,19 @@ struct FindSections {
     using Rows = LaneSections;
     for (int s = 0; s < sections; ++s) {
       const int* begin = rows->begin + s * Rows::kRows;
+      const double* of_twist = rows->of_twist + s * Rows::kRows;
       L all_heat{};
       for (int set = 0; set < sets; ++set) {
+        L w, twist_re{}, twist_im{}, torque_re, torque_im, row_re, row_im;
         const auto product = [&](int row, L& re, L& im) __attribute__((always_inline)) {
           L x;
-          re = im = L{};
+          re = of_twist[row] * twist_re, im = of_twist[row] * twist_im;
           for (int e = begin[row]; e < begin[row + 1]; ++e) {
             const int from = rows->index[e] * kLaneSets + set;
             take(z->re[from], x), re += rows->coeff[e] * x;
             take(z->im[from], x), im += rows->coeff[e] * x;
           }
         };
-        L w, twist_re, twist_im, torque_re, torque_im, row_re, row_im;
         take(z->w[set], w);
         product(Rows::twist, twist_re, twist_im);
         product(Rows::stiffness, torque_re, torque_im);
@@ -142,6 +146,18 @@ struct SpreadAtSlots {
   }
 };
 
+/// The factor by which `row` is a multiple of `of`, to rounding; 0: it is none.
+double multiple_of(const std::vector<Entry>& of, const std::vector<Entry>& row) {
+  constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+  if (row.empty() || row.size() != of.size()) return 0.0;
+  const double factor = row[0].coeff / of[0].coeff;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    if (row[i].index != of[i].index ||
+        !(std::abs(row[i].coeff - factor * of[i].coeff) <= kRounding * std::abs(row[i].coeff)))
+      return 0.0;
+  return factor;
+}
+
 double* numbers_of(std::vector<std::complex<double>>& values) {
   return reinterpret_cast<double*>(values.data());
 }
@@ -174,13 +190,13 @@ LaneSections::LaneSections(const System& system, const std::vector<std::vector<E
   std::sort(loaded_.begin(), loaded_.end());
   loaded_.erase(std::unique(loaded_.begin(), loaded_.end()), loaded_.end());
   for (const SectionRows& s : sections) {
-    rows_.add(s.stiffness, held);
-    rows_.add(s.damping, held);
-    rows_.add(s.twist, held);
-    rows_.add(s.damper, held);
     term_.push_back(s.frequency_term);
-    rows_.add(s.frequency_term < 0 ? std::vector<Entry>{} : system.frequency_terms()[idx(s.frequency_term)].z,
-              held);
+    const std::vector<Entry> none,
+        &beyond = s.frequency_term < 0 ? none : system.frequency_terms()[idx(s.frequency_term)].z;
+    for (const std::vector<Entry>* row : {&s.twist, &s.stiffness, &s.damping, &s.damper, &beyond}) {
+      of_twist_.push_back(row == &s.twist ? 0.0 : multiple_of(s.twist, *row));
+      rows_.add(of_twist_.back() != 0.0 ? none : *row, held);
+    }
   }
   heat_.resize(sections.size());
   for (auto* values : {&torque_, &twist_}) values->resize(sections.size() * kFrequencies);
@@ -197,7 +213,7 @@ void LaneSections::add_loads(int sets, const std::vector<std::complex<double>>& 
 }
 
 void LaneSections::find(int sets, const Motion& motion, const LaneArray& k_re, const LaneArray& k_im) {
-  const Sparse rows{rows_.begin.data(), rows_.index.data(), rows_.coeff.data()};
+  const Sparse rows{rows_.begin.data(), rows_.index.data(), rows_.coeff.data(), of_twist_.data()};
   run_widest<FindSections>(sets, static_cast<int>(term_.size()), &rows, term_.data(), &motion, k_re.data(),
                            k_im.data(), numbers_of(torque_), numbers_of(twist_), heat_.data());
 }

@@ -17,7 +17,7 @@ class LaneSections {
  public:
   static constexpr int kFrequencies = kLaneSets * kLanes;  ///< largest number of frequencies
   /// Rows of a section, in this order.
-  enum Row { stiffness, damping, twist, damper, beyond, kRows };
+  enum Row { twist, stiffness, damping, damper, beyond, kRows };
   /// Right side and solution, a row for each unknown, and the frequencies.
   struct Motion {
     const LaneRow *p_re, *p_im, *re, *im, *w;
@@ -55,8 +55,9 @@ class LaneSections {
   // entries.
   std::vector<int> unknowns_, outer_, inner_, slots_;
   RowList rows_, loads_;
-  std::vector<int> loaded_;  // unknowns on which a load acts
-  std::vector<int> term_;    // frequency term of each section; -1: none
+  std::vector<double> of_twist_;  // multiple of its section's twist in each row, besides its entries
+  std::vector<int> loaded_;       // unknowns on which a load acts
+  std::vector<int> term_;         // frequency term of each section; -1: none
   std::vector<std::complex<double>> torque_, twist_;
   std::vector<double> heat_;
 };

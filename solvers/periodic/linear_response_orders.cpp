@@ -9,6 +9,13 @@ namespace drev {
 
 using Complex = std::complex<double>;
 
+namespace {
+
+/// Whether `count` ascending numbers follow each other without a gap.
+bool in_a_row(const int* numbers, int count) { return numbers[count - 1] - numbers[0] == count - 1; }
+
+}  // namespace
+
 bool LinearResponse::solve_lane(int set, int lane) {
   const auto row = [&](std::size_t unknown) { return unknown * kLaneSets + idx(set); };
   const double omega = w_[idx(set)].v[lane];
@@ -33,13 +40,19 @@ int LinearResponse::give_orders(double speed, std::size_t first) {
   const int used =
       static_cast<int>(std::min<std::size_t>(LaneSections::kFrequencies, active_.size() - first));
   const int sets = (used + kLanes - 1) / kLanes;
-  const auto order = [&](int lane) { return idx(active_[first + idx(lane)]); };
+  const int* orders = &active_[first];
   for (int lane = 0; lane < sets * kLanes; ++lane)
-    w_[idx(lane / kLanes)].v[lane % kLanes] = direction_ * orders_[order(lane < used ? lane : 0)] * speed;
-  for (std::size_t l = 0; l < contents.size(); ++l)
-    for (int lane = 0; lane < sets * kLanes; ++lane)
-      given_[l * LaneSections::kFrequencies + idx(lane)] =
-          lane < used ? contents[l].amplitudes[order(lane)] : 0.0;
+    w_[idx(lane / kLanes)].v[lane % kLanes] =
+        direction_ * orders_[idx(orders[lane < used ? lane : 0])] * speed;
+  for (std::size_t l = 0; l < contents.size(); ++l) {
+    const Complex* amplitudes = contents[l].amplitudes.data();
+    Complex* to = &given_[l * LaneSections::kFrequencies];
+    if (in_a_row(orders, used))
+      std::copy_n(amplitudes + orders[0], used, to);
+    else
+      for (int lane = 0; lane < used; ++lane) to[lane] = amplitudes[orders[lane]];
+    std::fill(to + used, to + sets * kLanes, Complex(0.0, 0.0));
+  }
   rows_->add_loads(sets, given_, p_re_.data(), p_im_.data());
   return used;
 }
@@ -87,13 +100,12 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   rows_->find(sets, motion, beyond_re_, beyond_im_);
   point.input_power += powers.input;
   point.dissipated_power += powers.dissipated;
-  const int from = active_[first];
-  const bool in_a_row = active_[first + idx(used - 1)] - from == used - 1;
+  const int* orders = &active_[first];
   const auto put = [&](const Complex* found, Complex* column) {
-    if (in_a_row)
-      std::copy_n(found, used, column + from);
+    if (in_a_row(orders, used))
+      std::copy_n(found, used, column + orders[0]);
     else
-      for (int lane = 0; lane < used; ++lane) column[active_[first + idx(lane)]] = found[lane];
+      for (int lane = 0; lane < used; ++lane) column[orders[lane]] = found[lane];
   };
   for (std::size_t s = 0; s < sections_.size(); ++s) {
     const auto c = static_cast<Eigen::Index>(s);
@@ -104,7 +116,7 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   for (int lane = 0; lane < used; ++lane) {
     if (lost_[idx(lane / kLanes)].v[lane % kLanes] == 0.0) continue;
-    const auto k = static_cast<Eigen::Index>(active_[first + idx(lane)]);
+    const Eigen::Index k = orders[lane];
     point.amplitude.row(k).setConstant(kInfinite);
     point.twist.row(k).setConstant(kInfinite);
     point.heat.setConstant(kInfinite);

@@ -90,10 +90,11 @@ class SectionExtremes {
 
 void put(const LinearResponse::Point& point, const SectionExtremes& extremes, Eigen::Index at,
          LinearSweep& sweep) {
+  const auto orders = static_cast<std::ptrdiff_t>(sweep.orders.size());
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
     SweepSection& section = sweep.sections[c];
     const auto column = static_cast<Eigen::Index>(c);
-    section.amplitude.col(at) = point.amplitude.col(column);
+    std::copy_n(point.amplitude.col(column).data(), orders, section.amplitude.col(at).data());
     section.mean[at] = point.mean[column];
     const SumExtremes& found = extremes.of(c);
     section.maximum[at] = found.max;
@@ -102,7 +103,7 @@ void put(const LinearResponse::Point& point, const SectionExtremes& extremes, Ei
     section.minimum_angle[at] = found.min_angle;
     section.heat[at] = point.heat[column];
     if (section.twist.size() == 0) continue;
-    section.twist.col(at) = point.twist.col(column);
+    std::copy_n(point.twist.col(column).data(), orders, section.twist.col(at).data());
     section.twist_mean[at] = point.twist_mean[column];
     section.twist_half_range[at] = extremes.twist_half_range(c);
   }
