@@ -30,14 +30,19 @@ struct RegisterOf<LanePair> {
 struct LaneWord {
   std::uint64_t of[kLanes] = {};
 };
+/// The numbers of rows of lanes, one row behind the other.
+[[gnu::always_inline]] inline double* numbers(LaneRow* rows) { return reinterpret_cast<double*>(&rows->v); }
+[[gnu::always_inline]] inline const double* numbers(const LaneRow* rows) {
+  return reinterpret_cast<const double*>(&rows->v);
+}
 /// Loads the lanes of a row from number `first` on, as many as a register holds; and stores them.
 template <class Part>
 [[gnu::always_inline]] inline void take_part(const LaneRow& row, int first, Part& to) {
-  std::memcpy(&to, reinterpret_cast<const double*>(&row.v) + first, sizeof to);
+  std::memcpy(&to, numbers(&row) + first, sizeof to);
 }
 template <class Part>
 [[gnu::always_inline]] inline void put_part(const Part& from, int first, LaneRow& row) {
-  std::memcpy(reinterpret_cast<double*>(&row.v) + first, &from, sizeof from);
+  std::memcpy(numbers(&row) + first, &from, sizeof from);
 }
 
 /// Complex amplitudes of kLanes sums, one behind the other, as rows of lanes: number k of each to row places[k].
@@ -46,16 +51,22 @@ struct TakeColumns {
   template <class L>
   [[gnu::always_inline]] static void run(int count, const double* const* columns, const int* places,
                                          LaneRow* re, LaneRow* im) {
-    constexpr int kAtOnce = kLanes / 2;
-    for (int k = 0; k + kAtOnce <= count; k += kAtOnce) {
-      L x[kLanes];
-      for (int lane = 0; lane < kLanes; ++lane) load(columns[lane] + 2 * k, x[lane]);
-      transpose(x);
-      for (int i = 0; i < kAtOnce; ++i) {
-        put(x[2 * i], re[places[k + i] * kSumSets]);
-        put(x[2 * i + 1], im[places[k + i] * kSumSets]);
-      }
-    }
+    using Part = typename RegisterOf<L>::Type;
+    constexpr int kWidth = sizeof(Part) / sizeof(double), kAtOnce = kLanes / 2;
+    for (int first = 0; first < kLanes; first += kWidth)
+      for (int k = 0; k < count / kAtOnce * kAtOnce; k += kWidth / 2)
+        move<Part>(std::make_integer_sequence<int, kWidth>(), columns + first, k, first, places, re, im);
+  }
+
+ private:
+  /// Written out, so that GCC 12 keeps the array in registers.
+  template <class Part, int... i>
+  [[gnu::always_inline]] static void move(std::integer_sequence<int, i...>, const double* const* columns,
+                                          int k, int first, const int* places, LaneRow* re, LaneRow* im) {
+    Part x[sizeof...(i)];
+    (std::memcpy(&x[i], columns[i] + 2 * k, sizeof(Part)), ...);
+    transpose(x);
+    (put_part(x[i], first, (i % 2 == 0 ? re : im)[places[k + i / 2] * kSumSets]), ...);
   }
 };
 
@@ -65,8 +76,10 @@ struct TakeColumns {
 ///   cos n (pi/2 - x) = (-1)^(n/2) cos n x, sin n (pi/2 - x) = -(-1)^(n/2) sin n x     (n even)
 ///   cos n (pi - x)   = (-1)^n cos n x,     sin n (pi - x)   = -(-1)^n sin n x         and (-1)^n at x + pi.
 ///
-/// Amplitudes: `fours` of multiples of four first, then those of other even numbers up to `even`, then of odd ones.
-/// cosines, sines: [point of a quarter][amplitude]. ends: receives the highest values of all sets, then the lowest.
+///   cos n (pi/2 - x) = s sin n x, sin n (pi/2 - x) = s cos n x, s = (-1)^((n-1)/2)       (n odd)
+///
+/// Amplitudes: `fours` of multiples of four first, then those of other even numbers up to `even`, then those of odd
+/// numbers with s = 1 up to `ones`, then the others. cosines, sines: [point of an eighth, and one more][amplitude]. ends: receives the highest values of all sets, then the lowest.
 struct SumEighths {
   template <class L>
   struct Sums {
@@ -92,8 +105,26 @@ struct SumEighths {
     }
     for (int i = 0; i < kTile; ++i) at_1[i] = {c_1[i], s_1[i]}, at_2[i] = {c_2[i], s_2[i]};
   }
+  /// The sums over the odd amplitudes [from, to) at x, and those at pi/2 - x for s = kSign, are added.
+  template <int kSign, int kTile, class L>
+  [[gnu::always_inline]] static void add_odd(int from, int to, int set, const double* cosines,
+                                             const double* sines, const LaneRow* re, const LaneRow* im,
+                                             Sums<L> (&here)[kTile], Sums<L> (&behind)[kTile]) {
+    for (int k = from; k < to; ++k) {
+      L a, b, cosine, sine;
+      take(cosines[k], cosine), take(sines[k], sine);
+      for (int i = 0; i < kTile; ++i) {
+        take(re[k * kSumSets + set + i], a), take(im[k * kSumSets + set + i], b);
+        here[i].cosine += cosine * a, here[i].sine += sine * b;
+        if constexpr (kSign > 0)
+          behind[i].cosine += sine * a, behind[i].sine += cosine * b;
+        else
+          behind[i].cosine -= sine * a, behind[i].sine -= cosine * b;
+      }
+    }
+  }
   template <int kTile, class L>
-  [[gnu::always_inline]] static void run_tile(int set, int points, int orders, int fours, int even,
+  [[gnu::always_inline]] static void run_tile(int set, int points, int orders, int fours, int even, int ones,
                                               const double* cosines, const double* sines, const LaneRow* re,
                                               const LaneRow* im, LaneRow* y, LaneRow* ends) {
     const int eighth = points / 8, quarter = points / 4, half = points / 2;
@@ -121,7 +152,9 @@ struct SumEighths {
     const auto write_eight = [&](int p, const Sums<L>(&four)[kTile], const Sums<L>(&two)[kTile])
         __attribute__((always_inline)) {
       Sums<L> odd[kTile], odd_behind[kTile];
-      sum_at(even, orders, p, quarter - p, odd, odd_behind);
+      const double *of_cosine = cosines + p * orders, *of_sine = sines + p * orders;
+      add_odd<1>(even, ones, set, of_cosine, of_sine, re, im, odd, odd_behind);
+      add_odd<-1>(ones, orders, set, of_cosine, of_sine, re, im, odd, odd_behind);
       for (int i = 0; i < kTile; ++i) {
         const L c_sum = four[i].cosine + two[i].cosine, s_sum = four[i].sine + two[i].sine;
         const L c_rest = four[i].cosine - two[i].cosine, s_rest = four[i].sine - two[i].sine;
@@ -139,17 +172,17 @@ struct SumEighths {
     for (int i = 0; i < kTile; ++i) put(most[i], ends[set + i]), put(least[i], ends[kSumSets + set + i]);
   }
   template <class L>
-  [[gnu::always_inline]] static void run(int sets, int points, int orders, int fours, int even,
+  [[gnu::always_inline]] static void run(int sets, int points, int orders, int fours, int even, int ones,
                                          const double* cosines, const double* sines, const LaneRow* re,
                                          const LaneRow* im, LaneRow* y, LaneRow* ends) {
     // Pairs of vectors fill the registers with one set alone.
     if constexpr (RegisterOf<L>::kRegisters == 1)
       if (sets == 2) {
-        run_tile<2, L>(0, points, orders, fours, even, cosines, sines, re, im, y, ends);
+        run_tile<2, L>(0, points, orders, fours, even, ones, cosines, sines, re, im, y, ends);
         return;
       }
     for (int set = 0; set < sets; ++set)
-      run_tile<1, L>(set, points, orders, fours, even, cosines, sines, re, im, y, ends);
+      run_tile<1, L>(set, points, orders, fours, even, ones, cosines, sines, re, im, y, ends);
   }
 };
 
@@ -172,9 +205,12 @@ struct MarkExtremes {
     using Bits = typename RegisterOf<L>::Bits;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
     constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
-    // Shifts the words by a bit and sets the new one where x >= 0; it may be set where x is not a number.
-    const auto note = [&](const Part& x, Bits& word) __attribute__((always_inline)) {
-      word = (word >> 1U) | (~reinterpret_cast<Bits>(x) & kSign);
+    // Shifts the words by a bit and sets the new one where all three are >= 0; it may be set where one is not a
+    // number.
+    const auto note = [&](const Part& a, const Part& b, const Part& c, Bits& word)
+        __attribute__((always_inline)) {
+      const Bits signs = reinterpret_cast<Bits>(a) | reinterpret_cast<Bits>(b) | reinterpret_cast<Bits>(c);
+      word = (word >> 1U) | (~signs & kSign);
     };
     for (int set = 0; set < sets; ++set)
       for (int lane = 0; lane < kLanes; lane += kWidth) {
@@ -186,19 +222,18 @@ struct MarkExtremes {
         take_part(ends[set], lane, least), take_part(ends[kSumSets + set], lane, most);
         least -= room, most += room;
         value(-1, before), value(0, here);
+        // From one point to the next the sum falls, or rises, by no more than `below` where these are >= 0.
+        Part falls_little = here - before + below, rises_little = below - (here - before);
         for (int first = 0; first < points; first += kMarksAWord) {
           const int count = points - first < kMarksAWord ? points - first : kMarksAWord;
           Bits top{}, bottom{};
+#pragma GCC unroll 4
           for (int p = first; p < first + count; ++p) {
             value(p + 1, after);
-            const Part rise = here - before, fall = here - after;
-            Part lowest = rise < fall ? rise : fall, highest = rise > fall ? rise : fall;
-            lowest += below, highest = below - highest;
-            const Part above = here - least, under = most - here;
-            note(lowest < above ? lowest : above, top);
-            note(highest < under ? highest : under, bottom);
-            before = here;
-            here = after;
+            const Part rise = after - here, falls_next = rise + below, rises_next = below - rise;
+            note(falls_little, rises_next, here - least, top);
+            note(rises_little, falls_next, most - here, bottom);
+            here = after, falls_little = falls_next, rises_little = rises_next;
           }
           top >>= static_cast<std::uint64_t>(kMarksAWord - count);
           bottom >>= static_cast<std::uint64_t>(kMarksAWord - count);
@@ -210,10 +245,11 @@ struct MarkExtremes {
   }
 };
 
-/// kLanes places of tops: the values at seven points around each, times its sign, and what LookBetween finds.
+/// kLanes places of tops: the values at seven points around each, and what LookBetween finds, times the sign.
 struct TopRows {
   static constexpr int kSides = 3;
   LaneRow y[2 * kSides + 1];
+  LaneRow sign;  ///< 1 for a maximum, -1 for a minimum
   LaneRow
       rest;  ///< largest excess of the sum within half a step over the polynomial through the seven points
   LaneRow shift;  ///< place of the polynomial's maximum within half a step, in steps from the middle point
@@ -235,12 +271,13 @@ struct LookBetween {
   template <class L>
   [[gnu::always_inline]] static void run(int count, TopRows* all) {
     for (TopRows* rows = all; rows != all + count; ++rows) {
-      L middle, right, left, d1, d2, d3, s1, s2, s3;
-      take(rows->y[kSides], middle);
+      L sign, middle, right, left, d1, d2, d3, s1, s2, s3;
+      take(rows->sign, sign);
+      take(rows->y[kSides], middle), middle *= sign;
       const auto sides = [&](int k, L& difference, L& sum) __attribute__((always_inline)) {
         take(rows->y[kSides + k], right), take(rows->y[kSides - k], left);
-        difference = right - left;
-        sum = right + left - 2.0 * middle;
+        difference = sign * (right - left);
+        sum = sign * (right + left) - 2.0 * middle;
       };
       sides(1, d1, s1), sides(2, d2, s2), sides(3, d3, s3);
       // Derivatives at the middle point divided by their factorials.
@@ -333,24 +370,23 @@ template <class Part>
 /// the step is shorter than `near`; it is lost where the sum does not curve downwards, or farther than `far` from the
 /// start.
 ///
-/// rows: row in re and im of each n = 1 ... count, count even. power_re, power_im: exp(i n angle) of each n; null: they
+/// rows: row in re and im of each n = 1 ... count, count even; a row of them is at kSumSets times its number. power_re, power_im: exp(i n angle) of each n; null: they
 /// are found here, from the products of every second one.
 struct FollowTop {
   template <class L>
-  [[gnu::always_inline]] static void run(int count, int stride, const int* rows, const int* multiples,
-                                         const LaneRow* re, const LaneRow* im, const LaneRow* power_re,
-                                         const LaneRow* power_im, double near, double far,
-                                         FollowedTops* tops) {
+  [[gnu::always_inline]] static void run(int count, const int* rows, const int* multiples, const LaneRow* re,
+                                         const LaneRow* im, const LaneRow* power_re, const LaneRow* power_im,
+                                         double near, double far, FollowedTops* tops) {
     // One register-wide vector at a time, so that all sums stay in registers.
     using Part = typename RegisterOf<L>::Type;
     constexpr int kWidth = sizeof(Part) / sizeof(double);
     for (int first = 0; first < kLanes; first += kWidth) {
       Part y{}, s1{}, s2{}, s3{}, s4{}, s5{}, p_re, p_im, sign, start, away, value, before;
-      const auto add = [&](double n, int row, const Part& of_re, const Part& of_im)
+      const auto add = [&](const Part& n, int row, const Part& of_re, const Part& of_im)
           __attribute__((always_inline)) {
         Part x_re, x_im;
-        take_part(re[row * stride], first, x_re), take_part(im[row * stride], first, x_im);
-        const double n_2 = n * n;
+        take_part(re[row * kSumSets], first, x_re), take_part(im[row * kSumSets], first, x_im);
+        const Part n_2 = n * n;
         Part a = x_re * of_re - x_im * of_im, b = n * (x_re * of_im + x_im * of_re);
         y += a;
         s1 -= b;
@@ -364,7 +400,7 @@ struct FollowTop {
       if (power_re) {
         for (int k = 0; k < count; ++k) {
           take_part(power_re[k], first, p_re), take_part(power_im[k], first, p_im);
-          add(multiples[k], k, p_re, p_im);
+          add(Part{} + multiples[k], k, p_re, p_im);
         }
       } else {
         Part odd_re, odd_im;
@@ -372,9 +408,10 @@ struct FollowTop {
         turn(p_re, p_im, away, odd_re, odd_im);
         const Part two_re = odd_re * odd_re - odd_im * odd_im, two_im = 2.0 * odd_re * odd_im;
         p_re = two_re, p_im = two_im;
-        for (int n = 1; n < count; n += 2) {
-          add(n, rows[n], odd_re, odd_im);
-          add(n + 1, rows[n + 1], p_re, p_im);
+        Part n_odd = Part{} + 1.0, n_even = Part{} + 2.0;
+        for (int n = 1; n < count; n += 2, n_odd += 2.0, n_even += 2.0) {
+          add(n_odd, rows[n], odd_re, odd_im);
+          add(n_even, rows[n + 1], p_re, p_im);
           const Part next_odd = odd_re * two_re - odd_im * two_im, next = p_re * two_re - p_im * two_im;
           odd_im = odd_re * two_im + odd_im * two_re;
           p_im = p_re * two_im + p_im * two_re;

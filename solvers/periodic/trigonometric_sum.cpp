@@ -59,7 +59,8 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
   };
   fours_ = take(0, 4);
   even_ = take(2, 4);
-  take(1, 2);
+  ones_ = take(1, 4);
+  take(3, 4);
   base_ = highest / std::round(highest / base_);
   for (const int n : multiples_) powers_.push_back({std::pow(n, 2), std::pow(n, 3), std::pow(n, 7)});
   highest_ = *std::max_element(multiples_.begin(), multiples_.end());
@@ -70,15 +71,14 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
     turned_re_.push_back(std::cos(step_ * p));
     turned_im_.push_back(std::sin(step_ * p));
   }
-  for (int p = 0; p <= points / 4; ++p)
+  for (int p = 0; p <= points / 8 + 1; ++p)
     for (const int n : multiples_) {
       cosines_.push_back(turned_re_[idx(n * p % points)]);
       sines_.push_back(turned_im_[idx(n * p % points)]);
     }
   dense_ = highest_ <= 4 * static_cast<int>(multiples_.size());
   // One row more, which stays 0: that of the multiples that are none of the orders.
-  for (LaneArray* rows : {&re_, &im_}) rows->resize((orders.size() + 1) * kSumSets);
-  for (LaneArray* rows : {&top_re_, &top_im_}) rows->resize(orders.size() + 1);
+  for (LaneArray* rows : {&re_, &im_, &top_re_, &top_im_}) rows->resize((orders.size() + 1) * kSumSets);
   places_.resize(orders.size());
   if (dense_) places_of_n_.assign(idx(highest_ + 2), static_cast<int>(orders.size()));
   for (std::size_t k = 0; k < multiples_.size(); ++k) {
@@ -95,7 +95,7 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
 
 double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
 
-void TrigonometricSum::step(int stride, const LaneRow* re, const LaneRow* im, FollowedTops& tops) {
+void TrigonometricSum::step(const LaneRow* re, const LaneRow* im, FollowedTops& tops) {
   for (std::size_t k = 0; !dense_ && k < multiples_.size(); ++k)
     for (int i = 0; i < kLanes; ++i) {
       power_re_[k].v[i] = std::cos(multiples_[k] * (tops.angle.v[i] + tops.away.v[i]));
@@ -103,7 +103,7 @@ void TrigonometricSum::step(int stride, const LaneRow* re, const LaneRow* im, Fo
     }
   const LaneRow *power_re = dense_ ? nullptr : power_re_.data(),
                 *power_im = dense_ ? nullptr : power_im_.data();
-  run_widest<FollowTop>(dense_ ? (highest_ + 1) / 2 * 2 : static_cast<int>(multiples_.size()), stride,
+  run_widest<FollowTop>(dense_ ? (highest_ + 1) / 2 * 2 : static_cast<int>(multiples_.size()),
                         places_of_n_.data(), multiples_.data(), re, im, power_re, power_im,
                         kAngleTolerance * step_, step_, &tops);
 }
@@ -127,42 +127,42 @@ BracketedMaximum TrigonometricSum::search(const Top& top, double shift) const {
   });
 }
 
-void TrigonometricSum::follow(const std::array<int, kLanes>& places, int stride, const LaneRow* re,
-                              const LaneRow* im) {
+void TrigonometricSum::follow(const int* places, const LaneRow* re, const LaneRow* im) {
   FollowedTops tops;
+  double *state = numbers(&tops.state), *value = numbers(&tops.value), *away = numbers(&tops.away),
+         *start = numbers(&tops.start), *angle = numbers(&tops.angle);
   for (int i = 0; i < kLanes; ++i) {
-    if (places[idx(i)] < 0) continue;
-    const auto place = idx(places[idx(i)]);
-    const Top& top = tops_[place];
-    tops.state.v[i] = FollowedTops::kOpen;
-    tops.point[0].v[i] = turned_re_[idx(top.point)];
-    tops.point[1].v[i] = turned_im_[idx(top.point)];
-    tops.angle.v[i] = step_ * top.point;
-    tops.sign.v[i] = sign_of(top);
-    tops.start.v[i] = step_ * top_rows_[place / kLanes].shift.v[place % kLanes];
+    if (places[i] < 0) continue;
+    const Top& top = tops_[idx(places[i])];
+    state[i] = FollowedTops::kOpen;
+    numbers(&tops.point[0])[i] = turned_re_[idx(top.point)];
+    numbers(&tops.point[1])[i] = turned_im_[idx(top.point)];
+    angle[i] = step_ * top.point;
+    numbers(&tops.sign)[i] = sign_of(top);
+    start[i] = step_ * numbers(&top_rows_[idx(places[i] / kLanes)].shift)[places[i] % kLanes];
   }
   tops.away = tops.start;
   tops.value.v = Lanes{} - std::numeric_limits<double>::infinity();
   bool any = true;
   for (int round = 0; round < kRefinements && any; ++round) {
-    step(stride, re, im, tops);
-    any = false;
-    for (int i = 0; i < kLanes; ++i) any |= tops.state.v[i] == FollowedTops::kOpen;
+    step(re, im, tops);
+    any = std::find(state, state + kLanes, FollowedTops::kOpen) != state + kLanes;
   }
   for (int i = 0; i < kLanes; ++i) {
-    if (places[idx(i)] < 0) continue;
-    Top& top = tops_[idx(places[idx(i)])];
-    double value = tops.value.v[i], angle = tops.angle.v[i] + tops.away.v[i];
-    if (tops.state.v[i] == FollowedTops::kLost) {
-      const BracketedMaximum found = search(top, tops.start.v[i] / step_);
-      value = std::max(value, found.value);
-      angle = found.at;
+    if (places[i] < 0) continue;
+    Top& top = tops_[idx(places[i])];
+    double found = value[i], at = angle[i] + away[i];
+    if (state[i] == FollowedTops::kLost) {
+      const BracketedMaximum searched = search(top, start[i] / step_);
+      found = std::max(found, searched.value);
+      at = searched.at;
     }
     top.followed = true;
-    if (angles_[idx(top.which)] >= 0.0 && !(value > best_[idx(top.which)])) continue;
-    best_[idx(top.which)] = std::max(best_[idx(top.which)], value);
-    values_[idx(top.which)] = value;
-    angles_[idx(top.which)] = angle - kTwoPi * std::floor(angle / kTwoPi);
+    const auto which = idx(top.which);
+    if (angles_[which] >= 0.0 && !(found > best_[which])) continue;
+    best_[which] = std::max(best_[which], found);
+    values_[which] = found;
+    angles_[which] = at < 0.0 ? at + kTwoPi : at >= kTwoPi ? at - kTwoPi : at;
   }
 }
 
@@ -190,51 +190,47 @@ void TrigonometricSum::sample(std::span<const Complex* const> sums) {
     for (std::size_t b = 0; b < shares_.size(); ++b) bounds_[b * kSumSets + set].v *= shares_[b];
   }
   LaneRow* samples = &samples_[kBeside * kSumSets];
-  run_widest<SumEighths>(sets_, points_, orders, fours_, even_, cosines_.data(), sines_.data(), re_.data(),
-                         im_.data(), samples, ends_.data());
+  run_widest<SumEighths>(sets_, points_, orders, fours_, even_, ones_, cosines_.data(), sines_.data(),
+                         re_.data(), im_.data(), samples, ends_.data());
   std::copy_n(samples, kBeside * kSumSets, samples + points_ * kSumSets);
   std::copy_n(samples + (points_ - kBeside) * kSumSets, kBeside * kSumSets, samples_.data());
 }
 
 void TrigonometricSum::find_tops(int used) {
-  tops_.clear();
   run_widest<MarkExtremes>(sets_, points_, &samples_[kBeside * kSumSets], bounds_.data(), ends_.data(),
                            marks_[0].data(), marks_[1].data());
-  const std::size_t words = marks_[0].size() / kSumSets;
-  std::array<std::size_t, kSigns * kSums + 1> begin{};
+  tops_.clear();
   for (int side = 0; side < kSigns; ++side)
-    for (int sum = 0; sum < kSums; ++sum) {
-      const int which = side * kSums + sum, set = sum / kLanes, lane = sum % kLanes;
-      begin[idx(which)] = tops_.size();
-      if (sum >= used || !(thirds_[idx(set)].v[lane] > 0.0)) continue;
-      const double end = ends_[idx(side * kSumSets + set)].v[lane];
-      best_[idx(which)] = side == 0 ? end : -end;
-      for (std::size_t w = 0; w < words; ++w)
-        for (std::uint64_t word = marks_[idx(side)][w * kSumSets + idx(set)].of[lane]; word != 0;
-             word &= word - 1)
-          add_top({sum, static_cast<int>(w) * kMarksAWord + std::countr_zero(word), which});
+    for (int sum = 0; sum < used; ++sum) {
+      if (!(numbers(thirds_.data())[sum] > 0.0)) continue;
+      const int which = side * kSums + sum;
+      best_[idx(which)] = (side == 0 ? 1.0 : -1.0) * numbers(ends_.data())[which];
+      const LaneWord* words = &marks_[idx(side)][idx(sum / kLanes)];
+      for (int first = 0; first < points_; first += kMarksAWord, words += kSumSets)
+        for (std::uint64_t word = words->of[sum % kLanes]; word != 0; word &= word - 1)
+          tops_.push_back({sum, first + std::countr_zero(word), which});
     }
-  begin.back() = tops_.size();
-  run_widest<LookBetween>(static_cast<int>((tops_.size() + kLanes - 1) / kLanes), top_rows_.data());
-  for (std::size_t which = 0; which + 1 < begin.size(); ++which) {
-    int leader = -1;
-    double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = begin[which]; i < begin[which + 1]; ++i)
-      if (const double value = top_rows_[i / kLanes].value.v[i % kLanes]; value > most || leader < 0)
-        most = value, leader = static_cast<int>(i);
-    leaders_[which / kLanes][which % kLanes] = leader;
+  gather_tops();
+  run_widest<LookBetween>(static_cast<int>(top_rows_.size()), top_rows_.data());
+  leaders_.fill(-1);
+  for (int i = 0; i < static_cast<int>(tops_.size()); ++i) {
+    int& leader = leaders_[idx(tops_[idx(i)].which)];
+    const auto value = [&](int top) { return numbers(&top_rows_[idx(top / kLanes)].value)[top % kLanes]; };
+    if (leader < 0 || value(i) > value(leader)) leader = i;
   }
 }
 
-void TrigonometricSum::add_top(const Top& top) {
-  const std::size_t place = tops_.size();
-  tops_.push_back(top);
-  if (top_rows_.size() <= place / kLanes) top_rows_.emplace_back();
-  TopRows& rows = top_rows_[place / kLanes];
-  const auto to = static_cast<int>(place % kLanes), set = top.sum / kLanes, lane = top.sum % kLanes;
-  const LaneRow* values = &samples_[idx(top.point * kSumSets + set)];
-  for (int k = 0; k <= 2 * kBeside; ++k) rows.y[k].v[to] = sign_of(top) * values[k * kSumSets].v[lane];
-  rows.rest.v[to] = bounds_[idx(2 * kSumSets + set)].v[lane];
+void TrigonometricSum::gather_tops() {
+  top_rows_.resize((tops_.size() + kLanes - 1) / kLanes);
+  const double *samples = numbers(samples_.data()), *excess = numbers(bounds_.data()) + 2 * kSums;
+  for (std::size_t i = 0; i < tops_.size(); ++i) {
+    const Top& top = tops_[i];
+    double* to = numbers(top_rows_[i / kLanes].y) + i % kLanes;
+    const double* from = samples + top.point * kSums + top.sum;
+    for (int k = 0; k <= 2 * kBeside; ++k) to[k * kLanes] = from[k * kSums];
+    numbers(&top_rows_[i / kLanes].sign)[i % kLanes] = sign_of(top);
+    numbers(&top_rows_[i / kLanes].rest)[i % kLanes] = excess[top.sum];
+  }
 }
 
 void TrigonometricSum::follow_others() {
@@ -245,15 +241,16 @@ void TrigonometricSum::follow_others() {
     int count = 0;
     for (; next < tops_.size() && count < kLanes; ++next) {
       const Top& top = tops_[next];
-      if (top.followed || top_rows_[next / kLanes].reach.v[next % kLanes] < best_[idx(top.which)]) continue;
+      if (top.followed || numbers(&top_rows_[next / kLanes].reach)[next % kLanes] < best_[idx(top.which)])
+        continue;
       for (std::size_t k = 0; k < multiples_.size(); ++k) {
         const auto row = k * kSumSets + idx(top.sum / kLanes);
-        top_re_[k].v[count] = re_[row].v[top.sum % kLanes];
-        top_im_[k].v[count] = im_[row].v[top.sum % kLanes];
+        top_re_[k * kSumSets].v[count] = re_[row].v[top.sum % kLanes];
+        top_im_[k * kSumSets].v[count] = im_[row].v[top.sum % kLanes];
       }
       places[idx(count++)] = static_cast<int>(next);
     }
-    if (count > 0) follow(places, 1, top_re_.data(), top_im_.data());
+    if (count > 0) follow(places.data(), top_re_.data(), top_im_.data());
   }
 }
 
@@ -268,11 +265,11 @@ void TrigonometricSum::extremes(std::span<const Complex* const> sums, std::vecto
     find_tops(static_cast<int>(used));
     for (int side = 0; side < kSigns; ++side)
       for (int set = 0; set < sets_; ++set)
-        follow(leaders_[idx(side * kSumSets + set)], kSumSets, &re_[idx(set)], &im_[idx(set)]);
+        follow(&leaders_[idx(side * kSums + set * kLanes)], &re_[idx(set)], &im_[idx(set)]);
     follow_others();
     for (std::size_t i = 0; i < used; ++i) {
       SumExtremes& e = out[first + i];
-      const double thirds = thirds_[i / kLanes].v[i % kLanes];
+      const double thirds = numbers(thirds_.data())[i];
       if (!std::isfinite(thirds)) {
         e.max = std::numeric_limits<double>::infinity();
         e.min = -e.max;

@@ -61,24 +61,26 @@ class TrigonometricSum {
   void sample(std::span<const std::complex<double>* const> sums);
   /// Finds the places of maxima and minima that may be the extremes, and the highest of each sum and sign.
   void find_tops(int used);
-  void add_top(const Top& top);
-  /// Follows the tops with these numbers in tops_ (-1: none) to their extrema, each in the lane of its amplitudes, and
+  /// Fills the rows of the tops from the samples.
+  void gather_tops();
+  /// Follows the tops with these kLanes numbers in tops_ (-1: none) to their extrema, each in the lane of its amplitudes, and
   /// takes them as extremes of their sums where they are the largest so far.
-  void follow(const std::array<int, kLanes>& places, int stride, const LaneRow* re, const LaneRow* im);
+  void follow(const int* places, const LaneRow* re, const LaneRow* im);
   void follow_others();
   /// The largest value between a top's neighbours, by bracketing; used where the steps to y' = 0 do not
   /// converge. shift: where it starts, in steps from the point.
   BracketedMaximum search(const Top& top, double shift) const;
-  void step(int stride, const LaneRow* re, const LaneRow* im, FollowedTops& tops);
+  void step(const LaneRow* re, const LaneRow* im, FollowedTops& tops);
 
   double base_ = 0.0, step_ = 0.0;
   int highest_ = 0, points_ = 0, sets_ = 0;
-  std::vector<int> multiples_;                 // the n_k, in the sequence of SumEighths
-  int fours_ = 0, even_ = 0;                   // number of multiples of four, and of even ones
+  std::vector<int> multiples_;  // the n_k, in the sequence of SumEighths
+  // Number of multiples of four, with other even ones, and with those that are 1 more than a multiple of four.
+  int fours_ = 0, even_ = 0, ones_ = 0;
   std::vector<Eigen::Index> rows_;             // places of the orders given, in this sequence
   std::vector<std::array<double, 3>> powers_;  // second, third and seventh powers of the multiples
   std::array<double, 3> shares_{};             // factors of the bounds
-  std::vector<double> cosines_, sines_;        // [point of a quarter][place in multiples_]
+  std::vector<double> cosines_, sines_;        // [point of an eighth, and one][place in multiples_]
   LaneArray re_, im_, samples_;                // of the sets: amplitudes by multiple; values at points
   LaneArray top_re_, top_im_;                  // amplitudes of the sums of tops, by multiple
   LaneArray power_re_, power_im_;  // exp(i n angle) at these tops, where the multiples are not dense
@@ -94,9 +96,8 @@ class TrigonometricSum {
   // found and its angle (-1: not yet).
   std::array<double, kSigns * kSums> best_{}, values_{}, angles_{};
   std::vector<Top> tops_;
-  std::vector<TopRows> top_rows_;  // of the tops, kLanes at a time
-  std::array<std::array<int, kLanes>, kSigns * kSumSets>
-      leaders_;  // highest top of each sum and sign; -1: none
+  std::vector<TopRows> top_rows_;              // of the tops, kLanes at a time
+  std::array<int, kSigns * kSums> leaders_{};  // highest top of each sum and sign; -1: none
 };
 
 }  // namespace drev
