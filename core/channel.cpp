@@ -7,9 +7,12 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/channel_pattern.hpp"
 #include "core/energy/element_energy.hpp"
 
 namespace drev {
+
+static constexpr std::size_t kListed = 12;  // channels, beside a pattern that nothing fits
 
 static bool follows_deflection_alone(const ScalarTerm& term) {
   const std::span<const LawPiece> pieces = linear_pieces(term);
@@ -433,7 +436,9 @@ std::vector<Channel> energy_channels(const System& system) {
 
 std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names,
                                    OverRun integrals) {
-  const std::set<std::string> wanted(names.begin(), names.end());
+  const std::vector<AskedChannel> asked = asked_channels(system, names);
+  std::set<std::string> wanted;
+  for (const AskedChannel& one : asked) wanted.insert(one.name);
   ChannelFinder finder(system, &wanted);
   std::unordered_map<std::string, std::vector<std::size_t>> by_name;
   for (std::size_t i = 0; i < finder.channels.size(); ++i) by_name[finder.channels[i].name()].push_back(i);
@@ -442,39 +447,49 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
     if (known.empty())
       for (const auto& list : {all_channels(system), energy_channels(system)})
         for (const Channel& c : list) known.push_back(c.name());
-    return did_you_mean(name, known);
+    std::string text = did_you_mean(name, known);
+    if (!is_pattern(name)) return text;
+    for (std::size_t i = 0; i < std::min(kListed, known.size()); ++i)
+      text += (i == 0 ? "; there are " : ", ") + known[i];
+    return known.size() > kListed ? text + " and " + std::to_string(known.size() - kListed) + " more" : text;
   };
   std::vector<Channel> found;
   std::vector<Finding> findings;
-  for (const std::string& name : names) {
+  const auto refuse = [&](const AskedChannel& one, const std::string& why) {
+    if (findings.empty() || findings.back().value != one.asked || one.asked == one.name)
+      findings.push_back({system.name(), "channel", one.asked, "", why});
+  };
+  for (const AskedChannel& one : asked) {
+    const std::string& name = one.name;
     const auto it = by_name.find(name);
     Channel difference, energy;
     if (it != by_name.end()) {
       found.push_back(finder.channels[it->second.front()]);
       if (it->second.size() > 1)
-        findings.push_back({system.name(), "channel", name, "",
-                            "is the name of " + std::to_string(it->second.size()) +
-                                " channels of this model; rename an element"});
+        refuse(one, "is the name of " + std::to_string(it->second.size()) +
+                        " channels of this model; rename an element");
     } else if (const int readings = finder.find_difference(name, difference); readings == 1)
       found.push_back(difference);
     else if (readings > 1)
-      findings.push_back(
-          {system.name(), "channel", name, "",
-           "can be read as " + std::to_string(readings) + " pairs of nodes; rename one of them"});
+      refuse(one, "can be read as " + std::to_string(readings) + " pairs of nodes; rename one of them");
     else if (finder.find_energy(name, energy)) {
       if (energy.over_run() && integrals == OverRun::refused)
-        findings.push_back({system.name(), "channel", name, "",
-                            "is summed up over a run: it can be recorded, but not be taken here"});
+        refuse(one, "is summed up over a run: it can be recorded, but not be taken here");
       found.push_back(std::move(energy));
     } else
-      findings.push_back({system.name(), "channel", name, "", "is no channel of this model" + hint(name)});
+      refuse(one, (is_pattern(name) ? "fits no channel of this model" : "is no channel of this model") +
+                      hint(name));
   }
   if (!findings.empty()) throw ModelError(findings);
   return found;
 }
 
 Channel find_channel(const System& system, const std::string& name) {
-  return find_channels(system, {name}).front();
+  const std::vector<Channel> found = find_channels(system, {name});
+  if (found.size() != 1)
+    throw ModelError({{system.name(), "channel", name, "",
+                       "fits " + std::to_string(found.size()) + " channels; one is meant here"}});
+  return found.front();
 }
 
 }  // namespace drev

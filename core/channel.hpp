@@ -113,10 +113,12 @@ std::vector<Channel> energy_channels(const System& system);
 /// Whether channels that are integrals over the run are taken.
 enum class OverRun { refused, taken };
 
-/// Channels by name; a difference is found too. Throws ModelError that lists every unknown name with the
-/// nearest known one, and every integral over the run where these are refused.
+/// Channels by name; a difference is found too. '*' in a name stands for any characters: all that fit are meant, each
+/// once (of energies where the name ends in _W or _J). Throws ModelError that lists every unknown name with the nearest
+/// known one, every pattern that nothing fits, and every integral over the run where these are refused.
 std::vector<Channel> find_channels(const System& system, const std::vector<std::string>& names,
                                    OverRun integrals = OverRun::refused);
+/// The one that is meant.
 Channel find_channel(const System& system, const std::string& name);
 
 /// Torque that must act on prescribed node k beside the model's own terms to move it as given.

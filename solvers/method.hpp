@@ -75,6 +75,10 @@ long contact_count(const System& system);
 /// from below (20 steps of the power method). Throws SolverError where M is singular.
 double fastest_rate(const System& system);
 
+/// How many steps a run must take at least: the constant ones asked for; else 3/omega of the fastest mode each, which
+/// exact propagation and explicit methods follow, or of the slowest elastic mode for implicit methods. 0: not known.
+double least_steps(const System& system, const Method& method, double duration);
+
 /// Whether the chosen method is far more expensive than another that keeps the accuracy: both are tried.
 ///
 ///   1. The chosen method runs 1,000 steps, fewer where they are expensive, up to five times as many while its steps

@@ -3,6 +3,8 @@
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/modes/modes.hpp>
+#include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -73,6 +75,21 @@ double fastest_rate(const System& system) {
                     }));
   }
   return rate;
+}
+
+double least_steps(const System& system, const Method& method, double duration) {
+  if (method.step > 0.0 && !method.controlled()) return duration / method.step;
+  try {
+    double rate = 0.0;
+    if (method.exact() || step_scheme(method.name).is_explicit()) {
+      rate = fastest_rate(system);
+    } else if (const ModeSet slowest = solve_modes(system); slowest.count() > 0) {
+      rate = slowest.omega(0);
+    }
+    return rate * duration / kRateTimesStep;
+  } catch (const SolverError&) {
+    return 0.0;
+  }
 }
 
 MethodChoice choose_method(const System& system, double duration, double step) {

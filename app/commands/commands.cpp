@@ -19,8 +19,9 @@ const std::vector<CommandEntry>& commands() {
       "contacts, those of them that are harmonics of the cycle, and what the loads excite"};
   static const OptionEntry linear{
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};
-  static const OptionEntry sections{"--record", "CHANNEL,...",
-                                    "Sections; default: every torque and force of an element", commas};
+  static const OptionEntry sections{
+      "--record", "CHANNEL,...",
+      "Sections, * for any characters; default: every torque and force of an element", commas};
   static const OptionEntry cycle{"--cycle", "TURNS",
                                  "Turns of the reference shaft in which everything repeats, for a model "
                                  "with contacts; default: found"};
@@ -58,10 +59,13 @@ const std::vector<CommandEntry>& commands() {
              "Writes the report, a page for any browser, to FILE.html, or printed to FILE.pdf; of a table: "
              "statistics, histograms, scatter plots, Sobol indices"},
             {"--events", "FILE", "Writes each contact made or lost to FILE.csv: time, element, flank, rate"},
-            {"--record", "CHANNEL,...", "Columns of history.csv, curves of the report; default: the model's",
+            {"--record", "CHANNEL,...",
+             "Columns of history.csv, curves of the report, * for any characters; default: the model's",
              commas},
             {"--rainflow", "CHANNEL,...",
-             "Counts load cycles (ASTM E1049) of channels; sections with an S-N line are counted anyway",
+             "Counts load cycles (ASTM E1049) of channels, * for any characters; sections with an S-N line "
+             "are "
+             "counted anyway",
              commas},
             {"--orders-of", "NODE",
              "Node whose turns the orders count, for a start from rest without nominal speed; default: node "
@@ -239,7 +243,8 @@ const std::vector<CommandEntry>& commands() {
              {"rest", "static", "periodic"}},
             {"--duration", "SECONDS", "Length of the runs; default: the model's"},
             {"--settle", "0", "For a model whose [run] has a settle: figures are of the whole run"},
-            {"--record", "CHANNEL,...", "Channels whose largest and least values are figures, too", commas},
+            {"--record", "CHANNEL,...",
+             "Channels whose largest and least values are figures, too; * for any characters", commas},
             {"--jobs", "N", "Threads; default: one per processor"},
             {"--out", "DIR", "Creates DIR with tried.csv, every variant computed, and optimum.json"},
             run,
@@ -257,7 +262,8 @@ const std::vector<CommandEntry>& commands() {
                    {"--fmu", "FILE", "Writes an FMU instead: FILE, which ends in .fmu"},
                    {"--torque", "NODE,...", "Nodes on which a torque is an input of the FMU", commas},
                    {"--speed", "NODE,...", "Prescribed nodes whose speed is an input of the FMU", commas},
-                   {"--record", "CHANNEL,...", "Outputs of the FMU; default: the model's", commas},
+                   {"--record", "CHANNEL,...",
+                    "Outputs of the FMU, * for any characters; default: the model's", commas},
                    {"--fmi", "VERSION", "Version of FMI: 3 (default) or 2", one, {"2", "3"}},
                    run,
                    plugin},

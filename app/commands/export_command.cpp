@@ -1,3 +1,5 @@
+#include <drev/core/channel.hpp>
+
 #include <filesystem>
 
 #include "app/base/json_values.hpp"
@@ -8,10 +10,27 @@
 #include "app/commands/commands.hpp"
 #include "app/fmi/export_fmu.hpp"
 #include "app/model_file/writing/export.hpp"
+#include "core/channel_pattern.hpp"
 
 namespace drev::app {
 
 namespace {
+
+/// Outputs may be actual motions, too, which are no channels: patterns alone are looked up.
+std::vector<std::string> without_patterns(const std::vector<std::string>& names, const System& system,
+                                          std::vector<Finding>& findings) {
+  std::vector<std::string> all;
+  for (const AskedChannel& one : asked_channels(system, names)) {
+    all.push_back(one.name);
+    if (!is_pattern(one.name)) continue;
+    try {
+      find_channels(system, {one.name});
+    } catch (const ModelError& error) {
+      findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+    }
+  }
+  return all;
+}
 
 /// drev export MODEL --fmu FILE.
 int export_as_fmu(const CommandLine& line, const ModelRequest& model) {
@@ -24,6 +43,7 @@ int export_as_fmu(const CommandLine& line, const ModelRequest& model) {
                      .outputs = line.list("--record").value_or(model.model_case.channels),
                      .fmi = line.option("--fmi").value_or("3") == "2" ? 2 : 3};
   std::vector<Finding> findings;
+  request.outputs = without_patterns(request.outputs, model.system, findings);
   const std::filesystem::path path(request.file);
   if (!path.has_stem() || path.extension() != ".fmu")
     findings.push_back(

@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "app/base/interrupt.hpp"
+#include "app/base/text_layout.hpp"
 #include "app/cli/method_option.hpp"
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
@@ -38,20 +39,22 @@ double round_number(double x) {
   return value;
 }
 
-void check_channels(const ModelRequest& model, const CommandLine& line, bool all_parameters_right,
-                    std::vector<Finding>& findings) {
-  for (const char* option : {"--record", "--rainflow"}) {
-    if (!line.list(option)) continue;
-    try {
-      const bool recorded = option == std::string("--record");
-      find_channels(model.system, *line.list(option), recorded ? OverRun::taken : OverRun::refused);
-    } catch (const ModelError& error) {
-      for (Finding finding : error.findings()) {
-        if (!all_parameters_right) finding.range += " (with the parameters that are right)";
-        findings.push_back(std::move(finding));
-      }
+/// The channels that an option asks for, by their names.
+std::vector<std::string> read_channels(const char* option, OverRun integrals, const ModelRequest& model,
+                                       const CommandLine& line, bool all_parameters_right,
+                                       std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  if (!line.list(option)) return names;
+  try {
+    for (const Channel& channel : find_channels(model.system, *line.list(option), integrals))
+      names.push_back(channel.name());
+  } catch (const ModelError& error) {
+    for (Finding finding : error.findings()) {
+      if (!all_parameters_right) finding.range += " (with the parameters that are right)";
+      findings.push_back(std::move(finding));
     }
   }
+  return names;
 }
 
 /// A node that can turn without a nominal speed.
@@ -171,6 +174,19 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   return {{.name = kExact, .tolerance = read_tolerance(line, true, findings)}, reason};
 }
 
+/// A run that no one could wait for, or whose steps rounding would spoil.
+void check_duration(const System& system, const Method& method, double duration,
+                    std::vector<Finding>& findings) {
+  const double steps = least_steps(system, method, duration);
+  if (steps <= kMostSteps) return;
+  const double longest = duration * kMostSteps / steps;
+  const double digit = std::pow(10.0, std::floor(std::log10(longest)) - 1.0);  // the second of it
+  findings.push_back({kCommandLine, "--duration", to_text(duration), "s",
+                      "is too long: " + to_text(method) + " would take at least " + short_digits(steps, 2) +
+                          " steps, more than " + short_digits(kMostSteps, 2) + "; take at most " +
+                          short_digits(digit * std::floor(longest / digit), 2) + " s"});
+}
+
 /// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
 void take_file_options(const ModelRequest& model, CommandLine& line) {
   const RunOptions file = model.file->run_options(model.parameters);
@@ -185,6 +201,8 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   if (!given("--method") && !given("--step") && !given("--tolerance") && !given("--accuracy"))
     for (const char* option : {"--method", "--tolerance", "--accuracy"}) take(option);
   for (const char* option : {"--start", "--settle", "--out"}) take(option);
+  if (const auto at = file.places.find("--duration"); at != file.places.end() && !given("--duration"))
+    line.from_file["--duration"] = at->second.text() + ": run";  // the model has the value
   if (given("--out") || given("--report") || line.keeps_history) take("--every");
 }
 
@@ -249,10 +267,12 @@ RunRequest request_run(const CommandLine& given) {
   const double duration = model ? model->model_case.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
+  const std::size_t before_method = findings.size();
   const MethodChoice method = find_method(model, line, findings);
   Method chosen = method.method;
   if (line.option("--step") && !chosen.exact())
     chosen.step = read_time("--step", *line.option("--step"), {duration / kMostSteps, high}, limit, findings);
+  if (model && findings.size() == before_method) check_duration(model->system, chosen, duration, findings);
   const std::optional<double> accuracy = read_accuracy(line, findings);
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
@@ -264,13 +284,17 @@ RunRequest request_run(const CommandLine& given) {
   if (line.option("--every"))
     every = read_time("--every", *line.option("--every"), {duration / kMostRows, high}, limit, findings);
   check_outputs(line, model ? model->model_case.files : std::vector<std::string>{}, findings);
-  if (model) check_channels(*model, line, parameters_right, findings);
+  std::vector<std::string> record, rainflow;
+  if (model) {
+    record = read_channels("--record", OverRun::taken, *model, line, parameters_right, findings);
+    rainflow = read_channels("--rainflow", OverRun::refused, *model, line, parameters_right, findings);
+  }
   if (model) check_orders_of(*model, line, findings);
   blame_file(line, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   const std::vector<std::string> formats = line.list("--format").value_or(std::vector<std::string>{});
   const bool hdf5 = std::count(formats.begin(), formats.end(), "hdf5") > 0;
-  std::vector<std::string> record = line.list("--record").value_or(model->model_case.channels);
+  if (!line.list("--record")) record = model->model_case.channels;
   return {std::move(*model),
           chosen,
           accuracy,
@@ -289,7 +313,7 @@ RunRequest request_run(const CommandLine& given) {
           line.option("--duration") ? std::optional(duration) : std::nullopt,
           line.option("--events"),
           line.keeps_history,
-          line.list("--rainflow").value_or(std::vector<std::string>{}),
+          std::move(rainflow),
           line.options.contains("--energy"),
           line.option("--orders-of").value_or("")};
 }

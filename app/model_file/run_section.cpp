@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/channel_pattern.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -55,22 +57,6 @@ std::vector<std::string> node_motions(const System& system) {
 }
 
 }  // namespace
-
-bool fits_pattern(const std::string& pattern, const std::string& name) {
-  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*')
-      star = p++, mark = n;
-    else if (p < pattern.size() && pattern[p] == name[n])
-      ++p, ++n;
-    else if (star != std::string::npos)
-      p = star + 1, n = ++mark;
-    else
-      return false;
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
 
 RunSection::Params::Params()
     : every(kNotGiven), tolerance(kNotGiven), accuracy(kNotGiven), settle_time(kNotGiven) {}
@@ -135,6 +121,7 @@ RunOptions RunSection::options() const {
   add("settle", settle != nullptr && settle->key == "settle" ? params_.settle : number(params_.settle_time));
   add("every", number(params_.every));
   add("out", params_.out);
+  if (const Entry* duration = entry("duration")) options.places["--duration"] = duration->value.at;
   return options;
 }
 
@@ -145,27 +132,13 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
     const Value& value = given->value;
     return value.is(Value::Kind::array) && i < value.items.size() ? value.items[i].at : value.at;
   };
-  std::vector<std::string> found, single;
   std::unordered_map<std::string, std::size_t> origin;
-  std::vector<Channel> all;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    if (asked[i].find('*') == std::string::npos) {
-      found.push_back(asked[i]);
-      single.push_back(asked[i]);
-      origin.emplace(asked[i], i);
-      continue;
-    }
-    // Energies are meant where the pattern says so: "*" alone is motions and forces.
-    const bool energies = asked[i].ends_with("_W") || asked[i].ends_with("_J");
-    all = energies ? energy_channels(system) : all_channels(system);
-    const std::size_t before = found.size();
-    for (const Channel& channel : all)
-      if (fits_pattern(asked[i], channel.name())) found.push_back(channel.name());
-    if (found.size() == before)
-      context.findings.push_back(fault_at(place(i), "run." + key, "\"" + asked[i] + "\" fits no channel"));
-  }
+  for (std::size_t i = 0; i < asked.size(); ++i) origin.emplace(asked[i], i);
+  std::vector<std::string> found;
   try {
-    find_channels(system, single, key == "record" ? OverRun::taken : OverRun::refused);
+    for (const Channel& channel :
+         find_channels(system, asked, key == "record" ? OverRun::taken : OverRun::refused))
+      found.push_back(channel.name());
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
       finding.place = place(origin[finding.value]).text() + ": run." + key;
@@ -194,7 +167,7 @@ void RunSection::complete(ModelCase& model_case, const System& system, ReadConte
   model_case.default_step = params_.step;
   model_case.static_turn = params_.static_turn;
   if (!params_.deflection.empty()) {
-    if (params_.deflection.find('*') != std::string::npos)
+    if (is_pattern(params_.deflection))
       context.findings.push_back(
           fault_at(entry("deflection")->value.at, "run.deflection", "must be one channel, without '*'"));
     else

@@ -7,9 +7,6 @@
 
 namespace drev::app {
 
-/// Whether a name fits; '*' in the pattern stands for any characters.
-bool fits_pattern(const std::string& pattern, const std::string& name);
-
 class RunSection {
  public:
   /// Reads [run], then what the named run changes; what is wrong goes to the context.

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/channel_pattern.hpp"
+
 namespace drev {
 
 namespace {
@@ -58,6 +60,29 @@ std::map<std::string, SectionRows> element_sections(const System& system,
   return sections;
 }
 
+/// In place of each pattern the sections of elements that fit it, else the other linear channels that do.
+std::vector<std::string> sections_asked(const std::vector<std::string>& names,
+                                        const std::vector<std::string>& sections,
+                                        const std::vector<Channel>& channels) {
+  std::vector<std::string> wanted;
+  const auto add = [&](const std::string& name) {
+    if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) wanted.push_back(name);
+  };
+  for (const std::string& name : names) {
+    bool fits = false;
+    if (is_pattern(name)) {
+      for (const std::string& section : sections)
+        if (fits_pattern(name, section)) fits = true, add(section);
+      const bool of_elements = fits;
+      for (const Channel& channel : channels)
+        if (!of_elements && channel.is_linear() && fits_pattern(name, channel.name()))
+          fits = true, add(channel.name());
+    }
+    if (!fits) add(name);
+  }
+  return wanted;
+}
+
 }  // namespace
 
 std::vector<SectionRows> find_section_rows(const System& system, const std::vector<std::string>& names,
@@ -85,7 +110,7 @@ std::vector<SectionRows> find_section_rows(const System& system, const std::vect
     known[section.name] = section;
     wanted.push_back(section.name);
   }
-  if (!names.empty()) wanted = names;
+  if (!names.empty()) wanted = sections_asked(names, wanted, channels);
   for (const std::string& name : wanted) try {
       if (const auto found = known.find(name); found != known.end()) {
         sections.push_back(found->second);

@@ -12,8 +12,8 @@ constexpr double kSameTime = 1e-9;  // relative to the interval
 Recorder::Recorder(const System& system, const std::vector<std::string>& channels, double every)
     : values_(find_channels(system, channels, OverRun::taken)),
       every_(every),
-      row_(channels.size()),
-      samples_(channels.size()) {
+      row_(values_.channels().size()),
+      samples_(values_.channels().size()) {
   std::vector<Finding> findings;
   ParameterCheck(system.name(), findings).positive("recording interval", every, "s");
   if (!findings.empty()) throw ModelError(findings);

@@ -15,7 +15,7 @@ struct EvaluatedState;
 
 class Recorder final : public Observer {
  public:
-  /// every > 0 [s]. Throws ModelError for unknown channels or a bad interval.
+  /// channels: as find_channels() takes them; every > 0 [s]. Throws ModelError for unknown channels or a bad interval.
   Recorder(const System& system, const std::vector<std::string>& channels, double every);
 
   /// Instead of keeping rows in memory, hands each to the sink (to write it out).

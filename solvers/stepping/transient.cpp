@@ -26,10 +26,11 @@ namespace {
 
 constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
 constexpr double kLargestStep = 0.05;  // largest step over the duration of the run
-constexpr double kLeastStep = 1e-9;    // step over the duration that is not rejected for its error
-constexpr double kStanding = 1e-3;     // part of a step within which changes are counted together
-constexpr double kCoarseSteps = 200;   // steps of the run that finds the scales
-constexpr double kLeastShare = 1e-3;   // share of the energy error that any step may have
+constexpr double kRoundedStep = 1e7;  // longest step times it: near 1e8 rounding leaves nothing of M beside K
+constexpr double kLeastStep = 1e-9;   // step over the duration that is not rejected for its error
+constexpr double kStanding = 1e-3;    // part of a step within which changes are counted together
+constexpr double kCoarseSteps = 200;  // steps of the run that finds the scales
+constexpr double kLeastShare = 1e-3;  // share of the energy error that any step may have
 constexpr int kEnergyTries = 3;
 
 /// One run: the loop over stops, the steps between them, and what is kept about it.
@@ -127,6 +128,8 @@ class Run final : public StepMotion {
                            .largest = kLargestStep * duration(),
                            .order = scheme.order(),
                            .on_grid = !scheme.is_explicit()};
+    if (fastest > 0.0) o.largest = std::min(o.largest, kRoundedStep / fastest);
+    const double coarse_step = std::min(o.largest, duration() / kCoarseSteps);
     if (options_.step > 0.0) o.largest = options_.step;
     o.largest = std::min(o.largest, stability_limit(system_, scheme));
     o.first = o.largest;
@@ -151,9 +154,9 @@ class Run final : public StepMotion {
     try {
       run = simulate(system_,
                      {.scheme = bathe(),
-                      .step = duration() / kCoarseSteps,
+                      .step = coarse_step,
                       .t_start = options_.t_start,
-                      .t_end = options_.t_end,
+                      .t_end = std::min(options_.t_end, options_.t_start + kCoarseSteps * coarse_step),
                       .newton = options_.newton,
                       .progress = [this](double) { return !options_.progress || options_.progress(0.0); }},
                      state, {&coarse});

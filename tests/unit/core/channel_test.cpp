@@ -288,3 +288,35 @@ TEST_CASE("A name that belongs to two channels is refused, not guessed") {
   CHECK(find_channel(s, "shaft_1.torque_Nm").unit() == "N m");
   REQUIRE_THROWS_AS(find_channel(s, "shaft_2.torque_Nm"), ModelError);
 }
+
+TEST_CASE("A pattern stands for every channel that fits it, each once, in the order of the model") {
+  Model m("pair");
+  disc(m, "motor", 1.0);
+  disc(m, "pump", 1.0);
+  m.add<ShaftSpring>("shaft", {"motor", "pump"}, {.stiffness = 1.0, .damping = 1.0});
+  const System s = m.build();
+  const auto names = [&](const std::vector<std::string>& asked) {
+    std::string text;
+    for (const Channel& c : find_channels(s, asked, OverRun::taken)) text += c.name() + " ";
+    return text;
+  };
+  CHECK(names({"pump.angle_rad", "*.angle_rad", "shaft.*Nm"}) ==
+        "pump.angle_rad motor.angle_rad shaft.torque_Nm ");
+  CHECK(names({"*.stored_J", "sh*.dissip*_J"}) == "shaft.stored_J shaft.dissipated_J ");
+  CHECK(find_channels(s, {"*"}).size() == all_channels(s).size());
+  CHECK(find_channel(s, "shaft.torque*").name() == "shaft.torque_Nm");
+  const auto message = [&](const std::vector<std::string>& asked) -> std::string {
+    try {
+      find_channels(s, asked);
+    } catch (const ModelError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string text = message({"shafts*.torque_Nm", "*.work_J", "*.dissipated_J", "pum.angle_rad"});
+  CHECK(std::count(text.begin(), text.end(), '\n') == 4);
+  CHECK(problems::contains(text, "channel = shafts*.torque_Nm, fits no channel of this model"));
+  CHECK(problems::contains(text, "did you mean 'shaft.torque_Nm'?; there are motor.angle_rad, "));
+  CHECK(problems::contains(text, "channel = *.dissipated_J, is summed up over a run"));
+  CHECK_THROWS_AS(find_channel(s, "*.angle_rad"), ModelError);
+}

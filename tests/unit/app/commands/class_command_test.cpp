@@ -330,6 +330,15 @@ TEST_CASE("A run counts load cycles of sections with an S-N line and of channels
     if (s.at("channel") == "flange.torque_Nm") CHECK(s.at("permissible").get<double>() > 0.0);
   }
   CHECK(drev_command({"run", kGensetFile, "--rainflow", "flnge.torque_Nm"}).exit_code == 2);
+  const drev::test::TemporaryFolder folder;
+  // '*' stands for anything, in what is counted as in what is recorded.
+  const auto patterns =
+      drev_command({"run", kGensetFile, "--duration", "0.02", "--json", "--rainflow", "coupl*.torque_Nm",
+                    "--record", "coupl*.torque_Nm,ring.angle_rad", "--out", (folder / "p").string()});
+  INFO(patterns.err);
+  CHECK(contains(patterns.out, "coupling.torque_Nm"));
+  const std::string history = read_file(folder / "p/history.csv");
+  CHECK(history.substr(0, history.find('\n')) == "time_s,coupling.torque_Nm,ring.angle_rad");
   CHECK(drev_command({"run", kGensetFile, "--duration", "-1"}).exit_code == 2);
 }
 

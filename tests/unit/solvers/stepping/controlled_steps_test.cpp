@@ -153,3 +153,25 @@ TEST_CASE("A tolerance whose share of a step is below rounding does not end the 
   CHECK(run.status == RunStatus::interrupted);
   CHECK(state.v[0] == Approx(std::cos(kTwoPi * state.t)).epsilon(1e-11));
 }
+
+TEST_CASE("The scales of a run far longer than its periods are found in steps that keep the inertia") {
+  // At 155 Hz a 200th of the run, 5e5 s, leaves nothing of M beside K h^2 in rounding, and the pair turns freely.
+  Model m("pair");
+  for (const char* name : {"motor", "load"}) {
+    m.add_node(name);
+    m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 0.02});
+  }
+  m.add<ShaftSpring>("shaft", {"motor", "load"}, {.stiffness = 9500.0, .damping = 0.5});
+  m.add<AppliedTorque>("drive", {"motor"}, {.torque = [](double t) { return std::sin(t); }});
+  const System system = m.build();
+  State state = State::initial(system);
+  int asked = 0;
+  const RunSummary run = simulate(system,
+                                  {.scheme = step_scheme("sdirk4"),
+                                   .tolerance = 1e-4,
+                                   .t_end = 1e8,
+                                   .progress = [&](double) { return ++asked < 20; }},
+                                  state);
+  CHECK(run.status == RunStatus::interrupted);
+  CHECK(run.steps > 100);
+}
