@@ -3,6 +3,7 @@
 #include <drev/app/model_file/model_file.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -65,6 +66,30 @@ std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const 
   if (line.text) return std::make_shared<const ModelFile>(*line.text, line.model, run);
   if (is_model_file(line.model)) return std::make_shared<const ModelFile>(line.model, run);
   return nullptr;
+}
+
+void check_finite(const char* option, const CommandLine& line,
+                  const std::vector<std::pair<std::string, std::string>>& values,
+                  std::vector<Finding>& findings) {
+  std::shared_ptr<const ModelFile> file;
+  for (const auto& [name, value] : values) {
+    double number = 0.0;
+    if (!read_number(value, number) || std::isfinite(number)) continue;
+    Finding finding{kCommandLine, std::string(option) + " " + name, value, "", "must be a finite number"};
+    try {
+      if (!file) file = open_model_file(line, line.option("--run").value_or(""));
+      std::vector<Finding> none;
+      if (const ModelEntry* entry = file ? &file->entry() : find_built_in(line.model, none)) {
+        Parameters probe(entry->name, entry->parameters);
+        probe.set(name, value);
+        probe.check();
+      }
+    } catch (const ModelError& error) {  // of the parameter; what is wrong with the file, build_model() says
+      const Finding& own = error.findings().front();
+      if (own.parameter == name) finding.unit = own.unit, finding.range = own.range;
+    }
+    findings.push_back(std::move(finding));
+  }
 }
 
 std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/command_line.hpp"
@@ -16,6 +17,10 @@ bool is_built_in(const std::string& model);
 
 /// The model file that is meant; null: a built-in model. Throws ModelError with everything wrong with the file.
 std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const std::string& run);
+/// A finding on `option` for each value that is not finite, with what the model's parameter of that name may be.
+void check_finite(const char* option, const CommandLine& line,
+                  const std::vector<std::pair<std::string, std::string>>& values,
+                  std::vector<Finding>& findings);
 /// The model as far as it can be built; nothing if it cannot. What is wrong goes to findings.
 std::optional<ModelRequest> build_model(const CommandLine& line, std::vector<Finding>& findings);
 /// A finding if the file, or the partial one that becomes it, is one of those that are read.

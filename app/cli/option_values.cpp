@@ -65,15 +65,15 @@ int read_count(const char* option, const std::string& text, std::optional<int> m
   return 1;
 }
 
-std::string read_steps(const std::string& text, double most, std::vector<double>& values) {
+NumbersFault read_steps(const std::string& text, double most, std::vector<double>& values) {
   const std::vector<std::string> parts = split(text, ':');
   double first = 0.0, step = 0.0, last = 0.0;
   if (parts.size() != 3 || !read_number(parts[0], first) || !read_number(parts[1], step) ||
       !read_number(parts[2], last) || !std::isfinite(first) || !std::isfinite(step) || !std::isfinite(last))
-    return "must be FIRST:STEP:LAST";
+    return {"must be FIRST:STEP:LAST", true};
   const double steps = std::floor((last - first) / step + 1e-9);
-  if (!(steps >= 0.0) || step == 0.0) return "has a STEP that does not lead from FIRST to LAST";
-  if (steps >= most) return "has more values than " + short_digits(most, 7);
+  if (!(steps >= 0.0) || step == 0.0) return {"has a STEP that does not lead from FIRST to LAST"};
+  if (steps >= most) return {"has more values than " + short_digits(most, 7)};
   for (double i = 0.0; i <= steps; ++i) {
     const double value = first + i * step;
     values.push_back(std::abs(value) < 1e-12 * std::abs(first) ? 0.0 : value);
@@ -85,22 +85,23 @@ std::vector<double> read_rising(const char* option, const std::string& text, con
                                 std::vector<Finding>& findings) {
   constexpr double kMost = 1e6;
   std::vector<double> values;
-  std::string wrong;
-  const std::string numbers = ", numbers" + (unit.empty() ? "" : " of " + unit) + " without unit";
+  NumbersFault fault;
   if (text.find(':') != text.npos) {
-    wrong = read_steps(text, kMost, values);
-    if (wrong.starts_with("must be")) wrong += numbers;
+    fault = read_steps(text, kMost, values);
   } else {
     for (const std::string& part : split(text, ',')) {
       values.push_back(0.0);
-      if (!read_number(part, values.back())) wrong = "must be FIRST:STEP:LAST or A,B,C" + numbers;
+      if (!read_number(part, values.back())) fault = {"must be FIRST:STEP:LAST or A,B,C", true};
     }
   }
-  for (std::size_t i = 0; i < values.size() && wrong.empty(); ++i)
+  for (std::size_t i = 0; i < values.size() && fault.why.empty(); ++i)
     if (!std::isfinite(values[i]) || !(values[i] > (i > 0 ? values[i - 1] : 0.0)))
-      wrong = "must be > 0 and rise from each to the next";
-  if (!wrong.empty())
-    findings.push_back({kCommandLine, option, text, wrong.ends_with(numbers) ? "" : unit, wrong});
+      fault.why = "must be > 0 and rise from each to the next";
+  if (fault.form)
+    findings.push_back({kCommandLine, option, text, "",
+                        fault.why + ", numbers" + (unit.empty() ? "" : " of " + unit) + " without unit"});
+  else if (!fault.why.empty())
+    findings.push_back({kCommandLine, option, text, unit, fault.why});
   return values;
 }
 

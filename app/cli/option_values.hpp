@@ -26,9 +26,13 @@ inline constexpr int kMostThreads = 1024;
 int read_count(const char* option, const std::string& text, std::optional<int> most, const std::string& what,
                std::vector<Finding>& findings);
 
-/// FIRST:STEP:LAST as numbers, FIRST and all that follow by STEP up to LAST. What is wrong with it, as the end of
-/// a message; empty: nothing. most: so many numbers at the most.
-std::string read_steps(const std::string& text, double most, std::vector<double>& values);
+/// What is wrong with numbers.
+struct NumbersFault {
+  std::string why = {};  ///< end of a message; empty: nothing
+  bool form = false;     ///< the text is no numbers, or not so many
+};
+/// FIRST:STEP:LAST as numbers, FIRST and all that follow by STEP up to LAST. most: so many numbers at the most.
+NumbersFault read_steps(const std::string& text, double most, std::vector<double>& values);
 /// Rising numbers > 0, as FIRST:STEP:LAST or A,B,C. unit: as messages name it.
 std::vector<double> read_rising(const char* option, const std::string& text, const std::string& unit,
                                 std::vector<Finding>& findings);

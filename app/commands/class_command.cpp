@@ -41,7 +41,7 @@ void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
     const NonlinearSweepOptions options = nonlinear_options(line, c.request);
     sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
     end_if_interrupted();
-    c.notes = left_over_notes(options, sweeps.back());
+    c.notes = excitation_notes(options, sweeps.back());
     for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
   }
   std::sort(missing.begin(), missing.end());

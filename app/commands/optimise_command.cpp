@@ -10,6 +10,7 @@
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
@@ -35,6 +36,25 @@ std::pair<std::string, bool> goal_of(const CommandLine& line, std::vector<Findin
                         std::string(least ? "cannot be given with --maximise" : "or --maximise is needed") +
                             ": the figure meant, such as max_torque_Nm"});
   return {least ? *least : largest.value_or(""), largest.has_value()};
+}
+
+std::vector<std::string> names_of(const std::vector<FigureColumn>& figures) {
+  std::vector<std::string> names;
+  for (const FigureColumn& column : figures) names.push_back(column.name);
+  return names;
+}
+
+/// Where something else is wrong: the figures that the model has with the parameters that are right. None: not known.
+std::vector<std::string> figures_of_model(const CommandLine& line) {
+  std::vector<Finding> told;
+  const std::optional<ModelRequest> model = build_model(line, told);
+  if (!model) return {};
+  try {
+    return names_of(figure_columns(model->model_case, model->system,
+                                   line.list("--record").value_or(std::vector<std::string>{})));
+  } catch (const ModelError&) {
+    return {};
+  }
 }
 
 OptimumRequest request_optimum(const CommandLine& line) {
@@ -70,17 +90,13 @@ OptimumRequest request_optimum(const CommandLine& line) {
   } catch (const ModelError& error) {
     findings.insert(findings.begin(), error.findings().begin(), error.findings().end());
   }
-  if (study && !figure.empty()) {
-    std::vector<std::string> names;
-    for (const FigureColumn& column : study->figures()) names.push_back(column.name);
-    const auto at = std::find(names.begin(), names.end(), figure);
+  const std::vector<std::string> names = study ? names_of(study->figures()) : figures_of_model(line);
+  if (const auto at = std::find(names.begin(), names.end(), figure); at != names.end())
     options.figure = static_cast<std::size_t>(at - names.begin());
-    if (at == names.end())
-      findings.push_back({kCommandLine, largest ? "--maximise" : "--minimise", figure, "",
-                          "is no figure of the model; there are " + join(names) +
-                              did_you_mean(figure, names) +
-                              "; --record CHANNEL adds CHANNEL.max and CHANNEL.min"});
-  }
+  else if (!names.empty() && !figure.empty())
+    findings.push_back({kCommandLine, largest ? "--maximise" : "--minimise", figure, "",
+                        "is no figure of the model; there are " + join(names) + did_you_mean(figure, names) +
+                            "; --record CHANNEL adds CHANNEL.max and CHANNEL.min"});
   if (!findings.empty()) throw ModelError(std::move(findings));
   return {std::move(*study), std::move(options)};
 }

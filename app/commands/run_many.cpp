@@ -14,6 +14,7 @@
 #include "app/base/progress.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/exit_codes.hpp"
+#include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/child_process.hpp"
@@ -21,6 +22,7 @@
 #include "app/commands/run_request.hpp"
 #include "app/commands/variants.hpp"
 #include "app/results/many_runs.hpp"
+#include "app/variants/varied.hpp"
 
 namespace drev::app {
 
@@ -219,13 +221,23 @@ bool means_many(const CommandLine& line) {
 int run_many(const CommandLine& line) {
   std::vector<Finding> findings = line.findings;
   ModelList list = list_models(line.list("MODEL").value_or(std::vector<std::string>{}), findings);
-  const std::vector<Variant> variants =
-      read_variants(line.list("--vary").value_or(std::vector<std::string>{}), findings);
+  // What is wrong with all variants of one model is said once, with what is wrong with the line.
+  CommandLine first = line;
+  const bool one = line.list("--vary") && list.models.size() <= 1;
+  if (one && !list.models.empty()) first.model = list.models.front().model;
+  const auto words = line.list("--vary").value_or(std::vector<std::string>{});
+  const std::size_t before = findings.size();
+  const std::vector<Variant> variants = read_variants(words, findings);
+  std::vector<Finding> told;
+  check_finite("--vary", first, listed_values(read_varied(words, 0.0, told)), findings);
   if (!variants.empty())
     for (const auto& [name, value] : variants.front().parameters)
       if (std::any_of(line.parameters.begin(), line.parameters.end(),
                       [&name = name](const auto& parameter) { return parameter.first == name; }))
         findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
+  if (findings.size() == before)
+    first.parameters.insert(first.parameters.end(), variants.front().parameters.begin(),
+                            variants.front().parameters.end());
   if (!line.option("--out"))
     findings.push_back(
         {kCommandLine, "--out", "", "", "is needed for several runs: each has its folder there"});
@@ -236,16 +248,14 @@ int run_many(const CommandLine& line) {
     findings.push_back({kCommandLine, "--events", *events, "", "is for one run"});
   int at_once = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (const auto jobs = line.option("--jobs")) at_once = read_count("--jobs", *jobs, kMostJobs, "", findings);
-  if (!findings.empty()) throw ModelError(std::move(findings));
-  if (line.list("--vary") && list.models.size() <= 1) {
-    // What is wrong with all variants is said once.
-    CommandLine first = line;
-    if (!list.models.empty()) first.model = list.models.front().model;
-    first.options.erase("--jobs");
-    const auto& parameters = variants.front().parameters;
-    first.parameters.insert(first.parameters.end(), parameters.begin(), parameters.end());
+  if (one) {
+    for (const char* option : {"--jobs", "--report", "--events"}) first.options.erase(option);
+    if (!line.option("--out")) first.options.erase("--format");
+    first.keeps_history = true;  // --record needs no more than the --out that is asked for above
+    first.findings = findings;
     request_run(first);
   }
+  if (!findings.empty()) throw ModelError(std::move(findings));
 
   watch_signals();
   const std::string folder = *line.option("--out");

@@ -175,6 +175,7 @@ VariantStudy study_of(const CommandLine& line) {
   const std::size_t before = findings.size();
   const bool sampled = line.option("--sample").has_value();
   std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
+  check_finite("--vary", line, listed_values(varied), findings);
   std::optional<Sampling> sampling;
   if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
   std::vector<Correlation> correlations =

@@ -305,11 +305,11 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
   }
-  for (const std::string& note : left_over_notes(options, sweep)) notes.push_back(note);
+  for (const std::string& note : excitation_notes(options, sweep)) notes.push_back(note);
   return notes;
 }
 
-std::vector<std::string> left_over_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
+std::vector<std::string> excitation_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
   std::vector<std::string> notes;
   if (sweep.excess.found) notes.push_back(excess_sentence(sweep));
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {

@@ -136,6 +136,31 @@ std::shared_ptr<const VariantStudy::Watched> VariantStudy::watched_by(const Mode
   return std::make_shared<const Watched>(model_case, system, channels_);
 }
 
+std::vector<FigureColumn> figure_columns(const ModelCase& model_case, const System& system,
+                                         const std::vector<std::string>& channels) {
+  std::vector<FigureColumn> figures;
+  figures.push_back({"energy_error", ""});
+  if (!model_case.deflection.empty()) {
+    const bool angle = find_channel(system, model_case.deflection).unit() == "rad";
+    figures.push_back(angle ? FigureColumn{"deflection_deg", "deg"} : FigureColumn{"deflection_m", "m"});
+  }
+  if (!model_case.torques.empty()) {
+    const bool turning = find_channel(system, model_case.torques.front()).unit() == "N m";
+    figures.push_back(turning ? FigureColumn{"max_torque_Nm", "N m"} : FigureColumn{"max_force_N", "N"});
+  }
+  if (!mesh_channels(system).empty()) {
+    figures.push_back({"max_mesh_force_N", "N"});
+    figures.push_back({"front_contacts", ""});
+    figures.push_back({"back_contacts", ""});
+    figures.push_back({"time_separated_s", "s"});
+  }
+  for (const Channel& channel : find_channels(system, channels)) {
+    figures.push_back({channel.name() + ".max", channel.unit()});
+    figures.push_back({channel.name() + ".min", channel.unit()});
+  }
+  return figures;
+}
+
 VariantStudy::VariantStudy(RunRequest request, VariantPlan plan, bool record_asked)
     : request_(std::move(request)), plan_(std::move(plan)) {
   if (record_asked) channels_ = request_.record;
@@ -147,33 +172,8 @@ VariantStudy::VariantStudy(RunRequest request, VariantPlan plan, bool record_ask
         ::drev::why_not_lockstep(request_.model.system, stepping_options(method, 1.0, nullptr)).value_or("");
   block_size_ = why_not_lockstep_.empty() ? kLanes : 1;
   watched_ = watched_by(request_.model.model_case, request_.model.system);
-  find_figures();
+  figures_ = figure_columns(request_.model.model_case, request_.model.system, channels_);
   describe();
-}
-
-void VariantStudy::find_figures() {
-  const ModelCase& model_case = request_.model.model_case;
-  const System& system = request_.model.system;
-  figures_.push_back({"energy_error", ""});
-  if (!model_case.deflection.empty()) {
-    const bool angle = find_channel(system, model_case.deflection).unit() == "rad";
-    figures_.push_back(angle ? FigureColumn{"deflection_deg", "deg"} : FigureColumn{"deflection_m", "m"});
-  }
-  if (!model_case.torques.empty()) {
-    const bool turning = find_channel(system, model_case.torques.front()).unit() == "N m";
-    figures_.push_back(turning ? FigureColumn{"max_torque_Nm", "N m"} : FigureColumn{"max_force_N", "N"});
-  }
-  if (!mesh_channels(system).empty()) {
-    figures_.push_back({"max_mesh_force_N", "N"});
-    figures_.push_back({"front_contacts", ""});
-    figures_.push_back({"back_contacts", ""});
-    figures_.push_back({"time_separated_s", "s"});
-  }
-  for (const std::string& name : channels_) {
-    const std::string unit = find_channel(system, name).unit();
-    figures_.push_back({name + ".max", unit});
-    figures_.push_back({name + ".min", unit});
-  }
 }
 
 void VariantStudy::describe() {

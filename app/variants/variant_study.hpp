@@ -41,6 +41,10 @@ struct FigureColumn {
   std::string name, unit;
 };
 
+/// The figures of a model's variants; channels: those recorded that have columns, as find_channels() takes them.
+std::vector<FigureColumn> figure_columns(const ModelCase& model_case, const System& system,
+                                         const std::vector<std::string>& channels);
+
 class VariantStudy {
  public:
   /// request: request for the first variant; record_asked: true if its recorded channels were requested and
@@ -76,7 +80,6 @@ class VariantStudy {
  private:
   struct Built;
   struct Watched;
-  void find_figures();
   void describe();
   Built build(const ParameterValues& values) const;
   void run_together(std::vector<Built>& built, std::uint64_t block, std::size_t first, std::size_t count,

@@ -25,8 +25,8 @@ std::string read_values(const std::string& text, double most, std::vector<std::s
     std::vector<std::string> found{part};
     if (part.find(':') != part.npos) {
       std::vector<double> numbers;
-      const std::string wrong = read_steps(part, most, numbers);
-      if (!wrong.empty()) return wrong.starts_with("must be") ? kForm : wrong;
+      const NumbersFault fault = read_steps(part, most, numbers);
+      if (!fault.why.empty()) return fault.form ? kForm : fault.why;
       found.clear();
       for (const double number : numbers) {
         const std::string value = short_digits(number, 12);
@@ -38,8 +38,6 @@ std::string read_values(const std::string& text, double most, std::vector<std::s
       // One of the brackets alone: a distribution by another name, or among values.
       const bool bracket = (value.find('(') == value.npos) != (value.find(')') == value.npos);
       if (value.empty() || value.find('/') != value.npos || bracket) return kForm;
-      if (double number = 0.0; read_number(value, number) && std::isnan(number))
-        return "has a value that is no number";
       if (!known.insert(value).second) return "has " + value + " twice";
       values.push_back(value);
     }
@@ -75,9 +73,9 @@ std::string read_one(Varied& varied, double most) {
                          read_number(words[1], varied.second) && std::isfinite(varied.first) &&
                          std::isfinite(varied.second);
     if (kind == uniform && !(numbers && varied.first < varied.second))
-      return "must be uniform(LOW,HIGH) with two numbers, the first below the second";
+      return "must be uniform(LOW,HIGH) with two finite numbers, the first below the second";
     if (kind == normal && !(numbers && varied.second > 0.0))
-      return "must be normal(MEAN,DEVIATION) with two numbers, the second above 0";
+      return "must be normal(MEAN,DEVIATION) with two finite numbers, the second above 0";
     return {};
   }
   return read_values(varied.text, std::min(most, kMostValues), varied.values);
@@ -111,6 +109,13 @@ std::string order_text(std::uint64_t i, int items) {
     left.erase(at);
   }
   return text;
+}
+
+ParameterValues listed_values(const std::vector<Varied>& varied) {
+  ParameterValues all;
+  for (const Varied& v : varied)
+    for (const std::string& value : v.values) all.emplace_back(v.name, value);
+  return all;
 }
 
 std::vector<Varied> read_varied(const std::vector<std::string>& words, double most,

@@ -32,6 +32,9 @@ struct Varied {
 std::vector<Varied> read_varied(const std::vector<std::string>& words, double most,
                                 std::vector<Finding>& findings);
 
+/// All values of lists, each with the name of its parameter.
+ParameterValues listed_values(const std::vector<Varied>& varied);
+
 /// Order number i of (N - 1)! in lexicographic order, as "1-3-2".
 std::string order_text(std::uint64_t i, int items);
 

@@ -121,7 +121,16 @@ const std::vector<OptionFault>& faults() {
       {{"run", "camshaft", "--vary", "engine_rpm=triangular(1,2)", "--out", "no_folder"},
        {"uniform(LOW,HIGH)"}},
       {{"run", "camshaft", "--vary", "engine_rpm=750,nan", "--out", "no_folder"},
-       {"has a value that is no number"}},
+       {"--vary engine_rpm = nan rpm", "must be 1 to 5000"}},
+      // 155.2 Hz, 975 rad/s, in steps of 3/omega
+      {{"run", "two_inertia", "--duration", "1e12"},
+       {"--duration = 1000000000000 s", "at least 3.3e+14 steps, more than 1e+10", "take at most 3e+07 s"}},
+      {{"run", "two_inertia", "--duration", "1e12", "--method", "hht"},
+       {"--duration = 1000000000000 s", "steps, more than 1e+10"}},
+      {{"run", "camshaft", "--record", "mesh_*.torque_Nm", "--rainflow", "shft_*.torque_Nm", "--out",
+        "no_folder"},
+       {"channel = mesh_*.torque_Nm, fits no channel of this model", "channel = shft_*.torque_Nm",
+        "there are ", " more"}},
       {{"class", "camshaft", "--speeds", "500"}, {"[class], is missing"}},
   };
   return all;
@@ -181,4 +190,32 @@ TEST_CASE("What is wrong with an option is said once, and beside all other fault
   for (const char* part : {"--tolerance = nan, is for models that are not linear, which --contact closed",
                            "--cycle = abc", "hub,gen"})
     CHECK(contains(closed, part));
+}
+
+TEST_CASE("Faults of --vary, of the figure and of the folder come together, each with the admissible range") {
+  for (const char* value : {"inf", "nan", "1,-inf"}) {
+    const std::string varied = std::string("stiffness_Nm_per_rad=") + value;
+    const auto several =
+        drev_command({"run", "two_inertia", "--vary", varied, "--record", "nix", "--jobs", "0"});
+    INFO(several.err);
+    CHECK(several.exit_code == 2);
+    CHECK(contains(several.err, "4 faults"));
+    for (const char* part :
+         {"--vary stiffness_Nm_per_rad = ", "inf N m/rad", "must be 1e-06 to 1000000000000000",
+          "--out, is needed", "channel = nix", "--jobs = 0"})
+      CHECK((contains(several.err, part) || (part[0] == 'i' && contains(several.err, "nan N m/rad"))));
+    const auto best = drev_command({"optimise", "two_inertia", "--vary", varied, "--minimise", "foo"});
+    INFO(best.err);
+    CHECK(best.exit_code == 2);
+    CHECK(contains(best.err, "2 faults"));
+    for (const char* part :
+         {"--vary stiffness_Nm_per_rad = ", "must be 1e-06 to 1000000000000000", "--minimise = foo"})
+      CHECK(contains(best.err, part));
+  }
+  const std::string drive = DREV_SOURCE_DIR "/models/drive/drive.toml";
+  const auto table = drev_command({"run", drive, "--table", "--vary", "torque_Nm=1,inf"});
+  INFO(table.err);
+  CHECK(contains(table.err, "2 faults"));
+  CHECK(contains(table.err, "--vary torque_Nm = inf"));
+  CHECK(contains(table.err, "must be 0 to 100"));
 }
