@@ -11,6 +11,7 @@
 
 #include "app/base/text_layout.hpp"
 #include "app/variants/block_threads.hpp"
+#include "app/variants/optimum_pace.hpp"
 
 namespace drev::app {
 
@@ -31,7 +32,11 @@ using NloptSearch = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, DestroyOpt
 class OptimumSearch {
  public:
   OptimumSearch(const VariantStudy& study, const OptimumOptions& options)
-      : study_(study), options_(options), most_(options.variants) {
+      : study_(study),
+        options_(options),
+        most_(study.plan().sampling() ? options.variants : study.plan().count()),
+        pace_(study.plan().sampling() ? study.plan().count() : 0, most_,
+              study.block_size() > 1 ? 0 : options.threads) {
     for (const Varied& v : study.plan().varied())
       coordinates_ += v.kind == Varied::Kind::orders ? static_cast<std::size_t>(v.items) - 1 : 1;
   }
@@ -57,8 +62,7 @@ class OptimumSearch {
   }
 
   bool tell() {
-    const double part = static_cast<double>(result_.tried.size()) / static_cast<double>(most_);
-    if (options_.go_on && !options_.go_on(std::min(1.0, part))) result_.interrupted = true;
+    if (options_.go_on && !options_.go_on(pace_.part_done(computed_))) result_.interrupted = true;
     return !result_.interrupted;
   }
 
@@ -82,7 +86,7 @@ class OptimumSearch {
     while (entered < study_.blocks() && tell()) {
       while (given < study_.blocks() && threads.wants_more()) threads.give({given++, 1});
       for (FoundBlock& found : threads.take(std::chrono::milliseconds(20)))
-        waiting.emplace(found.block, std::move(found.rows));
+        computed_ += study_.count_of(found.block), waiting.emplace(found.block, std::move(found.rows));
       for (auto next = waiting.find(entered); next != waiting.end(); next = waiting.find(entered)) {
         for (std::uint64_t i = 0; i < study_.count_of(entered); ++i)
           if (const ParameterValues values = study_.plan().parameters(study_.first_of(entered) + i);
@@ -172,6 +176,7 @@ class OptimumSearch {
         nlopt_force_stop(search_);
         return worst();
       }
+      ++computed_;
       enter(values, rows->numbers.data());
     }
     const TriedVariant& tried = result_.tried[known_.at(key)];
@@ -244,7 +249,8 @@ class OptimumSearch {
 
   const VariantStudy& study_;
   const OptimumOptions& options_;
-  std::uint64_t most_, limit_ = 0;
+  std::uint64_t most_, limit_ = 0, computed_ = 0;
+  OptimumPace pace_;
   std::size_t coordinates_ = 0;
   Optimum result_;
   std::map<std::string, std::size_t> known_;  // numbers in result_.tried
