@@ -15,6 +15,7 @@
 #include "app/cli/print.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/modes_request.hpp"
+#include "app/results/modes_notes.hpp"
 #include "app/results/run_json.hpp"
 
 namespace drev::app {
@@ -72,6 +73,13 @@ std::string frequency_text(double frequency, double error) {
   return pad_left(digits(frequency, std::max(1, static_cast<int>(known))), 17) + " +- " + digits(error, 1);
 }
 
+std::string notes_text(const ModelRequest& model) {
+  std::string text;
+  for (const std::string& note : modes_notes(model)) text += "\n" + wrap(note, 0);
+  if (!model.model_case.note.empty()) text += "\n" + wrap(model.model_case.note, 0);
+  return text;
+}
+
 std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::string& contact) {
   const std::string& name = model.entry->name;
   std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
@@ -82,8 +90,7 @@ std::string as_text(const ModelRequest& model, const ModeSet& modes, const std::
   for (std::size_t i = 0; i < modes.frequency_Hz.size(); ++i)
     text +=
         pad_left(std::to_string(i + 1), 4) + frequency_text(modes.frequency_Hz[i], modes.error_Hz[i]) + "\n";
-  if (!model.model_case.note.empty()) text += "\n" + wrap(model.model_case.note, 0);
-  return text;
+  return text + notes_text(model);
 }
 
 /// Time constant of a real lambda; of none that rounding leaves of zero.
@@ -132,8 +139,7 @@ std::string damped_as_text(const ModesRequest& request, const DampedModeSet& set
   }
   if (!set.real_lambda.empty()) text += "\nreal eigenvalues (rigid motions' speeds and overdamped modes):\n";
   for (const double lambda : set.real_lambda) text += "  " + decay_text(lambda, rounding_of(set)) + "\n";
-  if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
-  return text;
+  return text + notes_text(request.model);
 }
 
 Json shares_object(const ModeEnergy& energy, Eigen::Index mode) {
@@ -181,6 +187,7 @@ Json damped_object(const ModesRequest& request, const DampedModeSet& set, const 
   }
   object["modes"] = std::move(modes);
   object["real_eigenvalues"] = std::move(real);
+  object["notes"] = modes_notes(request.model);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }
@@ -253,6 +260,7 @@ int modes_command(const CommandLine& line) {
     object["errors_Hz"] = modes.error_Hz;
     object["rigid_modes"] = modes.rigid_modes;
     object["contact"] = contact;
+    object["notes"] = modes_notes(request.model);
     object["note"] = text_or_null(request.model.model_case.note);
     print(json_text(object));
   } else {

@@ -1,0 +1,54 @@
+// drev modes of springs that are bent: they are about zero deflection, and say so where a mean torque is elsewhere.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using Json = nlohmann::json;
+
+namespace {
+
+/// 2000 N m/rad up to 200 N m, 5000 N m/rad beyond.
+std::string bent_train(const drev::test::TemporaryFolder& folder, const std::string& wall,
+                       const std::string& torque) {
+  const std::string path = (folder / "bent.toml").string();
+  std::ofstream(path) << "format = 1\n[nodes]\nwall = { " << wall
+                      << " }\nmotor = {}\n[elements]\n"
+                         "J_wall = { type = \"inertia\", node = \"wall\", inertia_kg_m2 = 1 }\n"
+                         "J = { type = \"inertia\", node = \"motor\", inertia_kg_m2 = 0.5 }\n"
+                         "coupling = { type = \"polyline_spring\", nodes = [\"wall\", \"motor\"], points = { "
+                         "deflection_rad = [-0.2, -0.1, 0.1, 0.2], torque_Nm = [-700, -200, 200, 700] } }\n"
+                         "load = { type = \"applied_torque\", node = \"motor\", torque_Nm = "
+                      << torque << " }\n";
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("Modes of a bent spring name the torque that holds it, and its stiffness there") {
+  const drev::test::TemporaryFolder folder;
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--damped"}}) {
+    std::vector<std::string> words{"modes", bent_train(folder, "hold = true", "450"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = drev_command(words);
+    INFO(run.out << run.err);
+    REQUIRE(run.exit_code == 0);
+    const Json notes = Json::parse(run.out).at("notes");
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0] ==
+          "coupling: modes are about zero deflection, with 2000 N m/rad; under the mean of the loads it "
+          "carries 450 N m, where its law has 5000 N m/rad: about that they are others");
+    words.erase(words.begin() + 2);
+    CHECK(contains(drev_command(words).out, "under the mean of the loads it"));
+  }
+  const auto inside = drev_command({"modes", bent_train(folder, "hold = true", "150"), "--json"});
+  CHECK(Json::parse(inside.out).at("notes").empty());
+  const auto free = drev_command({"modes", bent_train(folder, "", "150")});
+  INFO(free.out << free.err);
+  CHECK(contains(free.out, "coupling: modes are about zero deflection, with 2000 N m/rad; its law is"));
+  CHECK_FALSE(contains(drev_command({"modes", "two_mass_backlash"}).out, "bent"));
+  CHECK_FALSE(contains(drev_command({"modes", "camshaft"}).out, "bent"));
+}
