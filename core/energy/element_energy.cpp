@@ -8,10 +8,22 @@
 namespace drev {
 
 struct ElementEnergy::Motion {
-  Vector q, rate, actual;
+  std::vector<double> q, rate, actual;  // longer than the part has nodes where an earlier one had more
 };
 
 namespace {
+
+/// x' A y. Summed here: the powers of every element are asked for many times a step, and a product of Eigen's would
+/// take memory for each.
+double product(const std::vector<double>& x, const Eigen::MatrixXd& a, const std::vector<double>& y) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    double column = 0.0;
+    for (Eigen::Index i = 0; i < a.rows(); ++i) column += x.data()[i] * a(i, j);
+    sum += column * y.data()[j];
+  }
+  return sum;
+}
 
 /// A general element's answer at a state; its history is read and not written.
 LocalResponse respond(const GeneralTerm& term, const Assembler& assembler, const State& state) {
@@ -92,16 +104,19 @@ double ElementEnergy::along(const std::vector<Entry>& nodes, const Assembler& as
   return sum;
 }
 
-ElementEnergy::Motion ElementEnergy::motion(const Part& part, const Assembler& assembler,
-                                            const State& state) const {
-  const auto n = static_cast<Eigen::Index>(part.nodes.size());
-  Motion m{Vector(n), Vector(n), Vector(n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int node = part.nodes[static_cast<std::size_t>(i)];
-    const MotionPoint point = assembler.node_motion(node, state);
+/// Good until the next call of the thread.
+const ElementEnergy::Motion& ElementEnergy::motion(const Part& part, const Assembler& assembler,
+                                                   const State& state) const {
+  static thread_local Motion m;
+  const std::size_t n = part.nodes.size();
+  if (m.q.size() < n)
+    for (std::vector<double>* x : {&m.q, &m.rate, &m.actual}) x->resize(n);
+  const double nominal = assembler.nominal().rate;
+  for (std::size_t i = 0; i < n; ++i) {
+    const MotionPoint point = assembler.node_motion(part.nodes[i], state);
     m.q[i] = point.value;
     m.rate[i] = point.rate;
-    m.actual[i] = point.rate + assembler.system().ratio(node) * assembler.nominal().rate;
+    m.actual[i] = point.rate + assembler.system().ratio(part.nodes[i]) * nominal;
   }
   return m;
 }
@@ -110,10 +125,10 @@ double ElementEnergy::power(const Assembler& assembler, const State& state) cons
   const System& system = assembler.system();
   double sum = 0.0;
   for (const Part& part : parts_) {
-    const Motion m = motion(part, assembler, state);
-    if (part.stiffness.size() > 0) sum -= m.actual.dot(part.stiffness * m.q);
-    if (part.damping.size() > 0) sum -= m.actual.dot(part.damping * m.actual);
-    if (part.deviation_damping.size() > 0) sum -= m.actual.dot(part.deviation_damping * m.rate);
+    const Motion& m = motion(part, assembler, state);
+    if (part.stiffness.size() > 0) sum -= product(m.actual, part.stiffness, m.q);
+    if (part.damping.size() > 0) sum -= product(m.actual, part.damping, m.actual);
+    if (part.deviation_damping.size() > 0) sum -= product(m.actual, part.deviation_damping, m.rate);
   }
   for (const int j : scalars_) {
     const ScalarTerm& term = system.scalars()[idx(j)];
@@ -140,9 +155,9 @@ double ElementEnergy::dissipation(const Assembler& assembler, const State& state
   const System& system = assembler.system();
   double sum = 0.0;
   for (const Part& part : parts_) {
-    const Motion m = motion(part, assembler, state);
-    if (part.damping.size() > 0) sum += m.actual.dot(part.damping * m.actual);
-    if (part.deviation_damping.size() > 0) sum += m.rate.dot(part.deviation_damping * m.rate);
+    const Motion& m = motion(part, assembler, state);
+    if (part.damping.size() > 0) sum += product(m.actual, part.damping, m.actual);
+    if (part.deviation_damping.size() > 0) sum += product(m.rate, part.deviation_damping, m.rate);
   }
   for (const int j : scalars_)
     sum += assembler.respond(system.scalars()[idx(j)], state.z, state.v).dissipated_power;
@@ -159,8 +174,8 @@ double ElementEnergy::stored(const Assembler& assembler, const State& state) con
   double sum = 0.0;
   for (const Part& part : parts_) {
     if (part.stiffness.size() == 0) continue;
-    const Motion m = motion(part, assembler, state);
-    sum += 0.5 * m.q.dot(part.stiffness * m.q);
+    const Motion& m = motion(part, assembler, state);
+    sum += 0.5 * product(m.q, part.stiffness, m.q);
   }
   for (const int j : scalars_)
     sum += assembler.respond(system.scalars()[idx(j)], state.z, state.v).stored_energy;
@@ -172,8 +187,8 @@ double ElementEnergy::kinetic(const Assembler& assembler, const State& state) co
   double sum = 0.0;
   for (const Part& part : parts_) {
     if (part.mass.size() == 0) continue;
-    const Motion m = motion(part, assembler, state);
-    sum += 0.5 * m.actual.dot(part.mass * m.actual);
+    const Motion& m = motion(part, assembler, state);
+    sum += 0.5 * product(m.actual, part.mass, m.actual);
   }
   return sum;
 }

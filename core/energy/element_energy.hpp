@@ -46,7 +46,7 @@ class ElementEnergy {
     Eigen::MatrixXd mass, damping, deviation_damping, stiffness;  // empty: none
   };
   struct Motion;  // q, q', w of a part's nodes
-  Motion motion(const Part& part, const Assembler& assembler, const State& state) const;
+  const Motion& motion(const Part& part, const Assembler& assembler, const State& state) const;
   double actual_rate(int node, const Assembler& assembler, const State& state) const;
   double along(const std::vector<Entry>& nodes, const Assembler& assembler, const State& state) const;
 
