@@ -71,7 +71,10 @@ const std::vector<CommandEntry>& commands() {
              "Node whose turns the orders count, for a start from rest without nominal speed; default: node "
              "of the strongest torque with orders"},
             {"--energy", "",
-             "Work, heat and largest stored energy of each element over the span of the figures", none},
+             "Work, heat and largest stored energy of each element over the span of the figures; costs up to "
+             "40 "
+             "times the run",
+             none},
             {"--every", "SECONDS",
              "Interval of history.csv and report; default: about duration / 1000, report: / 1e5"},
             {"--format",

@@ -3,8 +3,9 @@
 ///
 ///   y(t) = integral from the start to t of the channel's integrand (a power)
 ///
-/// by Gauss and Kronrod's rule of 7 and 15 points on the motion inside each step (observer.hpp), halved where the two
-/// differ by more than kTolerance of what has been summed up without signs. Exact propagation's motion is as exact
+/// by Gauss and Kronrod's rule of 7 and 15 points on the motion inside each step (observer.hpp), halved where the error
+/// of Kronrod's, (200 d)^1.5 with the difference d of the two, is more than kTolerance, both over what has been summed up
+/// without signs. Exact propagation's motion is as exact
 /// there as at its ends, so that the integral has the run's own accuracy; elsewhere it is that of the polynomial
 /// through both ends of the step. Shown without a motion: trapezoids.
 ///
