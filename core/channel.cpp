@@ -7,8 +7,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "core/channel_pattern.hpp"
 #include "core/energy/element_energy.hpp"
+#include "core/names/channel_pattern.hpp"
 
 namespace drev {
 

@@ -10,7 +10,7 @@
 #include "app/commands/commands.hpp"
 #include "app/fmi/export_fmu.hpp"
 #include "app/model_file/writing/export.hpp"
-#include "core/channel_pattern.hpp"
+#include "core/names/channel_pattern.hpp"
 
 namespace drev::app {
 

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/channel_pattern.hpp"
+#include "core/names/channel_pattern.hpp"
 
 namespace drev::app {
 

@@ -10,7 +10,7 @@
 
 #include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
-#include "core/channel_pattern.hpp"
+#include "core/names/channel_pattern.hpp"
 
 namespace drev::app {
 

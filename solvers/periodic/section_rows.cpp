@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/channel_pattern.hpp"
+#include "core/names/channel_pattern.hpp"
 
 namespace drev {
 

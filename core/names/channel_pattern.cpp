@@ -1,4 +1,4 @@
-#include "core/channel_pattern.hpp"
+#include "core/names/channel_pattern.hpp"
 
 #include <drev/core/channel.hpp>
 
