@@ -17,6 +17,7 @@ constexpr double kLongest = 0.05;    // longest step, likewise [-]
 constexpr double kShortest = 1e-7;
 constexpr double kLeastCosine = 0.95;  // smallest cosine of the angle between neighbouring tangents [-]
 constexpr int kLocations = 40;         // largest number of iterations that locate a change
+constexpr double kLocated = 1e-9;      // last step of these over the chord [-]
 // Subharmonic part relative to X at which a curve has ended on the curve of a single cycle [-].
 constexpr double kJoined = 0.02;
 // Relative change of speed up to which an extremum is no fold [-]: vertical curves turn to and fro by
@@ -270,114 +271,144 @@ std::optional<BranchPoint> BranchTracer::between(const BranchPoint& from, const 
   return std::nullopt;
 }
 
-std::optional<double> BranchTracer::fold_between(Vector& from, Vector& to, double sign, Vector& u) {
-  bool failed = false;
-  const Eigen::Index n = from.size() - 1;
-  if (!balance_.speed_slope(from.head(n), from[n], slope_)) return std::nullopt;
-  const BracketedMaximum best = bracketed_maximum(0.0, 0.5, 1.0, 1e-5, [&](double part) {
-    if (failed || !across(from, to, part, u)) {
-      failed = true;
-      return -1e300;
-    }
-    return sign * u[n];
-  });
-  if (failed || !across(from, to, best.at, u)) return std::nullopt;
-  return best.at;
+bool BranchTracer::widen(double part, double beside, Vector& a, Vector& b) {
+  Vector low, high;
+  if (!balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_) ||
+      !across(a, b, std::max(0.0, part - beside), low) || !across(a, b, std::min(1.0, part + beside), high))
+    return false;
+  const int h = balance_.harmonics();
+  const Vector chord = high - low, scale = scale_;
+  balance_.set_harmonics(2 * h);
+  const Eigen::Index rows = 2 * balance_.harmonics() + 1;
+  const auto widened = [&](const Vector& v) {
+    return joined(v[v.size() - 1], balance_.resized(v.head(v.size() - 1), h, 2 * h));
+  };
+  Vector wide = Vector::Ones(balance_.size() + 1);
+  for (int i = 0; i < balance_.inputs(); ++i)
+    wide.segment(i * rows, rows).setConstant(scale[i * (2 * h + 1)]);
+  wide[wide.size() - 1] = scale[scale.size() - 1];
+  scale_ = wide;
+  low = widened(low), high = widened(high);
+  const Vector normal = widened(chord) / std::sqrt(dot(widened(chord), widened(chord)));
+  const Vector low_target = low, high_target = high;
+  int iterations = 0;
+  if (balance_.speed_slope(low.head(low.size() - 1), low[low.size() - 1], slope_) &&
+      correct(normal, low_target, 1e-12, low, iterations) &&
+      correct(normal, high_target, 1e-12, high, iterations)) {
+    a = low, b = high;
+    return true;
+  }
+  scale_ = scale;
+  balance_.set_harmonics(h);
+  return false;
 }
 
-void BranchTracer::find_fold(const BranchPoint& from, const BranchPoint& to, double sign, Branch& branch) {
+void BranchTracer::find_change(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind,
+                               const Locate& locate, Branch& branch) {
   Vector a = joined(from.speed, from.x), b = joined(to.speed, to.x), u;
   const Vector scale = scale_;
-  std::optional<double> part = fold_between(a, b, sign, u);
+  std::optional<double> part = locate(a, b, u);
   if (!part) return;
-  const double speed_at = u[u.size() - 1];
-  if (std::max(std::abs(speed_at - from.speed), std::abs(speed_at - to.speed)) <= kUpright * speed_at) return;
-  BranchEvent event{BranchEvent::Kind::fold, u[u.size() - 1], NAN, point_at(u)};
-  branch.points.push_back(event.point);
-  while (2 * balance_.size() <= options_.most_rows) {
-    // Locate the fold between two nearby points on either side, with twice the harmonics.
-    constexpr double kNear = 0.05;
-    Vector low, high;
-    if (!across(a, b, std::max(0.0, *part - kNear), low) || !across(a, b, std::min(1.0, *part + kNear), high))
-      break;
+  BranchEvent event{kind, u[u.size() - 1], NAN, point_at(u)};
+  if (kind == BranchEvent::Kind::fold) branch.points.push_back(event.point);
+  // Locate it anew between two nearby points on either side, or on the whole chord, with twice the harmonics.
+  const auto sharpen = [&](double beside) {
+    Vector low = a, high = b;
     const int h = balance_.harmonics();
-    const Vector chord = high - low;
-    balance_.set_harmonics(2 * h);
-    const Eigen::Index rows = 2 * balance_.harmonics() + 1;
-    const auto widened = [&](const Vector& v) {
-      return joined(v[v.size() - 1], balance_.resized(v.head(v.size() - 1), h, 2 * h));
-    };
-    Vector wide = Vector::Ones(balance_.size() + 1);
-    for (int i = 0; i < balance_.inputs(); ++i)
-      wide.segment(i * rows, rows).setConstant(scale_[i * (2 * h + 1)]);
-    wide[wide.size() - 1] = scale_[scale_.size() - 1];
-    scale_ = wide;
-    a = widened(low);
-    b = widened(high);
-    const Vector across_chord = widened(chord) / std::sqrt(dot(widened(chord), widened(chord)));
-    int iterations = 0;
-    if (!balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_)) break;
-    const Vector a_target = a, b_target = b;
-    if (!correct(across_chord, a_target, 1e-12, a, iterations) ||
-        !correct(across_chord, b_target, 1e-12, b, iterations))
-      break;
-    part = fold_between(a, b, sign, u);
-    if (!part) break;
+    const Vector before = scale_;
+    if (!widen(*part, beside, low, high)) return false;
+    if (const std::optional<double> next = locate(low, high, u)) {
+      a = low, b = high, part = next;
+      return true;
+    }
+    scale_ = before;
+    balance_.set_harmonics(h);
+    return false;
+  };
+  constexpr double kNear = 0.05;
+  while (2 * balance_.size() <= options_.most_rows && (sharpen(kNear) || sharpen(1.0))) {
     const double speed = u[u.size() - 1];
     event.error = std::abs(speed - event.speed);
     event.speed = speed;
     event.point = point_at(u);
-    if (event.error <= options_.fold_tolerance * speed) break;
+    if (event.error <= options_.tolerance * speed) break;
   }
   scale_ = scale;
   branch.events.push_back(std::move(event));
   balance_.set_harmonics(from.harmonics);
 }
 
+void BranchTracer::find_fold(const BranchPoint& from, const BranchPoint& to, double sign, Branch& branch) {
+  find_change(
+      from, to, BranchEvent::Kind::fold,
+      [&](const Vector& a, const Vector& b, Vector& u) -> std::optional<double> {
+        const Eigen::Index n = a.size() - 1;
+        if (!balance_.speed_slope(a.head(n), a[n], slope_)) return std::nullopt;
+        bool failed = false;
+        const BracketedMaximum best = bracketed_maximum(0.0, 0.5, 1.0, 1e-5, [&](double part) {
+          if (failed || !across(a, b, part, u)) {
+            failed = true;
+            return -1e300;
+          }
+          return sign * u[n];
+        });
+        if (failed || !across(a, b, best.at, u)) return std::nullopt;
+        if (std::max(std::abs(u[n] - from.speed), std::abs(u[n] - to.speed)) <= kUpright * u[n])
+          return std::nullopt;
+        return best.at;
+      },
+      branch);
+}
+
 template <class Differs>
 void BranchTracer::bisect(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind,
                           const Differs& differs, Branch& branch) {
-  const Vector a = joined(from.speed, from.x), b = joined(to.speed, to.x);
-  double low = 0.0, high = 1.0;
-  Vector u;
-  BranchPoint here = to;
-  if (!balance_.speed_slope(from.x, from.speed, slope_)) return;
-  for (int k = 0; k < kLocations && (high - low) > 1e-9; ++k) {
-    const double middle = 0.5 * (low + high);
-    if (!across(a, b, middle, u)) return;
-    BranchPoint point = point_at(u);
-    const bool beyond = differs(point);
-    (beyond ? high : low) = middle;
-    if (beyond) here = std::move(point);
-  }
-  branch.events.push_back({kind, here.speed, std::abs(to.speed - from.speed) * (high - low), here});
+  find_change(
+      from, to, kind,
+      [&](const Vector& a, const Vector& b, Vector& u) -> std::optional<double> {
+        if (differs(point_at(a)) || !differs(point_at(b)) ||
+            !balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_))
+          return std::nullopt;
+        double low = 0.0, high = 1.0;
+        for (int k = 0; k < kLocations && (high - low) > kLocated; ++k) {
+          const double middle = 0.5 * (low + high);
+          if (!across(a, b, middle, u)) return std::nullopt;
+          (differs(point_at(u)) ? high : low) = middle;
+        }
+        if (!across(a, b, high, u)) return std::nullopt;
+        return high;
+      },
+      branch);
 }
 
 /// Locates the point where the product of all 1 + multiplier is 0, by the Illinois method.
 void BranchTracer::find_doubling(const BranchPoint& from, const BranchPoint& to, Branch& branch) {
-  const Vector a = joined(from.speed, from.x), b = joined(to.speed, to.x);
-  double low = 0.0, high = 1.0, f = from.at_minus_one, g = to.at_minus_one, root = 0.0, last = 0.0;
-  Vector u;
-  BranchPoint here = from;
-  if (!balance_.speed_slope(from.x, from.speed, slope_)) return;
-  for (int k = 0, side = 0; k < kLocations; ++k) {
-    last = root;
-    root = (low * g - high * f) / (g - f);
-    if (!across(a, b, root, u)) return;
-    here = point_at(u);
-    if (here.at_minus_one == 0.0 || (k > 0 && std::abs(root - last) < 1e-9)) break;
-    if ((here.at_minus_one < 0.0) == (g < 0.0)) {
-      high = root, g = here.at_minus_one;
-      if (side == 1) f *= 0.5;
-      side = 1;
-    } else {
-      low = root, f = here.at_minus_one;
-      if (side == -1) g *= 0.5;
-      side = -1;
-    }
-  }
-  branch.events.push_back({BranchEvent::Kind::period_doubling, here.speed,
-                           std::abs((to.speed - from.speed) * (root - last)), here});
+  find_change(
+      from, to, BranchEvent::Kind::period_doubling,
+      [&](const Vector& a, const Vector& b, Vector& u) -> std::optional<double> {
+        double low = 0.0, high = 1.0, f = point_at(a).at_minus_one, g = point_at(b).at_minus_one;
+        if (!(f * g < 0.0) || !balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_))
+          return std::nullopt;
+        double root = 0.0, last = 0.0;
+        for (int k = 0, side = 0; k < kLocations; ++k) {
+          last = root;
+          root = (low * g - high * f) / (g - f);
+          if (!across(a, b, root, u)) return std::nullopt;
+          const double here = point_at(u).at_minus_one;
+          if (here == 0.0 || (k > 0 && std::abs(root - last) < kLocated)) break;
+          if ((here < 0.0) == (g < 0.0)) {
+            high = root, g = here;
+            if (side == 1) f *= 0.5;
+            side = 1;
+          } else {
+            low = root, f = here;
+            if (side == -1) g *= 0.5;
+            side = -1;
+          }
+        }
+        return root;
+      },
+      branch);
 }
 
 void BranchTracer::find_events(const BranchPoint& from, const BranchPoint& to, Branch& branch) {

@@ -7,10 +7,11 @@
 /// Predictor: the tangent t, from [R_X R_w; t_last' D] t = (0, 1). Corrector: Newton's method on both
 /// equations. The step s follows the number of iterations and the turn of the tangent. Where two neighbouring
 /// points differ in the sign of dw/ds, in contact or in their multipliers, the change is located between
-/// them, on planes across their chord. A fold is located as the extremum of the speed, repeatedly with twice
-/// the harmonics until its speed has converged.
+/// them, on planes across their chord, repeatedly with twice the harmonics until its speed has converged; a fold as
+/// the extremum of the speed.
 ///
 /// Source: R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., Springer, 2010, chapter 4.
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -39,7 +40,9 @@ struct BranchEvent {
   };
   Kind kind = Kind::fold;
   double speed = 0.0;
-  double error = 0.0;  ///< error of the speed [rad/s]: its difference from the speed with half the harmonics
+  double error =
+      0.0;  ///< error of the speed [rad/s]: its difference from the speed with half the harmonics; not a
+            ///< number: unknown
   BranchPoint point;
 };
 
@@ -56,8 +59,8 @@ class BranchTracer {
     double low = 0.0, high = 0.0;  ///< lowest and highest speed [rad/s]
     int most_points = 1500;        ///< largest number of points on a branch
     int cycles = 1;                ///< cycles in a period; > 1: the curve ends where fewer cycles repeat
-    int most_rows = 1100;          ///< largest number of rows of Newton's matrix when folds are located
-    double fold_tolerance = 1e-9;  ///< tolerance of a fold's speed, relative to it [-]
+    int most_rows = 1100;          ///< largest number of rows of Newton's matrix when changes are located
+    double tolerance = 1e-9;       ///< tolerance of a change's speed, relative to it [-]
   };
   /// stability: null if the stability of the motions is not computed.
   BranchTracer(LawBalance& balance, const FloquetProduct* stability, const Options& options);
@@ -84,8 +87,14 @@ class BranchTracer {
   bool across(const Vector& from, const Vector& to, double part, Vector& u);
   BranchPoint point_at(const Vector& u);
   void find_events(const BranchPoint& from, const BranchPoint& to, Branch& branch);
+  /// Locates a change between a and b: its part of their chord, with the motion there in u; nullopt: there is none.
+  using Locate = std::function<std::optional<double>(const Vector& a, const Vector& b, Vector& u)>;
+  /// Adds a change to the branch, located repeatedly with twice the harmonics until its speed has converged.
+  void find_change(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind,
+                   const Locate& locate, Branch& branch);
+  /// Moves a and b to points of the branch with twice the harmonics, `beside` before and behind a part of their chord.
+  bool widen(double part, double beside, Vector& a, Vector& b);
   void find_fold(const BranchPoint& from, const BranchPoint& to, double sign, Branch& branch);
-  std::optional<double> fold_between(Vector& from, Vector& to, double sign, Vector& u);
   template <class Differs>
   void bisect(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind, const Differs& differs,
               Branch& branch);
