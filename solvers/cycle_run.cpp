@@ -23,9 +23,11 @@ namespace drev {
 
 namespace {
 
-constexpr double kUnbounded =
-    30.0;  // growth in each half of the cycles that statistics are of: no bound in sight
 constexpr int kBatches = 20;
+// No bound is in sight of a motion whose largest values grow by this factor in each of so many parts of the cycles that
+// statistics are of: a motion that has a bound has settled, or meets it.
+constexpr double kGrowth = 1.25;
+constexpr std::size_t kGrowthParts = 5;
 /// Batches, each of as many of those, and the 97.5 % quantile of Student's t with one degree of freedom less. The fewer
 /// there are, the slower a modulation may be that does not make their means alike.
 struct BatchCount {
@@ -325,14 +327,21 @@ void CycleRun::of_statistics(const std::vector<CycleFigures>& cycles) {
     }
     run.mean_error = run.mean_error.cwiseMax(student * (squares / (count * (count - 1.0))).cwiseSqrt());
   }
-  // Largest values up to the end of the first batch, the one in the middle and the last.
-  std::array<Vector, 3> sizes;
-  for (std::size_t part = 0; part < 3; ++part) sizes[part] = batches[part * (kBatches - 1) / 2].all.largest();
-  for (Eigen::Index c = 0; c < run.mean.size(); ++c)
-    if (sizes[0][c] > 0.0 && sizes[1][c] > kUnbounded * sizes[0][c] &&
-        !(sizes[2][c] <= kUnbounded * sizes[1][c]))
-      run.reason =
-          "the motion grows without bound, a thousandfold in less than " + std::to_string(all) + " cycles";
+  // Largest values of each part of the cycles.
+  std::array<Vector, kGrowthParts> sizes;
+  for (int b = 0; b < kBatches; ++b) {
+    const Vector largest = batches[static_cast<std::size_t>(b)].all.largest();
+    Vector& size = sizes[static_cast<std::size_t>(b) * kGrowthParts / kBatches];
+    size = size.size() > 0 ? Vector(size.cwiseMax(largest)) : largest;
+  }
+  for (Eigen::Index c = 0; c < run.mean.size(); ++c) {
+    bool grows = sizes.front()[c] > 0.0;
+    for (std::size_t part = 1; part < sizes.size(); ++part)
+      grows = grows && !(sizes[part][c] <= kGrowth * sizes[part - 1][c]);
+    if (grows)
+      run.reason = "the motion grows without bound, by a quarter or more in each fifth of " +
+                   std::to_string(all) + " cycles";
+  }
 }
 
 }  // namespace

@@ -129,8 +129,25 @@ std::string bound_text(double error, double speed) {
   return short_digits(std::pow(10.0, std::ceil(std::log10(std::max(error, 1e-9 * speed)))), 1);
 }
 
+/// Where a curve was left between the speeds, with the multiplier there: near 1, it grows beyond all bounds.
+std::string left_text(const SweptBranch& branch, const NonlinearSweepOptions& options) {
+  std::string text;
+  for (const SweptMotion* motion : {&branch.motions.front(), &branch.motions.back()}) {
+    if (motion->speed <= options.speeds.front() || motion->speed >= options.speeds.back()) continue;
+    text += std::string(text.empty() ? ": it was left at " : " and at ") + digits(to_rpm(motion->speed), 9) +
+            " rpm" +
+            (motion->judged ? ", where its largest multiplier is " + digits(motion->multiplier, kFigureDigits)
+                            : "");
+  }
+  return text;
+}
+
 std::string changes_table(const NonlinearSweep& sweep) {
-  if (sweep.changes.empty()) return "The curves neither fold nor lose their stability.\n";
+  if (sweep.changes.empty())
+    return std::all_of(sweep.branches.begin(), sweep.branches.end(),
+                       [](const SweptBranch& b) { return b.whole; })
+               ? "The curves neither fold nor lose their stability.\n"
+               : "No fold and no loss of stability was located, as far as the curves could be followed.\n";
   std::vector<std::vector<std::string>> rows{
       {"at [rpm]", "within [rpm]", "curve", "what", "half range", "jumps to"}};
   for (const SweptChange& change : sweep.changes)
@@ -299,7 +316,8 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
   if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)
-      notes.push_back("Curve " + std::to_string(b + 1) + " could not be followed to its end.");
+      notes.push_back("Curve " + std::to_string(b + 1) + " could not be followed to its end" +
+                      left_text(sweep.branches[b], options) + ".");
   if (!sweep.unsolved.empty() && !sweep.excess.found) {
     std::vector<std::string> speeds;
     for (const double speed : sweep.unsolved) speeds.push_back(rpm_text(speed));
