@@ -25,6 +25,7 @@ namespace drev::app {
 namespace {
 
 constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
+constexpr double kMostFoundSteps = 1e12;              // of steps that the method finds
 constexpr double kPartOfTolerance = 0.1;              // that a reduction no one asked for may add
 
 /// About x, as 1, 2 or 5 times a power of ten.
@@ -178,12 +179,12 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
 void check_duration(const System& system, const Method& method, double duration,
                     std::vector<Finding>& findings) {
   const double steps = least_steps(system, method, duration);
-  if (steps <= kMostSteps) return;
-  const double longest = duration * kMostSteps / steps;
+  if (steps <= kMostFoundSteps) return;
+  const double longest = duration * kMostFoundSteps / steps;
   const double digit = std::pow(10.0, std::floor(std::log10(longest)) - 1.0);  // the second of it
   findings.push_back({kCommandLine, "--duration", to_text(duration), "s",
                       "is too long: " + to_text(method) + " would take at least " + short_digits(steps, 2) +
-                          " steps, more than " + short_digits(kMostSteps, 2) + "; take at most " +
+                          " steps, more than " + short_digits(kMostFoundSteps, 2) + "; take at most " +
                           short_digits(digit * std::floor(longest / digit), 2) + " s"});
 }
 
