@@ -3,6 +3,7 @@
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/start.hpp>
 #include <drev/solvers/statics.hpp>
@@ -59,7 +60,8 @@ std::vector<double> cycles_of(const System& system, const StartOptions& options)
   std::vector<double> cycles;
   if (options.cycle > 0.0) cycles.push_back(options.cycle);
   if (speed > 0.0)
-    for (const double turns : {1.0, 2.0, 4.0}) cycles.push_back(turns * kTwoPi / speed);
+    for (const double turns : {1.0, 2.0, 4.0, cycle_turns(system)})
+      if (turns > 0.0) cycles.push_back(turns * kTwoPi / speed);
   if (const double frequency = shared_frequency(system); frequency > 0.0) cycles.push_back(1.0 / frequency);
   return cycles;
 }
@@ -135,8 +137,8 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
   std::string reason =
       cycles.empty()
           ? "no reference shaft turns and no load has harmonics in time, so that the period is not known"
-          : "what acts on the model repeats neither after the cycle of the model nor after 1, 2 or 4 "
-            "turns of the reference shaft";
+          : "what acts on the model repeats neither after the cycle of the model nor after up to 20 "
+            "turns of the reference shaft, or of a shaft on which something acts";
   std::erase_if(cycles, [&](double cycle) { return !repeats(system, cycle); });
   for (const double cycle : cycles) {
     const PeriodicResponse found = solve_periodic(system, {.period = cycle, .tolerance = options.tolerance});

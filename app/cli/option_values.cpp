@@ -18,6 +18,17 @@ std::string low_to_high_percent(Range range) {
   return short_digits(100.0 * range.low, 3) + "% to " + short_digits(100.0 * range.high, 3) + "%";
 }
 
+/// A number, or the quotient of two: 2/3.
+bool read_quotient(const std::string& text, double& value) {
+  const std::vector<std::string> parts = split(text, '/');
+  double over = 1.0;
+  if (parts.size() > 2 || !read_number(parts[0], value) ||
+      (parts.size() == 2 && !read_number(parts[1], over)))
+    return false;
+  value /= over;
+  return true;
+}
+
 }  // namespace
 
 double read_time(const char* option, const std::string& text, Range range, const std::string& limit,
@@ -91,7 +102,7 @@ std::vector<double> read_rising(const char* option, const std::string& text, con
   } else {
     for (const std::string& part : split(text, ',')) {
       values.push_back(0.0);
-      if (!read_number(part, values.back())) fault = {"must be FIRST:STEP:LAST or A,B,C", true};
+      if (!read_quotient(part, values.back())) fault = {"must be FIRST:STEP:LAST or A,B,C", true};
     }
   }
   for (std::size_t i = 0; i < values.size() && fault.why.empty(); ++i)

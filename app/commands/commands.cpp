@@ -15,7 +15,7 @@ const std::vector<CommandEntry>& commands() {
                                   "Speeds of the reference shaft, FIRST:STEP:LAST or A,B,C; must be given"};
   static const OptionEntry orders{
       "--orders", "ORDERS",
-      "Orders of the reference shaft, FIRST:STEP:LAST or A,B,C; default: 0.5:0.5:12; of "
+      "Orders of the reference shaft, FIRST:STEP:LAST or A,B,C, such as 1/2,2/3; default: 0.5:0.5:12; of "
       "contacts, those of them that are harmonics of the cycle, and what the loads excite"};
   static const OptionEntry linear{
       "--contact", "STATE", "closed: takes a model with contacts as if they never opened", one, {"closed"}};

@@ -47,10 +47,10 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
   const double least = highest / kMostMultiples;
   base_ = common_order(orders, least * (1.0 - kSameOrder), kSameOrder * highest);
   if (!(base_ > 0.0))
-    throw ModelError(
-        {{place, "orders", to_text(orders.front()) + " ... " + to_text(orders.back()), "",
-          "must be whole multiples of one order, which is at least the highest over " +
-              std::to_string(kMostMultiples) + ": they have no common cycle to be summed over"}});
+    throw ModelError({{place, "orders", to_text(orders.front()) + " ... " + to_text(orders.back()), "",
+                       "must be whole multiples of one order, which is at least the highest over " +
+                           std::to_string(kMostMultiples) +
+                           ": they have no common cycle to be summed over. 2/3 needs all its digits"}});
   const auto take = [&](int from, int step) {  // the multiples from, from + step, ...
     for (std::size_t k = 0; k < orders.size(); ++k)
       if (const auto n = static_cast<int>(std::lround(orders[k] / base_)); n % step == from)
