@@ -11,9 +11,8 @@ namespace drev {
 
 namespace {
 
-constexpr double kCorrected =
-    0.5;  // part of the unbalanced torque that the balancing node takes up after a cycle
-constexpr double kErrors = 10.0;  // tolerances that the error of a cycle's change of speed may be
+constexpr double kCorrected = 0.5;  // part of the unbalanced torque that is taken up after a cycle
+constexpr double kErrors = 10.0;    // tolerances that the error of a cycle's change of speed may be
 
 }  // namespace
 
@@ -49,26 +48,24 @@ void SpeedHold::begin_cycle(const State& state) {
 Vector SpeedHold::end_cycle(State& state, double period, double tolerance) {
   Vector left = Vector::Zero(static_cast<Eigen::Index>(parts_.size()));
   Vector forces = Vector::Zero(system_.size());
-  bool balanced = false;
+  bool changed = false;
   for (std::size_t f = 0; f < parts_.size(); ++f) {
     Part& part = parts_[f];
     if (part.inertia == 0.0) continue;
     const double turned = part.momentum.dot(state.z) - part.angle, rate = part.momentum.dot(state.v);
     const double excess = part.inertia * (rate - part.rate) / period, over = excess - part.torque;
-    if (std::abs(over) > kErrors * tolerance * part.inertia * std::abs(speed_) / period)
-      left[static_cast<Eigen::Index>(f)] = over;
-    double begins = part.rate - turned / period;
-    if (!part.of.balance.empty()) {
-      const double change = -kCorrected * excess;
-      part.torque += change;
-      begins -= 0.5 * change / part.inertia * period;
-      balanced = true;
-      for (const Entry& e : part.of.balance) forces[e.index] += e.coeff * part.torque / part.moves;
-    }
+    const double least = kErrors * tolerance * part.inertia * std::abs(speed_) / period;
+    if (std::abs(over) > least) left[static_cast<Eigen::Index>(f)] = over;
+    const double change = std::abs(excess) > least ? -kCorrected * excess : 0.0;
+    changed = changed || change != 0.0;
+    const double begins = part.rate - turned / period - 0.5 * change / part.inertia * period;
+    part.torque += change;
+    if (part.of.balance.empty()) forces += part.torque * part.momentum;
+    for (const Entry& e : part.of.balance) forces[e.index] += e.coeff * part.torque / part.moves;
     state.z -= turned * part.of.rigid;
     state.v += (begins - rate) * part.of.rigid;
   }
-  if (balanced) balanced_.emplace(at_speed(system_, speed_, forces));
+  if (changed) balanced_.emplace(at_speed(system_, speed_, forces));
   return left;
 }
 

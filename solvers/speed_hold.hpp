@@ -2,14 +2,17 @@
 /// SpeedHold: keeps the mean speed of freely floating parts in a run over cycles. Internal to runs of sweeps.
 ///
 /// The mean torque on such a part rarely balances: a train with a cylinder that misfires slows down, and a run at
-/// 1,500 rpm is soon one at 1,100 rpm. What a sweep states at a speed is the motion at that speed, so after each
-/// cycle the part is set back along its rigid-body motion r (mean_equilibrium.hpp), which changes no twist:
+/// 1,500 rpm is soon one at 1,100 rpm. What a sweep states at a speed is the motion at that speed: a constant torque
+/// balances the part, at the node that is given for that, else along its rigid-body motion r (mean_equilibrium.hpp), in
+/// proportion to the inertias, where it changes no twist: seen from the part, it is the acceleration that it stands for.
+/// The torque b is found from cycle to cycle, and after each the part is set back along r:
 ///
 ///   q = r' M z / J, w = r' M v / J, J = r' M r       d, dw: what q and w change by in the cycle of period T
+///   b -= J dw / (2 T)
 ///   z -= r d,   w -> w0 - d/T: with the same torque the next cycle ends where it began
 ///
-/// L = J dw / T - b is the mean torque that is left over, with b that at the node that balances the part, if
-/// there is one: b moves by half of -J dw / T after each cycle.
+/// L = J dw / T - b is the mean torque that is left over without b. Without b the speed would run up or down by dw in
+/// each cycle, which loads that follow the speed would feel.
 #include <drev/core/state.hpp>
 #include <drev/core/system.hpp>
 
@@ -23,7 +26,7 @@ class MeanEquilibrium;
 /// A part that floats freely. rigid is empty for one that does not turn with the reference shaft: it is left alone.
 struct FloatingPart {
   Vector rigid;
-  std::vector<Entry> balance;  ///< row of the node that balances it; empty: none
+  std::vector<Entry> balance;  ///< row of the node that balances it; empty: all of it by its inertia
 };
 std::vector<FloatingPart> floating_parts_of(const System& system, const MeanEquilibrium& mean);
 

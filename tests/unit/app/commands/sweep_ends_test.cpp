@@ -1,4 +1,6 @@
-// drev sweep where curves end: motions of a linear train that grow between two multipliers of +1.
+// drev sweep where curves end and where runs answer: motions of a linear train that grow between two multipliers of +1;
+// a free train whose load follows the speed.
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -67,4 +69,48 @@ TEST_CASE("Orders of a sweep may be quotients", "[sweep]") {
   CHECK(contains(rounded.err, "2/3 needs all its digits"));
   // The cycle of six turns is the model's own.
   CHECK(drev_command({"run", file, "--duration", "1"}).exit_code == 0);
+}
+
+TEST_CASE("A free train whose load follows the speed is held at it: no speed runs up and down in a cycle",
+          "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "launch.toml")
+      << "format = 1\n[nodes]\nm = { nominal_speed_rpm = 900 }\ng1 = {}\ng2 = {}\npl = {}\n[elements]\n"
+         "Jm = { type = \"inertia\", node = \"m\", inertia_kg_m2 = 3 }\n"
+         "J1 = { type = \"inertia\", node = \"g1\", inertia_kg_m2 = 0.2 }\n"
+         "J2 = { type = \"inertia\", node = \"g2\", inertia_kg_m2 = 1.0 }\n"
+         "Jp = { type = \"inertia\", node = \"pl\", inertia_kg_m2 = 20 }\n"
+         "cp = { type = \"shaft_spring\", nodes = [\"m\", \"g1\"], stiffness_kNm_per_rad = 15, "
+         "damping_Nms_per_rad = 8 }\n"
+         "me = { type = \"gear_mesh\", nodes = [\"g1\", \"g2\"], module_mm = 5, teeth_1 = 25, teeth_2 = 60, "
+         "pressure_angle_deg = 20, stiffness_N_per_um = 400, normal_backlash_um = 150, damping_Ns_per_m = "
+         "3000, "
+         "damping_law = \"always\" }\n"
+         "sh = { type = \"shaft_spring\", nodes = [\"g2\", \"pl\"], stiffness_kNm_per_rad = 300, "
+         "damping_Nms_per_rad = 30 }\n"
+         "en = { type = \"engine_order_torque\", node = \"m\", mean_Nm = 283.5, harmonics = { order = [2, "
+         "4], "
+         "amplitude_Nm = [900, 300], phase_deg = [0, 45] }, twist_feedback = false }\n"
+         "pr = { type = \"propeller\", node = \"pl\", rated_torque_Nm = 840, rated_speed_rpm = "
+         "\"1000*25/60\" }\n";
+  const auto printed = drev_command(
+      {"sweep", (folder / "launch.toml").string(), "--speeds", "400,900", "--tolerance", "1e-6", "--json"});
+  REQUIRE(printed.exit_code == 0);
+  const Json json = Json::parse(printed.out);
+  const auto section = [&](const std::string& name) {
+    const Json& all = json.at("sections");
+    return static_cast<std::size_t>(
+        std::find_if(all.begin(), all.end(), [&](const Json& s) { return s.at("name") == name; }) -
+        all.begin());
+  };
+  const auto run = std::find_if(json.at("runs").begin(), json.at("runs").end(), [](const Json& r) {
+    return std::abs(r.at("speed_rpm").get<double>() - 400.0) < 1e-6;
+  });
+  REQUIRE(run != json.at("runs").end());
+  CAPTURE(run->dump());
+  // A separate integration, with a constant torque along the rigid motion and the mean speed at 400 rpm, in steps of 20
+  // and of 10 us, which agree to 5e-7 of the coupling's torque and 1e-5 of the mesh's mean.
+  CHECK(std::abs(run->at("lowest")[section("cp.torque_Nm")].get<double>() + 12276.463) < 0.05);
+  CHECK(std::abs(run->at("highest")[section("cp.torque_Nm")].get<double>() - 11782.105) < 0.05);
+  CHECK(std::abs(run->at("mean")[section("me.force_N")].get<double>() - 3211.24) < 0.05);
 }
