@@ -292,15 +292,12 @@ bool BranchTracer::widen(double part, double beside, Vector& a, Vector& b) {
   const Vector normal = widened(chord) / std::sqrt(dot(widened(chord), widened(chord)));
   const Vector low_target = low, high_target = high;
   int iterations = 0;
-  if (balance_.speed_slope(low.head(low.size() - 1), low[low.size() - 1], slope_) &&
-      correct(normal, low_target, 1e-12, low, iterations) &&
-      correct(normal, high_target, 1e-12, high, iterations)) {
-    a = low, b = high;
-    return true;
-  }
-  scale_ = scale;
-  balance_.set_harmonics(h);
-  return false;
+  if (!balance_.speed_slope(low.head(low.size() - 1), low[low.size() - 1], slope_) ||
+      !correct(normal, low_target, 1e-12, low, iterations) ||
+      !correct(normal, high_target, 1e-12, high, iterations))
+    return false;
+  a = low, b = high;
+  return true;
 }
 
 void BranchTracer::find_change(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind,
@@ -316,8 +313,8 @@ void BranchTracer::find_change(const BranchPoint& from, const BranchPoint& to, B
     Vector low = a, high = b;
     const int h = balance_.harmonics();
     const Vector before = scale_;
-    if (!widen(*part, beside, low, high)) return false;
-    if (const std::optional<double> next = locate(low, high, u)) {
+    const std::optional<double> next = widen(*part, beside, low, high) ? locate(low, high, u) : std::nullopt;
+    if (next) {
       a = low, b = high, part = next;
       return true;
     }

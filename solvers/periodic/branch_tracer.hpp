@@ -93,6 +93,7 @@ class BranchTracer {
   void find_change(const BranchPoint& from, const BranchPoint& to, BranchEvent::Kind kind,
                    const Locate& locate, Branch& branch);
   /// Moves a and b to points of the branch with twice the harmonics, `beside` before and behind a part of their chord.
+  /// False: they were not found; harmonics and scale_ may be those of either number.
   bool widen(double part, double beside, Vector& a, Vector& b);
   void find_fold(const BranchPoint& from, const BranchPoint& to, double sign, Branch& branch);
   template <class Differs>
