@@ -63,9 +63,8 @@ const std::vector<CommandEntry>& commands() {
              "Columns of history.csv, curves of the report, * for any characters; default: the model's",
              commas},
             {"--rainflow", "CHANNEL,...",
-             "Counts load cycles (ASTM E1049) of channels, * for any characters; sections with an S-N line "
-             "are "
-             "counted anyway",
+             "Counts load cycles (ASTM E1049) of channels, * for any characters; "
+             "sections with an S-N line are counted anyway",
              commas},
             {"--orders-of", "NODE",
              "Node whose turns the orders count, for a start from rest without nominal speed; default: node "

@@ -41,10 +41,10 @@ std::vector<std::string> modes_notes(const ModelRequest& model) {
                       {.cycle = cycle_of(model), .duration = model.model_case.duration});
   } catch (const SolverError&) {  // none, as of a train that turns freely
   }
+  const std::vector<Channel> channels = all_channels(system);
   std::vector<std::string> notes;
   for (const ScalarTerm* term : terms) {
     const std::string& name = system.element_instances()[idx(index(term->element))].name;
-    const std::vector<Channel> channels = all_channels(system);
     const auto force = std::find_if(channels.begin(), channels.end(), [&](const Channel& c) {
       return c.force_of() == static_cast<int>(term - system.scalars().data());
     });
