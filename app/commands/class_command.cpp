@@ -121,13 +121,15 @@ int class_command(const CommandLine& line) {
   watch_signals();
   if (follows_contacts(cases.front().request)) {
     sweep_contacts(line, cases);
+    for (ClassCase& c : cases) c.judgement = judge_sweep(c.sweep, *strength);
   } else {
     for (ClassCase& c : cases) {
-      c.sweep = sweep_linear(c.request.model.system, c.request.options);
+      const System& system = c.request.model.system;
+      c.sweep = sweep_linear(system, c.request.options);
       c.notes = sweep_notes(c.request, c.sweep);
+      c.judgement = judge_sweep(c.sweep, *strength, sweep_between(system, c.request.options));
     }
   }
-  for (ClassCase& c : cases) c.judgement = judge_sweep(c.sweep, *strength);
   const ModelRequest& model = cases.front().request.model;
   const Json judged = class_object(cases, model_object(model.model_case.model, model.system));
   if (const auto out = line.option("--out")) {

@@ -23,7 +23,18 @@ Json class_numbers(const Vector& values) {
 }
 
 std::string rpm_range(double from, double to) {
-  return digits(to_rpm(from), 4) + " to " + digits(to_rpm(to), 4) + " rpm";
+  return digits(to_rpm(from), 5) + " to " + digits(to_rpm(to), 5) + " rpm";
+}
+
+/// Where an end is known no better than between two speeds of the sweep: the speeds outside.
+std::string kept_text(const ExceededRange& range) {
+  constexpr double kShownPart = 1e-5;
+  std::vector<std::string> kept;
+  if (range.from - range.kept_below > kShownPart * range.from)
+    kept.push_back(digits(to_rpm(range.kept_below), 5));
+  if (range.kept_above - range.to > kShownPart * range.to)
+    kept.push_back(digits(to_rpm(range.kept_above), 5));
+  return kept.empty() ? "" : " (interpolated; no longer exceeded at " + join(kept) + " rpm)";
 }
 
 /// What may be done in a range in which the limit for continuous running is exceeded.
@@ -52,16 +63,22 @@ std::string bounded(double value, int significant) {
 }
 
 std::string exceeded_text(const ExceededRange& range) {
-  return rpm_range(range.from, range.to) + (range.open_from || range.open_to ? " (and perhaps beyond)" : "") +
-         ", " + percent(range.worst, 4) + " at " + digits(to_rpm(range.worst_speed), 5) + " rpm; " +
-         passing_text(range.passing);
+  return rpm_range(range.from, range.to) + kept_text(range) +
+         (range.open_from || range.open_to ? " (and perhaps beyond)" : "") + ", " + percent(range.worst, 4) +
+         " at " + digits(to_rpm(range.worst_speed), 5) + " rpm; " + passing_text(range.passing);
 }
 
 Json range_object(const ExceededRange& range) {
-  return {{"from_rpm", number(to_rpm(range.from))}, {"to_rpm", number(to_rpm(range.to))},
-          {"open_from", range.open_from},           {"open_to", range.open_to},
-          {"worst", number(range.worst)},           {"worst_rpm", number(to_rpm(range.worst_speed))},
-          {"may_be_passed", range.may_be_passed()}, {"passing", to_text(range.passing)}};
+  return {{"from_rpm", number(to_rpm(range.from))},
+          {"to_rpm", number(to_rpm(range.to))},
+          {"kept_below_rpm", number(to_rpm(range.kept_below))},
+          {"kept_above_rpm", number(to_rpm(range.kept_above))},
+          {"open_from", range.open_from},
+          {"open_to", range.open_to},
+          {"worst", number(range.worst)},
+          {"worst_rpm", number(to_rpm(range.worst_speed))},
+          {"may_be_passed", range.may_be_passed()},
+          {"passing", to_text(range.passing)}};
 }
 
 Json barred_object(const LinearSweep& sweep, const RuleBarredRange& barred) {
@@ -205,7 +222,7 @@ std::string case_text(const ClassCase& c) {
     ranges +=
         wrap(c.sweep.sections[static_cast<std::size_t>(range.section)].name +
                  ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
-                 ", up to " + bounded(range.range.worst, 3) + " times at " +
+                 kept_text(range.range) + ", up to " + bounded(range.range.worst, 3) + " times at " +
                  digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer" +
                  (c.request.options.close_contacts ? "; without '--contact closed' the teeth are followed"
                                                    : "; they separate at " + std::to_string(range.separated) +

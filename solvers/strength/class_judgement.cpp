@@ -8,24 +8,22 @@
 #include <cstdlib>
 #include <functional>
 
+#include "solvers/strength/exceeded_ranges.hpp"
 #include "solvers/strength/iacs_m68.hpp"
 
 namespace drev {
 
 namespace {
 
-/// A speed [rad/s] and the value at it [unit of the section].
-struct CurvePoint {
-  double speed = 0.0, half_range = 0.0;
-};
-
 /// Values at the speeds of the sweep and at the section's peaks whose value is known, by ascending speed; the larger one
 /// where a peak is at one of the speeds.
-std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section, const Vector& at_speeds,
+std::vector<CurvePoint> curve_of(const LinearSweep& sweep, const LimitedCurve& limited,
                                  const std::function<double(const SweepPeak&)>& at_peak) {
+  const int section = limited.section;
+  const SweepSection& s = sweep.sections[static_cast<std::size_t>(section)];
   std::vector<CurvePoint> curve;
   for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
-    curve.push_back({sweep.speeds[i], at_speeds[static_cast<Eigen::Index>(i)]});
+    curve.push_back({sweep.speeds[i], limited.value(s, static_cast<Eigen::Index>(i))});
   for (const SweepPeak& peak : sweep.peaks) {
     if (peak.section != section || std::isnan(at_peak(peak))) continue;
     const auto at = std::find(sweep.speeds.begin(), sweep.speeds.end(), peak.speed);
@@ -33,50 +31,11 @@ std::vector<CurvePoint> curve_of(const LinearSweep& sweep, int section, const Ve
       curve.push_back({peak.speed, at_peak(peak)});
       continue;
     }
-    double& value = curve[static_cast<std::size_t>(at - sweep.speeds.begin())].half_range;
+    double& value = curve[static_cast<std::size_t>(at - sweep.speeds.begin())].value;
     value = std::max(value, at_peak(peak));
   }
   std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
   return curve;
-}
-
-/// Speed ranges where ratio(speed, half range) > 1, with ends by linear interpolation; beside an infinite ratio, which
-/// grows as one over the distance, by linear interpolation of one over the ratio. Not a number: there is no limit.
-std::vector<ExceededRange> exceeded_ranges(const std::vector<CurvePoint>& curve,
-                                           const std::function<double(const CurvePoint&)>& ratio) {
-  std::vector<ExceededRange> ranges;
-  const CurvePoint* before = nullptr;
-  double last = 0.0;
-  bool inside = false;
-  const auto crossing = [&](const CurvePoint& p, double now) {
-    if (std::isinf(now)) return before->speed + (p.speed - before->speed) * (1.0 - last);
-    if (std::isinf(last)) return before->speed + (p.speed - before->speed) * now;
-    return before->speed + (p.speed - before->speed) * (1.0 - last) / (now - last);
-  };
-  for (const CurvePoint& p : curve) {
-    const double now = ratio(p);
-    const bool over = now > 1.0;
-    if (over && !inside) {
-      const bool open = before == nullptr || std::isnan(last);
-      ExceededRange& range = ranges.emplace_back();
-      range.from = open ? p.speed : crossing(p, now), range.to = p.speed;
-      range.open_from = open;
-    }
-    if (!over && inside) {
-      ranges.back().open_to = std::isnan(now);
-      ranges.back().to = std::isnan(now) ? before->speed : crossing(p, now);
-    }
-    if (over) {
-      ExceededRange& range = ranges.back();
-      if (now > range.worst) range.worst = now, range.worst_speed = p.speed;
-      range.to = p.speed;
-    }
-    inside = over;
-    before = &p;
-    last = now;
-  }
-  if (inside) ranges.back().open_to = true;
-  return ranges;
 }
 
 void take_lower(TorqueLimit& limit, double continuous, double transient, const char* rule) {
@@ -91,47 +50,59 @@ class Judge {
  public:
   Judge(const LinearSweep& sweep, const Strength& strength) : sweep_(sweep), strength_(strength) {}
 
-  SectionJudgement section(int section, int number) const {
+  /// The half range of a torque over its limit.
+  LimitedCurve torque_curve(int section, int number) const {
     const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
-    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
+    LimitedCurve curve{section, half_range, [this, &data](const CurvePoint& p) {
+                         return p.value / limit(data, p.speed).continuous;
+                       }};
+    curve.points = curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range; });
+    return curve;
+  }
+
+  /// The half range of a contact's force over its mean.
+  LimitedCurve chatter_curve(int section) const {
+    LimitedCurve curve{
+        section, [](const SweepSection& s, Eigen::Index i) { return half_range(s, i) / std::abs(s.mean[i]); },
+        [](const CurvePoint& p) { return p.value; }};
+    curve.points =
+        curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range / std::abs(peak.mean); });
+    return curve;
+  }
+
+  SectionJudgement section(int number, const LimitedCurve& curve) const {
+    const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
+    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(curve.section)];
     SectionJudgement found;
-    found.section = section, found.strength = number;
+    found.section = curve.section, found.strength = number;
     if (!std::isnan(data.diameter)) {
       found.modulus = polar_section_modulus(data.diameter, data.bore);
       found.stress = data.stress_concentration / found.modulus * s.half_range();
     }
     for (const double speed : sweep_.speeds) found.limits.push_back(limit(data, speed));
-    const std::vector<CurvePoint> curve =
-        curve_of(sweep_, section, s.half_range(), [](const SweepPeak& peak) { return peak.half_range; });
-    for (const CurvePoint& p : curve) {
-      const TorqueLimit at = limit(data, p.speed);
-      const double used = p.half_range / at.continuous;
+    for (const CurvePoint& p : curve.points) {
+      const double used = curve.ratio(p);
       if (!(used > found.utilisation)) continue;
-      found.utilisation = used, found.utilisation_speed = p.speed, found.rule = at.rule;
+      found.utilisation = used, found.utilisation_speed = p.speed, found.rule = limit(data, p.speed).rule;
     }
-    found.exceeded = exceeded_ranges(
-        curve, [&](const CurvePoint& p) { return p.half_range / limit(data, p.speed).continuous; });
-    for (ExceededRange& range : found.exceeded) range.passing = passing(data, range, curve);
-    add_barred(data, section, found);
-    const SweepLargest heat = largest_heat(sweep_, section);
+    found.exceeded = curve.ranges;
+    for (ExceededRange& range : found.exceeded) range.passing = passing(data, range, curve.points);
+    add_barred(data, curve.section, found);
+    const SweepLargest heat = largest_heat(sweep_, curve.section);
     found.heat = heat.value, found.heat_speed = heat.speed;
     found.permissible_heat = data.permissible_heat;
     return found;
   }
 
-  void add_chatter(int section, std::vector<ChatterRange>& chatter) const {
-    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(section)];
-    const std::vector<CurvePoint> curve = curve_of(  // the ratio itself
-        sweep_, section, (s.half_range().array() / s.mean.array().abs()).matrix(),
-        [](const SweepPeak& peak) { return peak.half_range / std::abs(peak.mean); });
-    for (const ExceededRange& range :
-         exceeded_ranges(curve, [](const CurvePoint& p) { return p.half_range; })) {
-      ChatterRange found{section, range, 0};
+  void add_chatter(const LimitedCurve& curve, std::vector<ChatterRange>& chatter) const {
+    const SweepSection& s = sweep_.sections[static_cast<std::size_t>(curve.section)];
+    for (const ExceededRange& range : curve.ranges) {
+      ChatterRange found{curve.section, range, 0};
       const auto inside = [&range](double speed) { return speed >= range.from && speed <= range.to; };
       for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
         if (inside(sweep_.speeds[i]) && s.separates(static_cast<Eigen::Index>(i))) ++found.separated;
       for (const SweepPeak& peak : sweep_.peaks)
-        if (peak.section == section && !peak.at_end && inside(peak.speed) &&
+        if (peak.section == curve.section && !peak.at_end && inside(peak.speed) &&
             s.separates(peak.mean, peak.maximum, peak.minimum))
           ++found.separated;
       chatter.push_back(found);
@@ -139,6 +110,9 @@ class Judge {
   }
 
  private:
+  static double half_range(const SweepSection& s, Eigen::Index i) {
+    return 0.5 * (s.maximum[i] - s.minimum[i]);
+  }
   TorqueLimit limit(const SectionStrength& data, double speed) const {
     return torque_limit(data, speed / strength_.rated_speed);
   }
@@ -151,7 +125,7 @@ class Judge {
     for (const CurvePoint& p : curve) {
       if (p.speed < range.from || p.speed > range.to) continue;
       const double transient = limit(data, p.speed).transient;
-      if (p.half_range > transient) return Passing::above_limit;
+      if (p.value > transient) return Passing::above_limit;
       given = given && !std::isnan(transient);
     }
     if (!given) return Passing::no_limit;
@@ -274,29 +248,52 @@ std::vector<Finding> check_strength(const Strength& strength) {
   return findings;
 }
 
-ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength) {
+SweepAt sweep_between(const System& system, LinearSweepOptions options) {
+  options.refine = false;
+  return [&system, options](const std::vector<double>& speeds) mutable {
+    options.speeds = speeds;
+    return sweep_linear(system, options);
+  };
+}
+
+ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, const SweepAt& sweep_at) {
   std::vector<Finding> findings = check_strength(strength);
-  ClassJudgement found;
+  const bool sound = findings.empty();
   const Judge judge(sweep, strength);
   std::vector<bool> used(strength.sections.size(), false);
+  std::vector<LimitedCurve> curves;
+  std::vector<int> numbers;  // of each curve in Strength::sections; -1: chatter
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
     const SweepSection& s = sweep.sections[c];
-    bool judged = false;
     for (std::size_t k = 0; k < strength.sections.size(); ++k) {
       if (s.unit != "N m" || s.name != strength.sections[k].element + ".torque_Nm") continue;
       used[k] = true;
-      if (!findings.empty()) continue;
-      found.sections.push_back(judge.section(static_cast<int>(c), static_cast<int>(k)));
-      judged = judged || found.sections.back().judged() || found.sections.back().heat_judged();
+      if (!sound) continue;
+      curves.push_back(judge.torque_curve(static_cast<int>(c), static_cast<int>(k)));
+      numbers.push_back(static_cast<int>(k));
     }
-    if (s.contact) judge.add_chatter(static_cast<int>(c), found.chatter);
-    if (!judged) found.not_judged.push_back(s.name);
+    if (!s.contact) continue;
+    curves.push_back(judge.chatter_curve(static_cast<int>(c)));
+    numbers.push_back(-1);
   }
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k])
       findings.push_back({"class.sections", "section", strength.sections[k].element, "",
                           "is the name of no section of the sweep that carries a torque"});
   if (!findings.empty()) throw ModelError(std::move(findings));
+  find_exceeded_ranges(curves, sweep_at);
+  ClassJudgement found;
+  std::vector<bool> judged(sweep.sections.size(), false);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (numbers[i] < 0) {
+      judge.add_chatter(curves[i], found.chatter);
+      continue;
+    }
+    const SectionJudgement& section = found.sections.emplace_back(judge.section(numbers[i], curves[i]));
+    if (section.judged() || section.heat_judged()) judged[static_cast<std::size_t>(section.section)] = true;
+  }
+  for (std::size_t c = 0; c < judged.size(); ++c)
+    if (!judged[c]) found.not_judged.push_back(sweep.sections[c].name);
   return found;
 }
 

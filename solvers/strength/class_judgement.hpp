@@ -4,8 +4,10 @@
 ///
 /// Vibratory torque: half range of the sum of all orders with their phases. If a section has several limits,
 /// the lowest applies, each expressed as a torque: tau W by IACS UR M68 (nominal stress), tau W / K of a
-/// given stress (local stress, K the stress concentration), a given torque. Between speeds of the sweep and
-/// its located peaks the torque is interpolated linearly; beside an unbounded peak as one over the distance from it.
+/// given stress (local stress, K the stress concentration), a given torque. Where a range begins and ends is
+/// known to 1e-7 of the speed if the sweep can be solved at further speeds (SweepAt). Of a sweep alone the torque is
+/// interpolated linearly between its speeds and its located peaks; beside an unbounded peak as one over the distance from it.
+/// A range so found can be several times as wide as it is where the speeds are far apart; it ends between the speeds stated.
 ///
 /// Heat and chatter are judged at the speeds of the sweep and at the located peaks, too: heat at its own peak; the ratio
 /// of chatter at the peaks of the half range, where it is largest but for the slope of the mean.
@@ -13,6 +15,7 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -31,7 +34,10 @@ TorqueLimit torque_limit(const SectionStrength& section, double speed_ratio);
 struct ExceededRange {
   double from = 0.0, to = 0.0;
   bool open_from = false,
-       open_to = false;                   ///< true: it begins or ends with the sweep or the limit
+       open_to = false;  ///< true: it begins or ends with the sweep or the limit
+  /// The nearest speeds outside at which the limit is known to be kept [rad/s]: the end lies between them and the range. Not a
+  /// number: it is open there.
+  double kept_below = std::numeric_limits<double>::quiet_NaN(), kept_above = kept_below;
   double worst = 0.0, worst_speed = 0.0;  ///< largest ratio to the limit in it [-], and its speed [rad/s]
   /// Whether it may be barred and passed quickly.
   enum class Passing {
@@ -89,8 +95,16 @@ struct ClassJudgement {
   bool accepted() const;
 };
 
-/// Throws ModelError where data of a section are out of range or belong to no section of the sweep.
-ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength);
+/// Solves the sweep that is judged at other speeds [rad/s], > 0 and ascending: the same sections in the same order.
+using SweepAt = std::function<LinearSweep(const std::vector<double>& speeds)>;
+/// That of sweep_linear() with the options of the sweep that is judged. The system must outlive it. Errors: those of
+/// sweep_linear().
+SweepAt sweep_between(const System& system, LinearSweepOptions options);
+
+/// sweep_at: solves the sweep where ranges begin and end, all ends at once, about ten times; empty: the sweep alone is judged,
+/// with ends between its speeds. Throws ModelError where data of a section are out of range or belong to no section of the
+/// sweep, and what sweep_at throws.
+ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, const SweepAt& sweep_at = {});
 
 /// Faults of the data themselves, without a sweep: place, parameter, value, unit, range.
 std::vector<Finding> check_strength(const Strength& strength);

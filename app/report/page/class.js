@@ -48,11 +48,14 @@ function showJudgement() {
         }),
       ),
     );
+    // An end that is known no better than between two speeds of the sweep has the speed outside behind it.
+    const end = (speed, kept) =>
+      sig(speed, 5) + (kept !== null && Math.abs(kept - speed) > 1e-5 * speed ? ` (not at ${sig(kept, 5)})` : "");
     const exceeded = one.sections.flatMap((s) =>
       s.exceeded.map((r) => [
         s.section,
-        `${r.open_from ? "≤ " : ""}${sig(r.from_rpm, 5)}`,
-        `${r.open_to ? "≥ " : ""}${sig(r.to_rpm, 5)}`,
+        `${r.open_from ? "≤ " : ""}${end(r.from_rpm, r.kept_below_rpm)}`,
+        `${r.open_to ? "≥ " : ""}${end(r.to_rpm, r.kept_above_rpm)}`,
         r.worst === null ? "unbounded" : percent(r.worst),
         sig(r.worst_rpm, 5),
         passingTexts[r.passing],
@@ -93,8 +96,8 @@ function showJudgement() {
           ["mesh", "from [rpm]", "to [rpm]", "largest ratio", "at [rpm]", judged.contact === "closed" ? "speeds and peaks at which teeth would separate" : "speeds and peaks at which teeth separate"],
           one.chatter.map((r) => [
             r.section,
-            sig(r.from_rpm, 5),
-            sig(r.to_rpm, 5),
+            end(r.from_rpm, r.kept_below_rpm),
+            end(r.to_rpm, r.kept_above_rpm),
             r.worst === null ? "unbounded" : sig(r.worst, 3),
             sig(r.worst_rpm, 5),
             r.separated_speeds,

@@ -137,7 +137,7 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
          "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
          "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
          "damping_Nms_per_rad = 5 }\n[class]\nmisfire = { torque_Nm = 30 }\n[class.sections]\n"
-         "shaft = { permissible_torque_Nm = 20 }\n";
+         "shaft = { permissible_torque_Nm = 28 }\n";
   const std::string file = (folder / "pair.toml").string(), report = (folder / "pair.html").string();
   const std::string speeds = "1800:100:2100";
   const nlohmann::json judged = class_json_of({"class", file, "--speeds", speeds, "--report", report});
@@ -167,12 +167,19 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
       CHECK(worst > 0.0);
       CHECK(one.at("sections")[0].at("half_range_Nm")[i].get<double>() == Approx(worst).epsilon(1e-12));
     }
+    // The limit of 28 N m is met between two speeds of the grid, which are stated.
+    const nlohmann::json& range = one.at("sections")[0].at("exceeded").at(0);
+    CHECK(range.at("kept_below_rpm").is_null());
+    CHECK(range.at("to_rpm").get<double>() > (c == 0 ? 1900.0 : 2000.0));
+    CHECK(range.at("to_rpm").get<double>() < range.at("kept_above_rpm").get<double>());
+    CHECK(range.at("kept_above_rpm").get<double>() == Approx(c == 0 ? 2000.0 : 2100.0));
     // Only with little torque the mesh's force swings beyond its mean.
     CHECK(one.at("chatter").empty() == (c == 0));
   }
   CHECK(contains(read_file(report), "Contacts as they are"));
   const auto text = drev_command({"class", file, "--speeds", speeds});
   CHECK(contains(text.out, "they separate at"));
+  CHECK(contains(text.out, "(interpolated; no longer exceeded at"));
   CHECK_FALSE(contains(text.out, "taken as closed"));
   const auto refused = drev_command(
       {"class", DREV_SOURCE_DIR "/models/engine/engine.toml", "--speeds", "900", "--cycle", "1"});
@@ -219,6 +226,29 @@ TEST_CASE("A coarse grid gives the verdict of a fine one: heat at its peak", "[c
   for (const char* part : {"0.0655420 rad", "90.0628"}) CHECK(contains(sweep.out, part));
 }
 
+TEST_CASE("Ranges end where the torque crosses the limit, whatever the grid", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file =
+      two_discs(folder, "ends.toml", ", damping_Nms_per_rad = 5", "permissible_torque_Nm = 300");
+  // Of mu x'' + c x' + k x = mu/J_a p by a separate program; straight lines through the coarse grid give 412 to 472 rpm and
+  // 817 to 926 rpm.
+  const double ends[][2] = {{419.019369587, 451.653470304}, {831.053086659, 909.628659970}};
+  for (const char* grid : {"300:100:1500", "410:3:1000"}) {
+    const nlohmann::json judged = class_json_of({"class", file, "--speeds", grid});
+    const nlohmann::json& exceeded = judged["cases"][0]["sections"][0].at("exceeded");
+    REQUIRE(exceeded.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(exceeded[i].at("from_rpm").get<double>() == Approx(ends[i][0]).epsilon(1e-6));
+      CHECK(exceeded[i].at("to_rpm").get<double>() == Approx(ends[i][1]).epsilon(1e-6));
+      CHECK(exceeded[i].at("kept_below_rpm").get<double>() == Approx(ends[i][0]).epsilon(1e-6));
+      CHECK(exceeded[i].at("kept_above_rpm").get<double>() == Approx(ends[i][1]).epsilon(1e-6));
+    }
+  }
+  const auto text = drev_command({"class", file, "--speeds", "300:100:1500"});
+  for (const char* part : {"from 419.02 to 451.65 rpm,", "from 831.05 to 909.63 rpm,"})
+    CHECK(contains(text.out, part));
+}
+
 TEST_CASE("An undamped resonance between two speeds is unbounded, and exceeds any limit", "[class]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = two_discs(folder, "free.toml", "", "permissible_torque_Nm = 300");
@@ -226,15 +256,15 @@ TEST_CASE("An undamped resonance between two speeds is unbounded, and exceeds an
   const nlohmann::json& s = judged["cases"][0]["sections"][0];
   CHECK(s.at("unbounded") == true);
   CHECK(s.at("utilisation").is_null());
-  // Where order 2 meets the mode, sqrt(k / mu) / 2 = 435.864 rpm. Half ranges of the closed form exceed 300 N m from
-  // 417.15 to 454.05 rpm; the grid has the ends within 4 rpm.
+  // Where order 2 meets the mode, sqrt(k / mu) / 2 = 435.864 rpm. Half ranges of the closed form, by a separate program,
+  // exceed 300 N m from 417.14906 to 454.05263 rpm.
   const auto range = std::find_if(
       s.at("exceeded").begin(), s.at("exceeded").end(),
       [](const nlohmann::json& r) { return std::abs(r.at("worst_rpm").get<double>() - 435.8637623) < 1e-5; });
   REQUIRE(range != s.at("exceeded").end());
   CHECK(range->at("worst").is_null());
-  CHECK(range->at("from_rpm").get<double>() == Approx(417.15).margin(4.0));
-  CHECK(range->at("to_rpm").get<double>() == Approx(454.05).margin(4.0));
+  CHECK(range->at("from_rpm").get<double>() == Approx(417.1490635).epsilon(1e-6));
+  CHECK(range->at("to_rpm").get<double>() == Approx(454.0526330).epsilon(1e-6));
   CHECK(range->at("passing") == "no transient limit given");
   CHECK(range->at("may_be_passed") == false);
   const auto text = drev_command({"class", file, "--speeds", "300:100:1500"});

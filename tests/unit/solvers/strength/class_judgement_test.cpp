@@ -56,6 +56,8 @@ TEST_CASE("Where a limit is exceeded, by straight lines between speeds and peaks
   REQUIRE(s.exceeded.size() == 1);
   CHECK(s.exceeded[0].from == Approx(125.0));
   CHECK(s.exceeded[0].to == Approx(175.0));
+  CHECK(s.exceeded[0].kept_below == 120.0);  // the ends are no better known than to the grid
+  CHECK(s.exceeded[0].kept_above == 180.0);
   CHECK(s.exceeded[0].worst == Approx(2.0));
   CHECK(s.exceeded[0].may_be_passed());
   CHECK_FALSE(s.exceeded[0].open_from);
@@ -204,6 +206,46 @@ TEST_CASE("Beside an unbounded peak a range ends where a hyperbola meets the lim
   // A peak at a speed of the grid replaces what rounding left there.
   sweep.peaks[0].speed = 140.0;
   CHECK(std::isinf(judge_sweep(sweep, strength).sections.front().utilisation));
+}
+
+TEST_CASE("Ends are where the solved sweep crosses the limit, those of torque and of chatter at once",
+          "[strength]") {
+  // 4,000 N m (rad/s) / |w - 150| in the shaft: 500 N m at 142 and 158 rad/s. In the mesh 800 exp(-((w - 150) / 20)^2) N with
+  // a mean that falls from -300 N by 1 N each rad/s beyond 150 rad/s.
+  const auto shaft = [](double w) { return 4000.0 / std::abs(w - 150.0); };
+  const auto mesh = [](double w) { return 800.0 * std::exp(-std::pow((w - 150.0) / 20.0, 2)); };
+  int rounds = 0;
+  const SweepAt at = [&](const std::vector<double>& speeds) {
+    ++rounds;
+    LinearSweep sweep = triangle();
+    sweep.speeds = speeds;
+    const auto count = static_cast<Eigen::Index>(speeds.size());
+    for (SweepSection& s : sweep.sections)
+      s.maximum.resize(count), s.minimum.resize(count), s.mean.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double w = speeds[static_cast<std::size_t>(i)];
+      sweep.sections[0].maximum[i] = shaft(w), sweep.sections[1].maximum[i] = mesh(w);
+      sweep.sections[1].mean[i] = -300.0 - (w - 150.0);
+    }
+    for (SweepSection& s : sweep.sections) s.minimum = -s.maximum;
+    return sweep;
+  };
+  LinearSweep sweep = at(triangle().speeds);
+  rounds = 0;
+  sweep.peaks = triangle().peaks;
+  sweep.peaks[0].half_range = HUGE_VAL;
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0;
+  const ClassJudgement found = judge_sweep(sweep, strength, at);
+  REQUIRE(found.sections[0].exceeded.size() == 1);
+  CHECK(found.sections[0].exceeded[0].from == Approx(142.0).epsilon(1e-7));
+  CHECK(found.sections[0].exceeded[0].to == Approx(158.0).epsilon(1e-7));
+  // Roots of 800 exp(-(x / 20)^2) = |300 + x| by a separate program: x = -20.509949116 and 19.171672957.
+  REQUIRE(found.chatter.size() == 1);
+  CHECK(found.chatter[0].range.from == Approx(150.0 - 20.509949116).epsilon(1e-7));
+  CHECK(found.chatter[0].range.to == Approx(150.0 + 19.171672957).epsilon(1e-7));
+  CHECK(rounds < 25);
 }
 
 TEST_CASE("Faults of strength data are listed at once", "[strength]") {

@@ -1,0 +1,130 @@
+#include "solvers/strength/exceeded_ranges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace drev {
+
+namespace {
+
+constexpr double kEndSpeed = 1e-7;  // width of an end's bracket relative to its speed [-]
+constexpr int kMostRounds = 120;    // largest number of sweeps for the ends; bisection alone needs 60
+
+/// A speed and the ratio to the limit at it.
+struct RatioPoint {
+  double speed = 0.0, ratio = 0.0;
+};
+
+/// An end of a range, between a speed inside it and a neighbour outside. The weights are (r - 1)/(r + 1), halved where that
+/// point has stayed.
+struct EndBracket {
+  std::size_t curve = 0, range = 0;
+  bool upper = false;
+  RatioPoint inside, outside;
+  double weight_inside = 0.0, weight_outside = 0.0;
+  double earlier = 0.0, before = 0.0;  // widths two rounds and one round ago [rad/s]
+  bool stayed_inside = false, stayed_outside = false;
+
+  double width() const { return std::abs(inside.speed - outside.speed); }
+  bool found() const { return width() <= kEndSpeed * inside.speed; }
+  double trial() const {
+    const double middle = 0.5 * (inside.speed + outside.speed);
+    if (width() > 0.5 * earlier) return middle;
+    const double part = weight_inside / (weight_inside - weight_outside);
+    // Not at an end of the bracket, so that each round makes it smaller from both sides in turn.
+    const double least = 0.25 * kEndSpeed * inside.speed / width();
+    return inside.speed + std::clamp(part, least, 1.0 - least) * (outside.speed - inside.speed);
+  }
+  /// The interpolated end.
+  double end() const {
+    const double step = outside.speed - inside.speed;
+    if (std::isinf(inside.ratio)) return inside.speed + step * outside.ratio;
+    return inside.speed + step * (inside.ratio - 1.0) / (inside.ratio - outside.ratio);
+  }
+};
+
+double weight(double ratio) { return std::isinf(ratio) ? 1.0 : (ratio - 1.0) / (ratio + 1.0); }
+
+EndBracket bracket(std::size_t curve, std::size_t range, bool upper, const RatioPoint& inside,
+                   const RatioPoint& outside) {
+  EndBracket b{curve, range, upper, inside, outside, weight(inside.ratio), weight(outside.ratio)};
+  b.earlier = b.before = 4.0 * b.width();
+  return b;
+}
+
+void take(EndBracket& b, const RatioPoint& point) {
+  b.earlier = b.before;
+  b.before = b.width();
+  if (point.ratio > 1.0) {
+    if (b.stayed_outside) b.weight_outside *= 0.5;
+    b.inside = point, b.weight_inside = weight(point.ratio);
+  } else {
+    if (b.stayed_inside) b.weight_inside *= 0.5;
+    b.outside = point, b.weight_outside = weight(point.ratio);
+  }
+  b.stayed_outside = point.ratio > 1.0, b.stayed_inside = !b.stayed_outside;
+}
+
+/// Ranges between the points; the ends that lie between two points whose ratios are known are added to `ends`.
+void find_ranges(std::size_t number, LimitedCurve& curve, std::vector<EndBracket>& ends) {
+  RatioPoint last{0.0, std::nan("")};
+  bool inside = false;
+  for (const CurvePoint& p : curve.points) {
+    const RatioPoint now{p.speed, curve.ratio(p)};
+    const bool over = now.ratio > 1.0;
+    if (over && !inside) {
+      ExceededRange& range = curve.ranges.emplace_back();
+      range.from = now.speed;
+      range.open_from = std::isnan(last.ratio);
+      if (!range.open_from) ends.push_back(bracket(number, curve.ranges.size() - 1, false, now, last));
+    }
+    if (!over && inside) {
+      curve.ranges.back().open_to = std::isnan(now.ratio);
+      if (!std::isnan(now.ratio)) ends.push_back(bracket(number, curve.ranges.size() - 1, true, last, now));
+    }
+    if (over) {
+      ExceededRange& range = curve.ranges.back();
+      if (now.ratio > range.worst) range.worst = now.ratio, range.worst_speed = now.speed;
+      range.to = now.speed;
+    }
+    inside = over;
+    last = now;
+  }
+  if (inside) curve.ranges.back().open_to = true;
+}
+
+/// One round: solves the sweep at the trial speeds of all ends that are not found yet. false: all are.
+bool narrow(std::vector<EndBracket>& ends, const std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
+  std::vector<double> speeds, trials;
+  for (const EndBracket& b : ends) trials.push_back(b.found() ? 0.0 : b.trial());
+  std::copy_if(trials.begin(), trials.end(), std::back_inserter(speeds), [](double s) { return s > 0.0; });
+  if (speeds.empty()) return false;
+  std::sort(speeds.begin(), speeds.end());
+  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  const LinearSweep sweep = sweep_at(speeds);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!(trials[i] > 0.0)) continue;
+    const LimitedCurve& curve = curves[ends[i].curve];
+    const auto at = std::lower_bound(speeds.begin(), speeds.end(), trials[i]) - speeds.begin();
+    const double value = curve.value(sweep.sections[static_cast<std::size_t>(curve.section)], at);
+    take(ends[i], {trials[i], curve.ratio({trials[i], value})});
+  }
+  return true;
+}
+
+}  // namespace
+
+void find_exceeded_ranges(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
+  std::vector<EndBracket> ends;
+  for (std::size_t c = 0; c < curves.size(); ++c) find_ranges(c, curves[c], ends);
+  if (sweep_at)
+    for (int round = 0; round < kMostRounds && narrow(ends, curves, sweep_at);) ++round;
+  for (const EndBracket& b : ends) {
+    ExceededRange& range = curves[b.curve].ranges[b.range];
+    (b.upper ? range.to : range.from) = b.end();
+    (b.upper ? range.kept_above : range.kept_below) = b.outside.speed;
+  }
+}
+
+}  // namespace drev

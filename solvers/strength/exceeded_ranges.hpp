@@ -1,0 +1,36 @@
+#pragma once
+/// Speed ranges in which a quantity of a section exceeds its limit, and where they end. Internal to judge_sweep().
+///
+/// An end lies between a speed at which the ratio to the limit is above 1 and a neighbour at which it is not. It is first
+/// interpolated: linearly in the ratio, beside an infinite ratio, which grows as one over the distance, linearly in one over
+/// the ratio. Where the sweep can be solved at further speeds, each end is then enclosed by the secant rule with halved weights
+/// (M. Dowell and P. Jarratt, A modified regula falsi method, BIT 11, 1971) on (r - 1)/(r + 1), which is finite for every ratio r
+/// >= 0, and by bisection where that does not halve the bracket in two rounds, as where the limit jumps. One sweep solves the
+/// trial speeds of all ends of a round.
+#include <drev/solvers/strength/class_judgement.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace drev {
+
+/// A speed [rad/s] and the value at it [unit of the quantity].
+struct CurvePoint {
+  double speed = 0.0, value = 0.0;
+};
+
+/// A quantity of one section over the speed, and the ranges in which it exceeds its limit.
+struct LimitedCurve {
+  int section = 0;  ///< number in LinearSweep::sections
+  /// The quantity of the section at speed number i of a sweep.
+  std::function<double(const SweepSection&, Eigen::Index i)> value;
+  /// Its ratio to the limit [-]; not a number: there is no limit.
+  std::function<double(const CurvePoint&)> ratio;
+  std::vector<CurvePoint> points = {};  ///< by ascending speed
+  std::vector<ExceededRange> ranges = {};
+};
+
+/// Finds the ranges of all curves. sweep_at: as in judge_sweep(); empty: ends are interpolated.
+void find_exceeded_ranges(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at);
+
+}  // namespace drev
