@@ -107,6 +107,10 @@ std::string run_up_rows(const SpeedsPassed& up) {
                           digits(up.frequency_Hz[static_cast<std::size_t>(c.mode)], 4) + " Hz)");
   text += labelled("Criticals passed", (criticals.empty() ? "none" : join(criticals)) +
                                            "; the most excited first, contacts closed");
+  const std::string turns = short_digits(up.turns, 4) + " turns";
+  if (!up.orders.channels.empty())
+    text += labelled("Orders", "mean amplitudes over windows of " + turns +
+                                   ", below the highest one where a resonance is passed within a window");
   for (std::size_t c = 0; c < up.orders.channels.size(); ++c) {
     const std::vector<std::vector<double>>& amplitude = up.orders.amplitude[c];
     double largest = 0.0;
@@ -116,8 +120,8 @@ std::string run_up_rows(const SpeedsPassed& up) {
         if (amplitude[k][w] > largest) largest = amplitude[k][w], order = k, window = w;
     if (largest > 0.0)
       text += "  " + wrap(up.orders.channels[c] + ": order " + short_digits(up.orders.orders[order], 4) +
-                              " largest at " + speed_text(up.orders.speed[window]) + ", " +
-                              digits(largest, 4) + " " + up.orders.units[c],
+                              " largest in the " + turns + " about " + speed_text(up.orders.speed[window]) +
+                              ", amplitude " + digits(largest, 4) + " " + up.orders.units[c],
                           4);
   }
   return text;

@@ -233,8 +233,8 @@ function showOrders(section, run) {
       "p",
       { class: "note" },
       `Amplitude of each order, in windows of ${integer(up.turns)} turns of ${up.shaft ?? "the reference shaft"} ` +
-        `(Hann window over the ${up.shaft === null ? "" : "actual "}angle), at the mean speed of the window. ` +
-        "Dotted: criticals passed, contacts closed.",
+        `(Hann window over the ${up.shaft === null ? "" : "actual "}angle), at the mean speed of the window: its mean over the window, ` +
+        "below the highest one where a resonance is passed within it. Dotted: criticals passed, contacts closed.",
     ),
     toolbar(group),
   );

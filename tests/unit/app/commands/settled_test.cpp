@@ -204,6 +204,10 @@ TEST_CASE("A run-up lists the criticals that it passes and tracks the orders ove
   CHECK(std::abs(up["speed_rpm"][static_cast<std::size_t>(top)].get<double>() - critical) < 25.0);
   CHECK(contains(run.text, "300.00 rpm to 1800.0 rpm"));
   CHECK(contains(run.text, "529.0"));
+  // Amplitudes are means over windows of four turns, and are called that.
+  CHECK(up["turns"] == 4.0);
+  CHECK(contains(run.text, "mean amplitudes over windows of 4 turns"));
+  CHECK(contains(run.text, "shaft.torque_Nm: order 2 largest in the 4 turns about "));
   CHECK(run_of(disc("8", "")).json["run_up"].is_null());
 }
 
