@@ -18,7 +18,8 @@
 namespace drev::app {
 
 int campbell_command(const CommandLine& line) {
-  const SweepRequest request = request_sweep(line, {"/modes.csv", "/criticals.csv", "/summary.json"});
+  SweepRequest request = request_sweep(line, {"/modes.csv", "/criticals.csv", "/summary.json"});
+  request.options.needs_cycle = false;  // modes and criticals are each order's own
   if (!request.options.close_contacts && !request.model.system.scalars().empty())
     throw ModelError({{kCommandLine, "--contact", "", "",
                        "must be closed: modes over speed are of a linear train, and " +

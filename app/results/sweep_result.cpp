@@ -179,6 +179,9 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
                              "up at a node. Vibration does not depend on it.",
                              request.options.balance));
   }
+  if (std::isnan(sweep.cycle))
+    notes.emplace_back(
+        "The orders have no common cycle: maxima, minima and half ranges of their sum are not stated.");
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
                     " % of what alternates in it (rms) is in none of the orders");

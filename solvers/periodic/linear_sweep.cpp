@@ -165,7 +165,7 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
                         "numbers are too many (sections times speeds times orders, at most " +
                             to_text(kMostNumbers) + "); name the sections that are wanted"});
   if (!findings.empty()) throw ModelError(std::move(findings));
-  TrigonometricSum sum(sweep.orders, system.name() + "/sweep");
+  TrigonometricSum sum(sweep.orders, system.name() + "/sweep", options.needs_cycle);
   sweep.cycle = sum.cycle();
   sweep.floating_parts = response.floating();
 

@@ -48,6 +48,8 @@ struct LinearSweepOptions {
   std::vector<double> orders = {};
   std::vector<std::string> sections = {};  ///< channels; empty: torque or force of every element that has one
   bool close_contacts = false;             ///< false: a model with nonlinear laws is refused
+  /// false: orders without a common cycle are taken, too; maxima, minima and half ranges of their sums are then not numbers.
+  bool needs_cycle = true;
   bool refine = true;        ///< true: find the peaks between the speeds, and the critical speeds
   int threads = 0;           ///< largest number of threads; 0: one per processor, if worth it
   std::string balance = {};  ///< node whose torque balances the mean torques; empty: none
@@ -118,7 +120,8 @@ struct SweepModes {
 
 struct LinearSweep {
   std::vector<double> speeds, orders;
-  double cycle = 0.0;  ///< cycle of the sum of all orders [rad of the reference shaft]
+  double cycle =
+      0.0;  ///< cycle of the sum of all orders [rad of the reference shaft]; not a number: they have none
   std::vector<SweepSection> sections;
   std::vector<SweepPeak> peaks;          ///< peaks by section, then by size; at most 10 for each section
   std::vector<SweepCritical> criticals;  ///< critical speeds, ascending

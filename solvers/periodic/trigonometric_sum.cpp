@@ -21,6 +21,8 @@ using Complex = std::complex<double>;
 constexpr double kSameOrder = 1e-9;  // rounding of orders as text, relative to the highest order [-]
 constexpr int kPointsAPeriod = 6;    // points in a period of the highest order
 constexpr int kFewestPoints = 32;
+constexpr double kNone =
+    std::numeric_limits<double>::quiet_NaN();  // base order of orders without a common cycle
 constexpr int kRefinements = 20;
 constexpr double kAngleTolerance =
     7.5e-3;  // last step d over distance of points [-]: (n d)^6/720 is rounding
@@ -41,11 +43,16 @@ double common_order(const std::vector<double>& orders, double least, double same
 
 }  // namespace
 
-TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std::string& place) {
+TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std::string& place,
+                                   bool needs_cycle) {
   if (orders.empty()) return;
   const double highest = *std::max_element(orders.begin(), orders.end());
   const double least = highest / kMostMultiples;
   base_ = common_order(orders, least * (1.0 - kSameOrder), kSameOrder * highest);
+  if (!(base_ > 0.0) && !needs_cycle) {
+    base_ = kNone;
+    return;
+  }
   if (!(base_ > 0.0))
     throw ModelError({{place, "orders", to_text(orders.front()) + " ... " + to_text(orders.back()), "",
                        "must be whole multiples of one order, which is at least the highest over " +
@@ -93,7 +100,7 @@ TrigonometricSum::TrigonometricSum(const std::vector<double>& orders, const std:
   shares_ = {step_ * step_ / 8.0, 2.0 / 3.0 * std::pow(step_, 3), LookBetween::kSeventh * std::pow(step_, 7)};
 }
 
-double TrigonometricSum::cycle() const { return base_ > 0.0 ? kTwoPi / base_ : 0.0; }
+double TrigonometricSum::cycle() const { return base_ == 0.0 ? 0.0 : kTwoPi / base_; }
 
 void TrigonometricSum::step(const LaneRow* re, const LaneRow* im, FollowedTops& tops) {
   for (std::size_t k = 0; !dense_ && k < multiples_.size(); ++k)
@@ -255,7 +262,7 @@ void TrigonometricSum::follow_others() {
 }
 
 void TrigonometricSum::extremes(std::span<const Complex* const> sums, std::vector<SumExtremes>& out) {
-  out.assign(sums.size(), {});
+  out.assign(sums.size(), std::isnan(base_) ? SumExtremes{kNone, kNone, kNone, kNone} : SumExtremes{});
   if (multiples_.empty()) return;
   for (std::size_t first = 0; first < sums.size(); first += kSums) {
     const std::size_t used = std::min<std::size_t>(kSums, sums.size() - first);

@@ -37,9 +37,9 @@ class TrigonometricSum {
  public:
   static constexpr int kMostMultiples = 4096;  ///< largest n_k: highest order over o_0 [-]
 
-  /// orders: > 0. Throws ModelError where they have no common cycle of at most kMostMultiples periods of the
-  /// highest order. place: place that the message names.
-  TrigonometricSum(const std::vector<double>& orders, const std::string& place);
+  /// orders: > 0. Where they have no common cycle of at most kMostMultiples periods of the highest order, ModelError is
+  /// thrown if needs_cycle is true; if not, cycle and extremes are not numbers. place: place that the message names.
+  TrigonometricSum(const std::vector<double>& orders, const std::string& place, bool needs_cycle = true);
   double base_order() const { return base_; }
   double cycle() const;  ///< 2 pi / o_0 [rad]
   /// sums: the amplitudes of each, in the sequence of the orders. Extremes are not finite where an amplitude is not.

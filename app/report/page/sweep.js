@@ -81,7 +81,7 @@ function showFigures() {
           sig(c.damping_ratio, 3),
           c.amplitude === null ? "unbounded" : sig(c.amplitude, 5),
           c.own_amplitude === null ? "unbounded" : sig(c.own_amplitude, 5),
-          c.half_range === null ? "unbounded" : sig(c.half_range, 5),
+          c.half_range === null ? (c.amplitude === null ? "unbounded" : "–") : sig(c.half_range, 5),
           c.section,
         ]),
     ),

@@ -1,0 +1,52 @@
+// drev campbell with orders whose sum has no cycle.
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/unit/app/process.hpp"
+
+using drev::test::contains;
+using drev::test::drev_command;
+using drev::test::read_file;
+
+TEST_CASE("A Campbell diagram takes orders without a common cycle: criticals by the closed form",
+          "[campbell]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "two.toml")
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+         "J_a = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+         "J_b = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 3 }\n"
+         "s = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 10000, "
+         "damping_Nms_per_rad = 20 }\n"
+         "g = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 100, harmonics = { order = [1, "
+         "1.4142135623730951, 2.718281828459045], amplitude_Nm = [50, 40, 30] }, twist_feedback = false }\n"
+         "l = { type = \"engine_order_torque\", node = \"b\", mean_Nm = -100 }\n";
+  const std::string file = (folder / "two.toml").string(), report = (folder / "two.html").string();
+  const std::string orders = "1,1.4142135623730951,2.718281828459045";
+  const auto printed = drev_command({"campbell", file, "--speeds", "300:100:1500", "--orders", orders,
+                                     "--json", "--report", report, "--out", (folder / "out").string()});
+  INFO(printed.err);
+  REQUIRE(printed.exit_code == 0);
+  const auto criticals = nlohmann::json::parse(printed.out).at("criticals");
+  REQUIRE(criticals.size() == 3);
+  // Largest transmissibility of k + i c w: (w/w_0)^2 = (sqrt(1 + 8 zeta^2) - 1) / (4 zeta^2).
+  const double mu = 1.2, k = 1e4, natural = std::sqrt(k / mu), zeta = 20.0 / (2.0 * std::sqrt(k * mu));
+  const double square = (std::sqrt(1.0 + 8.0 * zeta * zeta) - 1.0) / (4.0 * zeta * zeta);
+  const double damped = 4.0 * zeta * zeta * square;
+  const double highest = std::sqrt((1.0 + damped) / (std::pow(1.0 - square, 2) + damped));
+  const double of[][2] = {{2.718281828459045, 30.0}, {1.4142135623730951, 40.0}, {1.0, 50.0}};  // by speed
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(criticals[i].at("order") == of[i][0]);
+    CHECK(criticals[i].at("speed_rpm").get<double>() ==
+          Approx(std::sqrt(square) * natural / of[i][0] * 30.0 / std::acos(-1.0)).epsilon(1e-6));
+    CHECK(criticals[i].at("amplitude").get<double>() == Approx(mu / 2.0 * of[i][1] * highest).epsilon(1e-9));
+    CHECK(criticals[i].at("half_range").is_null());  // of a sum that has no cycle
+  }
+  CHECK_FALSE(contains(read_file(folder / "out/criticals.csv"), "nan"));
+  CHECK(contains(read_file(report), "The orders have no common cycle"));
+  // A sweep sums the orders over their cycle, and still needs one.
+  const auto sweep = drev_command({"sweep", file, "--speeds", "300:100:1500", "--orders", orders});
+  CHECK(sweep.exit_code == 2);
+  CHECK(contains(sweep.err, "no common cycle"));
+}
