@@ -149,6 +149,8 @@ Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
           {"worst_nominal_stress_Pa", number(worst.nominal_stress)},
           {"worst_permissible_Nm", number(worst.permissible)},
           {"rule", text_or_null(judged.rule)},
+          {"rule_ends_rpm", number(to_rpm(judged.rule_ends))},
+          {"rule_beyond", text_or_null(judged.rule_beyond)},
           {"stress_of_rule", by_nominal_stress(judged) ? "nominal" : "local"},
           {"unbounded", std::isinf(worst.half_range)},
           {"exceeded", std::move(exceeded)},
@@ -214,6 +216,13 @@ std::string case_text(const ClassCase& c) {
                                      : ": IACS UR M68.5 permits no barred range from a ratio of 0.8 on"),
                      2);
     }
+    if (!std::isnan(j.rule_ends))
+      ranges += wrap(
+          s.name + ": IACS UR M68.5 has no limit above " + digits(to_rpm(j.rule_ends), 5) +
+              " rpm, 1.05 of the rated speed; from there to " + digits(to_rpm(c.sweep.speeds.back()), 5) +
+              " rpm " +
+              (j.rule_beyond.empty() ? "the torque is not judged" : "the " + j.rule_beyond + " alone holds"),
+          2);
     if (j.heat_exceeds())
       ranges += wrap(
           s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);
@@ -255,7 +264,7 @@ std::vector<std::string> class_rules(const Strength& strength) {
         "0.9 <= lambda <= 1.05; while a barred range is passed tau_T = 1.7 tau_C / sqrt(C_K); C_D = 0.35 + "
         "0.93 "
         "d^-0.2; N/mm2, mm. Barred range 16 n_c/(18 - lambda) to (18 - lambda) n_c/16, none from lambda = "
-        "0.8 on.");
+        "0.8 on. Above lambda = 1.05 the rule has no value: limits by number hold there, or none.");
   if (any([](const auto& s) { return !std::isnan(s.permissible_stress); }))
     rules.push_back("Permissible stress by number: local stress, stress concentration times nominal stress.");
   if (any([](const auto& s) { return !std::isnan(s.permissible_torque); }))

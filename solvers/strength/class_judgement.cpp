@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 
 #include "solvers/strength/exceeded_ranges.hpp"
 #include "solvers/strength/iacs_m68.hpp"
@@ -60,6 +61,39 @@ class Judge {
     return curve;
   }
 
+  /// Highest speed for which IACS UR M68.5 has a limit, if sections are judged by it and the sweep goes beyond; else not a
+  /// number.
+  double rule_ends() const {
+    double speed = iacs_m68::kHighestRatio * strength_.rated_speed;
+    while (speed / strength_.rated_speed > iacs_m68::kHighestRatio) speed = std::nextafter(speed, 0.0);
+    return sweep_.speeds.back() > speed ? speed : SectionStrength::kNone;
+  }
+
+  /// Adds the torque at the highest speed of the rule to the curve: solved, or interpolated.
+  void add_rule_end(const SweepAt& sweep_at, std::vector<LimitedCurve>& curves,
+                    const std::vector<int>& numbers) const {
+    const double end = rule_ends();
+    const auto ruled = [&](std::size_t i) {
+      return numbers[i] >= 0 &&
+             !std::isnan(strength_.sections[static_cast<std::size_t>(numbers[i])].tensile_strength);
+    };
+    std::optional<LinearSweep> there;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::vector<CurvePoint>& points = curves[i].points;
+      const auto above = std::upper_bound(points.begin(), points.end(), end,
+                                          [](double speed, const CurvePoint& p) { return speed < p.speed; });
+      if (!ruled(i) || above == points.begin() || above == points.end() || (above - 1)->speed == end)
+        continue;
+      const CurvePoint &low = *(above - 1), &high = *above;
+      double value = low.value + (end - low.speed) / (high.speed - low.speed) * (high.value - low.value);
+      if (sweep_at) {
+        if (!there) there = sweep_at({end});
+        value = curves[i].value(there->sections[static_cast<std::size_t>(curves[i].section)], 0);
+      }
+      if (std::isfinite(value)) points.insert(above, {end, value});
+    }
+  }
+
   /// The half range of a contact's force over its mean.
   LimitedCurve chatter_curve(int section) const {
     LimitedCurve curve{
@@ -84,6 +118,10 @@ class Judge {
       const double used = curve.ratio(p);
       if (!(used > found.utilisation)) continue;
       found.utilisation = used, found.utilisation_speed = p.speed, found.rule = limit(data, p.speed).rule;
+    }
+    if (!std::isnan(data.tensile_strength)) {
+      found.rule_ends = rule_ends();
+      if (!std::isnan(found.rule_ends)) found.rule_beyond = limit(data, sweep_.speeds.back()).rule;
     }
     found.exceeded = curve.ranges;
     for (ExceededRange& range : found.exceeded) range.passing = passing(data, range, curve.points);
@@ -281,6 +319,7 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
       findings.push_back({"class.sections", "section", strength.sections[k].element, "",
                           "is the name of no section of the sweep that carries a torque"});
   if (!findings.empty()) throw ModelError(std::move(findings));
+  judge.add_rule_end(sweep_at, curves, numbers);
   find_exceeded_ranges(curves, sweep_at);
   ClassJudgement found;
   std::vector<bool> judged(sweep.sections.size(), false);

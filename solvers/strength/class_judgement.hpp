@@ -2,6 +2,9 @@
 /// A sweep judged by the limits of its sections: stress, permissible vibratory torque, speed ranges in which
 /// it is exceeded, barred speed ranges by rule, speed ranges of chatter in meshes, heat.
 ///
+/// IACS UR M68.5 has no limit above a speed ratio of 1.05; there the section's limits by number hold alone, or none does
+/// (SectionJudgement::rule_ends). The torque at that very speed is judged, too.
+///
 /// Vibratory torque: half range of the sum of all orders with their phases. If a section has several limits,
 /// the lowest applies, each expressed as a torque: tau W by IACS UR M68 (nominal stress), tau W / K of a
 /// given stress (local stress, K the stress concentration), a given torque. Where a range begins and ends is
@@ -69,6 +72,10 @@ struct SectionJudgement {
   double utilisation = 0.0;         ///< largest half range over continuous limit [-]; 0: there is no limit
   double utilisation_speed = 0.0;   ///< its speed [rad/s]
   std::string rule;                 ///< rule of the limit at that speed
+  /// Highest speed for which IACS UR M68.5 has a limit, a speed ratio of 1.05 [rad/s], and the rule of the limit from there
+  /// on (empty: there is none, and the torque is not judged). Not a number: the rule is not asked for, or holds throughout.
+  double rule_ends = std::numeric_limits<double>::quiet_NaN();
+  std::string rule_beyond;
   std::vector<ExceededRange> exceeded;
   std::vector<RuleBarredRange> barred;
   /// Largest heat [W], and its speed [rad/s]; NaN: it is not known at any speed.

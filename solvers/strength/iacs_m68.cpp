@@ -17,8 +17,8 @@ namespace iacs_m68 {
 double size_factor(double diameter) { return 0.35 + 0.93 * std::pow(1e3 * diameter, -0.2); }
 
 double speed_factor(double speed_ratio) {
-  constexpr double kHighest = 1.05, kNearRated = 0.9;
-  if (!(speed_ratio <= kHighest)) return std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNearRated = 0.9;
+  if (!(speed_ratio <= kHighestRatio)) return std::numeric_limits<double>::quiet_NaN();
   return speed_ratio < kNearRated ? 3.0 - 2.0 * speed_ratio * speed_ratio : 1.38;
 }
 

@@ -15,6 +15,9 @@ namespace drev::iacs_m68 {
 /// 0.
 double size_factor(double diameter);
 
+/// Highest speed ratio for which M68.5 has a value [-].
+inline constexpr double kHighestRatio = 1.05;
+
 /// Speed factor C_lambda [-]: 3 - 2 lambda^2 for speed ratios lambda < 0.9; 1.38 for 0.9 <= lambda <= 1.05
 /// (M68.5). Not a number above 1.05, for which the rule has no value.
 double speed_factor(double speed_ratio);

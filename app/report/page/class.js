@@ -89,6 +89,17 @@ function showJudgement() {
         make("p", {}, "Barred ranges by IACS UR M68.5, about the criticals in these ranges:"),
         table(["section", "critical [rpm]", "order", "mode", "speed ratio", "barred [rpm]"], barred),
       );
+    for (const s of one.sections)
+      if (s.rule_ends_rpm !== null)
+        section.append(
+          make(
+            "p",
+            { class: "note" },
+            `${s.section}: IACS UR M68.5 has no limit above ${sig(s.rule_ends_rpm, 5)} rpm, 1.05 of the rated speed; ` +
+              `from there to ${sig(judged.speeds_rpm.at(-1), 5)} rpm ` +
+              (s.rule_beyond === null ? "the torque is not judged." : `the ${s.rule_beyond} alone holds.`),
+          ),
+        );
     if (one.chatter.length)
       section.append(
         make("p", {}, "Chatter: vibratory over mean force in a mesh above 1"),

@@ -122,10 +122,52 @@ TEST_CASE("By rule, with a barred range: a shaft below the strength that its cri
   REQUIRE(s.at("exceeded").size() == 1);
   CHECK(s["exceeded"][0].at("from_rpm").get<double>() < critical);
   CHECK(s["exceeded"][0].at("to_rpm").get<double>() > critical);
+  CHECK(s.at("rule_ends_rpm").is_null());  // 105 rpm is 1.05 of the rated speed
   const auto text = drev_command({"class", (folder / "line.toml").string(), "--speeds", "30:0.5:105"});
   for (const char* part : {"LIMITS EXCEEDED", "(order 5, mode 1)", "M68.5 from 62.", "Rev.3 February 2021",
                            "Not judged", "Mean torque does not balance at 151 of 151 speeds"})
     CHECK(contains(text.out, part));
+}
+
+TEST_CASE("Above 1.05 of the rated speed the rule has no limit: what holds there is said", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  // Undamped, one order: mu/J_1 a / |1 - (o w / w_0)^2| of the closed form, below the resonance at 1.2 of the rated speed.
+  for (const bool by_number : {false, true}) {
+    std::ofstream(folder / "line.toml")
+        << "format = 1\n[nodes]\nengine = { nominal_speed_rpm = 60 }\npropeller = {}\n[elements]\n"
+           "J_1 = { type = \"inertia\", node = \"engine\", inertia_kg_m2 = 30000 }\n"
+           "J_2 = { type = \"inertia\", node = \"propeller\", inertia_kg_m2 = 20000 }\n"
+           "shaft = { type = \"shaft_spring\", nodes = [\"engine\", \"propeller\"], stiffness_MNm_per_rad = "
+           "15 }\n"
+           "firing = { type = \"engine_order_torque\", node = \"engine\", harmonics = { order = [2.8], "
+           "amplitude_kNm = [200] } }\n[class]\nrated_speed_rpm = 100\n[class.sections]\n"
+           "shaft = { diameter_mm = 340, tensile_strength_MPa = 600, shape_factor = 1"
+        << (by_number ? ", permissible_torque_Nm = 900000 }\n" : " }\n");
+    const std::string file = (folder / "line.toml").string(), report = (folder / "line.html").string();
+    const nlohmann::json judged =
+        class_json_of({"class", file, "--speeds", "60:10:110", "--orders", "2.8", "--report", report});
+    const nlohmann::json& s = judged["cases"][0]["sections"][0];
+    const auto half_range = [](double rpm) {
+      const double mu = 12000.0, frequency = 2.8 * rpm * std::acos(-1.0) / 30.0;
+      return mu / 30000.0 * 200e3 / std::abs(1.0 - frequency * frequency * mu / 15e6);
+    };
+    const double limit = drev::iacs_m68::permissible_stress(600e6, 1.0, 0.34, 1.0).continuous *
+                         drev::polar_section_modulus(0.34);
+    REQUIRE(half_range(105.0) > limit);
+    REQUIRE(half_range(110.0) < 900e3);
+    CHECK(s.at("rule_ends_rpm").get<double>() == Approx(105.0).epsilon(1e-14));
+    CHECK(s.at("rule_beyond") == (by_number ? nlohmann::json("permissible torque") : nlohmann::json()));
+    CHECK(s.at("utilisation").get<double>() == Approx(half_range(105.0) / limit).epsilon(1e-9));
+    CHECK(s.at("utilisation_at_rpm").get<double>() == Approx(105.0).epsilon(1e-14));
+    CHECK(s.at("permissible_Nm").at(5) == (by_number ? nlohmann::json(900000.0) : nlohmann::json()));
+    const nlohmann::json& range = s.at("exceeded").at(0);
+    CHECK(range.at("to_rpm").get<double>() == Approx(105.0).epsilon(1e-6));
+    CHECK(range.at("open_to") == !by_number);
+    const auto text = drev_command({"class", file, "--speeds", "60:10:110", "--orders", "2.8"});
+    CHECK(contains(text.out, "IACS UR M68.5 has no limit above 105.00 rpm"));
+    CHECK(contains(text.out, by_number ? "permissible torque alone holds" : "the torque is not judged"));
+    CHECK(contains(read_file(report), "rule_ends_rpm"));
+  }
 }
 
 TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fired and misfiring",

@@ -1,4 +1,4 @@
-// Covers solvers/strength/class_judgement.hpp: ranges, limits and chatter of sweeps whose answers are known.
+// Covers solvers/strength/class_judgement.hpp and solvers/strength/exceeded_ranges.hpp: ranges, limits and chatter of sweeps whose answers are known.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
