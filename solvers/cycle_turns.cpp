@@ -20,6 +20,8 @@ const char* to_text(BranchChange change) {
       return "period doubling";
     case BranchChange::torus:
       return "torus";
+    case BranchChange::branching:
+      return "branching";
   }
   return "";
 }

@@ -333,6 +333,7 @@ void Sweeper::collect(std::size_t number) {
     const BranchChange kind = event.kind == Kind::fold              ? BranchChange::fold
                               : event.kind == Kind::contact         ? BranchChange::contact
                               : event.kind == Kind::period_doubling ? BranchChange::period_doubling
+                              : event.kind == Kind::branching       ? BranchChange::branching
                                                                     : BranchChange::torus;
     sweep_.changes.push_back(
         {kind, place, event.speed, event.error, motion_of(traced.cycles, event.point), {}});

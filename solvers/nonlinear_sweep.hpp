@@ -76,7 +76,8 @@ enum class BranchChange {
   fold,             ///< the curve turns back: a train that follows it jumps
   contact,          ///< contacts begin to open
   period_doubling,  ///< a curve of motions of twice the cycle branches off
-  torus             ///< a pair of multipliers leaves the unit circle: motions that do not repeat
+  torus,            ///< a pair of multipliers leaves the unit circle: motions that do not repeat
+  branching,  ///< a multiplier passes +1 without a fold: stability changes, as at the end of a tongue of instability
 };
 const char* to_text(BranchChange change);
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kFigureDigits = 6;
 constexpr int kCurveDigits = 4;     // digits of a speed that a step along the curve gives
+constexpr double kNoWidth = 1e-6;   // width of a stable stretch relative to its speed that is rounding [-]
 constexpr double kLeftOver = 1e-9;  // unbalanced mean torque above which it is reported [N m]
 
 std::string rpm_text(double speed) { return short_digits(to_rpm(speed), 8); }
@@ -39,6 +40,14 @@ double edge_of_stability(const NonlinearSweep& sweep, int branch, double stable,
   return edge;
 }
 
+/// "810 to 1150", with as many digits as tell the ends apart; one speed where they are the same.
+std::string stretch_text(double first, double last) {
+  if (std::abs(last - first) <= kNoWidth * first) return rpm_text(first);
+  int digits = kCurveDigits;
+  while (short_digits(to_rpm(first), digits) == short_digits(to_rpm(last), digits)) ++digits;
+  return short_digits(to_rpm(first), digits) + " to " + short_digits(to_rpm(last), digits);
+}
+
 /// The speed ranges of the stable stretches of a branch, in the order of its arc: "810 to 1150 rpm".
 std::string stable_text(const NonlinearSweep& sweep, std::size_t number) {
   const SweptBranch& branch = sweep.branches[number];
@@ -53,8 +62,10 @@ std::string stable_text(const NonlinearSweep& sweep, std::size_t number) {
       const double last = end < branch.motions.size()
                               ? edge_of_stability(sweep, b, speed(end - 1), speed(end))
                               : speed(end - 1);
-      stretches.push_back(short_digits(to_rpm(first), kCurveDigits) + " to " +
-                          short_digits(to_rpm(last), kCurveDigits));
+      const bool asked = std::any_of(branch.motions.begin() + static_cast<std::ptrdiff_t>(i),
+                                     branch.motions.begin() + static_cast<std::ptrdiff_t>(end),
+                                     [](const SweptMotion& motion) { return motion.asked; });
+      if (asked || std::abs(last - first) > kNoWidth * first) stretches.push_back(stretch_text(first, last));
     }
     i = std::max(end, i + 1);
   }

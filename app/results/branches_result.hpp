@@ -24,7 +24,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
 std::string motions_as_csv(const NonlinearSweep& sweep);
 /// One row for each order of each motion at the given speeds: amplitude and phase of each section.
 std::string motion_orders_as_csv(const NonlinearSweep& sweep);
-/// One row for each fold, period doubling and opening of a contact.
+/// One row for each fold, period doubling, branching, torus and opening of a contact.
 std::string changes_as_csv(const NonlinearSweep& sweep);
 
 }  // namespace drev::app

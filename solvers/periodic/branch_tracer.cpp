@@ -19,7 +19,7 @@ constexpr double kLeastCosine = 0.95;  // smallest cosine of the angle between n
 constexpr int kLocations = 40;         // largest number of iterations that locate a change
 constexpr double kLocated = 1e-9;      // last step of these over the chord [-]
 // Subharmonic part relative to X at which a curve has ended on the curve of a single cycle [-].
-constexpr double kJoined = 0.02;
+constexpr double kJoined = 2e-3;
 // Relative change of speed up to which an extremum is no fold [-]: vertical curves turn to and fro by
 // rounding.
 constexpr double kUpright = 1e-8;
@@ -37,16 +37,27 @@ Vector BranchTracer::joined(double speed, const Vector& x) const {
 
 double BranchTracer::dot(const Vector& a, const Vector& b) const { return a.cwiseProduct(scale_).dot(b); }
 
-Vector BranchTracer::subharmonic(const Vector& u) const {
+Vector BranchTracer::subharmonic(const Vector& u, int part_of_period) const {
   Vector part = u;
   const Eigen::Index block = 2 * balance_.harmonics() + 1;
   part[u.size() - 1] = 0.0;
   for (int i = 0; i < balance_.inputs(); ++i) {
     part[i * block] = 0.0;
-    for (int n = options_.cycles; n <= balance_.harmonics(); n += options_.cycles)
+    for (int n = part_of_period; n <= balance_.harmonics(); n += part_of_period)
       part.segment(i * block + 2 * n - 1, 2).setZero();
   }
   return part;
+}
+
+bool BranchTracer::meets_fewer_cycles(const Vector& u, const Vector& next) const {
+  for (int part = 2; part <= options_.cycles; ++part) {
+    if (options_.cycles % part != 0) continue;
+    const Vector before = subharmonic(u, part), after = subharmonic(next, part);
+    if (dot(before, after) < 0.0 ||
+        (dot(after, after) < kJoined * kJoined && dot(after, after) < dot(before, before)))
+      return true;
+  }
+  return false;
 }
 
 bool BranchTracer::solve(double speed, Vector& x) {
@@ -188,10 +199,7 @@ std::vector<BranchPoint> BranchTracer::follow(double speed, const Vector& x, dou
     }
     points.push_back(point_at(next));
     turns_.push_back(next_t[n]);
-    if (const Vector before = subharmonic(u), after = subharmonic(next);
-        options_.cycles > 1 && (dot(before, after) < 0.0 || (dot(after, after) < kJoined * kJoined &&
-                                                             dot(after, after) < dot(before, before)))) {
-      // The curve has met that of fewer cycles; beyond it the same motion follows, shifted by a cycle.
+    if (meets_fewer_cycles(u, next)) {
       whole = true;
       return points;
     }
@@ -241,9 +249,9 @@ Branch BranchTracer::trace(double speed, const Vector& x) {
     branch.points.push_back(points[i]);
     if (i + 1 == points.size()) break;
     const BranchPoint &from = points[i], &to = points[i + 1];
-    if (i + 1 < turns.size() && turns[i] * turns[i + 1] < 0.0)
-      find_fold(from, to, turns[i] > 0.0 ? 1.0 : -1.0, branch);
-    find_events(from, to, branch);
+    const bool folds = i + 1 < turns.size() && turns[i] * turns[i + 1] < 0.0;
+    if (folds) find_fold(from, to, turns[i] > 0.0 ? 1.0 : -1.0, branch);
+    find_events(from, to, folds, branch);
     balance_.set_harmonics(harmonics);
   }
   return branch;
@@ -408,13 +416,18 @@ void BranchTracer::find_doubling(const BranchPoint& from, const BranchPoint& to,
       branch);
 }
 
-void BranchTracer::find_events(const BranchPoint& from, const BranchPoint& to, Branch& branch) {
+void BranchTracer::find_events(const BranchPoint& from, const BranchPoint& to, bool folds, Branch& branch) {
   if (from.closed != to.closed)
     bisect(
         from, to, BranchEvent::Kind::contact, [&](const BranchPoint& p) { return p.closed == to.closed; },
         branch);
   if (stability_ == nullptr) return;
-  if (from.at_minus_one * to.at_minus_one < 0.0) find_doubling(from, to, branch);
+  const bool doubles = from.at_minus_one * to.at_minus_one < 0.0;
+  if (doubles) find_doubling(from, to, branch);
+  if (std::abs(from.outside - to.outside) == 1 && !doubles && !folds)
+    bisect(
+        from, to, BranchEvent::Kind::branching, [&](const BranchPoint& p) { return p.outside == to.outside; },
+        branch);
   if (from.outside != to.outside && (from.complex_outside || to.complex_outside) &&
       std::abs(from.outside - to.outside) == 2)
     bisect(

@@ -36,7 +36,8 @@ struct BranchEvent {
     fold,             ///< the branch turns back: stable motions end there, and the train jumps
     contact,          ///< teeth begin to separate
     period_doubling,  ///< a Floquet multiplier passes -1: motions of twice the period branch off
-    torus             ///< a complex pair of multipliers leaves the unit circle: motions that are not periodic
+    torus,            ///< a complex pair of multipliers leaves the unit circle: motions that are not periodic
+    branching  ///< a multiplier passes +1 without a fold: stability changes, as at the end of a tongue of instability
   };
   Kind kind = Kind::fold;
   double speed = 0.0;
@@ -77,8 +78,11 @@ class BranchTracer {
   struct Way;
   void rescale(const Vector& x);
   Vector joined(double speed, const Vector& x) const;
-  /// The harmonics in (X, w) that a motion that repeats in a single cycle does not have.
-  Vector subharmonic(const Vector& u) const;
+  /// The harmonics in (X, w) that a motion that repeats in a `part`th of the period does not have.
+  Vector subharmonic(const Vector& u, int part) const;
+  /// Whether the branch has met that of motions of fewer cycles between two points; beyond it the same motions follow,
+  /// shifted by some cycles.
+  bool meets_fewer_cycles(const Vector& u, const Vector& next) const;
   double dot(const Vector& a, const Vector& b) const;
   bool linearize(const Vector& u, const Vector& normal, Eigen::MatrixXd& matrix, Vector& r);
   bool correct(const Vector& normal, const Vector& target, double tolerance, Vector& u, int& iterations);
@@ -86,7 +90,8 @@ class BranchTracer {
   std::vector<BranchPoint> follow(double speed, const Vector& x, double direction, bool& whole);
   bool across(const Vector& from, const Vector& to, double part, Vector& u);
   BranchPoint point_at(const Vector& u);
-  void find_events(const BranchPoint& from, const BranchPoint& to, Branch& branch);
+  /// folds: the branch has a fold between them.
+  void find_events(const BranchPoint& from, const BranchPoint& to, bool folds, Branch& branch);
   /// Locates a change between a and b: its part of their chord, with the motion there in u; nullopt: there is none.
   using Locate = std::function<std::optional<double>(const Vector& a, const Vector& b, Vector& u)>;
   /// Adds a change to the branch, located repeatedly with twice the harmonics until its speed has converged.

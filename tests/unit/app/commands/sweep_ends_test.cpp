@@ -1,6 +1,7 @@
 // drev sweep where curves end and where runs answer: motions of a linear train that grow between two multipliers of +1;
 // a free train whose load follows the speed.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 
 using drev::test::contains;
 using drev::test::drev_command;
+using drev::test::read_file;
 using Json = nlohmann::json;
 
 TEST_CASE("A motion that grows slowly in a tongue of +1 has no statistics, and the curve's end its speed",
@@ -41,8 +43,9 @@ TEST_CASE("A motion that grows slowly in a tongue of +1 has no statistics, and t
   CHECK(grows == 2);
   const auto text = drev_command(words);
   CHECK(contains(text.out, "could not be followed to its end: it was left at 1087.0"));
-  CHECK(contains(text.out,
-                 "No fold and no loss of stability was located, as far as the curves could be followed."));
+  REQUIRE(json.at("changes").size() == 1);
+  CHECK(json["changes"][0].at("what") == "branching");
+  CHECK(json["changes"][0].at("speed_rpm").get<double>() == Approx(1087.07699).margin(2e-5));
   CHECK(!contains(text.out, "neither fold nor lose"));
 }
 
@@ -113,4 +116,35 @@ TEST_CASE("A free train whose load follows the speed is held at it: no speed run
   CHECK(std::abs(run->at("lowest")[section("cp.torque_Nm")].get<double>() + 12276.463) < 0.05);
   CHECK(std::abs(run->at("highest")[section("cp.torque_Nm")].get<double>() - 11782.105) < 0.05);
   CHECK(std::abs(run->at("mean")[section("me.force_N")].get<double>() - 3211.24) < 0.05);
+}
+
+TEST_CASE("A curve of four cycles ends on that of two: each change once, no stable range without a width",
+          "[sweep][once]") {
+  const drev::test::TemporaryFolder folder;
+  std::string model = read_file(DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml");
+  const std::string amplitude = "amplitude_um = [2.5]";
+  model.replace(model.find(amplitude), amplitude.size(), "amplitude_um = [5]");
+  std::ofstream(folder / "pair.toml") << model;
+  const std::vector<std::string> words{
+      "sweep", (folder / "pair.toml").string(), "--speeds", "3250,3300,4200", "--tolerance", "1e-2"};
+  std::vector<std::string> as_json = words;
+  as_json.emplace_back("--json");
+  const auto printed = drev_command(as_json);
+  REQUIRE(printed.exit_code == 0);
+  const Json changes = Json::parse(printed.out).at("changes");
+  CHECK(changes.size() >= 3);
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const double here = changes[i].at("speed_rpm"), there = changes[k].at("speed_rpm");
+      CHECK_FALSE((changes[i].at("what") == changes[k].at("what") && std::abs(here - there) < 1e-6 * here));
+    }
+  const std::string text = drev_command(words).out;
+  const std::size_t table = text.find("turns a cycle  "), end = text.find("section");
+  REQUIRE(end < text.size());
+  int ranges = 0;
+  for (std::size_t at = text.find(" to ", table); at < end; at = text.find(" to ", at + 4), ++ranges) {
+    const std::size_t first = text.rfind(' ', at - 1) + 1, last = text.find_first_of(",\n", at);
+    CHECK(text.substr(first, at - first) != text.substr(at + 4, last - at - 4));
+  }
+  CHECK(ranges >= 2);
 }

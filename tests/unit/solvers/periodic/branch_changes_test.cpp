@@ -13,6 +13,43 @@
 
 using namespace drev;
 
+TEST_CASE("Ends of a tongue with a multiplier of +1 are branchings, where the closed form has them",
+          "[nonlinear_sweep]") {
+  // x'' + c x' + k(wt) x = 1, k = 0.7 and 1.3 for half of the cycle each: the speeds near 1 at which the trace of the product
+  // of both matrix exponentials allows a multiplier of 1, by a separate program.
+  struct Row {
+    double damping, low, high;
+  };
+  for (const Row& row :
+       {Row{0.0, 0.9660320982012, 1.0108820016950}, {0.02, 0.9682793372932, 1.0085317969758}}) {
+    Model m("tongue");
+    m.add_node("pinion");
+    m.add_node("wheel");
+    m.constant_speed("pinion", 1.0);
+    m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
+    m.add<GearMesh>("mesh", {"pinion", "wheel"},
+                    {.base_radius_1 = 1.0,
+                     .base_radius_2 = 1.0,
+                     .teeth_1 = 1,
+                     .teeth_2 = 1,
+                     .stiffness = MeshStiffness::step(0.7, 1.3, 1.5),
+                     .damping = row.damping,
+                     .damping_law = MeshDamping::always});
+    m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = 1.0, .twist_feedback = false});
+    const NonlinearSweep sweep = sweep_nonlinear(
+        m.build(), {.speeds = {0.89, 0.95, 0.98, 1.0, 1.05, 1.1}, .tolerance = 1e-3, .runs = false});
+    std::vector<double> ends;
+    for (const SweptChange& change : sweep.changes) {
+      CHECK(change.kind == BranchChange::branching);
+      ends.push_back(change.speed);
+    }
+    std::sort(ends.begin(), ends.end());
+    REQUIRE(ends.size() == 2);
+    CHECK(ends[0] == Approx(row.low).margin(1e-9));
+    CHECK(ends[1] == Approx(row.high).margin(1e-9));
+  }
+}
+
 TEST_CASE("Period doublings lie within their stated errors, whatever the harmonics of the curve",
           "[nonlinear_sweep]") {
   Model m("clutch");
