@@ -11,18 +11,39 @@ namespace drev {
 namespace {
 
 constexpr int kMostHalvings = 12;
+// Part of the train's energy at the start that counts as summed up already: less is rounding of the powers [-].
+constexpr double kLeast = 1e-9;
 
-/// Kronrod's rule on [-1, 1]: points > 0 and the middle; those of odd number are Gauss's of 7 points.
-constexpr std::array<double, 8> kPoints{0.991455371120812639206854697526, 0.949107912342758524526189684048,
-                                        0.864864423359769072789712788641, 0.741531185599394439863864773281,
-                                        0.586087235467691130294144691693, 0.405845151377397166906606412077,
-                                        0.207784955007898467600689403773, 0.0};
-constexpr std::array<double, 8> kKronrod{0.022935322010529224963732008059, 0.063092092629978553290700663189,
-                                         0.104790010322250183839876322542, 0.140653259715525918745189590510,
-                                         0.169004726639267902826583426599, 0.190350578064785409913256402421,
-                                         0.204432940075298892414161999235, 0.209482141084727828012999174892};
-constexpr std::array<double, 4> kGauss{0.129484966168869693270611432679, 0.279705391489276667901467771424,
-                                       0.381830050505118944950369775489, 0.417959183673469387755102040816};
+constexpr std::size_t kRules = 3;
+/// A point >= 0 of the rules of 3, 7 and 15 points on [-1, 1], and its weight in each; 0: it is none of that rule's.
+struct RulePoint {
+  double at;
+  std::array<double, kRules> weight;
+};
+constexpr std::array<RulePoint, 8> kPoints{{
+    {0.0, {8.0 / 9.0, 0.450916538658474142345110087046, 0.225510499798206687386422549155}},
+    {0.774596669241483377035853079956,
+     {5.0 / 9.0, 0.268488089868333440728569280667, 0.134415255243784220359968764802}},
+    {0.434243749346802558002071502844,
+     {0.0, 0.401397414775962222905051818618, 0.200628529376989021033931873331}},
+    {0.960491268708020283423507092629,
+     {0.0, 0.104656226026467265193823857192, 0.0516032829970797396969201205678}},
+    {0.223386686428966881628203986843, {0.0, 0.0, 0.219156858401587496403693161643}},
+    {0.621102946737226402940687443816, {0.0, 0.0, 0.171511909136391380787353165019}},
+    {0.888459232872256998890420167258, {0.0, 0.0, 0.0929271953151245376858942226541}},
+    {0.993831963212755022208512841307, {0.0, 0.0, 0.0170017196299402603390274174026}},
+}};
+constexpr std::array<std::size_t, kRules> kEnds{2, 4,
+                                                8};  // points >= 0 of each rule: the first ones of the table
+
+/// Kinetic and stored energy of the train at a point [J].
+double energy_at(const Assembler& assembler, const EvaluatedState& point) {
+  double sum = 0.0;
+  for (const Channel& c : energy_channels(assembler.system()))
+    if (c.name().ends_with(".kinetic_J") || c.name().ends_with(".stored_J"))
+      sum += std::abs(c.evaluate(assembler, point.state));
+  return sum;
+}
 
 }  // namespace
 
@@ -45,7 +66,7 @@ std::vector<double> ChannelValues::integrands(const Assembler& assembler, const 
 
 void ChannelValues::start(const Assembler& assembler, const EvaluatedState& point) {
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(sizes_.begin(), sizes_.end(), 0.0);
+  std::fill(sizes_.begin(), sizes_.end(), integrals_.empty() ? 0.0 : kLeast * energy_at(assembler, point));
   restart(assembler, point);
 }
 
@@ -67,36 +88,42 @@ void ChannelValues::step(const Assembler& assembler, const EvaluatedState& from,
 
 void ChannelValues::add(double t_0, double t_1, int depth) {
   const double half = 0.5 * (t_1 - t_0), middle = 0.5 * (t_0 + t_1);
-  std::vector<double> kronrod(sums_.size()), gauss(sums_.size()), size(sums_.size());
-  const auto look = [&](double t, std::size_t point) {
+  std::array<std::vector<double>, kRules> sum, size;  // of each rule: integrals, and those without signs
+  for (auto* of : {&sum, &size})
+    for (std::vector<double>& values : *of) values.assign(sums_.size(), 0.0);
+  const auto look = [&](double t, const RulePoint& point) {
     const StepMotion::Point inside = motion_->at(t);
     const std::vector<double> y = integrands(inside.assembler, inside.at);
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      kronrod[i] += half * kKronrod[point] * y[i];
-      size[i] += half * kKronrod[point] * std::abs(y[i]);
-      if (point % 2 == 1) gauss[i] += half * kGauss[point / 2] * y[i];
-    }
+    for (std::size_t r = 0; r < kRules; ++r)
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        sum[r][i] += half * point.weight[r] * y[i];
+        size[r][i] += half * point.weight[r] * std::abs(y[i]);
+      }
   };
-  for (std::size_t point = 0; point < kPoints.size(); ++point) {
-    look(middle - half * kPoints[point], point);
-    if (kPoints[point] > 0.0) look(middle + half * kPoints[point], point);
-  }
-  bool settled = depth == 0 || !(middle > t_0 && middle < t_1);
-  if (!settled) {
-    settled = true;
-    // The difference d of the rules is the error of Gauss's; Kronrod's is about (200 d)^1.5 (QUADPACK).
-    static const double most = std::pow(kTolerance, 2.0 / 3.0) / 200.0;
+  // The difference d of two rules is the error of the first; that of the second is less than (200 d)^1.5 (QUADPACK).
+  static const double most = std::pow(kTolerance, 2.0 / 3.0) / 200.0;
+  const auto settled = [&](std::size_t r) {
     for (std::size_t i = 0; i < sums_.size(); ++i)
-      settled = settled && !(std::abs(kronrod[i] - gauss[i]) > most * (sizes_[i] + size[i]));
+      if (std::abs(sum[r][i] - sum[r - 1][i]) > most * (sizes_[i] + size[r][i])) return false;
+    return true;
+  };
+  std::size_t rule = 0;
+  for (std::size_t point = 0; rule < kRules; ++rule) {
+    for (; point < kEnds[rule]; ++point) {
+      look(middle - half * kPoints[point].at, kPoints[point]);
+      if (kPoints[point].at > 0.0) look(middle + half * kPoints[point].at, kPoints[point]);
+    }
+    if (rule > 0 && settled(rule)) break;
   }
-  if (!settled) {
+  if (rule == kRules && depth > 0 && middle > t_0 && middle < t_1) {
     add(t_0, middle, depth - 1);
     add(middle, t_1, depth - 1);
     return;
   }
+  const std::size_t used = std::min<std::size_t>(rule, kRules - 1);
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    sums_[i] += kronrod[i];
-    sizes_[i] += size[i];
+    sums_[i] += sum[used][i];
+    sizes_[i] += size[used][i];
   }
 }
 

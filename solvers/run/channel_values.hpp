@@ -3,14 +3,16 @@
 ///
 ///   y(t) = integral from the start to t of the channel's integrand (a power)
 ///
-/// by Gauss and Kronrod's rule of 7 and 15 points on the motion inside each step (observer.hpp), halved where the error
-/// of Kronrod's, (200 d)^1.5 with the difference d of the two, is more than kTolerance, both over what has been summed up
-/// without signs. Exact propagation's motion is as exact
-/// there as at its ends, so that the integral has the run's own accuracy; elsewhere it is that of the polynomial
-/// through both ends of the step. Shown without a motion: trapezoids.
+/// by Patterson's nested rules of 3, 7 and 15 points on the motion inside each step (observer.hpp): the first of 7 and 15 whose
+/// error is at most kTolerance, else the step is halved. The error of a rule is less than (200 d)^1.5 with the difference d
+/// from the rule before. Both are over what has been summed up without signs, to which 1e-9 of the train's kinetic and stored
+/// energy at the start is added, since powers of less are rounding. Exact propagation's motion is as exact there as at its
+/// ends, so that the integral has the run's own accuracy; elsewhere it is that of the polynomial through both ends of the
+/// step. Shown without a motion: trapezoids.
 ///
 /// What holds one hands it look_through(), start(), step() and restart() of its own (observer.hpp).
-/// Source: R. Piessens et al., QUADPACK, Springer, 1983 (rule and halving).
+/// Source: T. N. L. Patterson, The optimum addition of points to quadrature formulae, Math. Comp. 22, 1968 (rules); R. Piessens
+/// et al., QUADPACK, Springer, 1983 (error and halving).
 #include <drev/core/channel.hpp>
 #include <drev/solvers/run/observer.hpp>
 
@@ -44,7 +46,8 @@ class ChannelValues {
   std::vector<Channel> channels_;
   std::vector<std::size_t> integrals_;  // places of the channels that are integrals
   std::vector<int> place_;              // of each channel in integrals_; -1: a function of the state
-  std::vector<double> sums_, sizes_, last_;
+  std::vector<double> sums_, last_;
+  std::vector<double> sizes_;  // sums without signs, and the least part of the train's energy
   StepMotion* motion_ = nullptr;
 };
 

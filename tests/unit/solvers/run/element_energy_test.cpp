@@ -11,6 +11,7 @@
 #include <drev/solvers/run/recorder.hpp>
 
 #include <cmath>
+#include <functional>
 
 #include "tests/catch.hpp"
 
@@ -89,6 +90,52 @@ TEST_CASE("Heat of a damped oscillator is the energy that it has lost", "[elemen
           Approx(2.0 * kSwingDamping / kSwingInertia * kinetic).epsilon(10.0 * tolerance));
     CHECK(peaks.peaks()[0].max_time == Approx(t).epsilon(name == "exact" ? 1e-6 : 1e-3));
   }
+}
+
+TEST_CASE("Heat is summed up with few looks inside a step, and what is rounding is not halved",
+          "[element_energy]") {
+  // Heat of c v^2 for a given v, which is shown as the motion of the step.
+  struct Given final : StepMotion {
+    Given(const System& system, std::function<double(double)> given)
+        : assembler(system), v(std::move(given)) {
+      point.state = State::initial(system);
+    }
+    Point at(double t) override {
+      ++looks;
+      point.state.t = t;
+      point.state.v[0] = v(t);
+      return {assembler, point};
+    }
+    Assembler assembler;
+    std::function<double(double)> v;
+    EvaluatedState point;
+    int looks = 0;
+  };
+  const System system = oscillator(0.0, 1.0, kSwingStart);
+  const auto heat_of = [&](Given& motion, double t_1, int steps) {
+    std::vector<Channel> channels = energy_channels(system);
+    std::erase_if(channels, [](const Channel& c) { return c.name() != "damper.dissipated_J"; });
+    ChannelValues values(channels);
+    values.look_through(motion);
+    EvaluatedState from = motion.point, to = from;
+    values.start(motion.assembler, from);
+    for (int i = 0; i < steps; ++i) {
+      from.state.t = t_1 * i / steps, to.state.t = t_1 * (i + 1) / steps;
+      values.step(motion.assembler, from, to);
+    }
+    return values.value(0, motion.assembler, to);
+  };
+  // v = cos t: c (t/2 + sin(2 t)/4). Short steps take seven looks each, and long ones what they need.
+  const double heat = kSwingDamping * (1.5 + 0.25 * std::sin(6.0));
+  Given fine(system, [](double t) { return std::cos(t); }), coarse = fine;
+  CHECK(heat_of(fine, 3.0, 100) == Approx(heat).epsilon(1e-12));
+  CHECK(fine.looks == 700);
+  CHECK(heat_of(coarse, 3.0, 1) == Approx(heat).epsilon(1e-12));
+  CHECK(coarse.looks > 15);
+  // 1 J is stored at the start; a speed of 1e-13 rad/s with no sense in it is rounding.
+  Given rounding(system, [](double t) { return 1e-13 * std::sin(1e9 * t); });
+  CHECK(heat_of(rounding, 1e-3, 10) < 1e-25);
+  CHECK(rounding.looks == 70);
 }
 
 TEST_CASE("Power in is heat, cycle by cycle, of a forced oscillator that starts on its steady motion",
