@@ -357,6 +357,9 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
       for (const Entry& e : term.u) x_dot_dot += e.coeff * assembler.prescribed(e.index).acceleration;
       return r.dy_dx * in.x_dot + r.dy_dx_dot * x_dot_dot;
     }
+    case Kind::energy:
+      if (of_energy_ == &ElementEnergy::stored) return energy_->stored_rate(assembler, state);
+      return std::nullopt;
     default:
       return std::nullopt;
   }

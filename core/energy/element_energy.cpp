@@ -183,6 +183,24 @@ double ElementEnergy::stored(const Assembler& assembler, const State& state) con
   return sum;
 }
 
+std::optional<double> ElementEnergy::stored_rate(const Assembler& assembler, const State& state) const {
+  if (!generals_.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const int j : scalars_) {
+    const ScalarTerm& term = assembler.system().scalars()[idx(j)];
+    if (term.varies || term.phase_node >= 0) return std::nullopt;
+    const ScalarInput in = assembler.input(term, state.z, state.v);
+    const ScalarResponse r = term.force->evaluate(in);
+    sum += r.y * in.x_dot - r.dissipated_power;
+  }
+  for (const Part& part : parts_) {
+    if (part.stiffness.size() == 0) continue;
+    const Motion& m = motion(part, assembler, state);
+    sum += product(m.rate, part.stiffness, m.q);
+  }
+  return sum;
+}
+
 double ElementEnergy::kinetic(const Assembler& assembler, const State& state) const {
   double sum = 0.0;
   for (const Part& part : parts_) {

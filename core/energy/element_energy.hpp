@@ -14,6 +14,7 @@
 #include <drev/core/element.hpp>
 #include <drev/core/state.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace drev {
@@ -39,6 +40,8 @@ class ElementEnergy {
   double dissipation(const Assembler& assembler, const State& state) const;
   double stored(const Assembler& assembler, const State& state) const;
   double kinetic(const Assembler& assembler, const State& state) const;
+  /// dV/dt = q' K q' + the laws' y x' - their dissipated power [W]; none: a law varies by itself, or terms are general.
+  std::optional<double> stored_rate(const Assembler& assembler, const State& state) const;
 
  private:
   struct Part {

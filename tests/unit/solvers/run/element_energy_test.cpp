@@ -138,6 +138,44 @@ TEST_CASE("Heat is summed up with few looks inside a step, and what is rounding 
   CHECK(rounding.looks == 70);
 }
 
+TEST_CASE("Stored energy has the rate of its own change along the motion, on either flank and in the gap",
+          "[element_energy]") {
+  Model m("mesh on a wall");
+  m.add_node("wall");
+  m.add_node("wheel");
+  m.add_node("disc");
+  m.constant_speed("wall", 0.0);
+  for (const char* name : {"wheel", "disc"})
+    m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
+  m.add<ShaftSpring>("spring", {"wall", "disc"}, {.stiffness = kSwingStiffness});
+  m.add<GearMesh>("mesh", {"wall", "wheel"},
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.2,
+                   .stiffness = 1e7,
+                   .normal_backlash = 1e-4,
+                   .damping = 800.0});
+  const System system = m.build();
+  std::vector<Channel> stored = energy_channels(system);
+  std::erase_if(stored, [](const Channel& c) { return !c.name().ends_with(".stored_J"); });
+  REQUIRE(stored.size() == 2);
+  const Assembler assembler(system);
+  State state = State::initial(system);
+  for (const double angle : {-2e-3, 0.0, 2e-3})
+    for (const double speed : {-0.7, 0.3}) {
+      state.z.setConstant(angle), state.v.setConstant(speed);
+      // Half of the gap is 5e-5 m, 2.5e-4 rad.
+      const double beyond = std::copysign(std::max(std::abs(angle) - 2.5e-4, 0.0), angle);
+      for (const Channel& c : stored) {
+        CAPTURE(c.name(), angle, speed);
+        const double right = c.name() == "spring.stored_J" ? kSwingStiffness * angle * speed
+                                                           : 1e7 * 0.2 * 0.2 * beyond * speed;
+        const std::optional<double> rate = c.rate(assembler, state);
+        REQUIRE(rate);
+        CHECK(*rate == Approx(right).epsilon(1e-12).margin(1e-12));
+      }
+    }
+}
+
 TEST_CASE("Power in is heat, cycle by cycle, of a forced oscillator that starts on its steady motion",
           "[element_energy]") {
   // From rest the transient has gone after 30 time constants; the mean power is c w^2 A^2 / 2.
