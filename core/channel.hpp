@@ -39,8 +39,8 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time. Throws SolverError where over_run().
   double evaluate(const Assembler& assembler, const State& state) const;
-  /// Its rate of change at a state: of motions, deflections and forces of laws that follow x and x' alone;
-  /// none for others (accelerations, reactions, loads, ideal gears, laws that follow a phase).
+  /// Its rate of change at a state: of motions, deflections, forces of laws that follow x and x' alone, and the energy
+  /// stored in these; none for others (accelerations, reactions, loads, ideal gears, laws that follow a phase).
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
   /// Whether it is an integral over the run of its integrand() [W]: no state holds its value, but a Recorder
