@@ -24,9 +24,10 @@ namespace drev::app {
 
 namespace {
 
-constexpr double kMostSteps = 1e10, kMostRows = 1e8;  // of one run
-constexpr double kMostFoundSteps = 1e12;              // of steps that the method finds
-constexpr double kPartOfTolerance = 0.1;              // that a reduction no one asked for may add
+constexpr double kMostRows = 1e8;  // of one run
+// Steps of one run, where --step says how long they are; where the method finds them only the fewest possible are known.
+constexpr double kMostSteps = 1e10, kMostFoundSteps = 1e12;
+constexpr double kPartOfTolerance = 0.1;  // that a reduction no one asked for may add
 
 /// About x, as 1, 2 or 5 times a power of ten.
 double round_number(double x) {

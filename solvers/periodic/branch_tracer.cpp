@@ -5,6 +5,7 @@
 
 #include "core/dense/factorization.hpp"
 #include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/illinois.hpp"
 
 namespace drev {
 
@@ -391,25 +392,18 @@ void BranchTracer::find_doubling(const BranchPoint& from, const BranchPoint& to,
   find_change(
       from, to, BranchEvent::Kind::period_doubling,
       [&](const Vector& a, const Vector& b, Vector& u) -> std::optional<double> {
-        double low = 0.0, high = 1.0, f = point_at(a).at_minus_one, g = point_at(b).at_minus_one;
-        if (!(f * g < 0.0) || !balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_))
+        IllinoisBracket bracket{0.0, point_at(a).at_minus_one, 1.0, point_at(b).at_minus_one};
+        if (!(bracket.f_low * bracket.f_high < 0.0) ||
+            !balance_.speed_slope(a.head(a.size() - 1), a[a.size() - 1], slope_))
           return std::nullopt;
         double root = 0.0, last = 0.0;
-        for (int k = 0, side = 0; k < kLocations; ++k) {
+        for (int k = 0; k < kLocations; ++k) {
           last = root;
-          root = (low * g - high * f) / (g - f);
+          root = bracket.next();
           if (!across(a, b, root, u)) return std::nullopt;
           const double here = point_at(u).at_minus_one;
           if (here == 0.0 || (k > 0 && std::abs(root - last) < kLocated)) break;
-          if ((here < 0.0) == (g < 0.0)) {
-            high = root, g = here;
-            if (side == 1) f *= 0.5;
-            side = 1;
-          } else {
-            low = root, f = here;
-            if (side == -1) g *= 0.5;
-            side = -1;
-          }
+          bracket.take(root, here);
         }
         return root;
       },

@@ -12,6 +12,8 @@
 #include <map>
 #include <utility>
 
+#include "solvers/periodic/illinois.hpp"
+
 namespace drev {
 
 namespace {
@@ -355,30 +357,22 @@ void LinearResponse::find_carried_loads(double speed) {
         carried_[t].amplitude = a;
         return amplitude_of(t, speed) - a;
       };
-      // Illinois method between 0 and an amplitude that the response does not reach.
-      double low = 0.0, at_low = beyond(0.0), high = at_low, at_high = 0.0;
-      if (!std::isfinite(at_low)) refuse(t);
+      // Between 0 and an amplitude that the response does not reach.
+      IllinoisBracket b{0.0, beyond(0.0)};
+      if (!std::isfinite(b.f_low)) refuse(t);
+      b.high = b.f_low;
       int steps = 0;
-      while (high > 0.0 && (at_high = beyond(high)) > 0.0) {
-        low = high, at_low = at_high, high *= 2.0;
-        if (!std::isfinite(at_high) || ++steps > kMostSteps) refuse(t);
+      while (b.high > 0.0 && (b.f_high = beyond(b.high)) > 0.0) {
+        b.low = b.high, b.f_low = b.f_high, b.high *= 2.0;
+        if (!std::isfinite(b.f_high) || ++steps > kMostSteps) refuse(t);
       }
-      double found = high;
-      for (int side = 0; high > 0.0 && at_high < 0.0 && high - low > kClose * high;) {
+      double found = b.high;
+      while (b.high > 0.0 && b.f_high < 0.0 && b.high - b.low > kClose * b.high) {
         if (++steps > kMostSteps) refuse(t);
-        found = (low * at_high - high * at_low) / (at_high - at_low);
+        found = b.next();
         const double at = beyond(found);
-        if (at == 0.0) break;
         if (std::abs(at) <= 1e-3 * kClose * found) break;
-        if (at > 0.0) {
-          low = found, at_low = at;
-          if (side > 0) at_high *= 0.5;
-          side = 1;
-        } else {
-          high = found, at_high = at;
-          if (side < 0) at_low *= 0.5;
-          side = -1;
-        }
+        b.take(found, at);
       }
       carried_[t].amplitude = found;
       moved |= std::abs(found - before) > 10.0 * kClose * found;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "solvers/periodic/illinois.hpp"
+
 namespace drev {
 
 namespace {
@@ -16,22 +18,20 @@ struct RatioPoint {
   double speed = 0.0, ratio = 0.0;
 };
 
-/// An end of a range, between a speed inside it and a neighbour outside. The weights are (r - 1)/(r + 1), halved where that
-/// point has stayed.
+/// An end of a range, between a speed inside it (low in `root`) and a neighbour outside, which may be below it.
 struct EndBracket {
   std::size_t curve = 0, range = 0;
   bool upper = false;
   RatioPoint inside, outside;
-  double weight_inside = 0.0, weight_outside = 0.0;
+  IllinoisBracket root;                // of (r - 1)/(r + 1)
   double earlier = 0.0, before = 0.0;  // widths two rounds and one round ago [rad/s]
-  bool stayed_inside = false, stayed_outside = false;
 
   double width() const { return std::abs(inside.speed - outside.speed); }
   bool found() const { return width() <= kEndSpeed * inside.speed; }
   double trial() const {
     const double middle = 0.5 * (inside.speed + outside.speed);
     if (width() > 0.5 * earlier) return middle;
-    const double part = weight_inside / (weight_inside - weight_outside);
+    const double part = (root.next() - inside.speed) / (outside.speed - inside.speed);
     // Not at an end of the bracket, so that each round makes it smaller from both sides in turn.
     const double least = 0.25 * kEndSpeed * inside.speed / width();
     return inside.speed + std::clamp(part, least, 1.0 - least) * (outside.speed - inside.speed);
@@ -48,7 +48,8 @@ double weight(double ratio) { return std::isinf(ratio) ? 1.0 : (ratio - 1.0) / (
 
 EndBracket bracket(std::size_t curve, std::size_t range, bool upper, const RatioPoint& inside,
                    const RatioPoint& outside) {
-  EndBracket b{curve, range, upper, inside, outside, weight(inside.ratio), weight(outside.ratio)};
+  EndBracket b{curve,  range,   upper,
+               inside, outside, {inside.speed, weight(inside.ratio), outside.speed, weight(outside.ratio)}};
   b.earlier = b.before = 4.0 * b.width();
   return b;
 }
@@ -56,14 +57,8 @@ EndBracket bracket(std::size_t curve, std::size_t range, bool upper, const Ratio
 void take(EndBracket& b, const RatioPoint& point) {
   b.earlier = b.before;
   b.before = b.width();
-  if (point.ratio > 1.0) {
-    if (b.stayed_outside) b.weight_outside *= 0.5;
-    b.inside = point, b.weight_inside = weight(point.ratio);
-  } else {
-    if (b.stayed_inside) b.weight_inside *= 0.5;
-    b.outside = point, b.weight_outside = weight(point.ratio);
-  }
-  b.stayed_outside = point.ratio > 1.0, b.stayed_inside = !b.stayed_outside;
+  (point.ratio > 1.0 ? b.inside : b.outside) = point;
+  b.root.take(point.speed, std::isnan(point.ratio) ? -1.0 : weight(point.ratio));
 }
 
 /// Ranges between the points; the ends that lie between two points whose ratios are known are added to `ends`.
