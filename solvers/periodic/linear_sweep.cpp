@@ -118,11 +118,12 @@ struct Worker {
   LinearResponse::Point point;
 };
 
-/// Number of threads. Each thread has to build the equations again, which pays off for many speeds only.
+/// Number of threads. Each thread has to build the equations again, which takes as long as some frequencies do.
 std::size_t threads_for(const System& system, const LinearSweepOptions& options, std::size_t orders) {
-  constexpr double kWorth = 2e5;  // least unknowns times frequencies for a thread: about 10 ms
+  // Least unknowns times frequencies for a thread: about 0.7 ms, or 20 frequencies of a large model.
+  constexpr double kWorth = 1.5e4, kWorthFrequencies = 20.0;
   const double work = static_cast<double>(options.speeds.size() * orders) * system.size();
-  const auto most = static_cast<std::size_t>(work / kWorth) + 1;
+  const auto most = static_cast<std::size_t>(work / (kWorth + kWorthFrequencies * system.size())) + 1;
   return thread_count(std::min(most, options.speeds.size()), options.threads);
 }
 

@@ -3,13 +3,15 @@
 // - given torques and viscous shafts (peers/engine_orders.py): its response alone.
 // drev also finds the sum of all orders over the cycle with its extremes, twists, heat, power, and (the second time)
 // peaks and criticals; what openTorsion prints is the sum of amplitudes.
-// Processor time, medians of runs by turns; start of the interpreter and building the model left out on both sides.
+// Processor time of one thread, medians of runs by turns; start of the interpreter and building the model left out on both
+// sides. Of the example also the time by the clock, as both run by themselves: drev on all processors.
 //   build/release/bin/bench_opentorsion
 // Package: pip install opentorsion; another interpreter by DREV_OPENTORSION.
 #include <drev/core/units.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 
 #include "tests/benchmark/peer_files.hpp"
@@ -38,17 +40,21 @@ test::EngineChain six_cylinders() {
   return engine;
 }
 
-/// Processor time of a sweep [s], median of several calls.
-double seconds_of(const System& system, const LinearSweepOptions& options, LinearSweep& sweep) {
+/// Time of a sweep [s], median of several calls: of the processor, and by the clock.
+struct Seconds {
+  double processor, clock;
+};
+Seconds seconds_of(const System& system, const LinearSweepOptions& options, LinearSweep& sweep) {
   constexpr int kRepeats = 15;
-  std::vector<double> times;
+  std::vector<double> processor, clock;
   for (int i = 0; i < kRepeats; ++i) {
     const std::clock_t begin = std::clock();
+    const auto start = std::chrono::steady_clock::now();
     sweep = sweep_linear(system, options);
-    times.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    clock.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    processor.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
-  std::nth_element(times.begin(), times.begin() + kRepeats / 2, times.end());
-  return times[kRepeats / 2];
+  return {median(processor), median(clock)};
 }
 
 /// 800 to 2,600 rpm of the engine, times `factor` [rad/s].
@@ -73,20 +79,26 @@ TEST_CASE("Six cylinders as in openTorsion's example") {
       python + peer_file("engine_example.py") + folder + "pressure.csv " + folder + "peak_pressure.csv";
   for (int n = 800; n <= 2600; n += 10) command += " " + std::to_string(n);
   const ScratchFolder scratch;
-  std::vector<double> plain, with_peaks, by_elements, by_matrices;
+  std::vector<double> plain, with_peaks, by_elements, by_matrices, on_all, by_clock;
   double off = 0.0;
   for (int turn = 0; turn < 3; ++turn) {
     LinearSweep sweep;
     options.refine = true;
-    with_peaks.push_back(seconds_of(system, options, sweep));
+    with_peaks.push_back(seconds_of(system, options, sweep).processor);
     options.refine = false;
-    plain.push_back(seconds_of(system, options, sweep));
+    options.threads = 0;
+    on_all.push_back(seconds_of(system, options, sweep).clock);
+    options.threads = 1;
+    plain.push_back(seconds_of(system, options, sweep).processor);
     std::istringstream text(output_of(command, scratch));
     double seconds = 0.0;
     text >> seconds;
     by_elements.push_back(seconds);
     text >> seconds;
+    by_clock.push_back(seconds);
+    text >> seconds;
     by_matrices.push_back(seconds);
+    text >> seconds;
     for (std::size_t s = 0; s < options.speeds.size(); ++s)
       for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
         double sum = 0.0;
@@ -101,6 +113,8 @@ TEST_CASE("Six cylinders as in openTorsion's example") {
   remark << "sums of amplitudes differ by " << off << " at the most";
   const std::string job = "openTorsion's example of a diesel, 181 speeds, 24 orders";
   report(job, "openTorsion, as its example", median(plain), median(by_elements), remark.str());
+  report(job + ", by the clock, drev on all processors", "openTorsion, as its example", median(on_all),
+         median(by_clock), "");
   report(job + ", with peaks and criticals", "openTorsion, as its example", median(with_peaks),
          median(by_elements), "");
   report(job, "openTorsion, damping of two matrices", median(plain), median(by_matrices), "");
@@ -148,9 +162,9 @@ TEST_CASE("Six cylinders beside openTorsion") {
   double off = 0.0;
   for (int turn = 0; turn < 3; ++turn) {
     options.refine = true;
-    with_peaks.push_back(seconds_of(system, options, sweep));
+    with_peaks.push_back(seconds_of(system, options, sweep).processor);
     options.refine = false;
-    own.push_back(seconds_of(system, options, sweep));
+    own.push_back(seconds_of(system, options, sweep).processor);
     std::istringstream text(
         output_of(python + peer_file("engine_orders.py") + (folder / "engine.txt"), folder));
     double seconds = 0.0;
