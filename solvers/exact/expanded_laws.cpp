@@ -174,7 +174,10 @@ void ExpandedLaws::start_scale(Law& law) const {
   law.by_phase_terms[0] = law.stretch.slope;
   const auto lanes = idx(whole_lanes(static_cast<int>(orders.size())));
   law.orders.assign(3 * lanes, 0.0);
-  for (auto* terms : {&law.cosine, &law.sine}) terms->assign(lanes * capacity(), 0.0);
+  for (auto* terms : {&law.cosine, &law.sine}) {
+    terms->resize(lanes * capacity());
+    std::fill_n(terms->begin(), lanes, 0.0);  // those of higher degree are written before they are read
+  }
   for (std::size_t i = 0; i < orders.size(); ++i) {
     const ScaleOrder& o = orders[i];
     const double c = std::cos(o.order * law.angle), s = std::sin(o.order * law.angle);

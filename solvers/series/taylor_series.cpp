@@ -144,6 +144,7 @@ void TaylorSeries::reset() {
 }
 
 void TaylorSeries::add_damping(int slot, double value) {
+  if (value == 0.0) return;  // products with C stay those of its main diagonal
   c_[position_[idx(slot)]] += value;
   scaled_ = Scaled::none;
   damped_ = true;
