@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/dense/factorization.hpp"
-#include "solvers/periodic/bracketed_maximum.hpp"
-#include "solvers/periodic/illinois.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 
 namespace drev {
 

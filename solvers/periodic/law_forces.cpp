@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 #include "solvers/periodic/law_balance.hpp"
 
 namespace drev {

@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-#include "solvers/periodic/illinois.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 
 namespace drev {
 

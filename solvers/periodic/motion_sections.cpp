@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 
 namespace drev {
 

@@ -58,7 +58,7 @@ struct SpeedSweep {
   };
   std::vector<Point> curve;  ///< points at the speeds given
   /// For each channel the speed at which its amplitude is largest. It is searched between the neighbours of
-  /// the largest point of the curve (solvers/periodic/bracketed_maximum.hpp), to 1e-4 of their distance. A
+  /// the largest point of the curve (solvers/periodic/bracketed_search.hpp), to 1e-4 of their distance. A
   /// resonance narrower than the distance of speeds can be missed.
   struct Worst {
     double speed = 0.0, amplitude = 0.0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 
 namespace drev {
 

@@ -11,7 +11,7 @@
 #include <map>
 #include <span>
 
-#include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 #include "solvers/periodic/damped_pairs.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"

@@ -4,7 +4,7 @@
 /// A resonance of order o in the mode lambda is near w = Im lambda / o and about |Re lambda| / o wide, which
 /// may be far less than the distance of two speeds. The speeds w and w -+ |Re lambda| / o are added to those
 /// of the grid, so that every resonance has a point in its middle. Local maxima of each section at all these
-/// speeds are then refined between their neighbours (solvers/periodic/bracketed_maximum.hpp), as is the largest heat of each
+/// speeds are then refined between their neighbours (solvers/periodic/bracketed_search.hpp), as is the largest heat of each
 /// section. An order that meets an undamped mode is an infinite peak of every section that the mode moves.
 ///
 /// A critical is in the section in which the mode's own part of the order's amplitude is largest. With s = |Re lambda|, of

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/periodic/bracketed_maximum.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 #include "solvers/periodic/trigonometric_kernels.hpp"
 
 namespace drev {

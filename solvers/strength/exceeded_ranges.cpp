@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "solvers/periodic/illinois.hpp"
+#include "solvers/periodic/bracketed_search.hpp"
 
 namespace drev {
 

@@ -4,7 +4,7 @@
 /// An end lies between a speed at which the ratio to the limit is above 1 and a neighbour at which it is not. It is first
 /// interpolated: linearly in the ratio, beside an infinite ratio, which grows as one over the distance, linearly in one over
 /// the ratio. Where the sweep can be solved at further speeds, each end is then enclosed by the Illinois rule
-/// (solvers/periodic/illinois.hpp) on (r - 1)/(r + 1), which is finite for every ratio r
+/// (solvers/periodic/bracketed_search.hpp) on (r - 1)/(r + 1), which is finite for every ratio r
 /// >= 0, and by bisection where that does not halve the bracket in two rounds, as where the limit jumps. One sweep solves the
 /// trial speeds of all ends of a round.
 #include <drev/solvers/strength/class_judgement.hpp>

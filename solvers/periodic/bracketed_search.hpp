@@ -1,10 +1,5 @@
 #pragma once
-/// The largest value of a function of one variable between two bounds: parabolic interpolation through three
-/// points, with golden section steps where it does not converge. If there are several local maxima, one is
-/// found.
-///
-/// Source: R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall, 1973, chapter 5
-/// (procedure localmin).
+/// Searches of a function of one variable between two bounds: bracketed_maximum(), its largest value, and IllinoisBracket, its root.
 #include <cmath>
 #include <limits>
 
@@ -14,9 +9,13 @@ struct BracketedMaximum {
   double at = 0.0, value = 0.0;
 };
 
+/// The largest value: parabolic interpolation through three points, with golden section steps where it does not converge. If there
+/// are several local maxima, one is found.
+///
 /// look(t): the function, evaluated for t in [low, high]. start: first point, best one whose value is above
 /// both ends; if it is at or outside the bounds, golden section chooses it. width: absolute tolerance of the
 /// place, in the unit of t; the place is never located more closely than rounding allows.
+/// Source: R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall, 1973, chapter 5 (procedure localmin).
 template <class Look>
 BracketedMaximum bracketed_maximum(double low, double start, double high, double width, const Look& look) {
   const double golden = 0.5 * (3.0 - std::sqrt(5.0));
@@ -60,5 +59,26 @@ BracketedMaximum bracketed_maximum(double low, double start, double high, double
   }
   return {x, f_x};
 }
+
+/// A root of f between two places at which f has different signs.
+///
+///   x = (low f_high - high f_low) / (f_high - f_low)
+///
+/// takes the place of the end with its sign; the f of an end that stays twice in a row is halved, so that both ends close in.
+/// Source: M. Dowell, P. Jarratt, A modified regula falsi method for computing the root of an equation, BIT 11, 1971.
+struct IllinoisBracket {
+  double low = 0.0, f_low = 0.0;  ///< f_low is not 0
+  double high = 0.0, f_high = 0.0;
+  int stayed = 0;  ///< 1: low has stayed, -1: high has, 0: neither yet
+
+  double next() const { return (low * f_high - high * f_low) / (f_high - f_low); }
+  void take(double x, double f) {
+    const int stays = (f > 0.0) == (f_low > 0.0) ? -1 : 1;
+    (stays < 0 ? low : high) = x;
+    (stays < 0 ? f_low : f_high) = f;
+    if (stays == stayed) (stays < 0 ? f_high : f_low) *= 0.5;
+    stayed = stays;
+  }
+};
 
 }  // namespace drev
