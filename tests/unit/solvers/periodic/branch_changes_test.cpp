@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
+#include "tests/problems/driven_gear.hpp"
 
 using namespace drev;
 
@@ -22,22 +23,10 @@ TEST_CASE("Ends of a tongue with a multiplier of +1 are branchings, where the cl
   };
   for (const Row& row :
        {Row{0.0, 0.9660320982012, 1.0108820016950}, {0.02, 0.9682793372932, 1.0085317969758}}) {
-    Model m("tongue");
-    m.add_node("pinion");
-    m.add_node("wheel");
-    m.constant_speed("pinion", 1.0);
-    m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
-    m.add<GearMesh>("mesh", {"pinion", "wheel"},
-                    {.base_radius_1 = 1.0,
-                     .base_radius_2 = 1.0,
-                     .teeth_1 = 1,
-                     .teeth_2 = 1,
-                     .stiffness = MeshStiffness::step(0.7, 1.3, 1.5),
-                     .damping = row.damping,
-                     .damping_law = MeshDamping::always});
-    m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = 1.0, .twist_feedback = false});
+    const problems::DrivenGear gear{
+        .stiffness = MeshStiffness::step(0.7, 1.3, 1.5), .damping = row.damping, .mean = 1.0};
     const NonlinearSweep sweep = sweep_nonlinear(
-        m.build(), {.speeds = {0.89, 0.95, 0.98, 1.0, 1.05, 1.1}, .tolerance = 1e-3, .runs = false});
+        gear.build(), {.speeds = {0.89, 0.95, 0.98, 1.0, 1.05, 1.1}, .tolerance = 1e-3, .runs = false});
     std::vector<double> ends;
     for (const SweptChange& change : sweep.changes) {
       CHECK(change.kind == BranchChange::branching);
