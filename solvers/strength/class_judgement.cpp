@@ -54,7 +54,7 @@ class Judge {
   /// The half range of a torque over its limit.
   LimitedCurve torque_curve(int section, int number) const {
     const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
-    LimitedCurve curve{section, half_range, [this, &data](const CurvePoint& p) {
+    LimitedCurve curve{section, number, half_range, [this, &data](const CurvePoint& p) {
                          return p.value / limit(data, p.speed).continuous;
                        }};
     curve.points = curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range; });
@@ -70,25 +70,24 @@ class Judge {
   }
 
   /// Adds the torque at the highest speed of the rule to the curve: solved, or interpolated.
-  void add_rule_end(const SweepAt& sweep_at, std::vector<LimitedCurve>& curves,
-                    const std::vector<int>& numbers) const {
+  void add_rule_end(const SweepAt& sweep_at, std::vector<LimitedCurve>& curves) const {
     const double end = rule_ends();
-    const auto ruled = [&](std::size_t i) {
-      return numbers[i] >= 0 &&
-             !std::isnan(strength_.sections[static_cast<std::size_t>(numbers[i])].tensile_strength);
+    const auto ruled = [&](const LimitedCurve& curve) {
+      return curve.strength >= 0 &&
+             !std::isnan(strength_.sections[static_cast<std::size_t>(curve.strength)].tensile_strength);
     };
     std::optional<LinearSweep> there;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      std::vector<CurvePoint>& points = curves[i].points;
+    for (LimitedCurve& curve : curves) {
+      std::vector<CurvePoint>& points = curve.points;
       const auto above = std::upper_bound(points.begin(), points.end(), end,
                                           [](double speed, const CurvePoint& p) { return speed < p.speed; });
-      if (!ruled(i) || above == points.begin() || above == points.end() || (above - 1)->speed == end)
+      if (!ruled(curve) || above == points.begin() || above == points.end() || (above - 1)->speed == end)
         continue;
       const CurvePoint &low = *(above - 1), &high = *above;
       double value = low.value + (end - low.speed) / (high.speed - low.speed) * (high.value - low.value);
       if (sweep_at) {
         if (!there) there = sweep_at({end});
-        value = curves[i].value(there->sections[static_cast<std::size_t>(curves[i].section)], 0);
+        value = curve.value(there->sections[static_cast<std::size_t>(curve.section)], 0);
       }
       if (std::isfinite(value)) points.insert(above, {end, value});
     }
@@ -97,18 +96,19 @@ class Judge {
   /// The half range of a contact's force over its mean.
   LimitedCurve chatter_curve(int section) const {
     LimitedCurve curve{
-        section, [](const SweepSection& s, Eigen::Index i) { return half_range(s, i) / std::abs(s.mean[i]); },
+        section, -1,
+        [](const SweepSection& s, Eigen::Index i) { return half_range(s, i) / std::abs(s.mean[i]); },
         [](const CurvePoint& p) { return p.value; }};
     curve.points =
         curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range / std::abs(peak.mean); });
     return curve;
   }
 
-  SectionJudgement section(int number, const LimitedCurve& curve) const {
-    const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
+  SectionJudgement section(const LimitedCurve& curve) const {
+    const SectionStrength& data = strength_.sections[static_cast<std::size_t>(curve.strength)];
     const SweepSection& s = sweep_.sections[static_cast<std::size_t>(curve.section)];
     SectionJudgement found;
-    found.section = curve.section, found.strength = number;
+    found.section = curve.section, found.strength = curve.strength;
     if (!std::isnan(data.diameter)) {
       found.modulus = polar_section_modulus(data.diameter, data.bore);
       found.stress = data.stress_concentration / found.modulus * s.half_range();
@@ -300,7 +300,6 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
   const Judge judge(sweep, strength);
   std::vector<bool> used(strength.sections.size(), false);
   std::vector<LimitedCurve> curves;
-  std::vector<int> numbers;  // of each curve in Strength::sections; -1: chatter
   for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
     const SweepSection& s = sweep.sections[c];
     for (std::size_t k = 0; k < strength.sections.size(); ++k) {
@@ -308,27 +307,24 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
       used[k] = true;
       if (!sound) continue;
       curves.push_back(judge.torque_curve(static_cast<int>(c), static_cast<int>(k)));
-      numbers.push_back(static_cast<int>(k));
     }
-    if (!s.contact) continue;
-    curves.push_back(judge.chatter_curve(static_cast<int>(c)));
-    numbers.push_back(-1);
+    if (s.contact) curves.push_back(judge.chatter_curve(static_cast<int>(c)));
   }
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k])
       findings.push_back({"class.sections", "section", strength.sections[k].element, "",
                           "is the name of no section of the sweep that carries a torque"});
   if (!findings.empty()) throw ModelError(std::move(findings));
-  judge.add_rule_end(sweep_at, curves, numbers);
+  judge.add_rule_end(sweep_at, curves);
   find_exceeded_ranges(curves, sweep_at);
   ClassJudgement found;
   std::vector<bool> judged(sweep.sections.size(), false);
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    if (numbers[i] < 0) {
-      judge.add_chatter(curves[i], found.chatter);
+  for (const LimitedCurve& curve : curves) {
+    if (curve.strength < 0) {
+      judge.add_chatter(curve, found.chatter);
       continue;
     }
-    const SectionJudgement& section = found.sections.emplace_back(judge.section(numbers[i], curves[i]));
+    const SectionJudgement& section = found.sections.emplace_back(judge.section(curve));
     if (section.judged() || section.heat_judged()) judged[static_cast<std::size_t>(section.section)] = true;
   }
   for (std::size_t c = 0; c < judged.size(); ++c)

@@ -4,9 +4,9 @@
 /// An end lies between a speed at which the ratio to the limit is above 1 and a neighbour at which it is not. It is first
 /// interpolated: linearly in the ratio, beside an infinite ratio, which grows as one over the distance, linearly in one over
 /// the ratio. Where the sweep can be solved at further speeds, each end is then enclosed by the Illinois rule
-/// (solvers/periodic/bracketed_search.hpp) on (r - 1)/(r + 1), which is finite for every ratio r
-/// >= 0, and by bisection where that does not halve the bracket in two rounds, as where the limit jumps. One sweep solves the
-/// trial speeds of all ends of a round.
+/// (solvers/periodic/bracketed_search.hpp) on (r - 1)/(r + 1), which is finite for every ratio r >= 0, and by bisection where
+/// that does not halve the bracket in two rounds, as where the limit jumps. One sweep solves the trial speeds of all ends of a
+/// round.
 #include <drev/solvers/strength/class_judgement.hpp>
 
 #include <functional>
@@ -21,7 +21,8 @@ struct CurvePoint {
 
 /// A quantity of one section over the speed, and the ranges in which it exceeds its limit.
 struct LimitedCurve {
-  int section = 0;  ///< number in LinearSweep::sections
+  int section = 0;   ///< number in LinearSweep::sections
+  int strength = 0;  ///< number in Strength::sections; -1: it is the chatter of a contact
   /// The quantity of the section at speed number i of a sweep.
   std::function<double(const SweepSection&, Eigen::Index i)> value;
   /// Its ratio to the limit [-]; not a number: there is no limit.

@@ -70,8 +70,8 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
 }
 
 TEST_CASE("Mesh laws under exact propagation: stiffness by phase and damping, beside constant and none") {
-  // The camshaft's gear drive, 0.5 s at a tolerance of 1e-8: later stepped stiffness drives the undamped motion up. Errors of the angles at 2 ms over the largest, beside
-  // dormand_prince at 1e-11, which shares no series and takes seconds for that.
+  // The camshaft's gear drive, 0.5 s at a tolerance of 1e-8: later stepped stiffness drives the undamped motion up. Errors of
+  // the angles at 2 ms over the largest, beside dormand_prince at 1e-11, which shares no series and takes seconds for that.
   std::printf("| mesh | time [s] | steps | ratio | error |\n|---|---|---|---|---|\n");
   struct Row {
     const char* name;

@@ -1,4 +1,5 @@
-// Covers: bracketed_search.hpp (the root; the maximum is in linear_sweep_test.cpp). Roots in closed form, of either sign of the slope, from brackets of which one end would stay.
+// Covers: bracketed_search.hpp (the root; the maximum is in linear_sweep_test.cpp). Roots in closed form, of either sign of the slope,
+// from brackets of which one end would stay.
 #include "solvers/periodic/bracketed_search.hpp"
 
 #include <cmath>
