@@ -3,6 +3,7 @@
 ///
 /// A function marked DREV_WIDEST is compiled for several x86-64 levels; the program takes the best one
 /// that the machine has when it starts. Elsewhere, and under sanitizers, it is compiled once.
+#include <Eigen/Core>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -29,6 +30,10 @@ struct LaneRow {
   Lanes v{};
 };
 using LaneArray = std::vector<LaneRow>;
+/// Doubles that begin on a vector's boundary: a load of a whole vector across two lines of the cache takes twice the time, and one of
+/// what was just stored there several times that.
+using LaneVector = std::vector<double, Eigen::aligned_allocator<double>>;
+static_assert(EIGEN_MAX_ALIGN_BYTES == kLanes * sizeof(double));
 
 /// Numbers that are often the same in all lanes: then kept singly too, for loops that read them often and
 /// want to stay in the nearest cache.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "solvers/exact/law_series.hpp"
+#include "solvers/exact/steady_step.hpp"
 #include "solvers/exact/step_expansion.hpp"
 #include "solvers/linear/matrix_product.hpp"
 #include "solvers/run/control_run.hpp"
@@ -112,8 +113,7 @@ class ExactRun final : public StepMotion {
  private:
   bool running() const { return summary_.status == RunStatus::success; }
 
-  /// A breakpoint, the end, or a knot of a law's offset; there the step's end is evaluated ahead of the knot
-  /// and the next step's start behind it, as far away as rounding of the angle asks for.
+  /// A breakpoint, the end, or a knot of a law's offset: a step's end is evaluated ahead of it, the next start behind it.
   Stop next_stop(const Stops& stops) const {
     const Stop stop = stops.after(now_.state.t);
     const auto knot = expansion_.offsets.next_break(now_.state.t, stop.t);
@@ -162,7 +162,7 @@ class ExactRun final : public StepMotion {
   void step(const Stop& stop) {
     const State& from = now_.state;
     const double remaining = stop.t - from.t;
-    const End end = find_end(remaining);
+    const End end = find_end(remaining, stop.t);
     if (!running()) return;
     friction_.note_changes(from.t, from.t == options_.t_start, summary_);
     const double s = end.s, got = series_.step();
@@ -229,9 +229,8 @@ class ExactRun final : public StepMotion {
 
   /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
   /// step is cut at the change and expanded anew, until the change is at its end.
-  End find_end(double remaining) {
-    double h = std::min(remaining, growing_step_);
-    if (h < remaining) h = remaining / std::ceil(remaining / h);
+  End find_end(double remaining, double end_of_steps) {
+    double h = steady_step_.next(now_.state.t, end_of_steps, growing_step_);
     End cut;
     expansion_.allow_sweeps(true);
     for (int cuts = 0;; ++cuts) {
@@ -369,8 +368,7 @@ class ExactRun final : public StepMotion {
     if (!friction_.empty()) part_->friction.write(1.0, now_.state.history, point.state.history);
   }
 
-  /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 where
-  /// that ends the run.
+  /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 ends the run.
   double expand(double h) {
     for (;;) {
       const StepExpansion::Attempt made = expansion_.attempt(now_, laws_, h, limits(h));
@@ -469,6 +467,7 @@ class ExactRun final : public StepMotion {
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
+  SteadyStep steady_step_;
   int changes_here_ = 0, change_limit_ = 0;
   bool watches_loads_ = false;  // some observer does
   bool forces_ = false;         // some observer wants accelerations and forces

@@ -65,9 +65,9 @@ class KinkMoments {
   int count_ = 0, degree_ = 0;
   std::size_t terms_ = 0, powers_ = 1;  // terms of the angles; powers of the forces
   std::vector<int> row_;
-  std::vector<double> knot_, end_, place_;
-  std::vector<double> theta_, force_;  // terms by group of lanes, then degree, then lane
-  std::vector<double> moments_, sweep_moments_;
+  LaneVector knot_, end_, place_;
+  LaneVector theta_, force_;  // terms by group of lanes, then degree, then lane
+  LaneVector moments_, sweep_moments_;
 };
 
 }  // namespace drev

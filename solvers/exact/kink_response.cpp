@@ -85,7 +85,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   const double response = rest;
   int degree = 0;
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
-    rest *= growth / (++degree + 2.0);
+    rest *= growth * kInverse[idx(++degree + 2)];
   if (rest > kOfShare * share) return false;
   loads_.use_slopes(series_, end);
   laws_.use_slopes(series_, end);
@@ -117,8 +117,11 @@ KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double
   const KinkMoments& kinks = loads_.kinks();
   if (!kinks.straight()) return rule;
   constexpr std::array<double, 2> kLeaves{5.6e-10, 1.9e-16};
+  const double square = growth * growth, fourth = square * square;
+  const std::array<double, 2> powers{fourth * fourth, fourth * fourth * fourth};  // 2 kSweepRules[i]
+  static_assert(KinkMoments::kSweepRules[0] == 4 && KinkMoments::kSweepRules[1] == 6);
   for (std::size_t i = 0; i < kLeaves.size(); ++i)
-    if (kRuleMargin * response * kLeaves[i] * std::pow(growth, 2 * KinkMoments::kSweepRules[i]) <= allowed) {
+    if (kRuleMargin * response * kLeaves[i] * powers[i] <= allowed) {
       rule.nodes = KinkMoments::kSweepRules[i];
       break;
     }

@@ -69,8 +69,8 @@ class KinkResponse {
   bool found_ = false, slopes_changed_ = false;
   bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
-  std::vector<double> moments_;
-  std::vector<double> pulls_, gains_;  // of the kinks, in whole lanes
+  LaneVector moments_;
+  LaneVector pulls_, gains_;  // of the kinks, in whole lanes
 };
 
 }  // namespace drev

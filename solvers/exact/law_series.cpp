@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "solvers/contact/pieces.hpp"
 #include "solvers/contact/roots.hpp"
@@ -28,7 +27,7 @@ constexpr double kNearCrossing = 0.05, kAlike = 3.0;
 constexpr double kParallel = 1e-9;  // two bounds are one line, relative to their coefficients
 
 /// int_0^s (sum a_j s^j) (sum b_k s^k)' ds.
-double work_of(const std::vector<double>& a, const std::vector<double>& b, double s) {
+double work_of(std::span<const double> a, std::span<const double> b, double s) {
   double sum = 0.0, s_j = 1.0;
   for (std::size_t j = 0; j < a.size(); ++j, s_j *= s) {
     double s_k = s_j * s;
@@ -139,36 +138,55 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
                        const ScaleSeries& scale_of) {
   const auto terms = static_cast<std::size_t>(series.degree()) + 1;
   h_ = series.step();
+  series_ = &series;
+  offsets_ = &offsets;
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     Law& law = laws_[j];
     const std::vector<double>& offset = offsets.offset(static_cast<int>(j));
-    law.x.assign(std::max(terms, offset.size()), 0.0);
-    law.x_size.assign(law.x.size(), 0.0);
-    law.known.assign(3, 0.0);
-    double *x = law.x.data(), *size = law.x_size.data();
-    const auto stride = static_cast<std::size_t>(series.stride());
-    for (const Entry& e : term.z) {
-      const double coeff = e.coeff, *z = series.coefficients(0) + e.index;
-      for (std::size_t k = 0; k < terms; ++k, z += stride) {
-        const double part = coeff * *z;
-        x[k] += part;
-        size[k] += std::abs(part);
-      }
-    }
+    const std::size_t count = std::max(terms, offset.size());
+    row_.assign(idx(whole_lanes(static_cast<int>(count))), 0.0);
+    std::copy(offset.begin(), offset.end(), row_.begin());
+    law.known.fill(0.0);
+    law.known_size.fill(0.0);
     for (const Entry& e : term.u)
       for (std::size_t k = 0; k < 3; ++k) {
         const double part = e.coeff * known.prescribed(e.index)[k];
         law.known[k] += part;
-        law.x[k] += part;
-        law.x_size[k] += std::abs(part);
+        law.known_size[k] += std::abs(part);
+        row_[k] += part;
       }
-    for (std::size_t k = 0; k < offset.size(); ++k) {
-      law.x[k] += offset[k];
-      law.x_size[k] += std::abs(offset[k]);
+    const auto sums =
+        add_row_terms(series.stride(), static_cast<int>(terms), series.coefficients(0), term.z, row_.data());
+    law.reach = sums[0];
+    law.rate_reach = sums[1];
+    for (auto k = idx(whole_lanes(static_cast<int>(terms))); k < count;
+         ++k) {  // of an offset's longer series
+      law.reach += std::abs(row_[k]);
+      law.rate_reach += static_cast<double>(k) * std::abs(row_[k]);
     }
+    law.x.assign(row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(count));
     if (law.scaled) scale_of(static_cast<int>(j), law.scale);
   }
+}
+
+double LawSeries::size_of_term(int law, std::size_t k) const {
+  const Law& l = laws_[idx(law)];
+  double size = k < l.known_size.size() ? l.known_size[k] : 0.0;
+  if (static_cast<int>(k) <= series_->degree())
+    for (const Entry& e : system_.scalars()[idx(law)].z)
+      size += std::abs(e.coeff * series_->coefficient(static_cast<int>(k), e.index));
+  const std::vector<double>& offset = offsets_->offset(law);
+  return k < offset.size() ? size + std::abs(offset[k]) : size;
+}
+
+/// What a bound is at least along the step; nothing is known of one that is scaled.
+double LawSeries::clearance(const Law& law, const LawBound& b) const {
+  if (b.b_v == 0.0) return b.a + b.b_x * law.x[0] - std::abs(b.b_x) * law.reach;
+  if (law.scaled) return 0.0;
+  const double per_time = b.b_v / h_;
+  return b.a + b.b_x * law.x[0] + per_time * law.x[1] - std::abs(b.b_x) * law.reach -
+         std::abs(per_time) * law.rate_reach;
 }
 
 void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
@@ -181,10 +199,11 @@ void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<doub
   for (std::size_t k = 0; k + 1 < terms; ++k) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
 }
 
-void LawSeries::bound_sizes(const Law& law, const LawBound& b, std::vector<double>& size) const {
-  const std::size_t terms = law.x_size.size();
+void LawSeries::bound_sizes(int number, const LawBound& b, std::vector<double>& size) const {
+  const Law& law = laws_[idx(number)];
+  const std::size_t terms = law.x.size();
   size.resize(terms);
-  for (std::size_t k = 0; k < terms; ++k) size[k] = std::abs(b.b_x) * law.x_size[k];
+  for (std::size_t k = 0; k < terms; ++k) size[k] = std::abs(b.b_x) * size_of_term(number, k);
   if (b.b_v == 0.0) return;
   if (law.scaled) {
     size[0] += std::abs(b.a);
@@ -193,14 +212,17 @@ void LawSeries::bound_sizes(const Law& law, const LawBound& b, std::vector<doubl
     multiply(scale, size);
   }
   for (std::size_t k = 0; k + 1 < terms; ++k)
-    size[k] += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * law.x_size[k + 1];
+    size[k] += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * size_of_term(number, k + 1);
 }
 
-LawSeries::Start LawSeries::start_of(Law& law, const LawBound& b, int index) {
-  std::vector<double>& g = law.bounds[idx(index)];
+LawSeries::Start LawSeries::start_of(int number, const LawBound& b, int index) {
+  Law& law = laws_[idx(number)];
+  auto& [g, clear] = law.bounds[idx(index)];
+  clear = index != law.root ? clearance(law, b) : 0.0;
+  if (clear > 0.0) return Start::holds;
   bound_series(law, b, g);
   if (index != law.root && g[0] > 0.0) return Start::holds;
-  bound_sizes(law, b, sizes_);
+  bound_sizes(number, b, sizes_);
   const double whole = std::abs(b.a) + sizes_[0];
   if (index != law.root && g[0] < -kZero * whole) return Start::jumped;
   g[0] = 0.0;
@@ -234,7 +256,8 @@ std::optional<LawSeries::Change> LawSeries::change_at_once() {
     const LawPiece& p = current(j);
     laws_[j].bounds.resize(p.bounds.size());
     for (std::size_t i = 0; i < p.bounds.size(); ++i)
-      if (const Start start = start_of(laws_[j], p.bounds[i], static_cast<int>(i)); start != Start::holds)
+      if (const Start start = start_of(static_cast<int>(j), p.bounds[i], static_cast<int>(i));
+          start != Start::holds)
         return Change{0.0, static_cast<int>(j), static_cast<int>(i), start == Start::jumped};
   }
   return std::nullopt;
@@ -244,7 +267,9 @@ std::optional<LawSeries::Change> LawSeries::first_change(double end) {
   std::optional<Change> first;
   for (std::size_t j = 0; j < laws_.size(); ++j)
     for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i)
-      if (const auto s = first_crossing(laws_[j].bounds[i], end)) {
+      if (const auto& bound = laws_[j].bounds[i]; bound.clearance > 0.0) {
+        continue;
+      } else if (const auto s = first_crossing(bound.g, end)) {
         first = Change{*s, static_cast<int>(j), static_cast<int>(i)};
         end = *s;
       }
@@ -262,15 +287,23 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
       mobility += std::abs(e.coeff) * std::sqrt(series.mobility(e.index));
     for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i) {
       const LawBound& b = current(j).bounds[i];
-      lower_ = laws_[j].bounds[i];
-      if (lower_.size() < 4) lower_.resize(4, 0.0);
-      lower_[2] -= 0.5 * push * mobility * std::abs(b.b_v) / h_;
+      auto& bound = laws_[j].bounds[i];
       double scale = 1.0;
       if (b.b_v != 0.0 && laws_[j].scaled) {
         scale = 0.0;
         for (const double r : laws_[j].scale) scale += std::abs(r);
       }
-      lower_[3] -= push * mobility * scale * std::abs(b.b_x) / 6.0;
+      const double square = 0.5 * push * mobility * std::abs(b.b_v) / h_,
+                   cube = push * mobility * scale * std::abs(b.b_x) / 6.0;
+      if (bound.clearance > square + cube) continue;
+      if (bound.clearance > 0.0) {
+        bound_series(laws_[j], b, bound.g);
+        bound.clearance = 0.0;
+      }
+      lower_ = bound.g;
+      if (lower_.size() < 4) lower_.resize(4, 0.0);
+      lower_[2] -= square;
+      lower_[3] -= cube;
       const auto s = first_crossing(lower_, 1.0);
       if (!s) continue;
       if (!found.change || *s < earliest) {
@@ -283,7 +316,7 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
     }
   }
   if (!found.change) return found;
-  const std::vector<double>& g = laws_[idx(found.change->law)].bounds[idx(found.change->bound)];
+  const std::vector<double>& g = laws_[idx(found.change->law)].bounds[idx(found.change->bound)].g;
   const auto s = first_crossing(g, 1.0);
   found.unsure = !s || *s >= second || *s - earliest > kNearCrossing;
   if (found.unsure) return found;
@@ -296,7 +329,7 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
 double LawSeries::later(const Change& change, const double* y, const double* rate) const {
   const LawBound& b = current(idx(change.law)).bounds[idx(change.bound)];
   const Law& law = laws_[idx(change.law)];
-  const std::vector<double>& g = law.bounds[idx(change.bound)];
+  const std::vector<double>& g = law.bounds[idx(change.bound)].g;
   // What the motion turns the angle of r is left out: forces are continuous at such a bound.
   const double scale = b.b_v != 0.0 && law.scaled ? polynomial_value(law.scale, change.s) : 1.0;
   double beside = polynomial_value(g, change.s);
@@ -308,12 +341,14 @@ double LawSeries::later(const Change& change, const double* y, const double* rat
 double LawSeries::clear_of_change(const Change& change, double s) const {
   const Law& law = laws_[idx(change.law)];
   const double rate = std::abs(polynomial_slope(law.x, s));
-  const double away = std::min(rate > 0.0 ? kClear * law.x_size[0] / rate : kMostClear, kMostClear);
+  const double away =
+      std::min(rate > 0.0 ? kClear * size_of_term(change.law, 0) / rate : kMostClear, kMostClear);
   return s > 0.0 ? std::max(0.0, s - away) : away;
 }
 
 double LawSeries::beyond_end(const Change& change) const {
-  const std::vector<double>& g = laws_[idx(change.law)].bounds[idx(change.bound)];
+  std::vector<double> g;  // that of a step which keeps clear of the bound was not asked for
+  bound_series(laws_[idx(change.law)], current(idx(change.law)).bounds[idx(change.bound)], g);
   return -polynomial_value(g, 1.0) / polynomial_slope(g, 1.0);
 }
 

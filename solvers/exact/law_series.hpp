@@ -9,6 +9,7 @@
 /// or expanded
 /// (projected_laws.hpp, expanded_laws.hpp) take part with the bounds of their pieces, or with the stretches between their kinks.
 /// Where the pieces are scaled by an angle, y = r(s) Y(x, x'/r), a bound with b_v is r (a + b_x x) + b_v x'.
+#include <array>
 #include <functional>
 #include <optional>
 
@@ -87,24 +88,36 @@ class LawSeries {
     bool scaled = false;                    // by its angle, where that matters to a bound
     std::vector<std::optional<int>> sides;  // StepMotion::side() of each piece
     int piece = 0;
-    int root = -1;                            // bound of the piece that is zero at s = 0
-    std::vector<double> x, known;             // series of x, and of its known part
-    std::vector<double> x_size;               // sum of the parts' sizes: scale of rounding
-    std::vector<double> scale;                // series of r, where it is scaled
-    std::vector<std::vector<double>> bounds;  // series of the piece's bounds
+    int root = -1;                                   // bound of the piece that is zero at s = 0
+    std::vector<double> x;                           // series of x
+    std::array<double, 3> known = {}, known_size{};  // of its known part, and sums of what that adds up from
+    std::vector<double> scale;                       // series of r, where it is scaled
+    double reach = 0.0, rate_reach = 0.0;            // sums of |x_k|, and of k |x_k| from the second term on
+    /// A bound of the piece: its series; or, where the bound stays above a clearance > 0, none.
+    struct BoundSeries {
+      std::vector<double> g;
+      double clearance = 0.0;
+    };
+    std::vector<BoundSeries> bounds;
   };
   const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
   void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   enum class Start { holds, falls, jumped };
-  Start start_of(Law& law, const LawBound& bound, int index);
+  Start start_of(int law, const LawBound& bound, int index);
+  double clearance(const Law& law, const LawBound& bound) const;
   void bound_series(const Law& law, const LawBound& bound, std::vector<double>& g) const;
   /// The sizes of the terms that its coefficients are summed from.
-  void bound_sizes(const Law& law, const LawBound& bound, std::vector<double>& size) const;
+  void bound_sizes(int law, const LawBound& bound, std::vector<double>& size) const;
+  /// Of term k of x, the sum of its parts' sizes: the scale of rounding.
+  double size_of_term(int law, std::size_t k) const;
 
   const System& system_;
   std::vector<Law> laws_;
   std::vector<double> sizes_, lower_;
+  LaneVector row_;  // a law's deflection, in whole lanes
   double h_ = 0.0;
+  const TaylorSeries* series_ = nullptr;  // that were expanded last
+  const LawOffsets* offsets_ = nullptr;
 };
 
 }  // namespace drev

@@ -53,20 +53,13 @@ bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& l
 }
 
 bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
-  series.evaluate(s, z, v);
-  if (!sweeps_) return true;
-  if (!(kinks.found() && kinks.end() == s)) {
-    z_end_ = z;
-    if (!kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong))) return false;
+  bool found = sweeps_ && kinks.found() && kinks.end() == s;
+  if (sweeps_ && !found) {
+    series.evaluate(s, z_end_, v);
+    found = kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong));
   }
-  if (!kinks.any()) return true;
-  const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
-  double *to_z = z.data(), *to_v = v.data();
-  for (int i = 0; i < series.size(); ++i) {
-    to_z[i] += y[i];
-    to_v[i] += per_time * rate[i];
-  }
-  return true;
+  series.evaluate(s, z, v, found && kinks.any());
+  return found || !sweeps_;
 }
 
 StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const LawSeries& laws, double h,
@@ -122,17 +115,16 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
 
 const double* StepExpansion::beyond_cubic(double s) {
   const int n = series.size(), stride = series.stride();
+  // Room for rates of `stride` each, which are moved to behind the n unknowns then.
   beyond_cubic_.resize(idx(2 * stride));
   series.beyond_cubic(s, beyond_cubic_.data());
-  if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
   if (sweeps_ && kinks.any()) {
     const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
-    double *of_value = beyond_cubic_.data(), *of_rate = of_value + n;
-    for (int i = 0; i < n; ++i) {
-      of_value[i] += kOfKinks * std::abs(y[i]) + kOfKinkRates * std::abs(rate[i]);
-      of_rate[i] += 10.0 * kOfKinkRates * per_time * std::abs(rate[i]);
-    }
-  } else if (known.kinked())
+    add_sizes(stride, kOfKinks, y, kOfKinkRates, rate, beyond_cubic_.data());
+    add_sizes(stride, 0.0, y, 10.0 * kOfKinkRates * per_time, rate, beyond_cubic_.data() + stride);
+  }
+  if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
+  if (!sweeps_ && known.kinked())
     for (int i = 0; i < n; ++i) {
       beyond_cubic_[idx(i)] += known.kinks_inside() * series.z_scale()[idx(series.kind(i))];
       beyond_cubic_[idx(n + i)] += known.kinks_inside() * series.v_scale()[idx(series.kind(i))];

@@ -115,7 +115,7 @@ class StepExpansion {
   template <class Later>
   std::optional<double> settle(double s, const Later& later, double t, State& at);
 
-  std::vector<double> beyond_cubic_;
+  LaneVector beyond_cubic_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
   double share_ = 0.0;
   Vector z_end_;

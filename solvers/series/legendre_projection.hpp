@@ -71,7 +71,7 @@ class NodeForces {
 
  private:
   int stride_;
-  std::vector<double> f_;
+  LaneVector f_;
 };
 
 /// Coefficients a_j of one force a row, and their conversion to powers of s.
@@ -98,7 +98,7 @@ class LegendreProjection {
  private:
   std::size_t size() const { return static_cast<std::size_t>(stride_); }
   int stride_;
-  std::vector<double> a_;
+  LaneVector a_;
 };
 
 }  // namespace drev

@@ -12,14 +12,7 @@
 namespace drev {
 
 namespace {
-constexpr int kMostTerms = 128;  // terms of a product of two series
-
-/// 1/k.
-constexpr auto kInverse = [] {
-  std::array<double, kMostTerms + 1> inverse{};
-  for (std::size_t k = 1; k <= kMostTerms; ++k) inverse[k] = 1.0 / static_cast<double>(k);
-  return inverse;
-}();
+constexpr int kMostTerms = static_cast<int>(kInverse.size()) - 1;  // terms of a product of two series
 
 [[gnu::always_inline]] inline const double* column(const double* first, int stride, int k) {
   return first + static_cast<std::ptrdiff_t>(k) * stride;
@@ -34,6 +27,45 @@ struct ScaledProduct {
       load(a + i, x);
       load(b + i, y);
       store((factor * x) * y, out + i);
+    }
+  }
+};
+
+struct Scale {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, double* y) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L x;
+      load(a + i, x);
+      store(factor * x, y + i);
+    }
+  }
+};
+
+struct AddScaled {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, double* y) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L x, sum;
+      load(a + i, x);
+      load(y + i, sum);
+      store(sum + factor * x, y + i);
+    }
+  }
+};
+
+struct AddSizes {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, double value, const double* y, double rate,
+                                         const double* r, double* out) {
+    for (int i = 0; i < stride; i += kLanes) {
+      L a, b, sum;
+      load(y + i, a);
+      load(r + i, b);
+      magnitude(a);
+      magnitude(b);
+      load(out + i, sum);
+      store(sum + value * a + rate * b, out + i);
     }
   }
 };
@@ -99,6 +131,47 @@ struct AtNodes {
   }
 };
 
+/// 0, 1, 1, 1, ... and 0, 0, 2, 3, ..., in whole lanes.
+constexpr int kRowTerms = 64;
+constexpr auto kFromFirst = [] {
+  std::array<std::array<double, kRowTerms>, 2> weight{};
+  for (std::size_t k = 1; k < kRowTerms; ++k) weight[0][k] = 1.0;
+  for (std::size_t k = 2; k < kRowTerms; ++k) weight[1][k] = static_cast<double>(k);
+  return weight;
+}();
+
+struct RowTerms {
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, int terms, const double* z_0, const Entry* row,
+                                         int entries, double* x, double* sums) {
+    L reach{}, rate_reach{};
+    for (int k = 0; k < terms; k += kLanes) {
+      // Behind the last term the last one once more, times zero.
+      int place[kLanes];
+      double known[kLanes];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        place[lane] = std::min(k + lane, terms - 1) * stride;
+        known[lane] = k + lane < terms ? 1.0 : 0.0;
+      }
+      L sum, part{}, mask, weight;
+      load(x + k, sum);
+      load(known, mask);
+      for (int e = 0; e < entries; ++e) {
+        gather(z_0 + row[e].index, place, part);
+        sum += row[e].coeff * (mask * part);
+      }
+      store(sum, x + k);
+      magnitude(sum);
+      load(kFromFirst[0].data() + k, weight);
+      reach += weight * sum;
+      load(kFromFirst[1].data() + k, weight);
+      rate_reach += weight * sum;
+    }
+    sums[0] = sum_of(reach);
+    sums[1] = sum_of(rate_reach);
+  }
+};
+
 struct Polynomial {
   template <class L>
   [[gnu::always_inline]] static void run(int count, int terms, const double* c, const double* x,
@@ -118,42 +191,59 @@ struct Polynomial {
 
 struct Sums {
   static constexpr int kTogether = 6;  // blocks of lanes whose sums stay in registers together
-  /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on. Written out for each of them, since GCC 12 keeps an array
-  /// that a loop walks over in memory.
-  template <class L, bool kSizes, bool kAdd, int... b>
+  /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on, one or two (kTwo) at once: two, where there are registers for
+  /// them, do not wait for each other. Written out for each of them, since GCC 12 keeps an array that a loop walks over in memory.
+  template <class L, bool kSizes, bool kAdd, bool kTwo, int... b>
   [[gnu::always_inline]] static void some(std::integer_sequence<int, b...>, int stride, int first, int last,
                                           int count, int per_column, const double* weights, const int* begin,
-                                          const double* f, double* out) {
-    for (int j = first; j < last; ++j) {
+                                          const double* tails, const double* f, double* out) {
+    constexpr int kAtOnce = kTwo ? 2 : 1;
+    for (int j = first; j + kAtOnce <= last; j += kAtOnce) {
       double* to = out + j * stride;
-      L sum[sizeof...(b)];
-      if constexpr (kAdd)
+      L sum[sizeof...(b)], next[sizeof...(b)];
+      if constexpr (kAdd) {
         (load(to + b * kLanes, sum[b]), ...);
-      else
-        ((sum[b] = L{}), ...);
-      const int from = begin != nullptr ? begin[j] : 0;
+        if constexpr (kTwo) (load(to + stride + b * kLanes, next[b]), ...);
+      } else {
+        const double start = tails != nullptr ? tails[j - first] : 0.0;
+        ((sum[b] = L{} + start), ...);
+        if constexpr (kTwo) {
+          const double next_start = tails != nullptr ? tails[j + 1 - first] : 0.0;
+          ((next[b] = L{} + next_start), ...);
+        }
+      }
+      const int from = begin == nullptr ? 0 : kTwo ? std::min(begin[j], begin[j + 1]) : begin[j];
       const double *weight = weights + from * per_column + j, *x = f + from * stride;
       for (int q = from; q < count; ++q, weight += per_column, x += stride) {
-        const auto add = [&](int block, L& to_block) __attribute__((always_inline)) {
+        const auto add = [&](int block, L& to_block, [[maybe_unused]] L* to_next)
+            __attribute__((always_inline)) {
           L term;
           load(x + block * kLanes, term);
           if constexpr (kSizes) magnitude(term);
-          to_block += *weight * term;
+          to_block += weight[0] * term;
+          if constexpr (kTwo) *to_next += weight[1] * term;
         };
-        (add(b, sum[b]), ...);
+        (add(b, sum[b], kTwo ? &next[b] : nullptr), ...);
       }
       (store(sum[b], to + b * kLanes), ...);
+      if constexpr (kTwo) (store(next[b], to + stride + b * kLanes), ...);
     }
   }
   template <class L, bool kSizes, bool kAdd>
   [[gnu::always_inline]] static void all(int stride, int first, int last, int count, int per_column,
-                                         const double* weights, const int* begin, const double* f,
-                                         double* out) {
+                                         const double* weights, const int* begin, const double* tails,
+                                         const double* f, double* out) {
     if (first == last) return;
     for (int i = 0; i < stride; i += kTogether * kLanes) {
       const auto take = [&]<int kBlocks>() __attribute__((always_inline)) {
-        some<L, kSizes, kAdd>(std::make_integer_sequence<int, kBlocks>(), stride, first, last, count,
-                              per_column, weights, begin, f + i, out + i);
+        constexpr std::make_integer_sequence<int, kBlocks> blocks;
+        constexpr bool kTwo = has_registers_to_spare(static_cast<const L*>(nullptr));
+        const int alone = kTwo ? last - (last - first) % 2 : first;
+        if constexpr (kTwo)
+          some<L, kSizes, kAdd, true>(blocks, stride, first, alone, count, per_column, weights, begin, tails,
+                                      f + i, out + i);
+        some<L, kSizes, kAdd, false>(blocks, stride, alone, last, count, per_column, weights, begin,
+                                     tails != nullptr ? tails + (alone - first) : nullptr, f + i, out + i);
       };
       switch (std::min(kTogether, (stride - i) / kLanes)) {
         case 1:
@@ -178,13 +268,14 @@ struct Sums {
   }
   template <class L>
   [[gnu::always_inline]] static void run(int stride, int terms, int sizes, int count, const double* weight,
-                                         const int* begin, const double* f, double* out, bool add) {
+                                         const int* begin, const double* f, double* out, bool add,
+                                         const double* tails) {
     const int together = terms + sizes;
     if (add)
-      all<L, false, true>(stride, 0, terms, count, together, weight, begin, f, out);
+      all<L, false, true>(stride, 0, terms, count, together, weight, begin, nullptr, f, out);
     else
-      all<L, false, false>(stride, 0, terms, count, together, weight, begin, f, out);
-    all<L, true, false>(stride, terms, together, count, together, weight, begin, f, out);
+      all<L, false, false>(stride, 0, terms, count, together, weight, begin, nullptr, f, out);
+    all<L, true, false>(stride, terms, together, count, together, weight, begin, tails, f, out);
   }
 };
 
@@ -204,6 +295,25 @@ struct MomentWork {
       total += x * (first * (b_0 + b_1));
       load(p + 2 * stride + i, x);
       total += x * (second * (2.0 * b_0 + 3.0 * b_1 + b_2));
+    }
+    return sum_of(total);
+  }
+};
+
+struct WorkByParts {
+  template <class L>
+  [[gnu::always_inline]] static double run(int stride, const double* p, double s, const double* y,
+                                           const double* y_sum, const double* y_sum_2) {
+    L total{};
+    for (int i = 0; i < stride; i += kLanes) {
+      L p_0, p_1, p_2, x, sum, sum_2;
+      load(p + i, p_0);
+      load(p + stride + i, p_1);
+      load(p + 2 * stride + i, p_2);
+      load(y + i, x);
+      load(y_sum + i, sum);
+      load(y_sum_2 + i, sum_2);
+      total += (p_0 + s * (p_1 + s * p_2)) * x - p_1 * sum - 2.0 * p_2 * (s * sum - sum_2);
     }
     return sum_of(total);
   }
@@ -312,6 +422,16 @@ void scaled_product(int stride, double factor, const double* a, const double* b,
   run_widest<ScaledProduct>(stride, factor, a, b, out);
 }
 
+void scale(int stride, double factor, const double* x, double* y) { run_widest<Scale>(stride, factor, x, y); }
+
+void add_scaled(int stride, double factor, const double* x, double* y) {
+  run_widest<AddScaled>(stride, factor, x, y);
+}
+
+void add_sizes(int stride, double value, const double* y, double rate, const double* r, double* out) {
+  run_widest<AddSizes>(stride, value, y, rate, r, out);
+}
+
 double subtract_slopes(int stride, const double* slope, const double* mobility, double* main) {
   return run_widest<Slopes>(stride, slope, mobility, main);
 }
@@ -325,17 +445,29 @@ void series_at_nodes(int stride, int degree, const double* z_0, const double* s,
   run_widest<AtNodes>(stride, degree, z_0, s, count, z, v);
 }
 
+std::array<double, 2> add_row_terms(int stride, int terms, const double* z_0, const std::vector<Entry>& row,
+                                    double* x) {
+  std::array<double, 2> sums;
+  run_widest<RowTerms>(stride, terms, z_0, row.data(), static_cast<int>(row.size()), x, sums.data());
+  return sums;
+}
+
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope) {
   run_widest<Polynomial>(count, terms, c, x, value, slope);
 }
 
 void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
-                   const double* f, double* out, bool add) {
-  run_widest<Sums>(stride, terms, sizes, count, weight, begin, f, out, add);
+                   const double* f, double* out, bool add, const double* tails) {
+  run_widest<Sums>(stride, terms, sizes, count, weight, begin, f, out, add, tails);
 }
 
 double work_of_moments(int stride, const double* p, const double* b, double s) {
   return run_widest<MomentWork>(stride, p, b, s);
+}
+
+double work_by_parts(int stride, const double* p, double s, const double* y, const double* y_sum,
+                     const double* y_sum_2) {
+  return run_widest<WorkByParts>(stride, p, s, y, y_sum, y_sum_2);
 }
 
 double weighted_squares(int stride, int terms, const double* factor, const double* c, const double* x,

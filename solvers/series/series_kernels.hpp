@@ -1,9 +1,19 @@
 #pragma once
 /// The inner loops of TaylorSeries, over columns padded to whole lanes.
+#include <drev/core/system.hpp>
+
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace drev {
+
+/// 1/k, k > 0.
+inline constexpr auto kInverse = [] {
+  std::array<double, 129> inverse{};
+  for (std::size_t k = 1; k < inverse.size(); ++k) inverse[k] = 1.0 / static_cast<double>(k);
+  return inverse;
+}();
 
 /// One diagonal of a matrix: values[row] at column row + offset, padded with zeros.
 struct DiagonalView {
@@ -45,6 +55,14 @@ void series_terms(const SeriesRecursion& recursion, int first, int last, double*
 /// out_i = factor a_i b_i.
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out);
 
+/// y_i = factor x_i, and y_i += factor x_i. Columns are written by whole vectors, since a load of one from several stores waits until
+/// all of these have left for the cache.
+void scale(int stride, double factor, const double* x, double* y);
+void add_scaled(int stride, double factor, const double* x, double* y);
+
+/// out_i += value |y_i| + rate |r_i|.
+void add_sizes(int stride, double value, const double* y, double rate, const double* r, double* out);
+
 /// main_i -= slope_i; returns the largest |slope_i| mobility_i.
 double subtract_slopes(int stride, const double* slope, const double* mobility, double* main);
 
@@ -55,18 +73,28 @@ void series_values(int stride, int degree, const double* z_0, double s, double* 
 void series_at_nodes(int stride, int degree, const double* z_0, const double* s, int count, double* z,
                      double* v);
 
+/// x_k += sum_e coeff_e Z_k[index_e], k < terms; returns, over the whole lanes that hold these terms, sum |x_k| from the second on and
+/// sum k |x_k| from the third on.
+std::array<double, 2> add_row_terms(int stride, int terms, const double* z_0, const std::vector<Entry>& row,
+                                    double* x);
+
 /// Value and slope of the polynomial with these terms at `count` places x, in whole lanes.
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope);
 
 /// out_j = sum_q w_qj f_q, j < terms, and behind those out_j = sum_q w_qj |f_q|, j < terms + sizes, q < count; w_qj at
 /// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. begin, where it is not null: the w_qj before
-/// q = begin[j] are zero. add: the first ones to what out holds.
+/// q = begin[j] are zero. add: the first ones to what out holds; tails, where it is not null: the sizes to this of each j.
 void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
-                   const double* f, double* out, bool add = false);
+                   const double* f, double* out, bool add = false, const double* tails = nullptr);
 
 /// sum_i p_0i b_0i + p_1i s/2 (b_0i + b_1i) + p_2i s^2/6 (2 b_0i + 3 b_1i + b_2i) = int_0^s (p_0 + p_1 u + p_2 u^2) z' du with
 /// the moments b_k = int_0^s L_k z' du of Legendre polynomials over [0, s].
 double work_of_moments(int stride, const double* p, const double* b, double s);
+
+/// sum_i (p_0i + s (p_1i + s p_2i)) y_i - p_1i Y_i - 2 p_2i (s Y_i - W_i) = int_0^s (p_0 + p_1 u + p_2 u^2) y' du, by parts, with
+/// y and its integrals Y = int y du and W = int (s - u) y du.
+double work_by_parts(int stride, const double* p, double s, const double* y, const double* y_sum,
+                     const double* y_sum_2);
 
 /// sum_k factor[k] sum_i c_i (x_ki + y_ki)^2 with columns x_k, k < terms, and y_k, k < y_terms.
 double weighted_squares(int stride, int terms, const double* factor, const double* c, const double* x,

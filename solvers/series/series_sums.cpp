@@ -93,6 +93,25 @@ struct NodeWeights {
 
 }  // namespace
 
+int TaylorSeries::terms_within(double part) const {
+  Norm tail{};
+  for (int k = degree_; k > 2; --k)
+    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+      tail[kind] += sizes_[idx(k)][kind];
+      if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
+    }
+  return 3;
+}
+
+int TaylorSeries::energy_degree() const {
+  const auto rate = [&](int k) { return k * (sizes_[idx(k)][0] + sizes_[idx(k)][1]); };
+  double largest = 0.0;
+  for (int k = 1; k <= degree_; ++k) largest = std::max(largest, rate(k));
+  int degree = degree_;
+  while (degree > 1 && rate(degree) < energy_part_ * largest) --degree;
+  return degree;
+}
+
 void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const {
   static const NodeWeights weights;
   out = {};
@@ -127,32 +146,43 @@ const double* TaylorSeries::sums(double s) {
   return step_sums_.data();
 }
 
-void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
+void TaylorSeries::evaluate(double s, Vector& z, Vector& v, bool swept_too) const {
   z.resize(n_);
   v.resize(n_);
   const double per_time = 1.0 / h_;
-  if (s == sums_at_) {
-    const double *start = coefficients(0), *rate = step_sums_.data() + idx(kRateSum * stride_),
-                 *turn = step_sums_.data() + idx(kMoments * stride_);
-    for (int i = 0; i < n_; ++i) {
-      z[i] = start[i] + turn[i];
-      v[i] = per_time * rate[i];
+  const int both = 2 * stride_;
+  double *along = values_.data(), *sum = along;  // z and v of the series, and of all
+  if (s != values_at_) {
+    if (s == sums_at_) {
+      scale(stride_, 1.0, coefficients(0), along);
+      add_scaled(stride_, 1.0, step_sums_.data() + idx(kMoments * stride_), along);
+      scale(stride_, per_time, step_sums_.data() + idx(kRateSum * stride_), along + stride_);
+    } else {
+      series_values(stride_, degree_, coefficients(0), s, along, along + stride_);
+      scale(stride_, per_time, along + stride_, along + stride_);
     }
-    return;
+    values_at_ = s;
   }
-  double* values = values_.data();
-  series_values(stride_, degree_, coefficients(0), s, values, values + stride_);
-  for (int i = 0; i < n_; ++i) {
-    z[i] = values[i];
-    v[i] = per_time * values[stride_ + i];
+  if (swept_too) {
+    sum = along + both;
+    scale(both, 1.0, along, sum);
+    add_scaled(stride_, 1.0, swept(0), sum);
+    add_scaled(stride_, per_time, swept(-1), sum + stride_);
   }
+  std::copy_n(sum, n_, z.data());
+  std::copy_n(sum + stride_, n_, v.data());
 }
 
-/// out += by unknown, and stride() behind them other_tail: of either kind.
-void TaylorSeries::add_tails(const Norm& tail, const Norm& other_tail, double* out) const {
-  const bool same = kinds_.empty();
+/// The sums of sizes of `count` terms from `first` on, by rows, and of a tail of each that is the same for all unknowns of a kind.
+void TaylorSeries::sum_sizes(int first, int count, const double* weight, const Norm& tail,
+                             const Norm& other_tail, double* out) const {
+  const bool same = kinds_.empty() && row_slopes_.size() == 0;
+  const std::array<double, 2> tails{tail[0], other_tail[0]};
+  weighted_sums(stride_, 0, 2, count, weight, nullptr, coefficients(first), out, false,
+                same ? tails.data() : nullptr);
+  if (same) return;
   for (int i = 0; i < n_; ++i) {
-    const std::size_t kind = same ? 0 : idx(kinds_[idx(i)]);
+    const auto kind = idx(this->kind(i));
     out[i] += tail[kind];
     out[stride_ + i] += other_tail[kind];
   }
@@ -161,14 +191,13 @@ void TaylorSeries::add_tails(const Norm& tail, const Norm& other_tail, double* o
 void TaylorSeries::ranges(double* end, double* size) {
   std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
-  weighted_sums(stride_, 0, 2, terms, sum_weights().range.data(), nullptr, coefficients(1), size);
   Norm tail{}, slope_tail{};
   for (int k = terms + 1; k <= degree_; ++k)
     for (std::size_t kind = 0; kind < tail.size(); ++kind) {
       tail[kind] += sizes_[idx(k)][kind];
       slope_tail[kind] += k * sizes_[idx(k)][kind];
     }
-  add_tails(tail, slope_tail, size);
+  sum_sizes(1, terms, sum_weights().range.data(), tail, slope_tail, size);
   for (int i = n_; i < n_ + row_slopes_.size(); ++i)  // loaded rows, of whose terms no sizes are known
     for (int k = terms + 1; k <= degree_; ++k) {
       size[i] += std::abs(coefficient(k, i));
@@ -195,9 +224,7 @@ void TaylorSeries::beyond_cubic(double s, double* out) {
       rate_tail[kind] += of_rate * sizes_[idx(k)][kind];
     }
   }
-  weighted_sums(stride_, 0, 2, last - kFirstBeyond + 1, weight.data(), nullptr, coefficients(kFirstBeyond),
-                out);
-  add_tails(tail, rate_tail, out);
+  sum_sizes(kFirstBeyond, last - kFirstBeyond + 1, weight.data(), tail, rate_tail, out);
 }
 
 double TaylorSeries::work(const double* p, int degree, double s) {
@@ -238,7 +265,7 @@ double TaylorSeries::loss(double s, bool swept_too) {
     }
   if (main_damping_)
     return (sum + weighted_squares(stride_, kLossTerms, factor.data(),
-                                   c_.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
+                                   c_.now.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
            h_;
   with_rows_.resize(idx(2 * pad_ + stride_));  // the product reads beside the column
   double* x = with_rows_.data() + pad_;
@@ -246,7 +273,7 @@ double TaylorSeries::loss(double s, bool swept_too) {
     for (int i = 0; i < n_; ++i)
       x[i] = of_z[idx(k * stride_ + i)] + (k < y_terms ? of_y[idx(k * stride_ + i)] : 0.0);
     solve_in_.setZero();
-    subtract_product(c_, false, x, -1.0, solve_in_.data());
+    subtract_product(c_.now, false, x, -1.0, solve_in_.data());
     for (int i = 0; i < n_; ++i) sum += factor[idx(k)] * x[i] * solve_in_[i];
   }
   return sum / h_;

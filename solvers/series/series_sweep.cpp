@@ -30,7 +30,8 @@ void TaylorSeries::sweep(const double* moments, int degree) {
 double TaylorSeries::coupling(int row, int other) const {
   const int* outer = system_.pattern().outerIndexPtr();
   for (int s = outer[row]; s < outer[row + 1]; ++s)
-    if (system_.pattern().innerIndexPtr()[s] == other) return std::abs(k_[position_[idx(s)]]) * mobility(row);
+    if (system_.pattern().innerIndexPtr()[s] == other)
+      return std::abs(k_.now[position_[idx(s)]]) * mobility(row);
   return 0.0;
 }
 

@@ -1,7 +1,6 @@
 #include "solvers/series/taylor_series.hpp"
 
 #include <drev/core/error.hpp>
-#include <drev/core/lanes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,11 +25,11 @@ constexpr double kShortenSeries = 0.9;  // factor on the step at which the last 
 TaylorSeries::TaylorSeries(const System& system)
     : system_(system), n_(system.size()), solve_in_(n_), solve_out_(n_) {
   find_storage();
-  const auto fill = [&](const Vector& values, std::vector<double>& out) {
+  const auto fill = [&](const Vector& values, LaneVector& out) {
     for (Eigen::Index s = 0; s < values.size(); ++s) out[position_[static_cast<std::size_t>(s)]] = values[s];
   };
-  fill(system.stiffness_values(), k_base_);
-  fill(system.damping_values(), c_base_);
+  fill(system.stiffness_values(), k_.base);
+  fill(system.damping_values(), c_.base);
   undamped_ = system.damping_values().isZero(0.0);
   base_main_damping_ = system.damping_is_diagonal() && main_ >= 0;
   diagonal_mass_ = system.mass_is_diagonal();
@@ -55,6 +54,8 @@ TaylorSeries::TaylorSeries(const System& system)
   const auto translational = std::count(kinds.begin(), kinds.end(), 1);
   if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
   find_rows();
+  k_.now = k_.base;
+  c_.now = c_.base;
   reset();
 }
 
@@ -94,19 +95,21 @@ void TaylorSeries::find_storage() {
       position_[idx(s)] =
           diagonals_.empty() ? idx(s) : diagonals_[offsets.at(p.innerIndexPtr()[s] - row)].values + idx(row);
   const std::size_t length = diagonals_.empty() ? entries : diagonals_.size() * idx(stride_);
-  k_base_.assign(length, 0.0);
-  c_base_.assign(length, 0.0);
+  for (Matrix* m : {&k_, &c_}) {
+    m->base.assign(length, 0.0);
+    m->step.assign(length, 0.0);
+  }
   z_.assign(idx(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
   p_.assign(idx(kProjectionTerms * stride_), 0.0);
   zeros_.assign(idx(stride_), 0.0);
-  values_.assign(idx(2 * stride_), 0.0);
-  k_ = k_step_ = k_base_;
-  c_ = c_step_ = c_base_;
+  values_.assign(idx(4 * stride_), 0.0);
   mobility_step_.assign(idx(stride_), 0.0);
   if (diagonals_.empty()) return;
   find_views(true);
-  chain_ = main_ >= 0 && static_cast<int>(k_views_.size()) <= stride_ / kLanes;
-  if (!chain_) find_views(false);
+  const bool chain = main_ >= 0 && static_cast<int>(k_views_.size()) <= stride_ / kLanes;
+  if (!chain) return find_views(false);
+  k_chain_ = chain_of(k_.step);
+  c_chain_ = chain_of(c_.step);
 }
 
 /// The views of each block of lanes; far: without those of the main diagonal and its neighbours.
@@ -123,17 +126,17 @@ void TaylorSeries::find_views(bool far) {
         for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
           any |= p.innerIndexPtr()[s] - row == d.offset;
       if (!any) continue;
-      k_views_.push_back({d.offset, k_step_.data() + d.values});
-      c_views_.push_back({d.offset, c_step_.data() + d.values});
+      k_views_.push_back({d.offset, k_.step.data() + d.values});
+      c_views_.push_back({d.offset, c_.step.data() + d.values});
     }
     block_begin_.push_back(static_cast<int>(k_views_.size()));
   }
 }
 
 void TaylorSeries::reset() {
-  std::copy(k_base_.begin(), k_base_.end(), k_.begin());  // the views stay
-  std::copy(c_base_.begin(), c_base_.end(), c_.begin());
-  scaled_ = Scaled::none;
+  k_.reset();
+  c_.reset();
+  if (main_ >= 0) std::copy_n(k_.base.data() + diagonals_[idx(main_)].values, stride_, main_diagonal());
   damped_ = !undamped_;
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
@@ -145,8 +148,7 @@ void TaylorSeries::reset() {
 
 void TaylorSeries::add_damping(int slot, double value) {
   if (value == 0.0) return;  // products with C stay those of its main diagonal
-  c_[position_[idx(slot)]] += value;
-  scaled_ = Scaled::none;
+  c_.add(position_[idx(slot)], value);
   damped_ = true;
   main_damping_ = false;
 }
@@ -165,8 +167,8 @@ void TaylorSeries::add_row_slopes(const double* slope) {
   }
 }
 
-void TaylorSeries::subtract_product(const std::vector<double>& values, bool main_only, const double* x,
-                                    double factor, double* out) const {
+void TaylorSeries::subtract_product(const LaneVector& values, bool main_only, const double* x, double factor,
+                                    double* out) const {
   if (diagonals_.empty()) {
     const int* outer = system_.pattern().outerIndexPtr();
     const int* inner = system_.pattern().innerIndexPtr();
@@ -189,16 +191,16 @@ double TaylorSeries::bound_rates() {
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
-      const double k = std::abs(k_[position_[idx(s)]]);
+      const double k = std::abs(k_.now[position_[idx(s)]]);
       k_sum += k;
-      c_sum += std::abs(c_[position_[idx(s)]]);
+      c_sum += std::abs(c_.now[position_[idx(s)]]);
     }
     k_norm_ = std::max(k_norm_, k_sum * mobility(row));
     c_norm_ = std::max(c_norm_, c_sum * mobility(row));
   }
   // |lambda|^2 <= |lambda| c + k.
-  k_norm_ = std::min(k_norm_, largest_eigenvalue(k_));
-  c_norm_ = std::min(c_norm_, largest_eigenvalue(c_));
+  k_norm_ = std::min(k_norm_, largest_eigenvalue(k_.now));
+  c_norm_ = std::min(c_norm_, largest_eigenvalue(c_.now));
   k_more_ = c_more_ = 0.0;
   return rate();
 }
@@ -216,7 +218,7 @@ void TaylorSeries::widen(int row, double k, double c) {
   c_more_ = std::max(c_more_, std::abs(c) * mobility(row));
 }
 
-double TaylorSeries::largest_eigenvalue(const std::vector<double>& values) {
+double TaylorSeries::largest_eigenvalue(const LaneVector& values) {
   // The margin covers what the iteration lacks after its steps.
   return kEigenvalueMargin * extreme_eigenvalue(n_, [&](const Vector& x, Vector& product) {
            std::fill(solve_in_.begin(), solve_in_.end(), 0.0);
@@ -248,6 +250,7 @@ void TaylorSeries::note_scale(const Vector& z, const Vector& v) {
   for (std::size_t i = 0; i < 2; ++i) {
     z_scale_[i] = std::max(z_scale_[i], a[i]);
     v_scale_[i] = std::max(v_scale_[i], b[i]);
+    sizes_[1][i] = h_ * b[i];
   }
 }
 
@@ -280,7 +283,7 @@ bool TaylorSeries::add_term_forces(int k, double factor, double* term) {
 }
 
 /// The diagonals below, on and above the main one; zeros for one that there is not.
-TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) const {
+TaylorSeries::Chain TaylorSeries::chain_of(const LaneVector& values) const {
   Chain chain{zeros_.data(), zeros_.data(), zeros_.data()};
   for (const Diagonal& d : diagonals_)
     if (std::abs(d.offset) <= 1) chain[idx(d.offset + 1)] = values.data() + d.values;
@@ -289,19 +292,25 @@ TaylorSeries::Chain TaylorSeries::chain_of(const std::vector<double>& values) co
 
 /// The matrices that stand now, for the recursion over a step of h_.
 void TaylorSeries::scale_step() {
-  if (!by_kernel() || (scaled_ == Scaled::all && scaled_h_ == h_)) return;
-  const bool main_only = scaled_ == Scaled::without_main && scaled_h_ == h_;
   double* mobility = mobility_step_.data();
-  if (!main_only)
+  const auto update = [&](Matrix& m, double factor) {
+    if (by_kernel() && scaled_h_ == h_)
+      for (const std::size_t at : m.unscaled) m.step[at] = factor * mobility[at % idx(stride_)] * m.now[at];
+    else if (by_kernel())
+      for (const Diagonal& d : diagonals_)
+        scaled_product(stride_, factor, mobility, m.now.data() + d.values, m.step.data() + d.values);
+    m.unscaled.clear();
+  };
+  if (scaled_h_ != h_)
     for (int i = 0; i < n_; ++i) mobility[i] = h_ * h_ * inverse_mass_[idx(i)];
-  for (const Diagonal& d : diagonals_) {
-    if (main_only && d.offset != 0) continue;
-    scaled_product(stride_, -1.0, mobility, k_.data() + d.values, k_step_.data() + d.values);
-    if (!main_only && damped_ && !(main_damping_ && d.offset != 0))
-      scaled_product(stride_, -1.0 / h_, mobility, c_.data() + d.values, c_step_.data() + d.values);
+  if (main_unscaled_ && scaled_h_ == h_) {
+    const std::size_t main = diagonals_[idx(main_)].values;
+    scaled_product(stride_, -1.0, mobility, k_.now.data() + main, k_.step.data() + main);
   }
-  scaled_ = Scaled::all;
+  update(k_, -1.0);
+  update(c_, -1.0 / h_);
   scaled_h_ = h_;
+  main_unscaled_ = false;
 }
 
 SeriesRecursion TaylorSeries::recursion() {
@@ -309,14 +318,14 @@ SeriesRecursion TaylorSeries::recursion() {
   return {.stride = stride_,
           .k = {block_begin_.data(), k_views_.data()},
           .c = {block_begin_.data(), whole ? c_views_.data() : nullptr},
-          .c_main = damped_ && main_damping_ ? c_step_.data() + diagonals_[idx(main_)].values : nullptr,
+          .c_main = damped_ && main_damping_ ? c_.step.data() + diagonals_[idx(main_)].values : nullptr,
           .mobility = mobility_step_.data(),
           .p = p_.data(),
           .p_first = 0,
           .p_degree = right_degree_,
           .z = z_.data() + idx(pad_),
-          .k_chain = chain_ ? chain_of(k_step_) : Chain{},
-          .c_chain = chain_ && whole ? chain_of(c_step_) : Chain{}};
+          .k_chain = k_chain_,
+          .c_chain = whole ? c_chain_ : Chain{}};
 }
 
 void TaylorSeries::next_terms(int first, int last) {
@@ -333,9 +342,9 @@ void TaylorSeries::next_terms(int first, int last) {
 void TaylorSeries::product_term(const SeriesRecursion& r, int k) {
   const double* p = k - 2 <= r.p_degree ? r.p + idx((k - 2 - r.p_first) * stride_) : zeros_.data();
   std::copy_n(p, n_, solve_in_.data());
-  subtract_product(k_, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
+  subtract_product(k_.now, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
   if (damped_)
-    subtract_product(c_, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k) / h_,
+    subtract_product(c_.now, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k) / h_,
                      solve_in_.data());
   solve_mass(solve_in_, solve_out_);
   double* next = r.z + idx(k * stride_);
@@ -362,25 +371,32 @@ TaylorSeries::Norm TaylorSeries::next_term(int k) {
 
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
-  sums_at_ = -1.0;
+  sums_at_ = values_at_ = -1.0;
   scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
-  for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
+  std::copy_n(v.data(), n_, column(1));
+  scale(stride_, h, column(1), column(1));
   for (int k = 0; k < 2; ++k) rows_of(column(k));
   note_scale(z, v);
-  Norm &z_scale = z_step_scale_, &v_scale = v_step_scale_;
-  z_scale = z_scale_;
-  v_scale = v_scale_;
-  const double k_all = k_norm_ + k_more_, c_all = c_norm_ + c_more_;
+  Norm z_scale = z_scale_, v_scale = v_scale_;
+  const double k_step = (k_norm_ + k_more_) * h * h, c_step = (c_norm_ + c_more_) * h;
+  const auto inverse = [](int k) { return kInverse[idx(k)]; };
   const std::size_t kinds = kinds_.empty() ? 1 : 2;
   // Size of a term over what is allowed, and the same of what forces added to it.
+  Norm per_z{}, per_v{}, scales_of{};
   const auto excess_of = [&](const Norm& size, int k) {
     double largest = 0.0;
-    for (std::size_t i = 0; i < kinds; ++i)
-      if (size[i] > 0.0)
-        largest = std::max(largest, size[i] / tolerance * std::max(1.0 / z_scale[i], k / (h * v_scale[i])));
+    for (std::size_t i = 0; i < kinds; ++i) {
+      if (!(size[i] > 0.0)) continue;
+      if (scales_of[i] != z_scale[i] + h * v_scale[i]) {  // they hardly change from the first terms on
+        scales_of[i] = z_scale[i] + h * v_scale[i];
+        per_z[i] = 1.0 / (tolerance * z_scale[i]);
+        per_v[i] = 1.0 / (tolerance * h * v_scale[i]);
+      }
+      largest = std::max(largest, size[i] * std::max(per_z[i], k * per_v[i]));
+    }
     return largest;
   };
   const auto excess = [&](int k) { return excess_of(sizes_[idx(k)], k); };
@@ -396,35 +412,40 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       known_degree = std::max(known_degree, forces->known_degree());
       products = true;
     }
+  const auto end = [&](int degree, double got) {
+    z_step_scale_ = z_scale;
+    v_step_scale_ = v_scale;
+    degree_ = degree;
+    products_ += degree - 1;
+    return h_ = got;
+  };
   double last = 0.0;
   const double per_time = 1.0 / h;
   // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
   int known = 1;
-  const int likely = by_diagonals() ? degree_ - 1 : 0;
+  const int likely = by_diagonals() ? degree_ : 0;
   const int judged = likely - kFewer;  // terms before this one are not asked whether they are the last
   for (int k = 2; k <= kMaxDegree; ++k) {
     if (k > known) {
       known = std::min(std::max({k, known_degree + 2, likely}), kMaxDegree);
       next_terms(k, known);
-      if (const Norm& end = sizes_[idx(known)]; !std::isfinite(end[0] + end[1])) return h_ = 0.0;
+      if (const Norm& size = sizes_[idx(known)]; !std::isfinite(size[0] + size[1])) return end(k, 0.0);
     }
     const Norm& size = sizes_[idx(k)];
     for (std::size_t i = 0; i < kinds; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i]);
       v_scale[i] = std::max(v_scale[i], k * per_time * size[i]);
     }
-    degree_ = k;
-    ++products_;
     if (k < std::max(known_degree + 2, judged)) continue;  // a term of the right side may still be to come
     const double before = last;
     last = excess(k);
     if (k < std::max(known_degree + 3, judged + 1)) continue;
-    const double first = k_all * h * h / (k * (k + 1.0)) * before + c_all * h / (k + 1.0) * last;
-    const double second = k_all * h * h / ((k + 1.0) * (k + 2.0)) * last + c_all * h / (k + 2.0) * first;
+    const double first = inverse(k + 1) * (k_step * inverse(k) * before + c_step * last);
+    const double second = inverse(k + 2) * (k_step * inverse(k + 1) * last + c_step * first);
     const bool is_small = first <= 1.0 && second <= 1.0;
-    if (is_small && !products) return h_;
+    if (is_small && !products) return end(k, h);
     // Terms of products fall like a geometric series, whose rest is a multiple of the last ones.
-    if (is_small && added_excess(k) <= 1.0 && added_excess(k - 1) <= 1.0) return h_;
+    if (is_small && added_excess(k) <= 1.0 && added_excess(k - 1) <= 1.0) return end(k, h);
   }
   // The last two terms are too large: over r h they are r^k times as large.
   double r = 1.0;
@@ -434,29 +455,9 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   }
   r *= kShortenSeries;
   double power = 1.0;
-  for (int k = 0; k <= degree_; ++k, power *= r)
+  for (int k = 0; k <= kMaxDegree; ++k, power *= r)
     for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
-  h_ = r * h;
-  return h_;
-}
-
-int TaylorSeries::terms_within(double part) const {
-  Norm tail{};
-  for (int k = degree_; k > 2; --k)
-    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
-      tail[kind] += sizes_[idx(k)][kind];
-      if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
-    }
-  return 3;
-}
-
-int TaylorSeries::energy_degree() const {
-  const auto rate = [&](int k) { return k * (sizes_[idx(k)][0] + sizes_[idx(k)][1]); };
-  double largest = norm(coefficients(1))[0] + norm(coefficients(1))[1];
-  for (int k = 2; k <= degree_; ++k) largest = std::max(largest, rate(k));
-  int degree = degree_;
-  while (degree > 1 && rate(degree) < energy_part_ * largest) --degree;
-  return degree;
+  return end(kMaxDegree, r * h);
 }
 
 double TaylorSeries::dissipated(double s) {
@@ -471,12 +472,12 @@ double TaylorSeries::dissipated(double s) {
   }
   if (base_main_damping_)
     return series_product(stride_, degree, rates_.data(), nullptr,
-                          c_base_.data() + diagonals_[idx(main_)].values, s) /
+                          c_.base.data() + diagonals_[idx(main_)].values, s) /
            h_;
   forces_.assign(idx(degree * stride_), 0.0);
   // The product reads beside the column: from the coefficients, which have room there.
   for (int j = 1; j <= degree; ++j)
-    subtract_product(c_base_, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
+    subtract_product(c_.base, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
   return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
 }
 

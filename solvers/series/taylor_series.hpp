@@ -16,6 +16,7 @@
 /// I. M. Willers, R. V. M. Zahar, The automatic solution of systems of ordinary differential
 /// equations by the method of Taylor series, Computer J. 14, 1971, doi:10.1093/comjnl/14.3.243.
 #include <drev/core/assembler.hpp>
+#include <drev/core/lanes.hpp>
 
 #include <algorithm>
 #include <array>
@@ -55,10 +56,7 @@ class TaylorSeries {
 
   /// K and C back to the system's own, the right side to zero; then add what the pieces add.
   void reset();
-  void add_stiffness(int slot, double value) {
-    k_[position_[idx(slot)]] += value;
-    scaled_ = Scaled::none;
-  }
+  void add_stiffness(int slot, double value) { k_.add(position_[idx(slot)], value); }
   /// The same on the diagonal of a row.
   void add_row_stiffness(int row, double value) {
     if (row >= n_)
@@ -73,16 +71,14 @@ class TaylorSeries {
   void add_damping(int slot, double value);
   /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
   void add_load_damping(int row, double value) {
-    c_[position_[idx(system_.diagonal_slots()[idx(row)])]] += value;
+    c_.add(position_[idx(system_.diagonal_slots()[idx(row)])], value);
     damped_ = true;
-    scaled_ = Scaled::none;
     load_damping_.push_back({row, value});
   }
   /// Takes back what was added last.
   void take_load_damping() {
-    c_[position_[idx(system_.diagonal_slots()[idx(load_damping_.back().index)])]] -=
-        load_damping_.back().coeff;
-    scaled_ = Scaled::none;
+    c_.add(position_[idx(system_.diagonal_slots()[idx(load_damping_.back().index)])],
+           -load_damping_.back().coeff);
     load_damping_.pop_back();
   }
   /// Notes tangents added to a row that bound_rates() did not see, |k| [N m/rad or N/m] and |c|.
@@ -128,8 +124,6 @@ class TaylorSeries {
 
   long products() const { return products_; }  ///< with the matrices, one a degree
   int degree() const { return degree_; }
-  /// Size of term k of the step's series, of unknowns of a kind.
-  double size(int k, std::size_t kind) const { return sizes_[idx(k)][kind]; }
   /// The least number of terms of the step's series behind which all others add up to no more than `part` of the largest motion.
   int terms_within(double part) const;
   double step() const { return h_; }
@@ -139,8 +133,8 @@ class TaylorSeries {
   static int stride(const System& system) { return whole_lanes(system.size() + system.loaded_rows()); }
   const double* coefficients(int k) const { return z_.data() + idx(pad_ + k * stride_); }
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
-  /// z and v at s.
-  void evaluate(double s, Vector& z, Vector& v) const;
+  /// z and v at s; swept_too: with the motion swept up to there.
+  void evaluate(double s, Vector& z, Vector& v, bool swept_too = false) const;
   /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
   /// s from the second term on.
   void ranges(double* end, double* size);
@@ -177,7 +171,7 @@ class TaylorSeries {
   void for_coupled(int row, const Each& each) const {
     const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
     for (int s = outer[row]; s < outer[row + 1]; ++s)
-      if (inner[s] != row) each(inner[s], std::abs(k_[position_[idx(s)]]) * mobility(row));
+      if (inner[s] != row) each(inner[s], std::abs(k_.now[position_[idx(s)]]) * mobility(row));
   }
   /// Whether some third one is coupled with both.
   bool share_neighbour(int row, int other) const;
@@ -189,16 +183,32 @@ class TaylorSeries {
     int offset;
     std::size_t values;
   };
-  /// K's main diagonal, to be changed: what was scaled for the step lacks it then.
+  /// The values of a matrix: those that stand now, the system's own, and those for the recursion over a step (SeriesRecursion).
+  struct Matrix {
+    LaneVector now, base, step;
+    std::vector<std::size_t> changed;   // where `now` may differ from `base`
+    std::vector<std::size_t> unscaled;  // where `step` may differ from `now`, scaled
+    void add(std::size_t at, double value) {
+      now[at] += value;
+      changed.push_back(at);
+      unscaled.push_back(at);
+    }
+    void reset() {
+      for (const std::size_t at : changed) now[at] = base[at];
+      unscaled.insert(unscaled.end(), changed.begin(), changed.end());
+      changed.clear();
+    }
+  };
+  /// K's main diagonal, to be changed: it is reset and scaled as a whole.
   double* main_diagonal() {
-    if (scaled_ == Scaled::all) scaled_ = Scaled::without_main;
-    return k_.data() + diagonals_[idx(main_)].values;
+    main_unscaled_ = true;
+    return k_.now.data() + diagonals_[idx(main_)].values;
   }
   void find_storage();
   void find_views(bool far);
-  void subtract_product(const std::vector<double>& values, bool main_only, const double* x, double factor,
+  void subtract_product(const LaneVector& values, bool main_only, const double* x, double factor,
                         double* out) const;
-  double largest_eigenvalue(const std::vector<double>& values);
+  double largest_eigenvalue(const LaneVector& values);
   /// Whether terms come from the kernel alone.
   bool by_diagonals() const {
     return !diagonals_.empty() && diagonal_mass_ && row_slopes_.size() == 0 && kinds_.empty() &&
@@ -208,7 +218,7 @@ class TaylorSeries {
   /// Whether terms come from the kernel, with forces added to them.
   bool by_kernel() const { return !diagonals_.empty() && diagonal_mass_; }
   using Chain = std::array<const double*, 3>;
-  Chain chain_of(const std::vector<double>& values) const;
+  Chain chain_of(const LaneVector& values) const;
   void scale_step();
   SeriesRecursion recursion();
   void product_term(const SeriesRecursion& recursion, int k);
@@ -224,7 +234,8 @@ class TaylorSeries {
   }
   void add_row_forces(const double* p, const double* x_0);
   const double* sums(double s);
-  void add_tails(const Norm& tail, const Norm& other_tail, double* out) const;
+  void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
+                 double* out) const;
   bool add_term_forces(int k, double factor, double* term);
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
@@ -232,32 +243,32 @@ class TaylorSeries {
   const System& system_;
   std::vector<TermForces*> term_forces_;
   int n_, stride_ = 0, pad_ = 0;
-  std::vector<double> k_, c_, k_base_, c_base_, inverse_mass_;
-  std::vector<double> k_step_, c_step_, mobility_step_;  // SeriesRecursion's k, c and mobility
-  enum class Scaled { none, without_main, all };
-  Scaled scaled_ = Scaled::none;                 // which of the values that stand now are in those
-  double scaled_h_ = 0.0;                        // step that they are for [s]
-  std::vector<std::size_t> position_;            // of a slot of the pattern in k_, c_
+  Matrix k_, c_;
+  LaneVector inverse_mass_, mobility_step_;      // mobility_step_: SeriesRecursion's
+  double scaled_h_ = 0.0;                        // step that matrices are scaled for [s]; 0: none
+  bool main_unscaled_ = false;                   // but for K's main diagonal
+  std::vector<std::size_t> position_;            // of a slot of the pattern in K and C
   std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
   int main_ = -1;                                // which diagonal is the main one
   std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
-  bool chain_ = false;  // nearly all of them are the main one and its neighbours
+  Chain k_chain_{}, c_chain_{};  // where nearly all of them are the main one and its neighbours: these
   bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
-  double mass_norm_ = 0.0;     // of M^-1, largest row sum, where M is not diagonal
-  std::vector<double> swept_;  // columns of the sweep behind two of zeros
+  double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
+  LaneVector swept_;        // columns of the sweep behind two of zeros
   int swept_degree_ = 0;
-  std::vector<double> step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
-  std::vector<Entry> load_damping_;                               // by row, within c_
-  double sums_at_ = -1.0;                                         // s of step_sums_; -1: none of this step
-  std::vector<double> p_, z_, rates_, forces_, zeros_;
+  LaneVector step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
+  std::vector<Entry> load_damping_;                      // by row, within c_
+  double sums_at_ = -1.0;                                // s of step_sums_; -1: none of this step
+  LaneVector p_, z_, rates_, forces_, zeros_;
   // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
-  std::vector<double> with_rows_;
-  mutable std::vector<double> values_;
+  LaneVector with_rows_;
+  mutable LaneVector values_;        // see evaluate()
+  mutable double values_at_ = -1.0;  // s of the series' values there; -1: none of this step
   Vector solve_in_, solve_out_;
   // Sizes of the terms from the second on, and of what forces that act on every term added to them.
   std::array<Norm, kMaxDegree + 1> sizes_{}, added_{};
