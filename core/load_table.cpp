@@ -6,11 +6,10 @@
 namespace drev {
 
 LoadStretch LoadTable::stretch(double angle, double direction) const {
-  constexpr double kOnKnot = 1e-13;     // relative to the period and the argument
   constexpr double kSameSlope = 1e-13;  // relative to the steepest
   const double argument = angle + phase;
   const std::size_t n = arguments.size();
-  const double nudge = kOnKnot * std::max(period, std::abs(argument));
+  const double nudge = on_knot(period, argument);
   const double beyond = argument + (direction > 0.0 ? nudge : -nudge);
   const double base = period * std::floor((beyond - arguments[0]) * (1.0 / period));
   const double inverse_spacing = evenly_spaced ? static_cast<double>(n) / period : 0.0;

@@ -2,6 +2,7 @@
 /// A load that is linear in pieces of its angle, said once: as a table. What is linear about a point of it,
 /// its stretch, follows from the table.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -31,6 +32,10 @@ struct LoadTable {
   /// The stretch about an angle. Knots where the slope does not change are passed over. Within rounding of a
   /// knot the stretch ahead of it: above it where direction > 0, else below.
   LoadStretch stretch(double angle, double direction) const;
+  /// How near to a knot an argument stands on it [rad].
+  static double on_knot(double period, double argument) {
+    return 1e-13 * std::max(period, std::abs(argument));
+  }
   /// What is wrong with the table: sizes, order of the arguments, slopes, spacing; empty if nothing is.
   std::string fault() const;
 };

@@ -143,21 +143,14 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   bool all = true;
   for (StraightLoads::Load* near : straight_.near_knots(series, to, phi_, ranges_.data())) {
     StraightLoads::Load& l = *near;
-    l.ahead = l.stretch;
-    l.ahead_angle_0 = l.angle_0;
-    bool first = true;
+    StraightLoads::look_from_start(l);
     double jump = 0.0;
     const auto next = [&](double bound, bool rises, double) -> std::optional<Behind> {
-      // The first one is the same in each pass.
-      const LoadStretch behind =
-          first ? beyond(l, bound, rises)
-                : l.term->load->stretch(t_, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
-      first = false;
-      if (behind.time_slope != l.ahead.time_slope) return std::nullopt;
-      jump = behind.angle_slope - l.ahead.angle_slope;
-      l.ahead = behind;
-      l.ahead_angle_0 = bound;
-      return Behind{behind.low, behind.high, {&jump, 1}};
+      const double slope = l.ahead.angle_slope, time_slope = l.ahead.time_slope;
+      straight_.look_beyond(l, t_, bound, rises);
+      if (l.ahead.time_slope != time_slope) return std::nullopt;
+      jump = l.ahead.angle_slope - slope;
+      return Behind{l.ahead.low, l.ahead.high, {&jump, 1}};
     };
     all &= list_kinks_of(l, l.stretch.low, l.stretch.high, series, to, projected, next);
   }
@@ -209,12 +202,7 @@ double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double 
 double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
   const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
   double sum = expanded_.swept_work(series, s);
-  // int P y' of what acts along the series: by parts.
-  for (int i = 0; i < series.size(); ++i) {
-    const double p_1 = p_[idx(stride_ + i)], p_2 = p_[idx(2 * stride_ + i)];
-    sum +=
-        (p_[idx(i)] + s * (p_1 + s * p_2)) * y[i] - p_1 * y_sum[i] - 2.0 * p_2 * (s * y_sum[i] - y_sum_2[i]);
-  }
+  sum += work_by_parts(stride_, p_.data(), s, y, y_sum, y_sum_2);  // of what acts along the series
   for (int i = 0; i < kinks_.count(); ++i) {
     const PlacedLoad& l = *kink_sizes_[idx(i)].load;
     const double beyond = kinks_.end(i) - kinks_.knot(i);
@@ -230,17 +218,6 @@ double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
            l.ratio / l.coeff * ((phi_[1] + 2.0 * s * phi_[2]) * along - 2.0 * phi_[2] * along_2);
   }
   return sum;
-}
-
-const LoadStretch& LoadSeries::beyond(StraightLoads::Load& l, double bound, bool rises) const {
-  const int direction = rises ? 1 : -1;
-  if (l.next_direction != direction || l.next_bound != bound || l.next_t != t_) {
-    l.next = l.term->load->stretch(t_, bound, direction).value_or(LoadStretch{});
-    l.next_direction = direction;
-    l.next_bound = bound;
-    l.next_t = t_;
-  }
-  return l.next;
 }
 
 void LoadSeries::append_knots(double end, std::vector<double>& s) const {

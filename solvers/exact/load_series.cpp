@@ -128,8 +128,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
   }
   straight_.add_to(series, t_, h, phi_, p_.data());
   smooth_.add_to(h, phi_, p_.data());
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < stride_; ++i) series.right_side(k)[i] += p(k, i);
+  add_scaled(3 * stride_, 1.0, p_.data(), series.right_side(0));
   smooth_.add_slopes(series);
   expanded_.add_to(series, h, phi_);
 }

@@ -154,8 +154,6 @@ class LoadSeries {
     for (ExpandedLoads::Load& l : expanded_.loads())
       if (l.acts && l.knots != nullptr) each(l, l.piece.low, l.piece.high);
   }
-  /// The stretch behind this bound of a load's stretch, asked for once a step.
-  const LoadStretch& beyond(StraightLoads::Load& load, double bound, bool rises) const;
   /// Of the motion, by a force of 1 N m (or N) on the row over the step, relative to the largest; not
   /// finite where nothing has moved yet.
   double relative_move(const TaylorSeries& series, int row) const {
@@ -171,9 +169,9 @@ class LoadSeries {
   SmoothLoads smooth_;
   std::vector<const LoadTerm*> on_prescribed_;  // with stretches; they move no unknown
   int stride_;
-  std::vector<double> p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
-  std::vector<double> base_;  // the series' right side, degrees 0 to 2, before projection
-  int degree_ = 2;            // of p_
+  LaneVector p_;     // by powers of s, without the loads' slopes: kProjectionTerms columns
+  LaneVector base_;  // the series' right side, degrees 0 to 2, before projection
+  int degree_ = 2;   // of p_
   LegendreProjection projection_, last_;  // projection of this pass, and of the pass before
   LegendreProjection of_loads_;           // of this pass, where there are laws too
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
@@ -193,7 +191,7 @@ class LoadSeries {
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
   std::vector<double> power_;
-  std::vector<double> ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
+  LaneVector ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
   std::vector<KinkSize> kink_sizes_;  // sizes of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;

@@ -1,6 +1,7 @@
 #include "solvers/exact/straight_loads.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -156,6 +157,13 @@ StraightLoads::StraightLoads(const System& system)
 
 void StraightLoads::add(const LoadTerm& term) {
   Load& l = loads_.emplace_back(system_, term);
+  if (const auto table = term.load->table()) {
+    const auto known =
+        std::find_if(tables_.begin(), tables_.end(), [&](const auto& t) { return t.is_of(*table); });
+    l.table = static_cast<int>(known - tables_.begin());
+    l.phase = table->phase;
+    if (known == tables_.end()) tables_.emplace_back(*table);
+  }
   while (l.layer < layers_.size() && layers_[l.layer].load[idx(l.row)] >= 0) ++l.layer;
   if (l.layer == layers_.size()) {
     Layer& layer = layers_.emplace_back();
@@ -219,10 +227,29 @@ void StraightLoads::place(Load& l) {
 }
 
 void StraightLoads::look_up(Load& l, double t, double direction) {
-  l.stretch = l.term->load->stretch(t, l.angle, direction).value_or(LoadStretch{});
   l.t_0 = t;
   l.angle_0 = l.angle;
+  if (l.table >= 0) {
+    const TableStretches& table = tables_[idx(l.table)];
+    l.place = table.find(l.angle, l.phase, direction);
+    l.stretch = table.at(l.place);
+    if (table.bounded()) l.angle_0 = l.stretch.low;
+  } else {
+    l.stretch = l.term->load->stretch(t, l.angle, direction).value_or(LoadStretch{});
+  }
   place(l);
+}
+
+void StraightLoads::look_beyond(Load& l, double t, double bound, bool rises) const {
+  l.ahead_angle_0 = bound;
+  if (l.table >= 0) {
+    const TableStretches& table = tables_[idx(l.table)];
+    l.ahead_place = table.next(l.ahead_place, rises);
+    l.ahead = table.at(l.ahead_place);
+    l.ahead_angle_0 = l.ahead.low;
+  } else {
+    l.ahead = l.term->load->stretch(t, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+  }
 }
 
 void StraightLoads::locate(double t) {
@@ -237,12 +264,11 @@ void StraightLoads::locate(double t) {
 template <class Each>
 void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
   for (int first = 0; first < stride_; first += kLanes) {
+    // One bit a lane: which of them are flagged no processor can foretell.
     const double* excess = excess_.data() + first;
-    double most = excess[0];
-    for (int lane = 1; lane < kLanes; ++lane) most = std::max(most, excess[lane]);
-    if (!(most >= 0.0)) continue;
-    for (int lane = 0; lane < kLanes; ++lane)
-      if (excess[lane] >= 0.0) each(layer.load[idx(first + lane)]);
+    unsigned flagged = 0;
+    for (int lane = 0; lane < kLanes; ++lane) flagged |= static_cast<unsigned>(excess[lane] >= 0.0) << lane;
+    for (; flagged != 0; flagged &= flagged - 1) each(layer.load[idx(first + std::countr_zero(flagged))]);
   }
 }
 
@@ -253,6 +279,7 @@ void StraightLoads::advance(double t, bool whole) {
       if (l.watched) continue;
       l.stretch = l.ahead;
       l.angle_0 = l.ahead_angle_0;
+      l.place = l.ahead_place;
       place(l);
     }
   for (Layer& layer : layers_) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "solvers/exact/table_stretches.hpp"
 #include "solvers/exact/tangent_load.hpp"
 #include "solvers/series/taylor_series.hpp"
 
@@ -20,9 +21,9 @@ class StraightLoads {
     LoadStretch stretch = {}, ahead = {};
     double t_0 = 0.0, angle_0 = 0.0;  // time and angle at which `stretch` gives its torque
     double ahead_angle_0 = 0.0;       // the same of `ahead`
-    LoadStretch next = {};            // behind this bound, at this time
-    double next_bound = 0.0, next_t = 0.0;
-    int next_direction = 0;  // 0: none is known
+    double phase = 0.0;               // of its table
+    int table = -1;                   // whose stretches these are; -1: of a load that has none
+    TableStretches::Place place = {}, ahead_place = {};
     std::size_t layer = 0;
   };
   explicit StraightLoads(const System& system);
@@ -40,6 +41,13 @@ class StraightLoads {
   /// Takes the stretches that loads came to by move(); where `whole`, those ahead of the step that was listed.
   void advance(double t, bool whole);
   void look_up(Load& load, double t, double direction);
+  /// The load's `ahead` is the stretch at hand; then, over a bound that it comes to at time t, the one behind it.
+  static void look_from_start(Load& load) {
+    load.ahead = load.stretch;
+    load.ahead_angle_0 = load.angle_0;
+    load.ahead_place = load.place;
+  }
+  void look_beyond(Load& load, double t, double bound, bool rises) const;
 
   /// Adds to p, by powers of s over a step of h [s] from t, the torques along the nominal motion phi; to the series the slopes.
   void add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi, double* p);
@@ -72,8 +80,8 @@ class StraightLoads {
     kQuantities
   };
   struct Layer {
-    std::vector<double> values;  // quantities one behind the other, each by row
-    std::vector<int> load;       // of each row; -1: none
+    LaneVector values;      // quantities one behind the other, each by row
+    std::vector<int> load;  // of each row; -1: none
   };
   struct Move;
   struct Terms;
@@ -90,10 +98,11 @@ class StraightLoads {
   const System& system_;
   int stride_;
   std::vector<Load> loads_;
+  std::vector<TableStretches> tables_;
   std::vector<Layer> layers_;
   std::vector<int> listed_;  // indices in loads_ of those that were near knots when last asked for
   std::vector<Load*> near_;
-  std::vector<double> rows_, rates_, slopes_, excess_;
+  LaneVector rows_, rates_, slopes_, excess_;
   bool stale_ = false;  // loads_ lack the angles
 };
 

@@ -1,0 +1,57 @@
+#pragma once
+/// TableStretches: the stretches of a load's table (LoadTable) one behind the other, so that a load that comes over a knot finds the
+/// next one without a search: knots, values and slopes of one stretch lie side by side.
+#include <drev/core/load_table.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace drev {
+
+class TableStretches {
+ public:
+  explicit TableStretches(const LoadTable& table);
+  /// Of the same knots, whatever the phase.
+  bool is_of(const LoadTable& table) const {
+    return values_ == table.values.data() && arguments_ == table.arguments.data() && period_ == table.period;
+  }
+  /// A stretch: its number, in so many turns of the table, which is entered at angle + phase.
+  struct Place {
+    std::size_t number = 0;
+    double turns = 0.0, phase = 0.0;
+  };
+  /// The stretch about an angle, as LoadTable::stretch() has it.
+  Place find(double angle, double phase, double direction) const;
+  /// The one behind its upper bound (rises) or its lower one.
+  Place next(Place from, bool rises) const {
+    const std::size_t last = stretches_.size() - 1;
+    if (rises && from.number == last) return {0, from.turns + 1.0, from.phase};
+    if (!rises && from.number == 0) return {last, from.turns - 1.0, from.phase};
+    return {rises ? from.number + 1 : from.number - 1, from.turns, from.phase};
+  }
+  /// A table without a change of slope has one stretch without bounds.
+  bool bounded() const { return bounded_; }
+  double low(Place p) const { return p.turns * period_ + stretches_[p.number].knot - p.phase; }
+  double high(Place p) const { return low(next(p, true)); }
+  /// With the torque at its lower bound.
+  LoadStretch at(Place p) const {
+    const Stretch& s = stretches_[p.number];
+    LoadStretch stretch{.torque = s.torque, .angle_slope = s.slope};
+    if (bounded()) {
+      stretch.low = low(p);
+      stretch.high = high(p);
+    }
+    return stretch;
+  }
+
+ private:
+  struct Stretch {
+    double knot, torque, slope;  // argument [rad] in turn 0, N m there, N m/rad
+  };
+  const double *values_, *arguments_;
+  double period_;
+  bool bounded_ = true;
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace drev
