@@ -22,10 +22,9 @@ std::optional<Interval> force_reach(const StepMotion& motion, int law, const Eva
   const auto side = motion.side(law);
   if (!side) return std::nullopt;
   const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
-  if (*side == 0) {
-    if (a.y != 0.0 || b.y != 0.0) return std::nullopt;
-    return Interval{0.0, 0.0};
-  }
+  // Within the gap there is none but damping, and what rounding leaves at an end beside a change.
+  if (*side == 0 && (a.dy_dx_dot != 0.0 || b.dy_dx_dot != 0.0)) return std::nullopt;
+  if (*side == 0) return Interval{std::min({0.0, a.y, b.y}), std::max({0.0, a.y, b.y})};
   // An end on an edge of the gap has the slope of either side.
   const double k = std::max(a.dy_dx, b.dy_dx);
   if (std::min(a.dy_dx, b.dy_dx) < 0.0) return std::nullopt;
@@ -61,7 +60,7 @@ void Peaks::add_pair(std::size_t c) {
   const auto room = static_cast<std::size_t>(whole_lanes(static_cast<int>(i) + 1));
   for (auto* list : {&pairs_.first, &pairs_.second}) list->resize(room, 0);
   for (auto* list : {&pairs_.coeff_1, &pairs_.coeff_2, &pairs_.last, &pairs_.ahead, &pairs_.last_rate,
-                     &pairs_.ahead_rate, &pairs_.flag})
+                     &pairs_.ahead_rate, &pairs_.beyond})
     list->resize(room, 0.0);
   pairs_.max.resize(room, std::numeric_limits<double>::infinity());
   pairs_.min.resize(room, -std::numeric_limits<double>::infinity());
@@ -137,9 +136,9 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
 }
 
-/// Values and rates at the step's end, and a flag where the value may pass its peaks: most are so far from them that no slope at an
-/// end leads there. What is not a number is flagged, too.
-struct Peaks::Pairs::Flag {
+/// Values and rates at the step's end, and how far the value may come beyond its peaks: most are so far from them that no slope at
+/// an end leads there. Returns the most of any; not a number where some value is none.
+struct Peaks::Pairs::Beyond {
   template <bool kInARow, class L>
   [[gnu::always_inline]] static void take(const double* x, const int* index, L& to) {
     if constexpr (kInARow)
@@ -149,9 +148,10 @@ struct Peaks::Pairs::Flag {
   }
   template <bool kInARow, class L>
   [[gnu::always_inline]] static void some(Pairs& pairs, std::size_t i, const double* z, const double* v,
-                                          const double* beyond_cubic, double most_bulge, L& any) {
+                                          const double* beyond_cubic, double most_bulge, L& any,
+                                          L& not_finite) {
     const int *first = pairs.first.data() + i, *second = pairs.second.data() + i;
-    L c_1, c_2, x_1{}, x_2{}, bulge, last, bound, flag{}, one{};
+    L c_1, c_2, x_1{}, x_2{}, bulge, last, bound;
     load(pairs.coeff_1.data() + i, c_1);
     load(pairs.coeff_2.data() + i, c_2);
     take<kInARow>(z, first, x_1);
@@ -171,27 +171,27 @@ struct Peaks::Pairs::Flag {
     magnitude(c_1);
     magnitude(c_2);
     bulge += c_1 * x_1 + c_2 * x_2;
-    one = 1.0 + one;
     load(pairs.last.data() + i, last);
     load(pairs.max.data() + i, bound);
-    keep_where_not_below(bound, ahead + bulge, one, flag);
-    keep_where_not_below(bound, last + bulge, one, flag);
+    L most = ahead + bulge - bound;
+    raise(most, last + bulge - bound);
     load(pairs.min.data() + i, bound);
-    keep_where_not_below(ahead - bulge, bound, one, flag);
-    keep_where_not_below(last - bulge, bound, one, flag);
-    store(flag, pairs.flag.data() + i);
-    raise(any, flag);
+    raise(most, bound - (ahead - bulge));
+    raise(most, bound - (last - bulge));
+    store(most, pairs.beyond.data() + i);
+    raise(any, most);
+    not_finite += 0.0 * (ahead + bulge);
   }
   template <class L>
   [[gnu::always_inline]] static double run(Pairs* pairs, const double* z, const double* v,
                                            const double* beyond_cubic, double most_bulge) {
-    L any{};
+    L any{}, not_finite{};
     for (std::size_t i = 0; i < pairs->first.size(); i += kLanes)
       if (pairs->in_a_row[i / kLanes] != 0)
-        some<true>(*pairs, i, z, v, beyond_cubic, most_bulge, any);
+        some<true>(*pairs, i, z, v, beyond_cubic, most_bulge, any, not_finite);
       else
-        some<false>(*pairs, i, z, v, beyond_cubic, most_bulge, any);
-    return largest_of(any);
+        some<false>(*pairs, i, z, v, beyond_cubic, most_bulge, any, not_finite);
+    return largest_of(any) + sum_of(not_finite);
   }
 };
 
@@ -201,11 +201,11 @@ bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to,
   const double h = to.state.t - from.state.t;
   if (!last_rates_)
     for (int i = 0; i < count; ++i) pairs_.last_rate[idx(i)] = pairs_.sum(i, from.state.v.data());
-  if (run_widest<Pairs::Flag>(&pairs_, to.state.z.data(), to.state.v.data(), beyond_cubic, kMostBulge * h) ==
-      0.0)
+  if (run_widest<Pairs::Beyond>(&pairs_, to.state.z.data(), to.state.v.data(), beyond_cubic,
+                                kMostBulge * h) <= 0.0)
     return false;
   for (std::size_t i = 0; i < pairs_.channel.size(); ++i) {
-    if (pairs_.flag[i] == 0.0) continue;
+    if (pairs_.beyond[i] <= 0.0) continue;
     const double beyond = std::abs(pairs_.coeff_1[i]) * beyond_cubic[pairs_.first[i]] +
                           std::abs(pairs_.coeff_2[i]) * beyond_cubic[pairs_.second[i]];
     const Interval reach =

@@ -1,6 +1,7 @@
 #pragma once
 /// Largest and smallest value of channels over a run, with their times.
 #include <drev/core/channel.hpp>
+#include <drev/core/lanes.hpp>
 #include <drev/core/law/law_piece.hpp>
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/peak.hpp>
@@ -50,19 +51,19 @@ class Peaks final : public Observer {
   /// peaks.
   struct Pairs {
     std::vector<std::size_t> channel;
-    std::vector<int> first, second;             ///< indices of the entries
-    std::vector<double> coeff_1, coeff_2;       ///< and their coefficients
-    std::vector<double> last, ahead;            ///< values at the last point, and at the step's end
-    std::vector<double> last_rate, ahead_rate;  ///< the same of the rates
-    std::vector<double> max, min;               ///< the peaks so far; infinite where there is no channel
-    std::vector<double> flag;                   ///< 0: the value does not pass its peaks in the step at hand
+    std::vector<int> first, second;    ///< indices of the entries
+    LaneVector coeff_1, coeff_2;       ///< and their coefficients
+    LaneVector last, ahead;            ///< values at the last point, and at the step's end
+    LaneVector last_rate, ahead_rate;  ///< the same of the rates
+    LaneVector max, min;               ///< the peaks so far; infinite where there is no channel
+    LaneVector beyond;                 ///< how far the value may come beyond them in the step at hand
     double sum(int i, const double* x) const {
       const auto at = static_cast<std::size_t>(i);
       return coeff_1[at] * x[first[at]] + coeff_2[at] * x[second[at]];
     }
     std::vector<char>
         in_a_row;  ///< by kLanes of them: each index is one more than the one before, as along a chain
-    struct Flag;
+    struct Beyond;
   };
   struct Watched {
     int pair = -1;                 ///< its place among the pairs; -1: of another kind
