@@ -55,7 +55,7 @@ struct Eliminate {
         take(a.b_re[row], x), put(x, a.x_re[row]);
         take(a.b_im[row], x), put(x, a.x_im[row]);
       }
-    const L one = L{} + 1.0, most = L{} + std::numeric_limits<double>::max();
+    const L one = L{} + 1.0;
     for (int set = 0; set < sets; ++set) a.lost[set] = {};
     int next_update = 0;
     for (int j = 0, update = 0; j < a.n; ++j, next_update = update)
@@ -66,8 +66,8 @@ struct Eliminate {
         take(a.d_re[own], p_re), take(a.d_im[own], p_im), take(a.d_least[own], least);
         take(a.lost[set], lost);
         size = p_re * p_re + p_im * p_im;
-        keep_where_not_below(size, least, one, lost);
-        keep_where_not_below(most, size, one, lost);
+        // Not a number where it is infinite. GCC 12 would take two choices one behind the other to pieces.
+        keep_where_not_below(size + 0.0 * size, least, one, lost);
         put(lost, a.lost[set]);
         const L over = 1.0 / size, i_re = p_re * over, i_im = (-1.0 * p_im) * over;
         L known_re, known_im;
