@@ -6,6 +6,8 @@
 #include <drev/models/ready_made.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 
+#include <algorithm>
+
 #include "advice/figure_estimate.hpp"
 #include "advice/recipe.hpp"
 #include "tests/catch.hpp"
@@ -69,12 +71,17 @@ double worst_speed(int cylinders) {
 
 void check_models(int begin, int end, int stride) {
   int simpler = 0, models = 0;
-  for (int i = begin; i < end; i += stride, ++models) {
+  for (int i = begin; i < end; i += stride) {
     const ModelCase model_case = test::advice_model(i);
     // One in four for the torques.
     const Advice a =
         advise(model_case, {.figure = i % 4 == 3 ? "peak torque" : "peak deflection", .within = kWithin});
     check_promise(model_case, a);
+    // Which simpler models are no slower than the full one depends on the machine and on what else it does.
+    if (std::any_of(a.rungs.begin(), a.rungs.end(),
+                    [](const Rung& r) { return r.unsuitable.find("takes longer") != std::string::npos; }))
+      continue;
+    ++models;
     simpler += a.chosen + 1 < a.rungs.size();
   }
   CHECK(simpler >= models / 2);  // the full model each time would be right too
