@@ -160,8 +160,8 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
         add_row_terms(series.stride(), static_cast<int>(terms), series.coefficients(0), term.z, row_.data());
     law.reach = sums[0];
     law.rate_reach = sums[1];
-    for (auto k = idx(whole_lanes(static_cast<int>(terms))); k < count;
-         ++k) {  // of an offset's longer series
+    // Of an offset's longer series.
+    for (auto k = idx(whole_lanes(static_cast<int>(terms))); k < count; ++k) {
       law.reach += std::abs(row_[k]);
       law.rate_reach += static_cast<double>(k) * std::abs(row_[k]);
     }

@@ -17,8 +17,8 @@ class SteadyStep {
   }
 
  private:
-  static constexpr double kSame =
-      1e-7;  // lengths that differ by the rounding of times alone, relative to them
+  // Two lengths that differ by the rounding of times alone, relative to them.
+  static constexpr double kSame = 1e-7;
   double last_ = 0.0;
 };
 

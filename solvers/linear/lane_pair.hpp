@@ -44,9 +44,6 @@ struct LanePair {
   std::memcpy(to, &from.low, sizeof from.low);
   std::memcpy(to + kLanes / 2, &from.high, sizeof from.high);
 }
-/// Whether a level has more registers than loops over a few sums take: 32 with AVX-512, else 16 for two halves each.
-constexpr bool has_registers_to_spare(const Lanes*) { return true; }
-constexpr bool has_registers_to_spare(const LanePair*) { return false; }
 /// to = from[index[lane]] by lanes.
 [[gnu::always_inline]] inline void gather(const double* from, const int* index, Lanes& to) {
   to = Lanes{from[index[0]], from[index[1]], from[index[2]], from[index[3]],

@@ -191,42 +191,33 @@ struct Polynomial {
 
 struct Sums {
   static constexpr int kTogether = 6;  // blocks of lanes whose sums stay in registers together
-  /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on, one or two (kTwo) at once: two, where there are registers for
-  /// them, do not wait for each other. Written out for each of them, since GCC 12 keeps an array that a loop walks over in memory.
-  template <class L, bool kSizes, bool kAdd, bool kTwo, int... b>
+  /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on. Written out for each of them, since GCC 12 keeps an array
+  /// that a loop walks over in memory.
+  template <class L, bool kSizes, bool kAdd, int... b>
   [[gnu::always_inline]] static void some(std::integer_sequence<int, b...>, int stride, int first, int last,
                                           int count, int per_column, const double* weights, const int* begin,
                                           const double* tails, const double* f, double* out) {
-    constexpr int kAtOnce = kTwo ? 2 : 1;
-    for (int j = first; j + kAtOnce <= last; j += kAtOnce) {
+    for (int j = first; j < last; ++j) {
       double* to = out + j * stride;
-      L sum[sizeof...(b)], next[sizeof...(b)];
+      L sum[sizeof...(b)];
       if constexpr (kAdd) {
         (load(to + b * kLanes, sum[b]), ...);
-        if constexpr (kTwo) (load(to + stride + b * kLanes, next[b]), ...);
       } else {
         const double start = tails != nullptr ? tails[j - first] : 0.0;
         ((sum[b] = L{} + start), ...);
-        if constexpr (kTwo) {
-          const double next_start = tails != nullptr ? tails[j + 1 - first] : 0.0;
-          ((next[b] = L{} + next_start), ...);
-        }
       }
-      const int from = begin == nullptr ? 0 : kTwo ? std::min(begin[j], begin[j + 1]) : begin[j];
+      const int from = begin != nullptr ? begin[j] : 0;
       const double *weight = weights + from * per_column + j, *x = f + from * stride;
       for (int q = from; q < count; ++q, weight += per_column, x += stride) {
-        const auto add = [&](int block, L& to_block, [[maybe_unused]] L* to_next)
-            __attribute__((always_inline)) {
+        const auto add = [&](int block, L& to_block) __attribute__((always_inline)) {
           L term;
           load(x + block * kLanes, term);
           if constexpr (kSizes) magnitude(term);
-          to_block += weight[0] * term;
-          if constexpr (kTwo) *to_next += weight[1] * term;
+          to_block += *weight * term;
         };
-        (add(b, sum[b], kTwo ? &next[b] : nullptr), ...);
+        (add(b, sum[b]), ...);
       }
       (store(sum[b], to + b * kLanes), ...);
-      if constexpr (kTwo) (store(next[b], to + stride + b * kLanes), ...);
     }
   }
   template <class L, bool kSizes, bool kAdd>
@@ -236,14 +227,8 @@ struct Sums {
     if (first == last) return;
     for (int i = 0; i < stride; i += kTogether * kLanes) {
       const auto take = [&]<int kBlocks>() __attribute__((always_inline)) {
-        constexpr std::make_integer_sequence<int, kBlocks> blocks;
-        constexpr bool kTwo = has_registers_to_spare(static_cast<const L*>(nullptr));
-        const int alone = kTwo ? last - (last - first) % 2 : first;
-        if constexpr (kTwo)
-          some<L, kSizes, kAdd, true>(blocks, stride, first, alone, count, per_column, weights, begin, tails,
-                                      f + i, out + i);
-        some<L, kSizes, kAdd, false>(blocks, stride, alone, last, count, per_column, weights, begin,
-                                     tails != nullptr ? tails + (alone - first) : nullptr, f + i, out + i);
+        some<L, kSizes, kAdd>(std::make_integer_sequence<int, kBlocks>(), stride, first, last, count,
+                              per_column, weights, begin, tails, f + i, out + i);
       };
       switch (std::min(kTogether, (stride - i) / kLanes)) {
         case 1:
