@@ -53,8 +53,9 @@ class ScalarForce {
   virtual std::optional<Gap> gap() const { return std::nullopt; }
   /// True if the stored energy depends on angle or t as well as on x.
   virtual bool varies() const { return false; }
-  /// Static transmission error at the NOMINAL angle of the phase node.
+  /// Static transmission error at the NOMINAL angle of the phase node; whether there is any.
   virtual Offset offset(double /*nominal_angle*/) const { return {}; }
+  virtual bool has_offset() const { return true; }
   /// The next angle beyond `angle` at which the law jumps or kinks with its phase node's angle, on the side
   /// of growing angles where direction > 0; within rounding of one, the next but that.
   virtual std::optional<double> next_knot(double /*angle*/, double /*direction*/) const {

@@ -80,6 +80,7 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
   std::optional<Gap> gap() const override { return law_.gap(); }
   bool varies() const override { return params_.stiffness.varies(); }
   Offset offset(double nominal_angle) const override;
+  bool has_offset() const override { return params_.transmission_error.varies(); }
   /// At the mean stiffness.
   std::span<const LawPiece> pieces() const override { return pieces_; }
   double pieces_scale(double angle) const override;

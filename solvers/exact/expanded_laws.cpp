@@ -9,6 +9,7 @@
 #include "solvers/exact/load_series.hpp"
 #include "solvers/linear/lane_pair.hpp"
 #include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
@@ -18,6 +19,7 @@ namespace {
 constexpr double kClearOfKnot = 2e-15;
 // Least rate of an angle at a knot, relative to its mean rate up to there.
 constexpr double kLeastRate = 1e-6;
+constexpr double kOrderRounding = 4e-16;  // of an order, relative to it: that of its product with the angle
 // An angle stands on a knot, relative to the angle and to 1 rad at least.
 constexpr double kOnLawKnot = 1e-12;
 
@@ -25,9 +27,13 @@ std::size_t capacity() { return static_cast<std::size_t>(TaylorSeries::kMaxDegre
 
 /// Term m of the product of two series.
 double product_term(const std::vector<double>& a, const std::vector<double>& b, int m) {
-  double sum = 0.0;
-  for (int i = 0; i <= m; ++i) sum += a[idx(i)] * b[idx(m - i)];
-  return sum;
+  constexpr int kSums = 4;  // that do not wait for each other
+  std::array<double, kSums> sum{};
+  int i = 0;
+  for (; i + kSums <= m + 1; i += kSums)
+    for (int j = 0; j < kSums; ++j) sum[idx(j)] += a[idx(i + j)] * b[idx(m - i - j)];
+  for (; i <= m; ++i) sum[0] += a[idx(i)] * b[idx(m - i)];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /// Term m of cos and sin of orders of an angle whose s theta' has terms `turn`, and what they add to a sum of orders and to
@@ -38,15 +44,23 @@ struct OrderTerms {
                                          double* cosine, double* sine, double* sums) {
     L sum{}, slope{}, x, order;
     for (int first = 0; first < lanes; first += kLanes) {
-      L of_c{}, of_s{};
-      for (int j = 1; j <= m; ++j) {
+      L of_c{}, of_s{}, of_c_even{}, of_s_even{};  // two sums each, that do not wait for each other
+      const auto add = [&](int j, L& c_sum, L& s_sum) __attribute__((always_inline)) {
         load(cosine + (m - j) * lanes + first, x);
-        of_c += turn[j] * x;
+        c_sum += turn[j] * x;
         load(sine + (m - j) * lanes + first, x);
-        of_s += turn[j] * x;
+        s_sum += turn[j] * x;
+      };
+      int j = 1;
+      for (; j < m; j += 2) {
+        add(j, of_c, of_s);
+        add(j + 1, of_c_even, of_s_even);
       }
+      if (j == m) add(j, of_c, of_s);
+      of_c += of_c_even;
+      of_s += of_s_even;
       load(orders + first, order);
-      const L c = (-1.0 / m) * (order * of_s), s = (1.0 / m) * (order * of_c);
+      const L c = -kInverse[idx(m)] * (order * of_s), s = kInverse[idx(m)] * (order * of_c);
       store(c, cosine + m * lanes + first);
       store(s, sine + m * lanes + first);
       L by_cosine, by_sine;
@@ -55,16 +69,8 @@ struct OrderTerms {
       sum += by_cosine * c + by_sine * s;
       slope += order * (by_sine * c - by_cosine * s);
     }
-    double lanes_of[2 * kLanes];
-    store(sum, lanes_of);
-    store(slope, lanes_of + kLanes);
-    for (int half = kLanes / 2; half > 0; half /= 2)
-      for (int lane = 0; lane < half; ++lane) {
-        lanes_of[lane] += lanes_of[lane + half];
-        lanes_of[kLanes + lane] += lanes_of[kLanes + lane + half];
-      }
-    sums[0] = lanes_of[0];
-    sums[1] = lanes_of[kLanes];
+    sums[0] = sum_of(sum);
+    sums[1] = sum_of(slope);
   }
 };
 
@@ -123,9 +129,8 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     const ScalarInput& in = start.inputs[idx(law.index)];
     const LawPiece& p = term.force->pieces()[idx(pieces.piece(law.index))];
     const bool linear = is_linear(term, p);
-    law.known_to = -1;
+    law.terms_to = law.scale_to = -1;
     law.active = !linear && (p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0);
-    active_ = active_ || law.active;
     law.works = !linear && (law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0);
     sweeps_ = sweeps_ && (linear || term.u.empty() || !system_.any_prescribed_moves());
     law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
@@ -141,8 +146,8 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     for (const Entry& e : term.u)
       for (std::size_t i = 0; i < 3; ++i) law.known[i] += e.coeff * known.prescribed(e.index)[i];
     law.known[0] -= law.origin;
-    if (law.active) known_degree_ = std::max(known_degree_, static_cast<int>(law.known.size()) - 1);
     law.angle = in.angle;
+    law.deflection = in.x - law.origin;
     law.stretch = {};
     if (law.scaled != nullptr) {
       law.known_angle.assign(3, 0.0);
@@ -158,8 +163,15 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
       if (rate != 0.0 && law.turned_at != t_) law.direction = rate > 0.0 ? 1.0 : -1.0;
       law.stretch = law.scaled->scale_stretch(law.angle, law.direction);
     }
-    start_scale(law);
+    law.varies = law.stretch.slope != 0.0 || !law.stretch.orders.empty();
+    if (law.works) start_scale(law);
+    law.is_spring = law.active && !law.varies && p.c == 0.0 && p.product == 0.0 && p.k == p.elastic_k &&
+                    p.y_0 == p.elastic_0 &&
+                    std::all_of(law.known.begin() + 1, law.known.end(), [](double e) { return e == 0.0; });
+    if (law.is_spring) add_spring(series, law);
     if (!law.active) continue;
+    active_ = true;
+    known_degree_ = std::max(known_degree_, static_cast<int>(law.known.size()) - 1);
     double b_1 = 0.0;
     for (const Entry& e : term.z) b_1 += std::abs(e.coeff);
     const double k = law.r[0] * law.k + law.g * in.x_dot, c = law.c + law.g * (in.x - law.origin);
@@ -167,9 +179,27 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
   }
 }
 
+/// A law that is the same spring all along the step is none of those that act through terms.
+void ExpandedLaws::add_spring(TaylorSeries& series, Law& law) {
+  const std::vector<Entry>& z = law.term->z;
+  const double k = law.r[0] * law.k, y = law.r[0] * law.y_0 + k * law.known[0];
+  std::size_t slot = 0;
+  double b_1 = 0.0;
+  for (const Entry& row : z) {
+    b_1 += std::abs(row.coeff);
+    series.right_side(0)[row.index] -= row.coeff * y;
+    for (const Entry& column : z) series.add_stiffness(law.term->slots[slot++], k * row.coeff * column.coeff);
+  }
+  // The largest step was found with closed_stiffness().
+  const double stiffer = k - std::abs(law.term->force->closed_stiffness());
+  if (stiffer > 0.0)
+    for (const Entry& e : z) series.widen(e.index, stiffer * b_1 * e.coeff, 0.0);
+  law.active = law.works = false;
+}
+
 void ExpandedLaws::start_scale(Law& law) const {
   const std::span<const ScaleOrder> orders = law.stretch.orders;
-  law.varies = law.stretch.slope != 0.0 || !orders.empty();
+  law.scale_to = 0;
   law.r[0] = law.stretch.value;
   law.by_phase_terms[0] = law.stretch.slope;
   const auto lanes = idx(whole_lanes(static_cast<int>(orders.size())));
@@ -180,7 +210,15 @@ void ExpandedLaws::start_scale(Law& law) const {
   }
   for (std::size_t i = 0; i < orders.size(); ++i) {
     const ScaleOrder& o = orders[i];
-    const double c = std::cos(o.order * law.angle), s = std::sin(o.order * law.angle);
+    // Most are multiples of the first one, but for rounding: then the cosine and the sine of a sum.
+    double c, s;
+    if (i > 0 && std::abs(o.order - orders[i - 1].order - orders[0].order) <= kOrderRounding * o.order) {
+      c = law.cosine[i - 1] * law.cosine[0] - law.sine[i - 1] * law.sine[0];
+      s = law.sine[i - 1] * law.cosine[0] + law.cosine[i - 1] * law.sine[0];
+    } else {
+      c = std::cos(o.order * law.angle);
+      s = std::sin(o.order * law.angle);
+    }
     law.orders[i] = o.order;
     law.orders[lanes + i] = o.cosine;
     law.orders[2 * lanes + i] = o.sine;
@@ -208,9 +246,11 @@ void ExpandedLaws::add_scale(Law& law, int m) {
 
 /// x_m and theta_m.
 void ExpandedLaws::add_term(Law& law, const TaylorSeries& series, int m) const {
-  double x = term_or_zero(law.known, m);
-  for (const Entry& e : law.term->z) x += e.coeff * series.coefficient(m, e.index);
-  law.x[idx(m)] = x;
+  if (law.works) {
+    double x = term_or_zero(law.known, m);
+    for (const Entry& e : law.term->z) x += e.coeff * series.coefficient(m, e.index);
+    law.x[idx(m)] = x;
+  }
   if (law.scaled == nullptr) return;
   double theta = m == 0 ? law.angle : term_or_zero(law.known_angle, m);
   if (m > 0)
@@ -224,35 +264,38 @@ double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, doubl
     if (!law.active) continue;
     if (m == 0) add_term(law, series, 0);
     add_term(law, series, m + 1);
-    law.known_to = m;
-    double y = law.k * law.r[0] * law.x[idx(m)];
-    if (law.varies) {
-      if (m > 0) add_scale(law, m);
-      y = law.k * product_term(law.r, law.x, m);
-    }
+    law.terms_to = m + 1;
+    double y = law.k * (law.varies ? product_term(law.r, law.x, m) : law.r[0] * law.x[idx(m)]);
     y += law.y_0 * (m == 0 || law.varies ? law.r[idx(m)] : 0.0);
     double rate = law.c * (m + 1) * law.x[idx(m + 1)];
     // x x' is half the rate of x^2.
     if (law.g != 0.0) rate += 0.5 * law.g * (m + 1) * product_term(law.x, law.x, m + 1);
     y += rate / h_;
     for (const Entry& e : law.gain) term[e.index] -= e.coeff * y * factor;
+    // Ahead of the next term, while the processor waits for this one.
+    if (law.varies) add_scale(law, law.scale_to = m + 1);
   }
   return std::numeric_limits<double>::infinity();
 }
 
-/// The terms up to the series' degree, those behind what add() has found.
+/// x and theta up to the series' degree, behind what add() has found; and r.
+void ExpandedLaws::complete_terms(Law& law, const TaylorSeries& series) const {
+  for (; law.terms_to < series.degree(); ++law.terms_to) add_term(law, series, law.terms_to + 1);
+}
+
 void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
-  const int degree = series.degree();
-  for (int m = law.known_to < 0 ? 0 : law.known_to + 2; m <= degree; ++m) add_term(law, series, m);
-  if (law.varies)
-    for (int m = std::max(1, law.known_to + 1); m <= degree; ++m) add_scale(law, m);
-  law.known_to = std::max(law.known_to, degree);
+  complete_terms(law, series);
+  if (law.scale_to < 0) start_scale(law);
+  if (!law.varies) return;
+  for (; law.scale_to < series.degree(); ++law.scale_to) add_scale(law, law.scale_to + 1);
 }
 
 void ExpandedLaws::expand(const TaylorSeries& series) {
   for (Law& law : laws_) {
-    if (!law.works && law.scaled == nullptr) continue;
-    complete(law, series);
+    if (law.works)
+      complete(law, series);
+    else if (law.scaled != nullptr)
+      complete_terms(law, series);
   }
 }
 
@@ -278,9 +321,10 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   return any;
 }
 
-bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) const {
-  for (const Law& law : laws_) {
+bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) {
+  for (Law& law : laws_) {
     if (law.index != index) continue;
+    complete(law, series);
     scale.assign(law.r.begin(), law.r.begin() + (law.varies ? series.degree() : 0) + 1);
     return true;
   }
@@ -291,16 +335,18 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
   std::optional<double> first;
   for (Law& law : laws_) {
     if (law.scaled == nullptr) continue;
-    if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
+    const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
+    double reach = near;  // how far the angle comes at most, on either side
+    for (int m = 1; m <= series.degree(); ++m) reach += std::abs(law.theta[idx(m)]);
     for (const double side : {1.0, -1.0}) {
       const double bound = side > 0.0 ? law.stretch.high : law.stretch.low;
-      if (!std::isfinite(bound)) continue;
+      if (side * (bound - law.angle) > reach) continue;
       std::vector<double> g(law.theta.begin(), law.theta.begin() + series.degree() + 1);
       for (double& term : g) term *= -side;
       g[0] = std::max(0.0, side * (bound - law.angle));
       if (g[0] == 0.0 && law.direction * side > 0.0)
         continue;  // no stretch is that short: on the knot, past it
-      if (g[0] < kOnLawKnot * std::max(1.0, std::abs(law.angle)) && law.direction * side < 0.0) {
+      if (g[0] < near && law.direction * side < 0.0) {
         // On the knot behind: the first term that is not rounding leads away from it (turns_back()).
         double largest = 0.0;
         for (std::size_t k = 1; k < g.size(); ++k) largest = std::max(largest, std::abs(g[k]));
@@ -331,6 +377,10 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
+    if (law.is_spring) {
+      const double from = law.deflection, to = end.inputs[idx(law.index)].x - law.origin;
+      work.input -= law.r[0] * (to - from) * (law.y_0 + 0.5 * law.k * (from + to));
+    }
     if (!law.works) continue;
     find_at_nodes(std::span(law.x).first(terms), s, x);
     find_at_nodes(std::span(law.r).first(law.varies ? terms : 1), s, r);

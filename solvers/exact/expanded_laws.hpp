@@ -73,7 +73,7 @@ class ExpandedLaws final : public TermForces {
   /// Finds all series of the laws, once the motion's series was expanded; what follows reads them.
   void expand(const TaylorSeries& series);
   /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
-  bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale) const;
+  bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale);
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
@@ -97,11 +97,14 @@ class ExpandedLaws final : public TermForces {
     double direction = 1.0;                                       // in which the angle went last
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
-    int known_to = -1;  // degree of r so far, of x and theta one more
+    int terms_to = -1,
+        scale_to =
+            -1;  // degrees so far: of x and theta; of r, which a law without force needs for its bounds alone
     // The step's piece about `origin`, where its elastic force is zero.
     bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
-    double angle = 0.0, stored = 0.0;
+    double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
+    bool is_spring = false;                              // over the whole step: it is in the series' matrices
     ScaleStretch stretch;
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
@@ -111,12 +114,13 @@ class ExpandedLaws final : public TermForces {
     // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
     std::vector<double> orders, cosine, sine;
   };
-  void note_changes(const Law& law, std::span<const double> x, std::span<const double> r,
-                    std::span<const double> p);
+  void note_changes(const Law& law, const double* x, const double* r, const double* p);
   static void add_slopes(TaylorSeries& series, const Law& law, double factor);
+  static void add_spring(TaylorSeries& series, Law& law);
   void start_scale(Law& law) const;
   void add_term(Law& law, const TaylorSeries& series, int m) const;
   static void add_scale(Law& law, int m);
+  void complete_terms(Law& law, const TaylorSeries& series) const;
   void complete(Law& law, const TaylorSeries& series) const;
 
   const System& system_;

@@ -182,6 +182,7 @@ void ExpandedLoads::add(const LoadTerm& term, TaylorSeries& series) {
   series.solve_mass(row, gain);
   for (int i = 0; i < system_.size(); ++i)
     if (gain[i] != 0.0) load.gain.push_back({i, gain[i]});
+  load.find_reach(series);
   loads_.push_back(std::move(load));
 }
 

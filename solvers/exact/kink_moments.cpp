@@ -186,23 +186,26 @@ struct SweepRule : NodesAndWeights<kNodes> {
 
 }  // namespace
 
+void KinkMoments::make_room() {
+  const std::size_t room = row_.size() + kLanes;
+  row_.resize(room);
+  for (auto* list : {&knot_, &end_, &place_}) list->resize(room);
+  theta_.resize(room * kMostTerms);
+  force_.resize(room * kMostPowers);
+  std::fill_n(theta_.end() - kGroup + kLanes, kLanes, 1.0);  // lanes without a kink have a place, too
+}
+
 void KinkMoments::add(int row, double knot, double factor, std::span<const double> force, double end) {
-  const auto i = static_cast<std::size_t>(count_++);
-  const auto room = static_cast<std::size_t>(whole_lanes(count_));
-  if (row_.size() < room) {
-    row_.resize(room);
-    for (auto* list : {&knot_, &end_, &place_}) list->resize(room);
-    theta_.resize(room * kMostTerms);
-    force_.resize(room * kMostPowers);
-    std::fill_n(theta_.end() - kGroup + kLanes, kLanes, 1.0);  // lanes without a kink have a place, too
-  }
+  const std::size_t i = idx_of(count_++);
+  if (i == row_.size()) make_room();
   row_[i] = row;
   knot_[i] = knot;
   end_[i] = end;
   for (; powers_ < force.size(); ++powers_)  // those before have none of this power
     for (std::size_t k = 0; k < i; ++k) force_[k / kLanes * kForce + powers_ * kLanes + k % kLanes] = 0.0;
   double* own = force_.data() + i / kLanes * kForce + i % kLanes;
-  for (std::size_t q = 0; q < powers_; ++q) own[q * kLanes] = q < force.size() ? factor * force[q] : 0.0;
+  own[0] = factor * force[0];
+  for (std::size_t q = 1; q < powers_; ++q) own[q * kLanes] = q < force.size() ? factor * force[q] : 0.0;
 }
 
 KinkMoments::Force KinkMoments::force(int i, double behind) const {
@@ -264,8 +267,10 @@ void KinkMoments::add_to_sweep(double end, int degree, int nodes, std::size_t pl
   for (int i = 0; i < count_; ++i) {
     const double* moments =
         sweep_moments_.data() + idx_of(i) / kLanes * kLanes * idx_of(degree + 1) + lane_of(i);
+    moments += idx_of(degree) * kLanes;
     double* column = columns + row_[idx_of(i)];
-    for (int j = degree; j >= 0; --j, column += stride) *column += moments[j * kLanes];
+#pragma GCC unroll 4
+    for (int j = degree; j >= 0; --j, column += stride, moments -= kLanes) *column += *moments;
   }
 }
 

@@ -58,6 +58,7 @@ class KinkMoments {
  private:
   static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
   static std::size_t lane_of(int i) { return static_cast<std::size_t>(i) % kLanes; }
+  void make_room();
   template <int kNodes>
   void find_sweep_moments(double end, std::size_t place_terms);
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;

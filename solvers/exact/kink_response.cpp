@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -22,17 +21,18 @@ constexpr double kPlace = 1e-4;       // largest error of a knot's place, relati
 // Factor on the part of the step behind a kink over which slopes change little enough.
 constexpr double kShortened = 0.9;
 
-/// sum_ik gain_i pull_k d^8 where place_i is d > 0 behind place_k, of kinks in whole lanes with gains and pulls of zero behind
-/// the last one.
+/// sum_ik gain_i pull_k d^8 where place_i < end is d > 0 behind place_k, of kinks in whole lanes with gains and pulls of zero
+/// behind the last one.
 struct RowsApart {
   template <class L>
-  [[gnu::always_inline]] static double run(int count, const double* place, const double* pull,
+  [[gnu::always_inline]] static double run(int count, double end, const double* place, const double* pull,
                                            const double* gain) {
     L sum{};
     for (int k = 0; k < count; k += kLanes) {
       L from, of_all{}, x;
       load(place + k, from);
       for (int i = 0; i < count; ++i) {
+        if (place[i] >= end) continue;
         L d{};
         raise(d, place[i] - from);
         d *= d;
@@ -79,7 +79,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   for (std::size_t kind = 0; kind < 2; ++kind)
     if (series_.z_scale()[kind] > 0.0)
       scale = std::max(scale, h / std::min(series_.z_scale()[kind] / h, series_.v_scale()[kind]));
-  for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) rest = std::max(rest, kink.pull);
+  rest = loads_.kink_sizes().most_pull();
   if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
   rest *= 0.5 * scale * end * end;
   const double response = rest;
@@ -125,11 +125,7 @@ KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double
       rule.nodes = KinkMoments::kSweepRules[i];
       break;
     }
-  double gain = 0.0, rate = std::numeric_limits<double>::infinity();
-  for (const LoadSeries::KinkSize& kink : loads_.kink_sizes()) {
-    gain = std::max(gain, kink.gain);
-    rate = std::min(rate, kink.rate);
-  }
+  const double gain = loads_.kink_sizes().most_gain(), rate = loads_.kink_sizes().least_rate();
   const double z = std::max(series_.z_scale()[0], series_.z_scale()[1]);
   rule.terms = idx(series_.terms_within(kOfRule * allowed / (gain * scale * end * z)));
   const double place = std::min(kPlace, end * std::sqrt(kOfRule * allowed / response));
@@ -163,13 +159,13 @@ bool KinkResponse::find_limit(double allowed, double scale) {
 /// Of the motion of a row that a force on it sets in, what the deflection of a law moves in d of the step: all of it where the
 /// law acts on the row; else k/m h^2 d^2/20 one row away, about (rate h)^4/16 d^4/840 further off (error_of_others()).
 double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
-  const double h = series_.step(), quarter = 0.25 * std::pow(series_.rate() * h, 2);
+  const double h = series_.step(), quarter = quarter_rate_square(), d_2 = d * d;
   double coupling = 0.0;
   for (const Entry& e : law.z) {
     if (e.index == row) return 1.0;
     coupling = std::max(coupling, series_.coupling(row, e.index));
   }
-  return std::min(1.0, h * h * coupling * d * d / 20.0 + quarter * quarter * std::pow(d, 4) / 840.0);
+  return std::min(1.0, h * h * coupling * d_2 / 20.0 + quarter * quarter * (d_2 * d_2) / 840.0);
 }
 
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
@@ -193,7 +189,7 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
       of_law += h * h * law.left_out / 120.0;
       of_slopes = std::max(of_slopes, nearness(kinks.row(i), *law.term, d) * of_law);
     }
-    const double error = loads_.kink_sizes()[idx(i)].pull * fifth * of_slopes;
+    const double error = loads_.kink_sizes().pull()[i] * fifth * of_slopes;
     sum.error += error;
     if (error > most) {
       most = error;
@@ -208,11 +204,11 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
 /// (rate h)^6/64 pull d^9/362880, as in a chain of equal rows, whose couplings are a quarter of (rate h)^2.
 KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
   const KinkMoments& kinks = loads_.kinks();
-  const std::vector<LoadSeries::KinkSize>& sizes = loads_.kink_sizes();
+  const double *gain = loads_.kink_sizes().gain(), *pull = loads_.kink_sizes().pull();
   const double h = series_.step(), square = h * h;
   // (2 j + 4)! of rows j apart.
-  const double quarter = 0.25 * std::pow(series_.rate() * h, 2), beside = square / 720.0,
-               two = quarter * quarter / 40320.0, more = quarter * quarter * quarter / 3628800.0;
+  const double quarter = quarter_rate_square(), beside = square / 720.0, two = quarter * quarter / 40320.0,
+               more = quarter * quarter * quarter / 3628800.0;
   Others others;
   if (!loads_.kinks_share_rows()) {
     others.error = square * bound_of_rows_apart(end, beside, std::max(two, more));
@@ -226,7 +222,7 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
       const double d = kinks.place(i) - kinks.place(k);
       if (!(d > 0.0)) continue;
       const double d_2 = d * d, d_4 = d_2 * d_2;
-      double error = square * sizes[idx(i)].gain * sizes[idx(k)].pull * d_4;
+      double error = square * gain[i] * pull[k] * d_4;
       const int row = kinks.row(i), other = kinks.row(k);
       if (row == other)
         error /= 24.0;
@@ -246,18 +242,10 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
 
 /// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, and all as if they
 /// were two rows apart.
-double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) {
+double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) const {
   const KinkMoments& kinks = loads_.kinks();
-  const LoadSeries::KinkSize* sizes = loads_.kink_sizes().data();
-  pulls_.assign(idx(whole_lanes(kinks.count())), 0.0);
-  gains_.resize(pulls_.size());
-  for (int i = 0; i < kinks.count(); ++i) {
-    pulls_[idx(i)] = sizes[i].pull;
-    gains_[idx(i)] = kinks.place(i) < end ? sizes[i].gain : 0.0;
-  }
-  double sum = apart * run_widest<RowsApart>(kinks.count(), static_cast<const double*>(kinks.places()),
-                                             static_cast<const double*>(pulls_.data()),
-                                             static_cast<const double*>(gains_.data()));
+  const double *gain = loads_.kink_sizes().gain(), *pull = loads_.kink_sizes().pull();
+  double sum = apart * run_widest<RowsApart>(kinks.count(), end, kinks.places(), pull, gain);
   for (int i = 0; i < kinks.count(); ++i) {
     const double place = kinks.place(i);
     if (place >= end) continue;
@@ -266,9 +254,9 @@ double KinkResponse::bound_of_rows_apart(double end, double beside, double apart
       const int k = loads_.kink_on(row);
       if (k < 0) return;
       const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d;
-      of_neighbours += coupling * sizes[k].pull * (d_2 * d_2 * d_2);
+      of_neighbours += coupling * pull[k] * (d_2 * d_2 * d_2);
     });
-    sum += sizes[i].gain * beside * of_neighbours;
+    sum += gain[i] * beside * of_neighbours;
   }
   return sum;
 }

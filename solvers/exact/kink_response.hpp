@@ -58,10 +58,15 @@ class KinkResponse {
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed);
-  double bound_of_rows_apart(double end, double beside, double apart);
+  double bound_of_rows_apart(double end, double beside, double apart) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double allowed, double scale);
+  /// (rate h)^2/4: |k| h^2/m of a row's coupling in a chain of equal rows.
+  double quarter_rate_square() const {
+    const double times_step = series_.rate() * series_.step();
+    return 0.25 * times_step * times_step;
+  }
 
   TaylorSeries& series_;
   LoadSeries& loads_;
@@ -70,7 +75,6 @@ class KinkResponse {
   bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
   double end_ = 0.0, limit_ = 1.0;
   LaneVector moments_;
-  LaneVector pulls_, gains_;  // of the kinks, in whole lanes
 };
 
 }  // namespace drev

@@ -16,7 +16,7 @@ constexpr double kOffsetRounding = 2e-14, kAngleRounding = 1e-15;
 
 LawOffsets::LawOffsets(const System& system) : system_(system), offsets_(system.scalars().size()) {
   for (std::size_t j = 0; j < offsets_.size(); ++j)
-    if (system.scalars()[j].phase_node >= 0) phased_.push_back(j);
+    if (system.scalars()[j].phase_node >= 0 && system.scalars()[j].force->has_offset()) phased_.push_back(j);
 }
 
 double LawOffsets::expand(const TaylorSeries& series, double t, double h) {

@@ -12,7 +12,6 @@ namespace drev {
 
 namespace {
 
-constexpr double kMonotone = StraightLoads::kMonotone;
 // Error of the motion inside a step by the rest of a kink in it, relative to jump h |theta'| h^2/(2 m), at most.
 constexpr double kKinkInside = 1e-4;
 constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before their count starts again
@@ -24,14 +23,15 @@ void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t most) {
                     terms = std::min(most, std::max<std::size_t>(of_motion, 3));
   kinks_.set_terms(terms);
   for (int i = 0; i < kinks_.count(); ++i) {
-    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
+    const PlacedLoad& l = kink_sizes_.load_of(i);
     const double coeff = l.coeff;
-    const double* __restrict z = series.coefficients(0) + l.row;
+    const std::size_t known = l.feedback ? std::min(terms, of_motion) : 1;
     double* __restrict theta = kinks_.angle(i);
-    const std::size_t known = l.feedback ? std::min(terms, of_motion) : 1, stride = idx(stride_);
     theta[0] = l.angle;
+    const double* __restrict z = series.coefficients(1) + l.row;
+    double* __restrict term = theta + kLanes;
 #pragma GCC unroll 4
-    for (std::size_t k = 1; k < known; ++k) theta[k * kLanes] = coeff * z[k * stride];
+    for (std::size_t k = 1; k < known; ++k, z += stride_, term += kLanes) *term = coeff * *z;
     for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
     for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
   }
@@ -65,66 +65,44 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
   // The work of a load whose angle follows no motion is known where its row is not moved by another kink before.
   for (int i = 0; i < kinks_.count(); ++i)
     for (int k = 0; k < kinks_.count(); ++k)
-      if (i != k && kinks_.row(i) == kinks_.row(k) && !kink_sizes_[idx(i)].load->feedback) return false;
+      if (i != k && kinks_.row(i) == kinks_.row(k) && !kink_sizes_.load_of(i).feedback) return false;
   return true;
 }
 
-/// Lists the kinks that a load passes up to s = to, on a piece from low to high at the start. next(bound, rises, turn): the
-/// piece behind a bound, and what the load differs there over a turn behind it.
+/// Lists the kinks that a load passes on its way to the angle `end` at a first rate by s, on a piece from low to high at the start.
+/// next(bound, rises, turn): the piece behind a bound, and what the load differs there over a turn behind it. False: it leaves a
+/// piece at a kink of none of this kind.
 template <class Next>
-bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, const TaylorSeries& series, double to,
-                               bool projected, const Next& next) {
-  const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
-  l.watched = false;
-  l.contraction = 0.0;
-  const auto row = idx(l.row);
-  const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
-  // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
-  const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
-  if (l.angle + reach < high && l.angle - reach > low) return true;
-  const double first = angle_term(l, series, 1);
-  if (2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > kMonotone * std::abs(first)) {
-    l.watched = true;
-    return false;
-  }
-  const bool rises = first > 0.0;
-  const double end =
-      l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double rate, double end,
+                               const TaylorSeries& series, bool projected, const Next& next) {
+  const bool rises = rate > 0.0;
   double steepest = 0.0;
-  for (;;) {
-    const double bound = rises ? high : low;
-    if (rises ? end <= bound : end >= bound) break;
+  for (double bound = rises ? high : low; rises ? end > bound : end < bound;) {
     const double turn = std::abs(end - bound);
     const std::optional<Behind> behind = next(bound, rises, turn);
+    l.watched = !behind || !(rises ? behind->high > bound : behind->low < bound);
+    if (l.watched) break;
     // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
     double chord = 0.0, slope = 0.0, power = 1.0;
-    if (behind)
-      for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {
-        chord += std::abs(behind->force[q]) * power;
-        slope += static_cast<double>(q + 1) * std::abs(behind->force[q]) * power;
-      }
-    const double inside =
-        projected ? kKinkInside * std::abs(l.coeff * chord * first) * relative_move(series, l.row) : 0.0;
-    if (!behind || !(rises ? behind->high > bound : behind->low < bound) || inside > kMostInside) {
-      l.watched = true;
-      break;
+    for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {
+      chord += std::abs(behind->force[q]) * power;
+      slope += static_cast<double>(q + 1) * std::abs(behind->force[q]) * power;
     }
-    kinks_inside_ = std::max(kinks_inside_, inside);
+    if (projected) {
+      const double inside = kKinkInside * std::abs(l.coeff * chord * rate) * relative_move(series, l.row);
+      l.watched = inside > kMostInside;
+      if (l.watched) break;
+      kinks_inside_ = std::max(kinks_inside_, inside);
+    }
     given_kinks_ |= !l.feedback;
     kinks_.add(l.row, bound, l.coeff, behind->force, end);
-    const double size = std::abs(l.coeff) * series.reach(l.row);
-    kink_sizes_.push_back({&l, size * chord * std::abs(first),
-                           l.feedback ? size * slope * std::abs(l.coeff) : 0.0,
-                           l.feedback ? (1.0 - kMonotone) * std::abs(first / l.coeff)
-                                      : std::numeric_limits<double>::infinity()});
-    shared_rows_ |= std::exchange(last_kink_[row], listed_before_ + kinks_.count()) > listed_before_;
+    kink_sizes_.add(l, rate, chord, slope);
+    shared_rows_ |= std::exchange(last_kink_[idx(l.row)], listed_before_ + kinks_.count()) > listed_before_;
     steepest += slope;
-    kink_push_ +=
-        (1.0 + kMonotone) * h_ * h_ * std::abs(l.coeff * first) * slope * std::sqrt(series.mobility(l.row));
-    low = behind->low;
-    high = behind->high;
+    bound = rises ? behind->high : behind->low;
   }
-  if (l.feedback) l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * steepest * series.mobility(l.row);
+  if (l.feedback && projected)
+    l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * steepest * series.mobility(l.row);
   return !l.watched;
 }
 
@@ -138,11 +116,17 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   }
   kinks_.clear();
   kink_sizes_.clear();
-  kinks_inside_ = kink_push_ = 0.0;
+  kinks_inside_ = 0.0;
   given_kinks_ = shared_rows_ = false;
   bool all = true;
-  for (StraightLoads::Load* near : straight_.near_knots(series, to, phi_, ranges_.data())) {
-    StraightLoads::Load& l = *near;
+  const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
+  for (const StraightLoads::Near& near : straight_.near_knots(series, to, phi_, turns)) {
+    StraightLoads::Load& l = *near.load;
+    if (!near.monotone) {
+      l.watched = true;
+      all = false;
+      continue;
+    }
     StraightLoads::look_from_start(l);
     double jump = 0.0;
     const auto next = [&](double bound, bool rises, double) -> std::optional<Behind> {
@@ -152,36 +136,54 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
       jump = l.ahead.angle_slope - slope;
       return Behind{l.ahead.low, l.ahead.high, {&jump, 1}};
     };
-    all &= list_kinks_of(l, l.stretch.low, l.stretch.high, series, to, projected, next);
+    all &= list_kinks_of(l, l.stretch.low, l.stretch.high, near.rate, near.end, series, projected, next);
   }
-  if (!expanded_.knotted()) return all;
-  for (ExpandedLoads::Load& l : expanded_.loads()) {
-    if (!l.acts || l.knots == nullptr) continue;
-    CubicPiece piece = l.piece;
-    double about = l.about;
-    const auto next = [&](double bound, bool rises, double turn) -> std::optional<Behind> {
-      const CubicPiece behind = l.knots->piece(bound, rises ? 1.0 : -1.0, l.piece_speed);
-      const auto force = expanded_.behind_knot(l, piece, about, bound, behind, turn);
-      piece = behind;
-      about = bound;
-      if (!force) return std::nullopt;
-      return Behind{behind.low, behind.high, *force};
-    };
-    all &= list_kinks_of(l, l.piece.low, l.piece.high, series, to, projected, next);
+  if (expanded_.knotted()) {
+    for (ExpandedLoads::Load& l : expanded_.loads()) {
+      if (!l.acts || l.knots == nullptr) continue;
+      l.watched = false;
+      l.contraction = 0.0;
+      const auto row = idx(l.row);
+      const double feedback = l.feedback ? std::abs(l.coeff) : 0.0, ratio = std::abs(l.ratio);
+      // |theta(s) - theta(0)| <= sum |theta_k|: far from any knot, whatever the path.
+      const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
+      if (l.angle + reach < l.piece.high && l.angle - reach > l.piece.low) continue;
+      const double rate = angle_term(l, series, 1);
+      l.watched =
+          2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > KinkSizes::kMonotone * std::abs(rate);
+      if (l.watched) {
+        all = false;
+        continue;
+      }
+      CubicPiece piece = l.piece;
+      double about = l.about;
+      const auto next = [&](double bound, bool rises, double turn) -> std::optional<Behind> {
+        const CubicPiece behind = l.knots->piece(bound, rises ? 1.0 : -1.0, l.piece_speed);
+        const auto force = expanded_.behind_knot(l, piece, about, bound, behind, turn);
+        piece = behind;
+        about = bound;
+        if (!force) return std::nullopt;
+        return Behind{behind.low, behind.high, *force};
+      };
+      const double end =
+          l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
+      all &= list_kinks_of(l, l.piece.low, l.piece.high, rate, end, series, projected, next);
+    }
   }
+  kink_sizes_.find(h_);
   return all;
 }
 
 void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
   for (int i = 0; i < kinks_.count(); ++i) {
-    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
-    if (l.feedback) series.add_row_stiffness(l.row, -factor * l.coeff * kinks_.jump(i));
+    const double feedback = kink_sizes_.feedback(i);
+    if (feedback != 0.0) series.add_row_stiffness(kinks_.row(i), -factor * feedback * kinks_.jump(i));
   }
 }
 
 /// The same of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.
 double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double end) const {
-  const PlacedLoad& l = *kink_sizes_[idx(kink)].load;
+  const PlacedLoad& l = kink_sizes_.load_of(kink);
   const GaussRule& rule = gauss_rule();
   const double place = kinks_.place(kink), length = end - place, turn = l.angle - kinks_.knot(kink);
   double sum = 0.0;
@@ -204,7 +206,7 @@ double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
   double sum = expanded_.swept_work(series, s);
   sum += work_by_parts(stride_, p_.data(), s, y, y_sum, y_sum_2);  // of what acts along the series
   for (int i = 0; i < kinks_.count(); ++i) {
-    const PlacedLoad& l = *kink_sizes_[idx(i)].load;
+    const PlacedLoad& l = kink_sizes_.load_of(i);
     const double beyond = kinks_.end(i) - kinks_.knot(i);
     if (!l.feedback) {
       sum += given_kink_work(series, i, s);

@@ -54,7 +54,7 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
       continue;
     }
     if (term.load->stretch(0.0, 0.0, 1.0)) {
-      straight_.add(term);
+      straight_.add(term, series);
       continue;
     }
     const bool expanded = ExpandedLoads::takes(system, term);
@@ -128,7 +128,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
   }
   straight_.add_to(series, t_, h, phi_, p_.data());
   smooth_.add_to(h, phi_, p_.data());
-  add_scaled(3 * stride_, 1.0, p_.data(), series.right_side(0));
+  for (int i = 0; i < 3 * stride_; ++i) series.right_side(0)[i] += p_[idx(i)];
   smooth_.add_slopes(series);
   expanded_.add_to(series, h, phi_);
 }

@@ -11,6 +11,7 @@
 
 #include "solvers/exact/expanded_loads.hpp"
 #include "solvers/exact/kink_moments.hpp"
+#include "solvers/exact/kink_sizes.hpp"
 #include "solvers/exact/projected_laws.hpp"
 #include "solvers/exact/smooth_loads.hpp"
 #include "solvers/exact/straight_loads.hpp"
@@ -85,20 +86,11 @@ class LoadSeries {
     expanded_.return_slopes(series);
     add_kink_slopes(series, -1.0);
   }
-  /// Of each: |d/ds| of the acceleration that sets in [1/s^2], and of what a motion of its row turns, the acceleration that
-  /// comes back [1/s^2]; and how fast the row turns the angle at least, by s [rad or m]: infinity where it does not.
-  struct KinkSize {
-    const PlacedLoad* load;
-    double pull, gain, rate;
-  };
   /// Some of them are on one row.
   bool kinks_share_rows() const { return shared_rows_; }
-  const std::vector<KinkSize>& kink_sizes() const { return kink_sizes_; }
+  const KinkSizes& kink_sizes() const { return kink_sizes_; }
   /// The kink listed last on a row; -1: none.
   int kink_on(int row) const { return std::max(last_kink_[idx(row)] - listed_before_, 0) - 1; }
-  /// Bound of the accelerations of all of them, sum |jump theta'| h^2/sqrt(m): energies tell that they move an unknown of
-  /// mass m over s by no more than this s^3/(6 sqrt(m)).
-  double kink_push() const { return kink_push_; }
   /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
   double kink_work(const TaylorSeries& series, double s) const;
   /// Kinks are all that bends loads beyond the series.
@@ -145,8 +137,8 @@ class LoadSeries {
     std::span<const double> force;
   };
   template <class Next>
-  bool list_kinks_of(PlacedLoad& load, double low, double high, const TaylorSeries& series, double to,
-                     bool projected, const Next& next);
+  bool list_kinks_of(PlacedLoad& load, double low, double high, double rate, double end,
+                     const TaylorSeries& series, bool projected, const Next& next);
   /// Calls with every load that says knots, and the bounds that hold for it.
   template <class Each>
   void for_knotted(const Each& each) {
@@ -181,8 +173,7 @@ class LoadSeries {
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.
   static constexpr double kMostInside = 1e-6;
-  double kinks_inside_ = 0.0;  // what kinks of tables leave inside the step, relative to the motion
-  double kink_push_ = 0.0;
+  double kinks_inside_ = 0.0;   // what kinks of tables leave inside the step, relative to the motion
   std::vector<int> last_kink_;  // by row, the kink listed last, counted from 1 over all listings
   int listed_before_ = 0;       // in listings before this one
   bool shared_rows_ = false;
@@ -191,8 +182,8 @@ class LoadSeries {
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
   std::vector<double> power_;
-  LaneVector ranges_;  // by row, how far it comes; then bounds of its terms and of their slopes
-  std::vector<KinkSize> kink_sizes_;  // sizes of each of kinks_
+  LaneVector ranges_;     // by row, how far it comes; then bounds of its terms and of their slopes
+  KinkSizes kink_sizes_;  // of each of kinks_
   Vector z_, v_;
   double t_ = 0.0, h_ = 0.0;
   const PlacedLoad* leaving_ = nullptr;

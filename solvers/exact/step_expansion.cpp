@@ -120,8 +120,10 @@ const double* StepExpansion::beyond_cubic(double s) {
   series.beyond_cubic(s, beyond_cubic_.data());
   if (sweeps_ && kinks.any()) {
     const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
-    add_sizes(stride, kOfKinks, y, kOfKinkRates, rate, beyond_cubic_.data());
-    add_sizes(stride, 0.0, y, 10.0 * kOfKinkRates * per_time, rate, beyond_cubic_.data() + stride);
+    for (int i = 0; i < n; ++i) {
+      beyond_cubic_[idx(i)] += kOfKinks * std::abs(y[i]) + kOfKinkRates * std::abs(rate[i]);
+      beyond_cubic_[idx(stride + i)] += 10.0 * kOfKinkRates * per_time * std::abs(rate[i]);
+    }
   }
   if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
   if (!sweeps_ && known.kinked())
@@ -170,7 +172,7 @@ LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedStat
 
 std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeries& laws, double t,
                                                                          State& at) {
-  const LawSeries::Beside found = laws.first_change_beside(series, known.kink_push());
+  const LawSeries::Beside found = laws.first_change_beside(series, known.kink_sizes().push());
   if (found.unsure) return std::nullopt;
   SweptEnd end{kinks.limit()};
   if (found.change && found.change->s <= end.s) {

@@ -72,11 +72,12 @@ struct StraightLoads::Terms {
   }
 };
 
-/// How far the angle comes behind its nearest bound, at most where it is not monotone: < 0 where it passes none.
+/// Flags the loads whose angle passes its nearest bound, or may where it is not monotone.
 struct StraightLoads::Reach {
   template <class L>
   [[gnu::always_inline]] static void run(int stride, const double* x, double to, const double* phi,
-                                         const double* first, const double* turns, double* excess) {
+                                         const double* first, const double* turns, double* turned,
+                                         unsigned* flags) {
     const double linear = phi[1], square = phi[2], turn = to * (linear + to * square);
     const double bend = 2.0 * __builtin_fabs(square),
                  most_turn = __builtin_fabs(linear) + __builtin_fabs(square);
@@ -91,6 +92,8 @@ struct StraightLoads::Reach {
       L rate = linear * ratio + feedback * a;
       load(turns + i, a);
       const L end = angle + turn * ratio + feedback * a;
+      store(rate, turned + i);
+      store(end, turned + stride + i);
       magnitude(rate);
       magnitude(ratio);
       magnitude(feedback);
@@ -101,16 +104,18 @@ struct StraightLoads::Reach {
       L passes = end - high, may = angle + reach - high;
       raise(passes, low - end);
       raise(may, low - (angle - reach));
-      choose(kMonotone * rate - others, may, passes, a);
-      store(a, excess + i);
+      rate = KinkSizes::kMonotone * rate - others;
+      store(rate, turned + 2 * stride + i);
+      choose(rate, may, passes, a);
+      flags[i / kLanes] = not_below_zero(a);
     }
   }
 };
 
-/// The same of an angle that stands, nearer to a bound than rounding.
+/// Flags those whose angle stands nearer to a bound than rounding.
 struct StraightLoads::BesideKnot {
   template <class L>
-  [[gnu::always_inline]] static void run(int stride, const double* x, double* excess) {
+  [[gnu::always_inline]] static void run(int stride, const double* x, unsigned* flags) {
     for (int i = 0; i < stride; i += kLanes) {
       L angle, near, a, one{};
       one = 1.0 + one;
@@ -123,7 +128,7 @@ struct StraightLoads::BesideKnot {
       L most = near - (a - angle);
       load(x + kLow * stride + i, a);
       raise(most, near - (angle - a));
-      store(most, excess + i);
+      flags[i / kLanes] = not_below_zero(most);
     }
   }
 };
@@ -153,10 +158,12 @@ StraightLoads::StraightLoads(const System& system)
       rows_(idx(stride_)),
       rates_(idx(stride_)),
       slopes_(idx(stride_)),
-      excess_(idx(stride_)) {}
+      turned_(idx(3 * stride_)),
+      flags_(idx(stride_ / kLanes)) {}
 
-void StraightLoads::add(const LoadTerm& term) {
+void StraightLoads::add(const LoadTerm& term, const TaylorSeries& series) {
   Load& l = loads_.emplace_back(system_, term);
+  l.find_reach(series);
   if (const auto table = term.load->table()) {
     const auto known =
         std::find_if(tables_.begin(), tables_.end(), [&](const auto& t) { return t.is_of(*table); });
@@ -260,15 +267,13 @@ void StraightLoads::locate(double t) {
   }
 }
 
-/// Calls with each load of a layer whose excess_ is not below zero.
+/// Calls with each load of a layer that is flagged.
 template <class Each>
 void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
-  for (int first = 0; first < stride_; first += kLanes) {
-    // One bit a lane: which of them are flagged no processor can foretell.
-    const double* excess = excess_.data() + first;
-    unsigned flagged = 0;
-    for (int lane = 0; lane < kLanes; ++lane) flagged |= static_cast<unsigned>(excess[lane] >= 0.0) << lane;
-    for (; flagged != 0; flagged &= flagged - 1) each(layer.load[idx(first + std::countr_zero(flagged))]);
+  const int* load = layer.load.data();
+  for (unsigned flagged : flags_) {
+    for (; flagged != 0; flagged &= flagged - 1) each(load[std::countr_zero(flagged)]);
+    load += kLanes;
   }
 }
 
@@ -283,7 +288,7 @@ void StraightLoads::advance(double t, bool whole) {
       place(l);
     }
   for (Layer& layer : layers_) {
-    run_widest<BesideKnot>(stride_, static_cast<const double*>(layer.values.data()), excess_.data());
+    run_widest<BesideKnot>(stride_, static_cast<const double*>(layer.values.data()), flags_.data());
     for_flagged(layer, [&](int k) {
       Load& l = loads_[idx(k)];
       refresh(l);
@@ -307,9 +312,9 @@ void StraightLoads::add_to(TaylorSeries& series, double t, double h, const std::
   series.add_row_slopes(slopes_.data());
 }
 
-const std::vector<StraightLoads::Load*>& StraightLoads::near_knots(const TaylorSeries& series, double to,
-                                                                   const std::array<double, 3>& phi,
-                                                                   const double* turns) {
+const std::vector<StraightLoads::Near>& StraightLoads::near_knots(const TaylorSeries& series, double to,
+                                                                  const std::array<double, 3>& phi,
+                                                                  const double* turns) {
   for (const int k : listed_) {
     Load& l = loads_[idx(k)];
     l.watched = false;
@@ -319,12 +324,13 @@ const std::vector<StraightLoads::Load*>& StraightLoads::near_knots(const TaylorS
   near_.clear();
   for (const Layer& layer : layers_) {
     run_widest<Reach>(stride_, static_cast<const double*>(layer.values.data()), to, phi.data(),
-                      series.coefficients(1), turns, excess_.data());
+                      series.coefficients(1), turns, turned_.data(), flags_.data());
     for_flagged(layer, [&](int k) {
       Load& l = loads_[idx(k)];
       refresh(l);
       listed_.push_back(k);
-      near_.push_back(&l);
+      const double* turned = turned_.data() + l.row;
+      near_.push_back({&l, turned[2 * stride_] >= 0.0, turned[0], turned[stride_]});
     });
   }
   return near_;

@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "solvers/exact/kink_sizes.hpp"
 #include "solvers/exact/table_stretches.hpp"
 #include "solvers/exact/tangent_load.hpp"
 #include "solvers/series/taylor_series.hpp"
@@ -28,7 +29,7 @@ class StraightLoads {
   };
   explicit StraightLoads(const System& system);
   StraightLoads(const StraightLoads&) = delete;
-  void add(const LoadTerm& term);
+  void add(const LoadTerm& term, const TaylorSeries& series);
   bool empty() const { return loads_.empty(); }
   /// All of them, with their angles where the step starts.
   std::vector<Load>& loads();
@@ -53,10 +54,15 @@ class StraightLoads {
   void add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi, double* p);
   /// Those whose angle passes a knot up to s = `to` of a series, or may where it is not monotone, in a step of nominal motion
   /// phi. turns: of the series' rows, how far they come up to there; behind them by its stride, TaylorSeries::ranges()' bounds. The
-  /// others are no longer watched, and stay on their stretches. kMonotone: of the first rate, what all others may add up to.
-  static constexpr double kMonotone = 0.25;
-  const std::vector<Load*>& near_knots(const TaylorSeries& series, double to,
-                                       const std::array<double, 3>& phi, const double* turns);
+  /// others are no longer watched, and stay on their stretches. Monotone: of the first rate by s, all others add up to no more than
+  /// KinkSizes::kMonotone.
+  struct Near {
+    Load* load;
+    bool monotone;
+    double rate, end;  // first rate by s; angle at `to`
+  };
+  const std::vector<Near>& near_knots(const TaylorSeries& series, double to, const std::array<double, 3>& phi,
+                                      const double* turns);
   /// Work of the slopes on the motion from that of the series' start to z [J].
   double slope_work(const TaylorSeries& series, const Vector& z);
   /// The motion of each row; loaded rows stand behind the unknowns.
@@ -101,9 +107,11 @@ class StraightLoads {
   std::vector<TableStretches> tables_;
   std::vector<Layer> layers_;
   std::vector<int> listed_;  // indices in loads_ of those that were near knots when last asked for
-  std::vector<Load*> near_;
-  LaneVector rows_, rates_, slopes_, excess_;
-  bool stale_ = false;  // loads_ lack the angles
+  std::vector<Near> near_;
+  LaneVector rows_, rates_, slopes_,
+      turned_;  // turned_: by row, Near's rate, end and what is not negative where it is monotone
+  std::vector<unsigned> flags_;  // of a layer's rows, kLanes in each
+  bool stale_ = false;           // loads_ lack the angles
 };
 
 }  // namespace drev

@@ -9,27 +9,10 @@ namespace drev {
 
 namespace {
 
-/// A polynomial and its derivatives by s.
-std::array<double, 4> derivatives(std::span<const double> terms, double s) {
-  std::array<double, 4> d{};
-  for (std::size_t k = terms.size(); k-- > 0;) {
-    for (std::size_t i = d.size() - 1; i > 0; --i) d[i] = d[i] * s + static_cast<double>(i) * d[i - 1];
-    d[0] = d[0] * s + terms[k];
-  }
+PolynomialDerivatives derivatives(std::span<const double> terms, double s) {
+  PolynomialDerivatives d;
+  find_derivatives(static_cast<int>(terms.size()), terms.data(), s, d);
   return d;
-}
-
-/// Bounds of its derivatives, the first to the fourth, on [0, 1]; of the polynomial itself ahead of them.
-std::array<double, 5> largest_derivatives(std::span<const double> terms) {
-  std::array<double, 5> most{};
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    double size = std::abs(terms[k]);
-    for (std::size_t i = 0; i < most.size() && i <= k; ++i) {
-      most[i] += size;
-      size *= static_cast<double>(k - i);
-    }
-  }
-  return most;
 }
 
 double largest_coefficient(const std::vector<Entry>& row) {
@@ -66,37 +49,33 @@ void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
   for (Law& law : laws_) {
     if (!law.active) continue;
     complete(law, series);
-    const std::span<const double> x = std::span(law.x).first(terms);
-    const std::span<const double> r = std::span(law.r).first(law.varies ? terms : 1);
-    const std::span<const double> p = std::span(law.by_phase_terms).first(law.varies ? terms : 0);
-    const auto [x_0, x_1, x_2, x_3] = derivatives(x, s);
-    const auto [r_0, r_1, r_2, r_3] = derivatives(r, s);
-    const auto [p_0, p_1, p_2, p_3] = derivatives(p, s);
-    const double k = law.k, y = law.y_0 + k * x_0, g = law.g / h_;
-    law.slope = {k * r_0 + g * x_1, k * r_1 + g * x_2, k * r_2 + g * x_3};
-    law.by_speed = {law.c + law.g * x_0, law.g * x_1, law.g * x_2};
-    law.by_phase = {p_0 * y, p_1 * y + p_0 * k * x_1, p_2 * y + 2.0 * p_1 * k * x_1 + p_0 * k * x_2};
+    const PolynomialDerivatives of_x = derivatives(std::span(law.x).first(terms), s);
+    const PolynomialDerivatives of_r = derivatives(std::span(law.r).first(law.varies ? terms : 1), s);
+    const PolynomialDerivatives of_p =
+        derivatives(std::span(law.by_phase_terms).first(law.varies ? terms : 0), s);
+    const auto &x = of_x.value, &r = of_r.value, &p = of_p.value;
+    const double k = law.k, y = law.y_0 + k * x[0], g = law.g / h_;
+    law.slope = {k * r[0] + g * x[1], k * r[1] + g * x[2], k * r[2] + g * x[3]};
+    law.by_speed = {law.c + law.g * x[0], law.g * x[1], law.g * x[2]};
+    law.by_phase = {p[0] * y, p[1] * y + p[0] * k * x[1], p[2] * y + 2.0 * p[1] * k * x[1] + p[0] * k * x[2]};
     add_slopes(series, law, 1.0);
-    note_changes(law, x, r, p);
+    note_changes(law, of_x.bound.data(), of_r.bound.data(), of_p.bound.data());
   }
 }
 
-void ExpandedLaws::note_changes(const Law& law, std::span<const double> x, std::span<const double> r,
-                                std::span<const double> p) {
+/// x, r, p: bounds of these and of their derivatives by s.
+void ExpandedLaws::note_changes(const Law& law, const double* x, const double* r, const double* p) {
   const double b = largest_coefficient(law.term->z), moved = largest_coefficient(law.gain);
   const double k = std::abs(law.k), g = std::abs(law.g);
-  const std::array<double, 5> of_x = largest_derivatives(x), of_r = largest_derivatives(r);
   SlopeChange change{.term = law.term};
-  change.by_angle = b * moved * (k * of_r[1] + g * of_x[2] / h_);
-  change.by_angle_3 = b * moved * (k * of_r[3] + g * of_x[4] / h_);
-  change.by_speed = b * moved * g * of_x[1];
-  change.by_speed_3 = b * moved * g * of_x[3];
+  change.by_angle = b * moved * (k * r[1] + g * x[2] / h_);
+  change.by_angle_3 = b * moved * (k * r[3] + g * x[4] / h_);
+  change.by_speed = b * moved * g * x[1];
+  change.by_speed_3 = b * moved * g * x[3];
   if (law.varies) {
-    const std::array<double, 5> of_p = largest_derivatives(p);
-    const double phase = moved * largest_coefficient(law.phase_row), y = std::abs(law.y_0) + k * of_x[0];
-    change.by_angle += phase * (of_p[1] * y + of_p[0] * k * of_x[1]);
-    change.by_angle_3 +=
-        phase * (of_p[3] * y + k * (3.0 * (of_p[2] * of_x[1] + of_p[1] * of_x[2]) + of_p[0] * of_x[3]));
+    const double phase = moved * largest_coefficient(law.phase_row), y = std::abs(law.y_0) + k * x[0];
+    change.by_angle += phase * (p[1] * y + p[0] * k * x[1]);
+    change.by_angle_3 += phase * (p[3] * y + k * (3.0 * (p[2] * x[1] + p[1] * x[2]) + p[0] * x[3]));
     for (const Entry& e : law.phase_row)
       if (std::none_of(law.term->z.begin(), law.term->z.end(),
                        [&](const Entry& own) { return own.index == e.index; }))

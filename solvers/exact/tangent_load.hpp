@@ -25,6 +25,9 @@ struct PlacedLoad {
   double angle = 0.0, deviation = 0.0, speed = 0.0;  // rad, rad/s
   bool watched = false;                              // its angle may turn back in this step
   double contraction = 0.0;                          // by its kinks in this step: LoadSeries::Pass
+  /// Of the load's torque: the acceleration of the unknown that it moves most [1/(kg m^2) or 1/kg], and the same of its row over
+  /// the root of the row's mobility.
+  double reach = 0.0, push = 0.0;
 
   PlacedLoad() = default;
   PlacedLoad(const System& system, const LoadTerm& load)
@@ -32,6 +35,10 @@ struct PlacedLoad {
     const NodeMap& map = system.node_map(load.node);
     row = system.place(map);
     coeff = map.coeff;
+  }
+  void find_reach(const TaylorSeries& series) {
+    reach = std::abs(coeff) * series.reach(row);
+    push = std::abs(coeff) * std::sqrt(series.mobility(row));
   }
   /// Value of the row, an unknown or one of the system's loaded rows.
   double along(const System& system, const Vector& z) const {

@@ -209,6 +209,16 @@ template <class L>
   most = most < other ? other : most;
   return most[0];
 }
+/// One bit a lane, set where x >= 0: no processor can foretell which of them are.
+template <class L>
+[[gnu::always_inline]] inline unsigned not_below_zero(const L& x) {
+  static_assert(kLanes == 8);
+  constexpr double kBits[kLanes] = {1, 2, 4, 8, 16, 32, 64, 128};
+  L bits;
+  load(kBits, bits);
+  keep_where_not_below(x, L{}, L{}, bits);
+  return static_cast<unsigned>(static_cast<int>(sum_of(bits)));
+}
 /// to = x moved up by a lane, behind the last lane of `before`; or down by a lane, ahead of the first one of `behind`.
 [[gnu::always_inline]] inline void move_up(const Lanes& before, const Lanes& x, Lanes& to) {
   to = __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);

@@ -151,8 +151,8 @@ void LegendreProjection::add_nodes(const NodeForces& forces) {
             (2.0 * static_cast<double>(j) + 1.0) * rule.weight[q] * rule.legendre[j][q];
     return w;
   }();
-  weighted_sums(stride_, kProjectionTerms, 0, GaussRule::kNodes, weights.data(), nullptr, forces.data(),
-                a_.data(), true);
+  weighted_sums(stride_, kProjectionTerms, 0, GaussRule::kNodes, weights.data(), kProjectionTerms, nullptr,
+                forces.data(), a_.data(), true);
 }
 
 void LegendreProjection::difference(const LegendreProjection& other, double* out) const {

@@ -31,45 +31,6 @@ struct ScaledProduct {
   }
 };
 
-struct Scale {
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, double* y) {
-    for (int i = 0; i < stride; i += kLanes) {
-      L x;
-      load(a + i, x);
-      store(factor * x, y + i);
-    }
-  }
-};
-
-struct AddScaled {
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, double factor, const double* a, double* y) {
-    for (int i = 0; i < stride; i += kLanes) {
-      L x, sum;
-      load(a + i, x);
-      load(y + i, sum);
-      store(sum + factor * x, y + i);
-    }
-  }
-};
-
-struct AddSizes {
-  template <class L>
-  [[gnu::always_inline]] static void run(int stride, double value, const double* y, double rate,
-                                         const double* r, double* out) {
-    for (int i = 0; i < stride; i += kLanes) {
-      L a, b, sum;
-      load(y + i, a);
-      load(r + i, b);
-      magnitude(a);
-      magnitude(b);
-      load(out + i, sum);
-      store(sum + value * a + rate * b, out + i);
-    }
-  }
-};
-
 struct Slopes {
   template <class L>
   [[gnu::always_inline]] static double run(int stride, const double* slope, const double* mobility,
@@ -189,6 +150,32 @@ struct Polynomial {
   }
 };
 
+/// k!/(k - i)! by k, then by i <= kDerivatives.
+constexpr auto kFallingFactorial = [] {
+  std::array<std::array<double, kLanes>, kRowTerms> factor{};
+  for (std::size_t k = 0; k < kRowTerms; ++k) {
+    factor[k][0] = 1.0;
+    for (std::size_t i = 1; i <= kDerivatives && i <= k; ++i)
+      factor[k][i] = factor[k][i - 1] * static_cast<double>(k - i + 1);
+  }
+  return factor;
+}();
+
+struct Derivatives {
+  template <class L>
+  [[gnu::always_inline]] static void run(int terms, const double* c, double x, PolynomialDerivatives* out) {
+    L value{}, bound{}, factor;
+    double power = 1.0;
+    for (int k = 0; k < terms; ++k, power *= x) {
+      load(kFallingFactorial[idx(k)].data(), factor);
+      value += (c[k] * power) * factor;
+      bound += __builtin_fabs(c[k]) * factor;
+    }
+    store(value, out->value.data());
+    store(bound, out->bound.data());
+  }
+};
+
 struct Sums {
   static constexpr int kTogether = 6;  // blocks of lanes whose sums stay in registers together
   /// Sums first ... last - 1 of the blocks b = 0, 1, ... from here on. Written out for each of them, since GCC 12 keeps an array
@@ -253,14 +240,13 @@ struct Sums {
   }
   template <class L>
   [[gnu::always_inline]] static void run(int stride, int terms, int sizes, int count, const double* weight,
-                                         const int* begin, const double* f, double* out, bool add,
-                                         const double* tails) {
-    const int together = terms + sizes;
+                                         int per_column, const int* begin, const double* f, double* out,
+                                         bool add, const double* tails) {
     if (add)
-      all<L, false, true>(stride, 0, terms, count, together, weight, begin, nullptr, f, out);
+      all<L, false, true>(stride, 0, terms, count, per_column, weight, begin, nullptr, f, out);
     else
-      all<L, false, false>(stride, 0, terms, count, together, weight, begin, nullptr, f, out);
-    all<L, true, false>(stride, terms, together, count, together, weight, begin, tails, f, out);
+      all<L, false, false>(stride, 0, terms, count, per_column, weight, begin, nullptr, f, out);
+    all<L, true, false>(stride, terms, terms + sizes, count, per_column, weight, begin, tails, f, out);
   }
 };
 
@@ -407,16 +393,6 @@ void scaled_product(int stride, double factor, const double* a, const double* b,
   run_widest<ScaledProduct>(stride, factor, a, b, out);
 }
 
-void scale(int stride, double factor, const double* x, double* y) { run_widest<Scale>(stride, factor, x, y); }
-
-void add_scaled(int stride, double factor, const double* x, double* y) {
-  run_widest<AddScaled>(stride, factor, x, y);
-}
-
-void add_sizes(int stride, double value, const double* y, double rate, const double* r, double* out) {
-  run_widest<AddSizes>(stride, value, y, rate, r, out);
-}
-
 double subtract_slopes(int stride, const double* slope, const double* mobility, double* main) {
   return run_widest<Slopes>(stride, slope, mobility, main);
 }
@@ -441,9 +417,19 @@ void polynomial_values(int count, int terms, const double* c, const double* x, d
   run_widest<Polynomial>(count, terms, c, x, value, slope);
 }
 
-void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
-                   const double* f, double* out, bool add, const double* tails) {
-  run_widest<Sums>(stride, terms, sizes, count, weight, begin, f, out, add, tails);
+void find_derivatives(int terms, const double* c, double x, PolynomialDerivatives& out) {
+  run_widest<Derivatives>(terms, c, x, &out);
+  if (x == 1.0) return;
+  double power = 1.0;
+  for (double& value : out.value) {
+    value /= power;
+    power *= x;
+  }
+}
+
+void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, int per_column,
+                   const int* begin, const double* f, double* out, bool add, const double* tails) {
+  run_widest<Sums>(stride, terms, sizes, count, weight, per_column, begin, f, out, add, tails);
 }
 
 double work_of_moments(int stride, const double* p, const double* b, double s) {

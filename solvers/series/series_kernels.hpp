@@ -1,5 +1,6 @@
 #pragma once
 /// The inner loops of TaylorSeries, over columns padded to whole lanes.
+#include <drev/core/lanes.hpp>
 #include <drev/core/system.hpp>
 
 #include <array>
@@ -28,6 +29,12 @@ struct BlockDiagonals {
   const DiagonalView* views;
 };
 
+/// What acts on every term of a series: adds to Z_k at `term` once it is known without; false: nothing.
+struct TermHook {
+  bool (*add)(void* of, int k, double* term) = nullptr;
+  void* of = nullptr;
+};
+
 /// The series of M z'' + C z' + K z = sum P_k s^k with a diagonal M over a step of h [s], s = (t - t_0)/h. Columns hold
 /// the coefficients of s^k, or, where derivatives is set, those of s^k/k!. Matrices are scaled for the step, once for all
 /// its terms: k is -h^2 M^-1 K, c -h M^-1 C.
@@ -42,6 +49,7 @@ struct SeriesRecursion {
   /// The diagonals below, on and above the main one, where k and c have the others alone; null: k and c have all.
   std::array<const double*, 3> k_chain{}, c_chain{};
   bool derivatives = false;
+  TermHook hook = {};  ///< of a series
 
   /// Z_k = factor (mobility P_{k-2} + k Z_{k-2} + damping_factor c Z_{k-1}).
   double factor(int k) const { return derivatives ? 1.0 : 1.0 / (static_cast<double>(k) * (k - 1)); }
@@ -54,14 +62,6 @@ void series_terms(const SeriesRecursion& recursion, int first, int last, double*
 
 /// out_i = factor a_i b_i.
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out);
-
-/// y_i = factor x_i, and y_i += factor x_i. Columns are written by whole vectors, since a load of one from several stores waits until
-/// all of these have left for the cache.
-void scale(int stride, double factor, const double* x, double* y);
-void add_scaled(int stride, double factor, const double* x, double* y);
-
-/// out_i += value |y_i| + rate |r_i|.
-void add_sizes(int stride, double value, const double* y, double rate, const double* r, double* out);
 
 /// main_i -= slope_i; returns the largest |slope_i| mobility_i.
 double subtract_slopes(int stride, const double* slope, const double* mobility, double* main);
@@ -81,11 +81,19 @@ std::array<double, 2> add_row_terms(int stride, int terms, const double* z_0, co
 /// Value and slope of the polynomial with these terms at `count` places x, in whole lanes.
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope);
 
+/// A polynomial with these terms and its first derivatives at x > 0; and bounds of them, in that order, on [0, 1].
+inline constexpr int kDerivatives = 4;
+struct PolynomialDerivatives {
+  alignas(kLanes * sizeof(double)) std::array<double, kLanes> value, bound;  ///< of 0 ... kDerivatives
+};
+void find_derivatives(int terms, const double* c, double x, PolynomialDerivatives& out);
+
 /// out_j = sum_q w_qj f_q, j < terms, and behind those out_j = sum_q w_qj |f_q|, j < terms + sizes, q < count; w_qj at
-/// weight[q (terms + sizes) + j], columns f_q at f + q stride, out_j at out + j stride. begin, where it is not null: the w_qj before
+/// weight[q per_column + j], columns f_q at f + q stride, out_j at out + j stride. begin, where it is not null: the w_qj before
 /// q = begin[j] are zero. add: the first ones to what out holds; tails, where it is not null: the sizes to this of each j.
-void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, const int* begin,
-                   const double* f, double* out, bool add = false, const double* tails = nullptr);
+void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, int per_column,
+                   const int* begin, const double* f, double* out, bool add = false,
+                   const double* tails = nullptr);
 
 /// sum_i p_0i b_0i + p_1i s/2 (b_0i + b_1i) + p_2i s^2/6 (2 b_0i + 3 b_1i + b_2i) = int_0^s (p_0 + p_1 u + p_2 u^2) z' du with
 /// the moments b_k = int_0^s L_k z' du of Legendre polynomials over [0, s].

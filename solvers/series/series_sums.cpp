@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "solvers/linear/lane_pair.hpp"
 #include "solvers/series/taylor_series.hpp"
 
 namespace drev {
@@ -12,6 +13,9 @@ namespace {
 // Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what is left out is
 // at most 1e-11 of the loss by a mode of rate h = 3.
 constexpr int kLossTerms = 8;
+// As many do where a bound says that the next one is this part of the square of the largest rate at most.
+constexpr int kFewLossTerms = 6;
+constexpr double kLeftOfLoss = 1e-10;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
 constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
@@ -91,6 +95,25 @@ struct NodeWeights {
   }
 };
 
+/// out: sum over m of moments_m weights_m, the slopes times per_s.
+struct MomentsAtNodes {
+  template <class L>
+  [[gnu::always_inline]] static void run(const NodeValues* weights, const double* moments, double per_s,
+                                         NodeValues* out) {
+    for (std::size_t first = 0; first < out->value.size(); first += kLanes) {
+      L value{}, slope{}, x;
+      for (int m = 0; m < kLossTerms; ++m) {
+        load(weights[m].value.data() + first, x);
+        value += moments[m] * x;
+        load(weights[m].slope.data() + first, x);
+        slope += moments[m] * x;
+      }
+      store(value, out->value.data() + first);
+      store(per_s * slope, out->slope.data() + first);
+    }
+  }
+};
+
 }  // namespace
 
 int TaylorSeries::terms_within(double part) const {
@@ -114,16 +137,24 @@ int TaylorSeries::energy_degree() const {
 
 void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const {
   static const NodeWeights weights;
-  out = {};
+  const double per_s = 1.0 / s;
+  std::array<double, kLossTerms> moments;
   double part = 1.0;  // s^-m
-  for (int m = 0; m < kLossTerms; ++m, part /= s) {
-    const double moment = value_along(row, swept(m));
-    const NodeValues& weight = weights.of_moment[idx(m)];
-    for (std::size_t q = 0; q < out.value.size(); ++q) {
-      out.value[q] += part * moment * weight.value[q];
-      out.slope[q] += part / s * moment * weight.slope[q];
-    }
+  for (int m = 0; m < kLossTerms; ++m, part *= per_s) moments[idx(m)] = part * value_along(row, swept(m));
+  run_widest<MomentsAtNodes>(static_cast<const NodeValues*>(weights.of_moment.data()),
+                             static_cast<const double*>(moments.data()), per_s, &out);
+}
+
+/// Moments that losses in this step want.
+int TaylorSeries::loss_terms() const {
+  const double* weight = sum_weights().end.data() + kMoments + kFewLossTerms;
+  for (std::size_t kind = 0; kind < v_step_scale_.size(); ++kind) {
+    double next = 0.0;
+    for (int k = kFewLossTerms + 1; k <= degree_; ++k) next += weight[k * kSums] * sizes_[idx(k)][kind];
+    const double largest = h_ * v_step_scale_[kind];
+    if (!((2 * kFewLossTerms + 1) * next * next <= kLeftOfLoss * largest * largest)) return kLossTerms;
   }
+  return kFewLossTerms;
 }
 
 const double* TaylorSeries::sums(double s) {
@@ -140,8 +171,9 @@ const double* TaylorSeries::sums(double s) {
     weight = part_weights_.data();
   }
   step_sums_.resize(idx(kSums * stride_));
-  weighted_sums(stride_, kSums, 0, degree_, weight + kSums, sum_weights().end_begin.data(), coefficients(1),
-                step_sums_.data());
+  loss_terms_ = loss_terms();
+  weighted_sums(stride_, kMoments + loss_terms_, 0, degree_, weight + kSums, kSums,
+                sum_weights().end_begin.data(), coefficients(1), step_sums_.data());
   sums_at_ = s;
   return step_sums_.data();
 }
@@ -150,27 +182,27 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v, bool swept_too) cons
   z.resize(n_);
   v.resize(n_);
   const double per_time = 1.0 / h_;
-  const int both = 2 * stride_;
-  double *along = values_.data(), *sum = along;  // z and v of the series, and of all
-  if (s != values_at_) {
-    if (s == sums_at_) {
-      scale(stride_, 1.0, coefficients(0), along);
-      add_scaled(stride_, 1.0, step_sums_.data() + idx(kMoments * stride_), along);
-      scale(stride_, per_time, step_sums_.data() + idx(kRateSum * stride_), along + stride_);
-    } else {
-      series_values(stride_, degree_, coefficients(0), s, along, along + stride_);
-      scale(stride_, per_time, along + stride_, along + stride_);
+  if (s == sums_at_) {
+    const double *from = coefficients(0), *turn = step_sums_.data() + idx(kMoments * stride_),
+                 *rate = step_sums_.data() + idx(kRateSum * stride_);
+    for (int i = 0; i < n_; ++i) {
+      z[i] = from[i] + turn[i];
+      v[i] = per_time * rate[i];
     }
-    values_at_ = s;
+  } else {
+    double *along = values_.data(), *rate = along + stride_;
+    series_values(stride_, degree_, coefficients(0), s, along, rate);
+    for (int i = 0; i < n_; ++i) {
+      z[i] = along[i];
+      v[i] = per_time * rate[i];
+    }
   }
-  if (swept_too) {
-    sum = along + both;
-    scale(both, 1.0, along, sum);
-    add_scaled(stride_, 1.0, swept(0), sum);
-    add_scaled(stride_, per_time, swept(-1), sum + stride_);
+  if (!swept_too) return;
+  const double *y = swept(0), *rate = swept(-1);
+  for (int i = 0; i < n_; ++i) {
+    z[i] += y[i];
+    v[i] += per_time * rate[i];
   }
-  std::copy_n(sum, n_, z.data());
-  std::copy_n(sum + stride_, n_, v.data());
 }
 
 /// The sums of sizes of `count` terms from `first` on, by rows, and of a tail of each that is the same for all unknowns of a kind.
@@ -178,7 +210,7 @@ void TaylorSeries::sum_sizes(int first, int count, const double* weight, const N
                              const Norm& other_tail, double* out) const {
   const bool same = kinds_.empty() && row_slopes_.size() == 0;
   const std::array<double, 2> tails{tail[0], other_tail[0]};
-  weighted_sums(stride_, 0, 2, count, weight, nullptr, coefficients(first), out, false,
+  weighted_sums(stride_, 0, 2, count, weight, 2, nullptr, coefficients(first), out, false,
                 same ? tails.data() : nullptr);
   if (same) return;
   for (int i = 0; i < n_; ++i) {
@@ -238,7 +270,8 @@ double TaylorSeries::loss(double s, bool swept_too) {
   // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
   const double* of_z = sums(s) + idx(kMoments * stride_);
   std::array<double, kLossTerms> factor;
-  for (int k = 0; k < kLossTerms; ++k) factor[idx(k)] = (2 * k + 1) / s;
+  const int terms = loss_terms_;
+  for (int k = 0; k < terms; ++k) factor[idx(k)] = (2 * k + 1) / s;
   swept_moments_.resize(idx(kLossTerms * stride_));
   double* of_y = swept_moments_.data();
   if (swept_too) {
@@ -252,24 +285,24 @@ double TaylorSeries::loss(double s, bool swept_too) {
           part_weights_[idx((kLossTerms - 1 - m) * kLossTerms + k)] *= part;
       weight = part_weights_.data();
     }
-    weighted_sums(stride_, kLossTerms, 0, kLossTerms, weight, sum_weights().swept_begin.data(),
+    weighted_sums(stride_, terms, 0, kLossTerms, weight, kLossTerms, sum_weights().swept_begin.data(),
                   swept(kLossTerms - 1), of_y);
   }
-  const int y_terms = swept_too ? kLossTerms : 0;
+  const int y_terms = swept_too ? terms : 0;
   double sum = 0.0;
   for (const Entry& load : load_damping_)
-    for (int k = 0; k < kLossTerms; ++k) {
+    for (int k = 0; k < terms; ++k) {
       const auto at = idx(k * stride_ + load.index);
       const double x = of_z[at] + (k < y_terms ? of_y[at] : 0.0);
       sum -= factor[idx(k)] * load.coeff * x * x;
     }
   if (main_damping_)
-    return (sum + weighted_squares(stride_, kLossTerms, factor.data(),
+    return (sum + weighted_squares(stride_, terms, factor.data(),
                                    c_.now.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
            h_;
   with_rows_.resize(idx(2 * pad_ + stride_));  // the product reads beside the column
   double* x = with_rows_.data() + pad_;
-  for (int k = 0; k < kLossTerms; ++k) {
+  for (int k = 0; k < terms; ++k) {
     for (int i = 0; i < n_; ++i)
       x[i] = of_z[idx(k * stride_ + i)] + (k < y_terms ? of_y[idx(k * stride_ + i)] : 0.0);
     solve_in_.setZero();

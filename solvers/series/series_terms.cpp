@@ -26,18 +26,31 @@ template <class Body, class L>
 [[gnu::always_inline]] inline void all_terms(const Body& body, int first, int last, double* sizes) {
   const SeriesRecursion& r = body.r;
   const auto size = [&](int m) -> double& { return sizes[m - first]; };
+  const auto finish = [&](int m, L& largest) __attribute__((always_inline)) {
+    end_term();
+    if constexpr (Body::kSweep) return;
+    double* term = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
+    if (r.hook.add != nullptr && r.hook.add(r.hook.of, m, term)) {
+      largest = L{};
+      for (int i = 0; i < r.stride; i += kLanes) {
+        L x;
+        load(term + i, x);
+        magnitude(x);
+        raise(largest, x);
+      }
+    }
+    size(m) = largest_of(largest);
+  };
   int m = first;
   for (const int with = std::min(last, r.p_degree + 2); m <= with; ++m) {
     L largest{};
     body.template term<L, true>(m, term_of(r.p, r.stride, m - 2 - r.p_first), largest);
-    if constexpr (!Body::kSweep) size(m) = largest_of(largest);
-    end_term();
+    finish(m, largest);
   }
   for (; m <= last; ++m) {
     L largest{};
     body.template term<L, false>(m, nullptr, largest);
-    if constexpr (!Body::kSweep) size(m) = largest_of(largest);
-    end_term();
+    finish(m, largest);
   }
   if constexpr (!Body::kSweep) {
     // Comparisons drop a NaN, but what is not finite in one term stays so in those behind it.

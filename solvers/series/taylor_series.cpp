@@ -102,7 +102,7 @@ void TaylorSeries::find_storage() {
   z_.assign(idx(2 * pad_ + (kMaxDegree + 1) * stride_), 0.0);
   p_.assign(idx(kProjectionTerms * stride_), 0.0);
   zeros_.assign(idx(stride_), 0.0);
-  values_.assign(idx(4 * stride_), 0.0);
+  values_.assign(idx(2 * stride_), 0.0);
   mobility_step_.assign(idx(stride_), 0.0);
   if (diagonals_.empty()) return;
   find_views(true);
@@ -331,7 +331,17 @@ SeriesRecursion TaylorSeries::recursion() {
 void TaylorSeries::next_terms(int first, int last) {
   if (by_diagonals()) {
     double largest[kMaxDegree];
-    series_terms(recursion(), first, last, largest);
+    SeriesRecursion all = recursion();
+    if (std::any_of(term_forces_.begin(), term_forces_.end(),
+                    [](const TermForces* forces) { return forces->active(); })) {
+      all.hook = {[](void* of, int k, double* term) {
+                    auto& series = *static_cast<TaylorSeries*>(of);
+                    return series.add_term_forces(
+                        k, series.h_ * series.h_ * kInverse[idx(k)] * kInverse[idx(k - 1)], term);
+                  },
+                  this};
+    }
+    series_terms(all, first, last, largest);
     for (int k = first; k <= last; ++k) sizes_[idx(k)] = {largest[k - first], 0.0};
     return;
   }
@@ -371,13 +381,12 @@ TaylorSeries::Norm TaylorSeries::next_term(int k) {
 
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
-  sums_at_ = values_at_ = -1.0;
+  sums_at_ = -1.0;
   scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
-  std::copy_n(v.data(), n_, column(1));
-  scale(stride_, h, column(1), column(1));
+  for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
   for (int k = 0; k < 2; ++k) rows_of(column(k));
   note_scale(z, v);
   Norm z_scale = z_scale_, v_scale = v_scale_;

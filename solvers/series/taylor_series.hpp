@@ -209,14 +209,9 @@ class TaylorSeries {
   void subtract_product(const LaneVector& values, bool main_only, const double* x, double factor,
                         double* out) const;
   double largest_eigenvalue(const LaneVector& values);
-  /// Whether terms come from the kernel alone.
-  bool by_diagonals() const {
-    return !diagonals_.empty() && diagonal_mass_ && row_slopes_.size() == 0 && kinds_.empty() &&
-           std::none_of(term_forces_.begin(), term_forces_.end(),
-                        [](const TermForces* forces) { return forces->active(); });
-  }
-  /// Whether terms come from the kernel, with forces added to them.
+  /// Whether terms come from the kernel; and many in one call of it.
   bool by_kernel() const { return !diagonals_.empty() && diagonal_mass_; }
+  bool by_diagonals() const { return by_kernel() && row_slopes_.size() == 0 && kinds_.empty(); }
   using Chain = std::array<const double*, 3>;
   Chain chain_of(const LaneVector& values) const;
   void scale_step();
@@ -233,6 +228,7 @@ class TaylorSeries {
           system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
   }
   void add_row_forces(const double* p, const double* x_0);
+  int loss_terms() const;
   const double* sums(double s);
   void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
                  double* out) const;
@@ -262,13 +258,13 @@ class TaylorSeries {
   int swept_degree_ = 0;
   LaneVector step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
   std::vector<Entry> load_damping_;                      // by row, within c_
+  int loss_terms_ = 0;                                   // moments in step_sums_
   double sums_at_ = -1.0;                                // s of step_sums_; -1: none of this step
   LaneVector p_, z_, rates_, forces_, zeros_;
   // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
   LaneVector with_rows_;
-  mutable LaneVector values_;        // see evaluate()
-  mutable double values_at_ = -1.0;  // s of the series' values there; -1: none of this step
+  mutable LaneVector values_;  // room for evaluate()
   Vector solve_in_, solve_out_;
   // Sizes of the terms from the second on, and of what forces that act on every term added to them.
   std::array<Norm, kMaxDegree + 1> sizes_{}, added_{};

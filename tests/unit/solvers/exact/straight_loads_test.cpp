@@ -5,6 +5,7 @@
 #include <drev/elements/catalogue.hpp>
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -49,7 +50,7 @@ TEST_CASE("Straight loads: those that pass a knot in a step, and the torques tha
     TaylorSeries series(system);
     series.bound_rates();
     StraightLoads straight(system);
-    for (const LoadTerm& term : system.loads()) straight.add(term);
+    for (const LoadTerm& term : system.loads()) straight.add(term, series);
     Vector z(n), v(n);
     for (int i = 0; i < n; ++i) {
       z[i] = deviation(random);
@@ -76,8 +77,11 @@ TEST_CASE("Straight loads: those that pass a knot in a step, and the torques tha
     std::vector<double> ranges(3 * stride);
     series.ranges(ranges.data(), ranges.data() + stride);
     std::set<const LoadTerm*> found;
-    for (const StraightLoads::Load* load : straight.near_knots(series, 1.0, phi, ranges.data()))
-      found.insert(load->term);
+    std::map<const LoadTerm*, bool> monotone;
+    for (const StraightLoads::Near& near : straight.near_knots(series, 1.0, phi, ranges.data())) {
+      found.insert(near.load->term);
+      monotone[near.load->term] = near.monotone;
+    }
     Vector at(n), speed(n);
     for (const StraightLoads::Load& load : straight.loads()) {
       bool rises = false, falls = false, passes = false;
@@ -92,6 +96,7 @@ TEST_CASE("Straight loads: those that pass a knot in a step, and the torques tha
         before = angle;
       }
       turning += rises && falls;
+      if (rises && falls && found.count(load.term) == 1) CHECK_FALSE(monotone[load.term]);
       passing += passes;
       if (passes) CHECK(found.count(load.term) == 1);
       if (passes || (rises && falls)) continue;
