@@ -183,12 +183,11 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
 void ExpandedLaws::add_spring(TaylorSeries& series, Law& law) {
   const std::vector<Entry>& z = law.term->z;
   const double k = law.r[0] * law.k, y = law.r[0] * law.y_0 + k * law.known[0];
-  std::size_t slot = 0;
+  series.add_spring(*law.term, k);
   double b_1 = 0.0;
   for (const Entry& row : z) {
     b_1 += std::abs(row.coeff);
     series.right_side(0)[row.index] -= row.coeff * y;
-    for (const Entry& column : z) series.add_stiffness(law.term->slots[slot++], k * row.coeff * column.coeff);
   }
   // The largest step was found with closed_stiffness().
   const double stiffer = k - std::abs(law.term->force->closed_stiffness());

@@ -91,22 +91,12 @@ void LawSeries::locate(const std::vector<ScalarInput>& inputs) {
   }
 }
 
-void LawSeries::add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const {
-  std::size_t s = 0;
-  for (const Entry& row : term.z)
-    for (const Entry& col : term.z) {
-      const double b = row.coeff * col.coeff;
-      const int slot = term.slots[s++];
-      series.add_stiffness(slot, k * b);
-      if (c != 0.0) series.add_damping(slot, c * b);
-    }
-}
-
 void LawSeries::add_to(TaylorSeries& series, const LoadSeries& known, double h) const {
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     const LawPiece& p = current(j);
-    if (p.k != 0.0 || p.c != 0.0) add(series, term, p.k, p.c);
+    if (p.k != 0.0) series.add_spring(term, p.k);
+    if (p.c != 0.0) series.add_damper(term, p.c);
     std::array<double, 3> y{p.y_0, 0.0, 0.0};
     for (const Entry& e : term.u) {
       const std::array<double, 3>& u = known.prescribed(e.index);
@@ -130,7 +120,8 @@ void LawSeries::add_stiffest(TaylorSeries& series) const {
       k = std::max(k, std::abs(p.k));
       c = std::max(c, std::abs(p.c));
     }
-    add(series, term, k, c);
+    series.add_spring(term, k);
+    series.add_damper(term, c);
   }
 }
 

@@ -101,7 +101,6 @@ class LawSeries {
     std::vector<BoundSeries> bounds;
   };
   const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
-  void add(TaylorSeries& series, const ScalarTerm& term, double k, double c) const;
   enum class Start { holds, falls, jumped };
   Start start_of(int law, const LawBound& bound, int index);
   double clearance(const Law& law, const LawBound& bound) const;

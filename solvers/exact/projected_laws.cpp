@@ -38,16 +38,12 @@ void ProjectedLaws::add_to(TaylorSeries& series, const EvaluatedState& start, do
     law.x_dot = value_along(term.z, start.state.v);
     law.angle = start.inputs[idx(law.index)].angle;
     law.stored = r.stored_energy;
-    std::size_t s = 0;
+    series.add_spring(term, law.k);
+    series.add_damper(term, law.c);
     double b_1 = 0.0;
     for (const Entry& e : term.z) b_1 += std::abs(e.coeff);
     for (const Entry& row : term.z) {
       series.widen(row.index, law.k * b_1 * row.coeff, law.c * b_1 * row.coeff);
-      for (const Entry& col : term.z) {
-        const int slot = term.slots[s++];
-        series.add_stiffness(slot, law.k * row.coeff * col.coeff);
-        if (law.c != 0.0) series.add_damping(slot, law.c * row.coeff * col.coeff);
-      }
       series.right_side(0)[row.index] -= row.coeff * (law.y - law.k * law.x - law.c * law.x_dot);
     }
   }

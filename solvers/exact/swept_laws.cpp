@@ -25,13 +25,11 @@ double largest_coefficient(const std::vector<Entry>& row) {
 
 void ExpandedLaws::add_slopes(TaylorSeries& series, const Law& law, double factor) {
   const std::vector<Entry>& z = law.term->z;
-  std::size_t slot = 0;
-  for (const Entry& row : z)
-    for (const Entry& column : z) {
-      const double b = factor * row.coeff * column.coeff;
-      series.add_stiffness(law.term->slots[slot], law.slope[0] * b);
-      series.add_damping(law.term->slots[slot++], law.by_speed[0] * b);
-    }
+  series.add_spring(*law.term, factor * law.slope[0]);
+  if (factor > 0.0)
+    series.add_damper(*law.term, law.by_speed[0]);
+  else
+    series.take_damper();
   if (!law.varies) return;
   // The series reads a column of the pattern as the row of a force: (column, row) is the slot of one that is not symmetric.
   for (const Entry& e : law.phase_row)
@@ -85,8 +83,8 @@ void ExpandedLaws::note_changes(const Law& law, const double* x, const double* r
 }
 
 void ExpandedLaws::return_slopes(TaylorSeries& series) {
-  for (const Law& law : laws_)
-    if (law.active) add_slopes(series, law, -1.0);
+  for (auto law = laws_.rbegin(); law != laws_.rend(); ++law)
+    if (law->active) add_slopes(series, *law, -1.0);
 }
 
 void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* moments) const {

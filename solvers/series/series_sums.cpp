@@ -266,7 +266,7 @@ double TaylorSeries::work(const double* p, int degree, double s) {
 }
 
 double TaylorSeries::loss(double s, bool swept_too) {
-  if (!damped_) return 0.0;
+  if (undamped_ && dampers_.empty()) return 0.0;
   // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
   const double* of_z = sums(s) + idx(kMoments * stride_);
   std::array<double, kLossTerms> factor;
@@ -290,15 +290,16 @@ double TaylorSeries::loss(double s, bool swept_too) {
   }
   const int y_terms = swept_too ? terms : 0;
   double sum = 0.0;
-  for (const Entry& load : load_damping_)
+  for (const Damper& damper : dampers_)
     for (int k = 0; k < terms; ++k) {
-      const auto at = idx(k * stride_ + load.index);
-      const double x = of_z[at] + (k < y_terms ? of_y[at] : 0.0);
-      sum -= factor[idx(k)] * load.coeff * x * x;
+      double x = value_along(damper.term->z, of_z + idx(k * stride_));
+      if (k < y_terms) x += value_along(damper.term->z, of_y + idx(k * stride_));
+      sum += factor[idx(k)] * damper.c * x * x;
     }
-  if (main_damping_)
+  if (undamped_) return sum / h_;
+  if (base_main_damping_)
     return (sum + weighted_squares(stride_, terms, factor.data(),
-                                   c_.now.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
+                                   c_.base.data() + diagonals_[idx(main_)].values, of_z, y_terms, of_y)) /
            h_;
   with_rows_.resize(idx(2 * pad_ + stride_));  // the product reads beside the column
   double* x = with_rows_.data() + pad_;
@@ -306,10 +307,38 @@ double TaylorSeries::loss(double s, bool swept_too) {
     for (int i = 0; i < n_; ++i)
       x[i] = of_z[idx(k * stride_ + i)] + (k < y_terms ? of_y[idx(k * stride_ + i)] : 0.0);
     solve_in_.setZero();
-    subtract_product(c_.now, false, x, -1.0, solve_in_.data());
+    subtract_product(c_.base, false, x, -1.0, solve_in_.data());
     for (int i = 0; i < n_; ++i) sum += factor[idx(k)] * x[i] * solve_in_[i];
   }
   return sum / h_;
+}
+
+double TaylorSeries::dissipated(double s) {
+  if (undamped_) return 0.0;
+  const int degree = energy_degree();
+  rates_.resize(idx(degree * stride_));
+  for (int j = 1; j <= degree; ++j) {
+    const double* z = coefficients(j);
+    double* rate = rates_.data() + idx((j - 1) * stride_);
+    for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
+    for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
+  }
+  if (base_main_damping_)
+    return series_product(stride_, degree, rates_.data(), nullptr,
+                          c_.base.data() + diagonals_[idx(main_)].values, s) /
+           h_;
+  forces_.assign(idx(degree * stride_), 0.0);
+  // The product reads beside the column: from the coefficients, which have room there.
+  for (int j = 1; j <= degree; ++j)
+    subtract_product(c_.base, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
+  return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
+}
+
+void TaylorSeries::at_nodes(double* z, double* v) const {
+  constexpr int n = GaussRule::kNodes;
+  series_at_nodes(stride_, degree_, coefficients(0), gauss_rule().s.data(), n, z, v);
+  if (v == nullptr) return;
+  for (int i = 0; i < n * stride_; ++i) v[i] /= h_;
 }
 
 }  // namespace drev

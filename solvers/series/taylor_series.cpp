@@ -141,16 +141,38 @@ void TaylorSeries::reset() {
   main_damping_ = base_main_damping_;
   k_more_ = c_more_ = 0.0;
   load_damping_.clear();
+  dampers_.clear();
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
   row_slopes_.setZero();
   right_degree_ = 2;
 }
 
-void TaylorSeries::add_damping(int slot, double value) {
-  if (value == 0.0) return;  // products with C stay those of its main diagonal
-  c_.add(position_[idx(slot)], value);
-  damped_ = true;
-  main_damping_ = false;
+template <class Add>
+void TaylorSeries::for_slots(const ScalarTerm& term, double value, const Add& add) {
+  std::size_t slot = 0;
+  for (const Entry& row : term.z)
+    for (const Entry& column : term.z)
+      add(position_[idx(term.slots[slot++])], value * row.coeff * column.coeff);
+}
+
+void TaylorSeries::add_spring(const ScalarTerm& term, double k) {
+  for_slots(term, k, [this](std::size_t at, double value) { k_.add(at, value); });
+}
+
+void TaylorSeries::add_damper(const ScalarTerm& term, double c) {
+  if (c != 0.0) {  // else products with C stay those of its main diagonal
+    damped_ = true;
+    main_damping_ = false;
+    for_slots(term, c, [this](std::size_t at, double value) { c_.add(at, value); });
+  }
+  dampers_.push_back({&term, c});
+}
+
+void TaylorSeries::take_damper() {
+  const Damper last = dampers_.back();
+  dampers_.pop_back();
+  if (last.c != 0.0)
+    for_slots(*last.term, -last.c, [this](std::size_t at, double value) { c_.add(at, value); });
 }
 
 void TaylorSeries::add_row_slopes(const double* slope) {
@@ -467,34 +489,6 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   for (int k = 0; k <= kMaxDegree; ++k, power *= r)
     for (int i = 0; i < stride_; ++i) column(k)[i] *= power;
   return end(kMaxDegree, r * h);
-}
-
-double TaylorSeries::dissipated(double s) {
-  if (undamped_) return 0.0;
-  const int degree = energy_degree();
-  rates_.resize(idx(degree * stride_));
-  for (int j = 1; j <= degree; ++j) {
-    const double* z = coefficients(j);
-    double* rate = rates_.data() + idx((j - 1) * stride_);
-    for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
-    for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
-  }
-  if (base_main_damping_)
-    return series_product(stride_, degree, rates_.data(), nullptr,
-                          c_.base.data() + diagonals_[idx(main_)].values, s) /
-           h_;
-  forces_.assign(idx(degree * stride_), 0.0);
-  // The product reads beside the column: from the coefficients, which have room there.
-  for (int j = 1; j <= degree; ++j)
-    subtract_product(c_.base, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
-  return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
-}
-
-void TaylorSeries::at_nodes(double* z, double* v) const {
-  constexpr int n = GaussRule::kNodes;
-  series_at_nodes(stride_, degree_, coefficients(0), gauss_rule().s.data(), n, z, v);
-  if (v == nullptr) return;
-  for (int i = 0; i < n * stride_; ++i) v[i] /= h_;
 }
 
 }  // namespace drev

@@ -68,7 +68,10 @@ class TaylorSeries {
   }
   /// Subtracts slopes of loads from the diagonal of each row, and notes them (widen()).
   void add_row_slopes(const double* slope);
-  void add_damping(int slot, double value);
+  /// Adds k b b^T with the row b of a term; the same of a damper, and takes back the one that was added last.
+  void add_spring(const ScalarTerm& term, double k);
+  void add_damper(const ScalarTerm& term, double c);
+  void take_damper();
   /// Adds the slope of a load by the speed of an unknown's row, which no damper loses.
   void add_load_damping(int row, double value) {
     c_.add(position_[idx(system_.diagonal_slots()[idx(row)])], value);
@@ -119,7 +122,7 @@ class TaylorSeries {
   /// y and y' along a row, swept up to s, at the nodes of Gauss's rule over [0, s]: y' as its first Legendre polynomials.
   void swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const;
 
-  /// Loss in all dampers, those of pieces too, up to s; swept_too: with the motion swept up to there [J].
+  /// Loss in all dampers up to s; swept_too: with the motion swept up to there [J].
   double loss(double s, bool swept_too);
 
   long products() const { return products_; }  ///< with the matrices, one a degree
@@ -204,6 +207,8 @@ class TaylorSeries {
     main_unscaled_ = true;
     return k_.now.data() + diagonals_[idx(main_)].values;
   }
+  template <class Add>
+  void for_slots(const ScalarTerm& term, double value, const Add& add);
   void find_storage();
   void find_views(bool far);
   void subtract_product(const LaneVector& values, bool main_only, const double* x, double factor,
@@ -258,8 +263,13 @@ class TaylorSeries {
   int swept_degree_ = 0;
   LaneVector step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
   std::vector<Entry> load_damping_;                      // by row, within c_
-  int loss_terms_ = 0;                                   // moments in step_sums_
-  double sums_at_ = -1.0;                                // s of step_sums_; -1: none of this step
+  struct Damper {
+    const ScalarTerm* term;
+    double c;
+  };
+  std::vector<Damper> dampers_;  // beside the system's own, within c_
+  int loss_terms_ = 0;           // moments in step_sums_
+  double sums_at_ = -1.0;        // s of step_sums_; -1: none of this step
   LaneVector p_, z_, rates_, forces_, zeros_;
   // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
