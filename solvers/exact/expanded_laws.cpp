@@ -334,6 +334,7 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
   std::optional<double> first;
   for (Law& law : laws_) {
     if (law.scaled == nullptr) continue;
+    if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
     const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
     double reach = near;  // how far the angle comes at most, on either side
     for (int m = 1; m <= series.degree(); ++m) reach += std::abs(law.theta[idx(m)]);
