@@ -33,6 +33,7 @@ constexpr double kRetreat = 1.0 / 16.0;  // length of the next attempt over that
 // Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
 constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
 constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
+constexpr double kOfImbalance = 1e-4;      // part of the energy balance's tolerance that losses may leave out
 constexpr double kNoProgress = 1e-12;      // least advance of a step, relative to the largest step
 
 class ExactRun final : public StepMotion {
@@ -58,6 +59,9 @@ class ExactRun final : public StepMotion {
     summary_.factorizations = system.mass_is_diagonal() ? 0 : 1;
     change_limit_ = 20 + 20 * static_cast<int>(system.scalars().size() + system.loads().size() +
                                                system.frictions().size());
+    allowed_imbalance_ = options.energy_tolerance > 0.0 ? options.energy_tolerance
+                                                        : std::max(kEnergyTolerance, 2.0 * options.tolerance);
+    series_.set_loss_accuracy(kOfImbalance * allowed_imbalance_);
     laws_.add_stiffest(series_);
     fastest_ = series_.bound_rates();
     const double duration = options.t_end - options.t_start;
@@ -75,10 +79,8 @@ class ExactRun final : public StepMotion {
     locate_friction();
     EnergyMonitor energy(assembler_, now_);
     energy_ = &energy;
-    forces_ = std::any_of(observers_.begin(), observers_.end(),
-                          [](const Observer* o) { return o->needs_acceleration(); });
-    watches_loads_ = std::any_of(observers_.begin(), observers_.end(),
-                                 [](const Observer* o) { return o->watches_loads(); });
+    forces_ = std::ranges::any_of(observers_, &Observer::needs_acceleration);
+    watches_loads_ = std::ranges::any_of(observers_, &Observer::watches_loads);
     for (Observer* o : observers_) o->look_through(*this);
     for (Observer* o : observers_) o->start(assembler_, now_);
     check_start(summary_, assembler_, now_);
@@ -88,9 +90,7 @@ class ExactRun final : public StepMotion {
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
     const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
-    double allowed = options_.energy_tolerance;
-    if (!(allowed > 0.0)) allowed = std::max(kEnergyTolerance, 2.0 * options_.tolerance);
-    if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed);
+    if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed_imbalance_);
     return summary_;
   }
 
@@ -172,6 +172,7 @@ class ExactRun final : public StepMotion {
     State& to = next_.state;
     to.t = t_new;
     to.history = from.history;
+    series_.sum_up(s);
     expansion_.evaluate(s, to.z, to.v);
     if (!friction_.empty()) friction_.write(s, from.history, to.history);
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
@@ -466,7 +467,7 @@ class ExactRun final : public StepMotion {
   Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
-  double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0;
+  double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0, allowed_imbalance_ = 0.0;
   SteadyStep steady_step_;
   int changes_here_ = 0, change_limit_ = 0;
   bool watches_loads_ = false;  // some observer does

@@ -42,7 +42,7 @@ class KinkResponse {
   /// Loss in all dampers of the system and of pieces that are linear [J].
   double dissipated() {
     return_slopes();
-    return series_.loss(end_, any());
+    return series_.loss(end_, any(), true);
   }
 
  private:

@@ -166,7 +166,7 @@ LawWork StepExpansion::work(const LawSeries& laws, double s, const EvaluatedStat
   sum += expanded.work(series, s, end, sweeps_ && kinks.any());
   sum.input += known.work(series, s, end.state.z) + laws.input(s) + friction.input(s);
   if (sweeps_) return sum += {kinks.work(), kinks.dissipated()};
-  sum.dissipated += series.dissipated(s) + laws.dissipated(s) + friction.dissipated(s);
+  sum.dissipated += series.loss(s, false, false) + laws.dissipated(s) + friction.dissipated(s);
   return sum;
 }
 

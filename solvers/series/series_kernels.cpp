@@ -344,49 +344,6 @@ struct Work {
   }
 };
 
-struct Product {
-  static constexpr int kTogether = 4;  // as in Work
-  template <class L>
-  [[gnu::always_inline]] static double run(int stride, int degree, const double* rates, const double* forces,
-                                           const double* c_main, double s) {
-    double once[kMostTerms], twice[kMostTerms];
-    double power = s;
-    for (int k = 0; k < 2 * degree + kTogether; ++k, power *= s) {
-      once[k] = power * kInverse[idx(k + 1)];
-      twice[k] = 2.0 * once[k];
-    }
-    L total{};
-    for (int i = 0; i < stride; i += kLanes) {
-      L block{};
-      for (int j = 0; j < degree; j += kTogether) {
-        L row[kTogether], x;
-        clear(row);
-        const int together = std::min(kTogether, degree - j);
-        // C is symmetric: each pair once.
-        for (int k = 0; k < j; ++k) {
-          load(column(forces, stride, k) + i, x);
-          for (int q = 0; q < kTogether; ++q) row[q] += twice[j + q + k] * x;
-        }
-        for (int k = j; k < j + together; ++k) {
-          load(column(forces, stride, k) + i, x);
-          for (int q = 0; q < kTogether; ++q) row[q] += once[j + q + k] * x;
-        }
-        for (int q = 0; q < together; ++q) {
-          load(column(rates, stride, j + q) + i, x);
-          block += row[q] * x;
-        }
-      }
-      L c;
-      if (c_main != nullptr) {
-        load(c_main + i, c);
-        block *= c;
-      }
-      total += block;
-    }
-    return sum_of(total);
-  }
-};
-
 }  // namespace
 
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out) {
@@ -448,11 +405,6 @@ double weighted_squares(int stride, int terms, const double* factor, const doubl
 
 double series_work(int stride, int degree, const double* z_0, int p_degree, const double* p, double s) {
   return run_widest<Work>(stride, degree, z_0, p_degree, p, s);
-}
-
-double series_product(int stride, int degree, const double* rates, const double* forces, const double* c_main,
-                      double s) {
-  return run_widest<Product>(stride, degree, rates, c_main != nullptr ? rates : forces, c_main, s);
 }
 
 }  // namespace drev

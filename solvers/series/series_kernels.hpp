@@ -111,9 +111,4 @@ double weighted_squares(int stride, int terms, const double* factor, const doubl
 /// int_0^s (sum P_k s^k) . z' ds with the columns P_k, k = 0 ... p_degree.
 double series_work(int stride, int degree, const double* z_0, int p_degree, const double* p, double s);
 
-/// sum_jk 1/(j+k-1) s^(j+k-1) (j Z_j) . (C k Z_k), j, k = 1 ... degree; rates and forces hold j Z_j and
-/// C j Z_j at column j - 1. c_main: C is this diagonal, forces are not read.
-double series_product(int stride, int degree, const double* rates, const double* forces, const double* c_main,
-                      double s);
-
 }  // namespace drev

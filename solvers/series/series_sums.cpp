@@ -10,12 +10,11 @@ namespace drev {
 
 namespace {
 
-// Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what is left out is
-// at most 1e-11 of the loss by a mode of rate h = 3.
-constexpr int kLossTerms = 8;
-// As many do where a bound says that the next one is this part of the square of the largest rate at most.
-constexpr int kFewLossTerms = 6;
-constexpr double kLeftOfLoss = 1e-10;
+// Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what the most of them
+// leave out is at most 1e-16 of the loss by a mode of rate h = 4.5. As few are taken as set_loss_accuracy() allows.
+constexpr int kLossTerms = 12, kFewestLossTerms = 6;
+// The same of the motion swept, which is a small part of all, and at the nodes of Gauss's rule: at most 1e-11 by one of rate h = 3.
+constexpr int kSweptTerms = 8;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
 constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
@@ -40,17 +39,15 @@ constexpr double beyond_weight(int k) { return k * (k - 1.0) * (k - 2.0) * (k - 
 struct SumWeights {
   // Weights by term k, then by column, for s = 1.
   std::array<double, std::size_t{kSums} * (TaylorSeries::kMaxDegree + 1)> end{};
-  std::array<double, std::size_t{kLossTerms}* kLossTerms> swept = weights_of_swept<kLossTerms>();
+  std::array<double, std::size_t{kSweptTerms}* kSweptTerms> swept = weights_of_swept<kSweptTerms>();
   std::array<double, std::size_t{2} * kRangeTerms>
       range{};  // weights of the terms' sizes from the first on: of the value, of the slope
   // Where the weights of a sum begin: end's are zero up to term j of moment j, swept's ahead of the moment's own row.
   std::array<int, kSums> end_begin{};
-  std::array<int, kLossTerms> swept_begin{};
+  std::array<int, kSweptTerms> swept_begin{};
   SumWeights() {
-    for (int j = 0; j < kLossTerms; ++j) {
-      end_begin[idx(kMoments + j)] = j;
-      swept_begin[idx(j)] = kLossTerms - 1 - j;
-    }
+    for (int j = 0; j < kLossTerms; ++j) end_begin[idx(kMoments + j)] = j;
+    for (int j = 0; j < kSweptTerms; ++j) swept_begin[idx(j)] = kSweptTerms - 1 - j;
     for (int k = 1; k <= TaylorSeries::kMaxDegree; ++k) {
       double* w = end.data() + k * kSums;
       w[kRateSum] = k;
@@ -74,16 +71,16 @@ const SumWeights& sum_weights() {
 
 /// Weights of the moments swept(m) in y and y' at the nodes of Gauss's rule, for s = 1: y' = sum (2 k + 1) (int y' L_k ds) L_k.
 struct NodeWeights {
-  std::array<NodeValues, kLossTerms> of_moment{};
+  std::array<NodeValues, kSweptTerms> of_moment{};
   NodeWeights() {
-    const PowersOf<kLossTerms> powers = legendre_powers<kLossTerms>();
-    const auto swept = weights_of_swept<kLossTerms>();
-    for (std::size_t m = 0; m < kLossTerms; ++m)
-      for (std::size_t k = m; k < kLossTerms; ++k) {
+    const PowersOf<kSweptTerms> powers = legendre_powers<kSweptTerms>();
+    const auto swept = weights_of_swept<kSweptTerms>();
+    for (std::size_t m = 0; m < kSweptTerms; ++m)
+      for (std::size_t k = m; k < kSweptTerms; ++k) {
         const double weight =
-            (2.0 * static_cast<double>(k) + 1.0) * swept[(kLossTerms - 1 - m) * kLossTerms + k];
-        std::array<double, kLossTerms + 1> integral{};  // powers of the integral of L_k from 0
-        for (std::size_t i = 0; i < kLossTerms; ++i)
+            (2.0 * static_cast<double>(k) + 1.0) * swept[(kSweptTerms - 1 - m) * kSweptTerms + k];
+        std::array<double, kSweptTerms + 1> integral{};  // powers of the integral of L_k from 0
+        for (std::size_t i = 0; i < kSweptTerms; ++i)
           integral[i + 1] = powers[k][i] / static_cast<double>(i + 1);
         NodeValues at;
         find_at_nodes(integral, 1.0, at);
@@ -102,7 +99,7 @@ struct MomentsAtNodes {
                                          NodeValues* out) {
     for (std::size_t first = 0; first < out->value.size(); first += kLanes) {
       L value{}, slope{}, x;
-      for (int m = 0; m < kLossTerms; ++m) {
+      for (int m = 0; m < kSweptTerms; ++m) {
         load(weights[m].value.data() + first, x);
         value += moments[m] * x;
         load(weights[m].slope.data() + first, x);
@@ -138,42 +135,48 @@ int TaylorSeries::energy_degree() const {
 void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const {
   static const NodeWeights weights;
   const double per_s = 1.0 / s;
-  std::array<double, kLossTerms> moments;
+  std::array<double, kSweptTerms> moments;
   double part = 1.0;  // s^-m
-  for (int m = 0; m < kLossTerms; ++m, part *= per_s) moments[idx(m)] = part * value_along(row, swept(m));
+  for (int m = 0; m < kSweptTerms; ++m, part *= per_s) moments[idx(m)] = part * value_along(row, swept(m));
   run_widest<MomentsAtNodes>(static_cast<const NodeValues*>(weights.of_moment.data()),
                              static_cast<const double*>(moments.data()), per_s, &out);
 }
 
-/// Moments that losses in this step want.
+/// As many moments as losses in this step want: the next one bounds what is left out, relative to the square of the largest rate.
 int TaylorSeries::loss_terms() const {
-  const double* weight = sum_weights().end.data() + kMoments + kFewLossTerms;
-  for (std::size_t kind = 0; kind < v_step_scale_.size(); ++kind) {
-    double next = 0.0;
-    for (int k = kFewLossTerms + 1; k <= degree_; ++k) next += weight[k * kSums] * sizes_[idx(k)][kind];
-    const double largest = h_ * v_step_scale_[kind];
-    if (!((2 * kFewLossTerms + 1) * next * next <= kLeftOfLoss * largest * largest)) return kLossTerms;
-  }
-  return kFewLossTerms;
+  const auto suffices = [this](int terms) {
+    const double* weight = sum_weights().end.data() + kMoments + terms;
+    for (std::size_t kind = 0; kind < v_step_scale_.size(); ++kind) {
+      double next = 0.0;
+      for (int k = terms + 1; k <= degree_; ++k) next += weight[k * kSums] * sizes_[idx(k)][kind];
+      const double largest = h_ * v_step_scale_[kind];
+      if (!((2 * terms + 1) * next * next <= left_of_loss_ * largest * largest)) return false;
+    }
+    return true;
+  };
+  int terms = kFewestLossTerms;
+  while (terms < kLossTerms && !suffices(terms)) terms += 2;
+  return terms;
 }
 
 const double* TaylorSeries::sums(double s) {
   if (s == sums_at_) return step_sums_.data();
   const auto& at_end = sum_weights().end;
   const double* weight = at_end.data();
+  loss_terms_ = loss_terms();
+  const int columns = kMoments + loss_terms_;
   if (s != 1.0) {
-    part_weights_.assign(at_end.begin(), at_end.end());
+    part_weights_.resize(at_end.size());
     double power = s, below = 1.0;  // s^k, s^(k-1)
     for (int k = 1; k <= degree_; ++k, below = power, power *= s) {
       double* w = part_weights_.data() + k * kSums;
-      for (int j = 0; j < kSums; ++j) w[j] *= j == kRateSum ? below : power;
+      for (int j = 0; j < columns; ++j) w[j] = at_end[idx(k * kSums + j)] * (j == kRateSum ? below : power);
     }
     weight = part_weights_.data();
   }
   step_sums_.resize(idx(kSums * stride_));
-  loss_terms_ = loss_terms();
-  weighted_sums(stride_, kMoments + loss_terms_, 0, degree_, weight + kSums, kSums,
-                sum_weights().end_begin.data(), coefficients(1), step_sums_.data());
+  weighted_sums(stride_, columns, 0, degree_, weight + kSums, kSums, sum_weights().end_begin.data(),
+                coefficients(1), step_sums_.data());
   sums_at_ = s;
   return step_sums_.data();
 }
@@ -265,33 +268,35 @@ double TaylorSeries::work(const double* p, int degree, double s) {
   return series_work(stride_, energy_degree(), coefficients(0), degree, p, s);
 }
 
-double TaylorSeries::loss(double s, bool swept_too) {
-  if (undamped_ && dampers_.empty()) return 0.0;
+double TaylorSeries::loss(double s, bool swept_too, bool of_added) {
+  of_added = of_added && !dampers_.empty();
+  if ((undamped_ && !of_added) || s == 0.0) return 0.0;
   // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
   const double* of_z = sums(s) + idx(kMoments * stride_);
   std::array<double, kLossTerms> factor;
   const int terms = loss_terms_;
   for (int k = 0; k < terms; ++k) factor[idx(k)] = (2 * k + 1) / s;
-  swept_moments_.resize(idx(kLossTerms * stride_));
+  swept_moments_.resize(idx(kSweptTerms * stride_));
   double* of_y = swept_moments_.data();
+  const int y_terms = swept_too ? std::min(terms, kSweptTerms) : 0;
   if (swept_too) {
     const auto& at_end = sum_weights().swept;
     const double* weight = at_end.data();
     if (s != 1.0) {
       part_weights_.assign(at_end.begin(), at_end.end());
       double part = 1.0;
-      for (int m = 0; m < kLossTerms; ++m, part /= s)
-        for (int k = 0; k < kLossTerms; ++k)
-          part_weights_[idx((kLossTerms - 1 - m) * kLossTerms + k)] *= part;
+      for (int m = 0; m < kSweptTerms; ++m, part /= s)
+        for (int k = 0; k < kSweptTerms; ++k)
+          part_weights_[idx((kSweptTerms - 1 - m) * kSweptTerms + k)] *= part;
       weight = part_weights_.data();
     }
-    weighted_sums(stride_, terms, 0, kLossTerms, weight, kLossTerms, sum_weights().swept_begin.data(),
-                  swept(kLossTerms - 1), of_y);
+    weighted_sums(stride_, y_terms, 0, kSweptTerms, weight, kSweptTerms, sum_weights().swept_begin.data(),
+                  swept(kSweptTerms - 1), of_y);
   }
-  const int y_terms = swept_too ? terms : 0;
   double sum = 0.0;
-  for (const Damper& damper : dampers_)
+  for (std::size_t i = 0; of_added && i < dampers_.size(); ++i)
     for (int k = 0; k < terms; ++k) {
+      const Damper& damper = dampers_[i];
       double x = value_along(damper.term->z, of_z + idx(k * stride_));
       if (k < y_terms) x += value_along(damper.term->z, of_y + idx(k * stride_));
       sum += factor[idx(k)] * damper.c * x * x;
@@ -311,27 +316,6 @@ double TaylorSeries::loss(double s, bool swept_too) {
     for (int i = 0; i < n_; ++i) sum += factor[idx(k)] * x[i] * solve_in_[i];
   }
   return sum / h_;
-}
-
-double TaylorSeries::dissipated(double s) {
-  if (undamped_) return 0.0;
-  const int degree = energy_degree();
-  rates_.resize(idx(degree * stride_));
-  for (int j = 1; j <= degree; ++j) {
-    const double* z = coefficients(j);
-    double* rate = rates_.data() + idx((j - 1) * stride_);
-    for (int i = 0; i < n_; ++i) rate[i] = j * z[i];
-    for (int i = n_; i < stride_; ++i) rate[i] = 0.0;
-  }
-  if (base_main_damping_)
-    return series_product(stride_, degree, rates_.data(), nullptr,
-                          c_.base.data() + diagonals_[idx(main_)].values, s) /
-           h_;
-  forces_.assign(idx(degree * stride_), 0.0);
-  // The product reads beside the column: from the coefficients, which have room there.
-  for (int j = 1; j <= degree; ++j)
-    subtract_product(c_.base, false, coefficients(j), -j, forces_.data() + idx((j - 1) * stride_));
-  return series_product(stride_, degree, rates_.data(), forces_.data(), nullptr, s) / h_;
 }
 
 void TaylorSeries::at_nodes(double* z, double* v) const {

@@ -122,8 +122,11 @@ class TaylorSeries {
   /// y and y' along a row, swept up to s, at the nodes of Gauss's rule over [0, s]: y' as its first Legendre polynomials.
   void swept_at_nodes(const std::vector<Entry>& row, double s, NodeValues& out) const;
 
-  /// Loss in all dampers up to s; swept_too: with the motion swept up to there [J].
-  double loss(double s, bool swept_too);
+  /// Loss up to s in the system's own dampers, and in those that add_damper() added; swept_too: with the motion swept up to there
+  /// [J].
+  double loss(double s, bool swept_too, bool of_added);
+  /// What losses may leave out of one by the largest rate so far.
+  void set_loss_accuracy(double part) { left_of_loss_ = part; }
 
   long products() const { return products_; }  ///< with the matrices, one a degree
   int degree() const { return degree_; }
@@ -136,6 +139,8 @@ class TaylorSeries {
   static int stride(const System& system) { return whole_lanes(system.size() + system.loaded_rows()); }
   const double* coefficients(int k) const { return z_.data() + idx(pad_ + k * stride_); }
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
+  /// Finds at once what evaluate(), work() and loss() read at s, where all of them are asked for.
+  void sum_up(double s) { sums(s); }
   /// z and v at s; swept_too: with the motion swept up to there.
   void evaluate(double s, Vector& z, Vector& v, bool swept_too = false) const;
   /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
@@ -150,9 +155,6 @@ class TaylorSeries {
   void at_nodes(double* z, double* v) const;
   /// The degree up to which terms count in energies.
   int energy_degree() const;
-  /// int z'^T C z' dt from 0 to s of the step with the system's own C: what linear dampers took
-  /// [J].
-  double dissipated(double s);
   /// out = M^-1 rhs.
   void solve_mass(const Vector& rhs, Vector& out);
 
@@ -269,8 +271,9 @@ class TaylorSeries {
   };
   std::vector<Damper> dampers_;  // beside the system's own, within c_
   int loss_terms_ = 0;           // moments in step_sums_
-  double sums_at_ = -1.0;        // s of step_sums_; -1: none of this step
-  LaneVector p_, z_, rates_, forces_, zeros_;
+  double left_of_loss_ = 1e-16;
+  double sums_at_ = -1.0;  // s of step_sums_; -1: none of this step
+  LaneVector p_, z_, zeros_;
   // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;
   LaneVector with_rows_;
