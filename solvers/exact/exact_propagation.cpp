@@ -33,7 +33,7 @@ constexpr double kRetreat = 1.0 / 16.0;  // length of the next attempt over that
 // Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
 constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
 constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
-constexpr double kOfImbalance = 1e-4;      // part of the energy balance's tolerance that losses may leave out
+constexpr double kOfImbalance = 1e-4;      // of the balance's tolerance: set_loss_accuracy()
 constexpr double kNoProgress = 1e-12;      // least advance of a step, relative to the largest step
 
 class ExactRun final : public StepMotion {

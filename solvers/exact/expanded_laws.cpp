@@ -179,7 +179,7 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
   }
 }
 
-/// A law that is the same spring all along the step is none of those that act through terms.
+/// A law that is the same spring all along the step acts through the matrices, and works as they do: it loses nothing.
 void ExpandedLaws::add_spring(TaylorSeries& series, Law& law) {
   const std::vector<Entry>& z = law.term->z;
   const double k = law.r[0] * law.k, y = law.r[0] * law.y_0 + k * law.known[0];
@@ -377,7 +377,8 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
-    if (law.is_spring) {
+    if (law.is_spring &&
+        varies) {  // what it stored beyond its work comes from a jump of its stiffness at the step's end
       const double from = law.deflection, to = end.inputs[idx(law.index)].x - law.origin;
       work.input -= law.r[0] * (to - from) * (law.y_0 + 0.5 * law.k * (from + to));
     }

@@ -97,11 +97,11 @@ class ExpandedLaws final : public TermForces {
     double direction = 1.0;                                       // in which the angle went last
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
-    int terms_to = -1,
-        scale_to =
-            -1;  // degrees so far: of x and theta; of r, which a law without force needs for its bounds alone
+    // Degrees so far: of x and theta; and of r, which a law without force needs for its bounds alone.
+    int terms_to = -1, scale_to = -1;
     // The step's piece about `origin`, where its elastic force is zero.
-    bool active = false, works = false;  // it has a force; a flank that let go has none, but loses energy
+    // It acts through terms; its force loses energy: that of a flank that let go does without one.
+    bool active = false, works = false;
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
     bool is_spring = false;                              // over the whole step: it is in the series' matrices

@@ -11,6 +11,8 @@ namespace drev {
 namespace {
 
 constexpr int kLeastSwept = 8, kMostCuts = 20;
+// Largest motion that kinks may add in a step, relative to all: moments of a few powers tell the loss by one that bends so only in part.
+constexpr double kMostResponse = 0.01;
 constexpr int kMostKinks = 1000;  // kinks in a step; what they do to each other is bounded pair by pair
 // Part of what is allowed that pairs of kinks may add up to by their bound.
 constexpr double kMostRowsApart = 0.5;
@@ -83,6 +85,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
   rest *= 0.5 * scale * end * end;
   const double response = rest;
+  if (response > kMostResponse) return false;
   int degree = 0;
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
     rest *= growth * kInverse[idx(++degree + 2)];

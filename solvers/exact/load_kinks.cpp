@@ -1,7 +1,6 @@
 // LoadSeries: the knots of tables that angles pass inside a step.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "solvers/contact/roots.hpp"

@@ -12,7 +12,8 @@
 namespace drev {
 
 namespace {
-constexpr int kMostTerms = static_cast<int>(kInverse.size()) - 1;  // terms of a product of two series
+constexpr int kMostTerms =
+    static_cast<int>(kInverse.size()) - 1;  // of a series, and of what it is multiplied with
 
 [[gnu::always_inline]] inline const double* column(const double* first, int stride, int k) {
   return first + static_cast<std::ptrdiff_t>(k) * stride;

@@ -12,7 +12,7 @@ namespace {
 
 // Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what the most of them
 // leave out is at most 1e-16 of the loss by a mode of rate h = 4.5. As few are taken as set_loss_accuracy() allows.
-constexpr int kLossTerms = 12, kFewestLossTerms = 6;
+constexpr int kLossTerms = 12;
 // The same of the motion swept, which is a small part of all, and at the nodes of Gauss's rule: at most 1e-11 by one of rate h = 3.
 constexpr int kSweptTerms = 8;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
@@ -142,7 +142,8 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
                              static_cast<const double*>(moments.data()), per_s, &out);
 }
 
-/// As many moments as losses in this step want: the next one bounds what is left out, relative to the square of the largest rate.
+/// As many moments as losses in this step want: of the series, the next one tells what is left out, relative to the square of the
+/// largest rate. A motion that is swept beside it bends where forces kink, and wants more.
 int TaylorSeries::loss_terms() const {
   const auto suffices = [this](int terms) {
     const double* weight = sum_weights().end.data() + kMoments + terms;
@@ -154,7 +155,7 @@ int TaylorSeries::loss_terms() const {
     }
     return true;
   };
-  int terms = kFewestLossTerms;
+  int terms = fewest_loss_terms_;
   while (terms < kLossTerms && !suffices(terms)) terms += 2;
   return terms;
 }
@@ -224,6 +225,7 @@ void TaylorSeries::sum_sizes(int first, int count, const double* weight, const N
 }
 
 void TaylorSeries::ranges(double* end, double* size) {
+  fewest_loss_terms_ = kSweptTerms;
   std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
   Norm tail{}, slope_tail{};

@@ -404,6 +404,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k) {
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
   sums_at_ = -1.0;
+  fewest_loss_terms_ = kFewestLossTerms;
   scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };

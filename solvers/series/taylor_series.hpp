@@ -125,7 +125,7 @@ class TaylorSeries {
   /// Loss up to s in the system's own dampers, and in those that add_damper() added; swept_too: with the motion swept up to there
   /// [J].
   double loss(double s, bool swept_too, bool of_added);
-  /// What losses may leave out of one by the largest rate so far.
+  /// What losses in a step may leave out of the series', relative to one by the largest rate so far.
   void set_loss_accuracy(double part) { left_of_loss_ = part; }
 
   long products() const { return products_; }  ///< with the matrices, one a degree
@@ -153,8 +153,6 @@ class TaylorSeries {
   double work(const double* p, int degree, double s);
   /// z, and v where it is not null, at the nodes of Gauss's rule: rows of node q at q stride().
   void at_nodes(double* z, double* v) const;
-  /// The degree up to which terms count in energies.
-  int energy_degree() const;
   /// out = M^-1 rhs.
   void solve_mass(const Vector& rhs, Vector& out);
 
@@ -235,6 +233,8 @@ class TaylorSeries {
           system_.rows().topRows(m) * Eigen::Map<const Vector>(column, n_);
   }
   void add_row_forces(const double* p, const double* x_0);
+  /// The degree up to which terms count in energies.
+  int energy_degree() const;
   int loss_terms() const;
   const double* sums(double s);
   void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
@@ -264,13 +264,15 @@ class TaylorSeries {
   LaneVector swept_;        // columns of the sweep behind two of zeros
   int swept_degree_ = 0;
   LaneVector step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
-  std::vector<Entry> load_damping_;                      // by row, within c_
+  std::vector<Entry> load_damping_;                      // by row, within c_: for take_load_damping()
   struct Damper {
     const ScalarTerm* term;
     double c;
   };
   std::vector<Damper> dampers_;  // beside the system's own, within c_
   int loss_terms_ = 0;           // moments in step_sums_
+  static constexpr int kFewestLossTerms = 6;
+  int fewest_loss_terms_ = kFewestLossTerms;  // in this step
   double left_of_loss_ = 1e-16;
   double sums_at_ = -1.0;  // s of step_sums_; -1: none of this step
   LaneVector p_, z_, zeros_;

@@ -53,8 +53,9 @@ TEST_CASE("The page on sweeps shows what the commands print", "[sweep]") {
 
 TEST_CASE("A train whose rattle takes more harmonics than there are: no curve is made up, its run is told",
           "[sweep][once]") {
+  // At 1,440 to 1,452 rpm rounding decides whether the rattle comes to repeat within the run.
   const auto printed = drev_command(
-      {"sweep", DREV_SOURCE_DIR "/models/tutorial/train.toml", "--speeds", "1450,1480", "--json"});
+      {"sweep", DREV_SOURCE_DIR "/models/tutorial/train.toml", "--speeds", "1460,1480", "--json"});
   REQUIRE(printed.exit_code == 0);
   const Json json = Json::parse(printed.out);
   for (const Json& branch : json.at("branches"))

@@ -115,6 +115,30 @@ TEST_CASE("Exact propagation: a mesh whose stiffness rises linearly with the ang
   CHECK(run.steps < 120);  // 25 periods of vibration, no passes
 }
 
+TEST_CASE("Exact propagation: a mesh of constant stiffness whose transmission error is zero on some teeth") {
+  // Where the error is zero the mesh is a spring, which no one puts energy into; where it is not, its end does the work.
+  const double inertia = 2.0, stiffness = 4e6, turned = 1e-5, rate = 0.3, t_end = 0.05;
+  const auto run = [&](TransmissionError error) {
+    Model m = disc_on_mesh(
+        inertia, 20.0,
+        {.teeth_1 = 10, .teeth_2 = 10, .stiffness = stiffness, .transmission_error = std::move(error)});
+    m.set_initial("disc", turned, rate);
+    const System system = m.build();
+    State state = State::initial(system);
+    const RunSummary summary = propagate(system, {.tolerance = 1e-11, .t_end = t_end}, state);
+    INFO(summary.brief_report());
+    CHECK(summary.ok());
+    CHECK(std::abs(summary.energy.relative_error()) < 1e-10);
+    return std::pair{summary, state};
+  };
+  const auto [none, state] = run(TransmissionError::table({0.0, 0.3}, {0.0, 0.0}));
+  const double omega = std::sqrt(stiffness / inertia), phase = omega * t_end;
+  CHECK(state.z[0] == Approx(turned * std::cos(phase) + rate / omega * std::sin(phase)).epsilon(1e-9));
+  CHECK(std::abs(none.energy.input) < 1e-12);
+  const auto [some, other] = run(TransmissionError::table({0.0, 0.3, 0.5, 0.8}, {0.0, 0.0, 1e-5, 0.0}));
+  CHECK(std::abs(some.energy.input) > 1e-3);  // of 0.09 J at the start
+}
+
 TEST_CASE("Exact propagation: a limited damper behind a jump of its mesh's stiffness") {
   // A disc so heavy that it goes on at its speed v closes the gap at t_0; the flank then carries min(2 k p, k p + c v),
   // p = v (t - t_0), and loses k p or c v, whichever is less, by the stiffness of the moment.
