@@ -86,7 +86,8 @@ TEST_CASE("Rainflow counts keep the sum of all ways, and refuse what is not fini
   CHECK_THROWS_AS(count_rainflow(std::vector<double>{0.0, NAN}), ModelError);
 }
 
-// Two discs on an undamped spring, let go: twist A cos(w t), so that each period is a cycle of range 2 k A.
+// Two discs on an undamped spring, let go: twist A cos(w t), so that each period is a cycle of range 2 k A. It ends on the way, since
+// beside a peak rounding would decide whether a half cycle of no range is counted: the last half cycle has half the range.
 TEST_CASE("Load cycles of a run are found on the motion, whatever the steps", "[strength]") {
   Model m("free vibration");
   m.add_node("a");
@@ -101,14 +102,15 @@ TEST_CASE("Load cycles of a run are found on the motion, whatever the steps", "[
   for (const Method& method :
        {Method{.name = "exact", .tolerance = 1e-12}, Method{.name = "dormand_prince", .tolerance = 1e-10}}) {
     RainflowWatch watch({{find_channel(system, "shaft.torque_Nm"), 5e4, line}});
-    run_method(system, method, {.t_end = 20.0 * period}, {&watch});
+    run_method(system, method, {.t_end = 20.25 * period}, {&watch});
     const auto& found = watch.finish();
     REQUIRE(found.size() == 1);
-    CHECK(found[0].histogram.cycles() == Approx(20.0).epsilon(1e-9));
+    CHECK(found[0].histogram.cycles() == Approx(20.5).epsilon(1e-9));
     CHECK(found[0].histogram.largest() == Approx(range).epsilon(1e-8));
-    CHECK(found[0].damage == Approx(20.0 / 1e4 * std::pow(range * 5e4 / 1e6, 4.0)).epsilon(1e-7));
+    CHECK(found[0].damage ==
+          Approx((20.0 + 0.5 * std::pow(0.5, 4.0)) / 1e4 * std::pow(range * 5e4 / 1e6, 4.0)).epsilon(1e-7));
     double counted = 0.0;
     for (const auto& c : found[0].histogram.classes()) counted += c.count * c.mean_range();
-    CHECK(counted == Approx(20.0 * range).epsilon(1e-7));
+    CHECK(counted == Approx(20.25 * range).epsilon(1e-7));
   }
 }
