@@ -377,8 +377,8 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
   for (const Law& law : laws_) {
     const bool varies = law.term->force->varies();
     if (varies) work.input += end.responses[idx(law.index)].stored_energy - law.stored;
-    if (law.is_spring &&
-        varies) {  // what it stored beyond its work comes from a jump of its stiffness at the step's end
+    // What such a spring stored beyond the work on it comes from a jump of its stiffness at the step's end.
+    if (varies && law.is_spring) {
       const double from = law.deflection, to = end.inputs[idx(law.index)].x - law.origin;
       work.input -= law.r[0] * (to - from) * (law.y_0 + 0.5 * law.k * (from + to));
     }

@@ -99,8 +99,8 @@ class ExpandedLaws final : public TermForces {
     bool varies = false;                                          // r over this step
     // Degrees so far: of x and theta; and of r, which a law without force needs for its bounds alone.
     int terms_to = -1, scale_to = -1;
-    // The step's piece about `origin`, where its elastic force is zero.
-    // It acts through terms; its force loses energy: that of a flank that let go does without one.
+    // The step's piece about `origin`, where its elastic force is zero. active: it acts through terms; works: its work is found at
+    // nodes, that of a flank that let go, too, which has no force but loses energy.
     bool active = false, works = false;
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
