@@ -36,13 +36,12 @@ double product_term(const std::vector<double>& a, const std::vector<double>& b, 
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// Term m of cos and sin of orders of an angle whose s theta' has terms `turn`, and what they add to a sum of orders and to
-/// its slope by the angle.
+/// Term m of cos and sin of orders of an angle whose s theta' has terms `turn`; returns what they add to a sum of orders.
 struct OrderTerms {
   template <class L>
-  [[gnu::always_inline]] static void run(const double* turn, int m, int lanes, const double* orders,
-                                         double* cosine, double* sine, double* sums) {
-    L sum{}, slope{}, x, order;
+  [[gnu::always_inline]] static double run(const double* turn, int m, int lanes, const double* orders,
+                                           double* cosine, double* sine) {
+    L sum{}, x, order;
     for (int first = 0; first < lanes; first += kLanes) {
       L of_c{}, of_s{}, of_c_even{}, of_s_even{};  // two sums each, that do not wait for each other
       const auto add = [&](int j, L& c_sum, L& s_sum) __attribute__((always_inline)) {
@@ -67,10 +66,28 @@ struct OrderTerms {
       load(orders + lanes + first, by_cosine);
       load(orders + 2 * lanes + first, by_sine);
       sum += by_cosine * c + by_sine * s;
-      slope += order * (by_sine * c - by_cosine * s);
     }
-    sums[0] = sum_of(sum);
-    sums[1] = sum_of(slope);
+    return sum_of(sum);
+  }
+};
+
+/// Terms first ... terms - 1 of the slope by the angle of a sum of orders.
+struct OrderSlopes {
+  template <class L>
+  [[gnu::always_inline]] static void run(int first, int terms, int lanes, const double* orders,
+                                         const double* cosine, const double* sine, double* out) {
+    for (int m = first; m < terms; ++m) {
+      L sum{}, order, by_cosine, by_sine, c, s;
+      for (int i = 0; i < lanes; i += kLanes) {
+        load(orders + i, order);
+        load(orders + lanes + i, by_cosine);
+        load(orders + 2 * lanes + i, by_sine);
+        load(cosine + m * lanes + i, c);
+        load(sine + m * lanes + i, s);
+        sum += order * (by_sine * c - by_cosine * s);
+      }
+      out[m] = sum_of(sum);
+    }
   }
 };
 
@@ -199,8 +216,8 @@ void ExpandedLaws::add_spring(TaylorSeries& series, Law& law) {
 void ExpandedLaws::start_scale(Law& law) const {
   const std::span<const ScaleOrder> orders = law.stretch.orders;
   law.scale_to = 0;
+  law.slopes_to = -1;
   law.r[0] = law.stretch.value;
-  law.by_phase_terms[0] = law.stretch.slope;
   const auto lanes = idx(whole_lanes(static_cast<int>(orders.size())));
   law.orders.assign(3 * lanes, 0.0);
   for (auto* terms : {&law.cosine, &law.sine}) {
@@ -224,23 +241,30 @@ void ExpandedLaws::start_scale(Law& law) const {
     law.cosine[i] = c;
     law.sine[i] = s;
     law.r[0] += o.cosine * c + o.sine * s;
-    law.by_phase_terms[0] += o.order * (o.sine * c - o.cosine * s);
   }
 }
 
-/// r_m and the same of dr/dtheta, m >= 1, from theta_1 ... theta_m.
+/// r_m, m >= 1, from theta_1 ... theta_m.
 void ExpandedLaws::add_scale(Law& law, int m) {
   law.r[idx(m)] = law.stretch.slope * law.theta[idx(m)];
-  law.by_phase_terms[idx(m)] = 0.0;
-  law.turn[idx(m)] = m * law.theta[idx(m)];
   if (law.orders.empty()) return;
-  const auto lanes = static_cast<int>(law.orders.size() / 3);
-  double sums[2];
-  run_widest<OrderTerms>(static_cast<const double*>(law.turn.data()), m, lanes,
-                         static_cast<const double*>(law.orders.data()), law.cosine.data(), law.sine.data(),
-                         static_cast<double*>(sums));
-  law.r[idx(m)] += sums[0];
-  law.by_phase_terms[idx(m)] += sums[1];
+  law.turn[idx(m)] = m * law.theta[idx(m)];
+  law.r[idx(m)] += run_widest<OrderTerms>(static_cast<const double*>(law.turn.data()), m, lanes_of(law),
+                                          static_cast<const double*>(law.orders.data()), law.cosine.data(),
+                                          law.sine.data());
+}
+
+/// dr/dtheta, up to the term of r that is known.
+void ExpandedLaws::add_scale_slopes(Law& law) {
+  const int from = law.slopes_to + 1;
+  std::fill_n(law.by_phase_terms.begin() + from, law.scale_to - law.slopes_to, 0.0);
+  law.slopes_to = law.scale_to;
+  if (!law.orders.empty())
+    run_widest<OrderSlopes>(from, law.scale_to + 1, lanes_of(law),
+                            static_cast<const double*>(law.orders.data()),
+                            static_cast<const double*>(law.cosine.data()),
+                            static_cast<const double*>(law.sine.data()), law.by_phase_terms.data());
+  if (from == 0) law.by_phase_terms[0] += law.stretch.slope;
 }
 
 /// x_m and theta_m.
@@ -287,6 +311,7 @@ void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
   if (law.scale_to < 0) start_scale(law);
   if (!law.varies) return;
   for (; law.scale_to < series.degree(); ++law.scale_to) add_scale(law, law.scale_to + 1);
+  add_scale_slopes(law);
 }
 
 void ExpandedLaws::expand(const TaylorSeries& series) {

@@ -55,14 +55,15 @@ class ExpandedLaws final : public TermForces {
   void use_slopes(TaylorSeries& series, double s);
   void return_slopes(TaylorSeries& series);
   /// Of how much these slopes change along the step, in accelerations of a row of theirs, by angle [1/s^2] and by speed
-  /// [1/s]: bounds of their first derivatives by s, and of the third ones; left out: the slope by a phase whose node is none
-  /// of the law's own [1/s^2].
+  /// [1/s]: bounds of their first derivatives by s, and of those behind the kChanges that add_changes() takes; left out: the slope
+  /// by a phase whose node is none of the law's own [1/s^2].
+  static constexpr int kChanges = 3;
   struct SlopeChange {
     const ScalarTerm* term;
-    double by_angle = 0.0, by_speed = 0.0, by_angle_3 = 0.0, by_speed_3 = 0.0, left_out = 0.0;
+    double by_angle = 0.0, by_speed = 0.0, by_angle_behind = 0.0, by_speed_behind = 0.0, left_out = 0.0;
   };
   const std::vector<SlopeChange>& slope_changes() const { return changes_; }
-  /// Adds to the moments of a sweep, which was made without, what first and second derivatives of the slopes make of its
+  /// Adds to the moments of a sweep, which was made without, what the first kChanges derivatives of the slopes make of its
   /// motion: with y = sum of moments that it has, int (e - u)^(j+q)/(j! q!) y du = (j+q)!/(j! q!) of one of them.
   void add_changes(const TaylorSeries& series, int degree, double* moments) const;
   int known_degree() const override { return known_degree_; }
@@ -97,8 +98,8 @@ class ExpandedLaws final : public TermForces {
     double direction = 1.0;                                       // in which the angle went last
     double turned_at = std::numeric_limits<double>::quiet_NaN();  // s: it was turned there, once
     bool varies = false;                                          // r over this step
-    // Degrees so far: of x and theta; and of r, which a law without force needs for its bounds alone.
-    int terms_to = -1, scale_to = -1;
+    // Degrees so far: of x and theta; of r, which a law without force needs for its bounds alone; and of dr/dtheta.
+    int terms_to = -1, scale_to = -1, slopes_to = -1;
     // The step's piece about `origin`, where its elastic force is zero. active: it acts through terms; works: its work is found at
     // nodes, that of a flank that let go, too, which has no force but loses energy.
     bool active = false, works = false;
@@ -109,8 +110,8 @@ class ExpandedLaws final : public TermForces {
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
     std::vector<double> turn, by_phase_terms;  // series of s theta' and dr/dtheta
-    // Slopes of use_slopes(), with two derivatives by s.
-    std::array<double, 3> slope{}, by_speed{}, by_phase{};
+    // Slopes of use_slopes(), with their derivatives by s.
+    std::array<double, kChanges + 1> slope{}, by_speed{}, by_phase{};
     // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
     std::vector<double> orders, cosine, sine;
   };
@@ -119,7 +120,9 @@ class ExpandedLaws final : public TermForces {
   static void add_spring(TaylorSeries& series, Law& law);
   void start_scale(Law& law) const;
   void add_term(Law& law, const TaylorSeries& series, int m) const;
+  static int lanes_of(const Law& law) { return static_cast<int>(law.orders.size() / 3); }
   static void add_scale(Law& law, int m);
+  static void add_scale_slopes(Law& law);
   void complete_terms(Law& law, const TaylorSeries& series) const;
   void complete(Law& law, const TaylorSeries& series) const;
 

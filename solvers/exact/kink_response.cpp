@@ -142,7 +142,7 @@ bool KinkResponse::find_limit(double allowed, double scale) {
   const bool slopes = loads_.expanded().active() || laws_.active();
   const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
-    const Others bends = slopes ? error_of_slopes(limit_, change) : Others{};
+    const Others bends = slopes ? error_of_slopes(limit_, change, 0.5 * most) : Others{};
     if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {
       corrects_ = true;
       continue;
@@ -173,10 +173,12 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
 
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
 /// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, of one by speed d^5/60, and d^5/120 of a slope that is
-/// left out. Where add_changes() has been, of laws the square of that over y, and what third derivatives make, int (d - u)
-/// (d - u)^3/6 u^3/6 du = d^8/10080, by speed d^7/1260. between: the s of the kink that makes most of it.
-KinkResponse::Others KinkResponse::error_of_slopes(double end,
-                                                   const ExpandedLoads::SlopeChange& change) const {
+/// left out. Where add_changes() has been, of laws the square of that over y, and what the derivative behind those makes, the fourth:
+/// int (d - u) (d - u)^4/24 u^3/6 du = d^9/72576, by speed d^8/8064. between: the s of the kink that makes most of it. Where it is
+/// more than `enough` without add_changes(), how much more is not found.
+KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoads::SlopeChange& change,
+                                                   double enough) const {
+  static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
   const double h = series_.step();
   Others sum;
@@ -188,12 +190,13 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end,
       double of_law = h * h * law.by_angle * d / 360.0 + h * law.by_speed / 60.0;
       if (corrects_)
         of_law = 6.0 * of_law * of_law * d * d +
-                 d * d * (h * h * law.by_angle_3 * d / 10080.0 + h * law.by_speed_3 / 1260.0);
+                 d * d * d * (h * h * law.by_angle_behind * d / 72576.0 + h * law.by_speed_behind / 8064.0);
       of_law += h * h * law.left_out / 120.0;
       of_slopes = std::max(of_slopes, nearness(kinks.row(i), *law.term, d) * of_law);
     }
     const double error = loads_.kink_sizes().pull()[i] * fifth * of_slopes;
     sum.error += error;
+    if (!corrects_ && laws_.active() && sum.error > enough) break;
     if (error > most) {
       most = error;
       sum.between = kinks.place(i);

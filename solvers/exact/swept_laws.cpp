@@ -15,6 +15,16 @@ PolynomialDerivatives derivatives(std::span<const double> terms, double s) {
   return d;
 }
 
+/// Derivative d of p (y_0 + k x), where y = y_0 + k x: sum over i of d!/(i! (d - i)!) p^(d-i) (y_0 + k x)^(i).
+double scaled_derivative(std::size_t d, const double* p, double y, double k, const double* x) {
+  double sum = p[d] * y, ways = 1.0;
+  for (std::size_t i = 1; i <= d; ++i) {
+    ways *= static_cast<double>(d - i + 1) / static_cast<double>(i);
+    sum += ways * p[d - i] * k * x[i];
+  }
+  return sum;
+}
+
 double largest_coefficient(const std::vector<Entry>& row) {
   double most = 0.0;
   for (const Entry& e : row) most = std::max(most, std::abs(e.coeff));
@@ -53,27 +63,30 @@ void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
         derivatives(std::span(law.by_phase_terms).first(law.varies ? terms : 0), s);
     const auto &x = of_x.value, &r = of_r.value, &p = of_p.value;
     const double k = law.k, y = law.y_0 + k * x[0], g = law.g / h_;
-    law.slope = {k * r[0] + g * x[1], k * r[1] + g * x[2], k * r[2] + g * x[3]};
-    law.by_speed = {law.c + law.g * x[0], law.g * x[1], law.g * x[2]};
-    law.by_phase = {p[0] * y, p[1] * y + p[0] * k * x[1], p[2] * y + 2.0 * p[1] * k * x[1] + p[0] * k * x[2]};
+    for (std::size_t d = 0; d <= kChanges; ++d) {
+      law.slope[d] = k * r[d] + g * x[d + 1];
+      law.by_speed[d] = (d == 0 ? law.c : 0.0) + law.g * x[d];
+      law.by_phase[d] = scaled_derivative(d, p.data(), y, k, x.data());
+    }
     add_slopes(series, law, 1.0);
     note_changes(law, of_x.bound.data(), of_r.bound.data(), of_p.bound.data());
   }
 }
 
-/// x, r, p: bounds of these and of their derivatives by s.
+/// x, r, p: bounds of these and of their derivatives by s up to kDerivatives.
 void ExpandedLaws::note_changes(const Law& law, const double* x, const double* r, const double* p) {
   const double b = largest_coefficient(law.term->z), moved = largest_coefficient(law.gain);
   const double k = std::abs(law.k), g = std::abs(law.g);
+  constexpr std::size_t kBehind = kChanges + 1;
   SlopeChange change{.term = law.term};
   change.by_angle = b * moved * (k * r[1] + g * x[2] / h_);
-  change.by_angle_3 = b * moved * (k * r[3] + g * x[4] / h_);
+  change.by_angle_behind = b * moved * (k * r[kBehind] + g * x[kBehind + 1] / h_);
   change.by_speed = b * moved * g * x[1];
-  change.by_speed_3 = b * moved * g * x[3];
+  change.by_speed_behind = b * moved * g * x[kBehind];
   if (law.varies) {
     const double phase = moved * largest_coefficient(law.phase_row), y = std::abs(law.y_0) + k * x[0];
-    change.by_angle += phase * (p[1] * y + p[0] * k * x[1]);
-    change.by_angle_3 += phase * (p[3] * y + k * (3.0 * (p[2] * x[1] + p[1] * x[2]) + p[0] * x[3]));
+    change.by_angle += phase * scaled_derivative(1, p, y, k, x);
+    change.by_angle_behind += phase * scaled_derivative(kBehind, p, y, k, x);
     for (const Entry& e : law.phase_row)
       if (std::none_of(law.term->z.begin(), law.term->z.end(),
                        [&](const Entry& own) { return own.index == e.index; }))
@@ -97,13 +110,14 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
       y[i] = value_along(law.term->z, series.swept(static_cast<int>(i)));
       turned[i] = law.varies ? value_along(law.phase_row, series.swept(static_cast<int>(i))) : 0.0;
     }
-    for (std::size_t j = 0; j + 3 < last; ++j) {
+    for (std::size_t j = 0; j + 2 < last; ++j) {
       // int (e - u)^j/j! of the force, whose slopes are those at e less (e - u) times their first derivatives there, and so on.
-      const double one = static_cast<double>(j + 1), two = 0.5 * one * static_cast<double>(j + 2);
-      const double force = -one * (law.slope[1] * y[j + 2] + law.by_phase[1] * turned[j + 2] +
-                                   per_time * law.by_speed[1] * y[j + 1]) +
-                           two * (law.slope[2] * y[j + 3] + law.by_phase[2] * turned[j + 3] +
-                                  per_time * law.by_speed[2] * y[j + 2]);
+      double force = 0.0, factor = 1.0;  // (-1)^q (j + q)!/(j! q!)
+      for (std::size_t q = 1; q <= kChanges && j + q + 1 < last; ++q) {
+        factor *= -static_cast<double>(j + q) / static_cast<double>(q);
+        force += factor * (law.slope[q] * y[j + q + 1] + law.by_phase[q] * turned[j + q + 1] +
+                           per_time * law.by_speed[q] * y[j + q]);
+      }
       double* column = moments + (idx(degree) - j) * idx(series.stride());
       for (const Entry& e : law.term->z) column[e.index] -= e.coeff * force;
     }

@@ -82,7 +82,7 @@ std::array<double, 2> add_row_terms(int stride, int terms, const double* z_0, co
 void polynomial_values(int count, int terms, const double* c, const double* x, double* value, double* slope);
 
 /// A polynomial with these terms and its first derivatives at x > 0; and bounds of them, in that order, on [0, 1].
-inline constexpr int kDerivatives = 4;
+inline constexpr int kDerivatives = 5;
 struct PolynomialDerivatives {
   alignas(kLanes * sizeof(double)) std::array<double, kLanes> value, bound;  ///< of 0 ... kDerivatives
 };

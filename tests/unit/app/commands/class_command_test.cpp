@@ -171,7 +171,7 @@ TEST_CASE("Above 1.05 of the rated speed the rule has no limit: what holds there
 }
 
 TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fired and misfiring",
-          "[class]") {
+          "[class][once]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "pair.toml")
       << "format = 1\ninclude = [\"" DREV_SOURCE_DIR

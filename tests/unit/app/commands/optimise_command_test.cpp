@@ -49,7 +49,7 @@ Words search(const std::string& file, const Words& more) {
 
 }  // namespace
 
-TEST_CASE("The absorber that stops a disc is found by a search") {
+TEST_CASE("The absorber that stops a disc is found by a search", "[once]") {
   const TemporaryFolder folder;
   const std::string file = absorber_file(folder);
   const Words words =

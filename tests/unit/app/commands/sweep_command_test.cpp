@@ -438,7 +438,7 @@ TEST_CASE("A sweep and a class calculation that are interrupted say so, write no
 
 TEST_CASE(
     "Loads beyond the harmonics that can be solved for: the runs are told as the largest, with the reason",
-    "[sweep]") {
+    "[sweep][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "drive.toml").string();
   std::ofstream(file) << R"(format = 1

@@ -14,7 +14,7 @@ using drev::test::read_file;
 using Json = nlohmann::json;
 
 TEST_CASE("A motion that grows slowly in a tongue of +1 has no statistics, and the curve's end its speed",
-          "[sweep]") {
+          "[sweep][once]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "mesh.toml")
       << "format = 1\n[nodes]\npinion = { nominal_speed_rpm = 2000, hold = true }\nwheel = {}\n[elements]\n"
@@ -75,7 +75,7 @@ TEST_CASE("Orders of a sweep may be quotients", "[sweep]") {
 }
 
 TEST_CASE("A free train whose load follows the speed is held at it: no speed runs up and down in a cycle",
-          "[sweep]") {
+          "[sweep][once]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "launch.toml")
       << "format = 1\n[nodes]\nm = { nominal_speed_rpm = 900 }\ng1 = {}\ng2 = {}\npl = {}\n[elements]\n"

@@ -15,7 +15,7 @@
 using namespace drev;
 
 TEST_CASE("Ends of a tongue with a multiplier of +1 are branchings, where the closed form has them",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   // x'' + c x' + k(wt) x = 1, k = 0.7 and 1.3 for half of the cycle each: the speeds near 1 at which the trace of the product
   // of both matrix exponentials allows a multiplier of 1, by a separate program.
   struct Row {
@@ -40,7 +40,7 @@ TEST_CASE("Ends of a tongue with a multiplier of +1 are branchings, where the cl
 }
 
 TEST_CASE("Period doublings lie within their stated errors, whatever the harmonics of the curve",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   Model m("clutch");
   m.add_node("flywheel");
   m.add_node("hub");

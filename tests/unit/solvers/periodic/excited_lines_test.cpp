@@ -112,7 +112,7 @@ TEST_CASE("A load that follows the twist leaves a high order in the motion", "[n
 }
 
 TEST_CASE("Where the loads' highest harmonic takes too many rows, no curve is stated, and a run tells it",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   const Drive drive{.motor = {24.0, 200.0, 0.0}, .motor_feedback = true, .load_feedback = true};
   const NonlinearSweep sweep = sweep_of(drive, true);
   CHECK(sweep.branches.empty());

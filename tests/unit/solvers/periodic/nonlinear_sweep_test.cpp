@@ -301,7 +301,7 @@ TEST_CASE("A train of 24 meshes: each is the closed form while its contact holds
   }
 }
 
-TEST_CASE("Where single periods are unstable a run finds the motion of two", "[nonlinear_sweep]") {
+TEST_CASE("Where single periods are unstable a run finds the motion of two", "[nonlinear_sweep][once]") {
   const Pair pair{.damping = 0.06,
                   .mean = 1.0,
                   .error = 0.0,

@@ -212,7 +212,7 @@ TEST_CASE("Means of a stiffness that jumps do not depend on where the steps fall
   CHECK(run.mean_error[0] < 40.0);
 }
 
-TEST_CASE("Closed contacts are tried where a curve passes without being stable", "[nonlinear_sweep]") {
+TEST_CASE("Closed contacts are tried where a curve passes without being stable", "[nonlinear_sweep][once]") {
   // The curve from 900 and 4,500 rpm passes 1,200 rpm unstable; another is stable there.
   const double speed = rpm(1200.0);
   const NonlinearSweep sweep =
