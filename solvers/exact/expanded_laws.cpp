@@ -420,7 +420,7 @@ LawWork ExpandedLaws::work(const TaylorSeries& series, double s, const Evaluated
     }
     if (swept && law.varies) {
       series.swept_at_nodes(law.phase_row, s, turn);
-      find_at_nodes(std::span(law.by_phase_terms).first(terms), s, p);
+      find_at_nodes(std::span(law.by_phase_terms).first(slope_terms(law, terms)), s, p);
       for (std::size_t q = 0; q < GaussRule::kNodes; ++q) r.value[q] += p.value[q] * turn.value[q];
     }
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {

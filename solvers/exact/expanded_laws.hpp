@@ -122,6 +122,11 @@ class ExpandedLaws final : public TermForces {
   void add_term(Law& law, const TaylorSeries& series, int m) const;
   static int lanes_of(const Law& law) { return static_cast<int>(law.orders.size() / 3); }
   static void add_scale(Law& law, int m);
+  /// How many of the first terms of dr/dtheta are not zero: without orders it is the same all along the step.
+  static std::size_t slope_terms(const Law& law, std::size_t terms) {
+    if (law.orders.empty()) return law.varies ? 1 : 0;
+    return terms;
+  }
   static void add_scale_slopes(Law& law);
   void complete_terms(Law& law, const TaylorSeries& series) const;
   void complete(Law& law, const TaylorSeries& series) const;

@@ -64,43 +64,60 @@ void KinkResponse::return_slopes() {
   slopes_changed_ = false;
 }
 
-bool KinkResponse::find(double end, const double* z_end, double share) {
-  undo();
-  if (!loads_.list_sweep_kinks(series_, end, z_end)) return false;
-  end_ = end;
-  if (end == 1.0) {
-    limit_ = 1.0;
-    corrects_ = false;
-  }
-  KinkMoments& kinks = loads_.kinks();
-  if (kinks.count() == 0) return found_ = true;
-  if (kinks.count() > kMostKinks) return false;
+/// Lists the kinks up to s = end. False: some are none of this kind, or too much for a sweep.
+bool KinkResponse::list(double end, const double* z_end, double share) {
+  listed_to_ = -1.0;
+  if (!loads_.list_sweep_kinks(series_, end, z_end) || !find_size(end, share)) return false;
+  listed_to_ = end;
+  return true;
+}
+
+bool KinkResponse::look(double share) {
+  found_ = slopes_changed_ = limited_ = corrects_ = false;
+  limit_ = 1.0;
+  return list(1.0, nullptr, share);
+}
+
+bool KinkResponse::find_size(double end, double share) {
+  const int count = loads_.kinks().count();
+  if (count == 0) return true;
+  if (count > kMostKinks) return false;
   // |y| <= pull end^3/6, and each degree of the sweep adds rate h end/(j + 3) of the one before.
   const double h = series_.step(), growth = series_.rate() * h * end;
-  double scale = 0.0, rest = 0.0;
+  double scale = 0.0;
   for (std::size_t kind = 0; kind < 2; ++kind)
     if (series_.z_scale()[kind] > 0.0)
       scale = std::max(scale, h / std::min(series_.z_scale()[kind] / h, series_.v_scale()[kind]));
-  rest = loads_.kink_sizes().most_pull();
   if (!(scale > 0.0) || !std::isfinite(scale)) return false;  // nothing has moved before
-  rest *= 0.5 * scale * end * end;
-  const double response = rest;
+  const double response = loads_.kink_sizes().most_pull() * 0.5 * scale * end * end;
+  double rest = response;
   if (response > kMostResponse) return false;
   int degree = 0;
   while (degree < TaylorSeries::kMostSwept && (degree < kLeastSwept || rest > kOfShare * share))
     rest *= growth * kInverse[idx(++degree + 2)];
-  if (rest > kOfShare * share) return false;
+  size_ = {scale, response, rest, degree};
+  return !(rest > kOfShare * share);
+}
+
+bool KinkResponse::find(double end, const double* z_end, double share) {
+  undo();
+  if (listed_to_ != end && !list(end, z_end, share)) return false;
+  end_ = end;
+  KinkMoments& kinks = loads_.kinks();
+  if (kinks.count() == 0) return limited_ = found_ = true;
   loads_.use_slopes(series_, end);
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
-  const int stride = series_.stride();
+  const int stride = series_.stride(), degree = size_.degree;
   moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
                   0.0);  // zeros but for what a sweep at hand adds
-  const Rule rule = rule_for(response, growth, kOfShare * share, scale, end);
+  const Rule rule =
+      rule_for(size_.response, series_.rate() * series_.step() * end, kOfShare * share, size_.scale, end);
   loads_.expand_kinks(series_, rule.terms);
   kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
   series_.sweep(moments_.data(), degree);
-  const bool holds = end != 1.0 || find_limit(share - rest, scale);
+  const bool holds = limited_ || find_limit(end, share - size_.rest, size_.scale);
+  limited_ = true;
   if (!holds || !corrects_) {
     kinks.clear_rows(degree, stride, moments_.data());
     return found_ = holds;
@@ -136,25 +153,29 @@ KinkResponse::Rule KinkResponse::rule_for(double response, double growth, double
   return rule;
 }
 
-/// Finds where the step has to end for what is left out to be below `allowed` over the scale. False: nowhere.
-bool KinkResponse::find_limit(double allowed, double scale) {
+/// Finds where the step, found up to s = end, has to end for what is left out to be below `allowed` over the scale. False: nowhere.
+bool KinkResponse::find_limit(double end, double allowed, double scale) {
   const double most = allowed / scale;
+  double limit = end;
   const bool slopes = loads_.expanded().active() || laws_.active();
   const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
-    const Others bends = slopes ? error_of_slopes(limit_, change, 0.5 * most) : Others{};
+    const Others bends = slopes ? error_of_slopes(limit, change, 0.5 * most) : Others{};
     if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {
       corrects_ = true;
       continue;
     }
     if (bends.error > 0.5 * most) {
-      const double behind = limit_ - bends.between;
-      limit_ = bends.between + behind * kShortened * std::pow(0.5 * most / bends.error, 0.2);
+      const double behind = limit - bends.between;
+      limit = bends.between + behind * kShortened * std::pow(0.5 * most / bends.error, 0.2);
       continue;
     }
-    const Others others = error_of_others(limit_, most);
-    if (others.error + bends.error <= most) return true;
-    limit_ = others.between;
+    const Others others = error_of_others(limit, most);
+    if (others.error + bends.error <= most) {
+      limit_ = limit < end ? limit : 1.0;
+      return true;
+    }
+    limit = others.between;
   }
   return false;
 }

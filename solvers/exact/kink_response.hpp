@@ -23,10 +23,10 @@ class KinkResponse {
       : series_(series), loads_(loads), laws_(laws) {}
   KinkResponse(const KinkResponse&) = delete;
 
-  /// A new step: nothing is found, and no slope changed.
-  void reset() { found_ = slopes_changed_ = false; }
-  /// Finds y up to s = end, where the series stands at z_end; the whole step first. share: of the motion, what may be
-  /// left out. False: some load's kinks are none of this kind.
+  /// A new step, no slope of which is changed: lists the kinks of the whole of it. share: of the motion, what may be left out.
+  /// False: some load's kinks are none of this kind, or larger than a sweep takes.
+  bool look(double share);
+  /// Finds y up to s = end, where the series stands at z_end; first to where the step is likely to end. False: not to be found.
   bool find(double end, const double* z_end, double share);
   /// Returns to the loads' slopes at the step's start.
   void undo();
@@ -35,7 +35,7 @@ class KinkResponse {
   double end() const { return end_; }
   /// Whether there are kinks up to there: then TaylorSeries::swept() has y and its rate; else y = 0.
   bool any() const { return found_ && loads_.kinks().count() > 0; }
-  /// s up to which the step holds: beyond, more would be left out than its share.
+  /// s up to which the first y found holds: beyond, more would be left out than the share; 1: all of it.
   double limit() const { return limit_; }
   /// Work of loads beyond what they do along the series [J].
   double work() const { return any() ? loads_.kink_work(series_, end_) : 0.0; }
@@ -47,6 +47,15 @@ class KinkResponse {
 
  private:
   void return_slopes();
+  bool list(double end, const double* z_end, double share);
+  /// Of the kinks listed: what they add to the motion at most, relative to it; the degree that their sweep wants, and what that
+  /// leaves out.
+  struct Size {
+    double scale = 0.0;  // of the motion over an acceleration by s
+    double response = 0.0, rest = 0.0;
+    int degree = 0;
+  };
+  bool find_size(double end, double share);
   /// Nodes and terms by which moments are taken.
   struct Rule {
     int nodes = KinkMoments::kSweepRules.back();
@@ -61,7 +70,7 @@ class KinkResponse {
   double bound_of_rows_apart(double end, double beside, double apart) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, double enough) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
-  bool find_limit(double allowed, double scale);
+  bool find_limit(double end, double allowed, double scale);
   /// (rate h)^2/4: |k| h^2/m of a row's coupling in a chain of equal rows.
   double quarter_rate_square() const {
     const double times_step = series_.rate() * series_.step();
@@ -71,9 +80,10 @@ class KinkResponse {
   TaylorSeries& series_;
   LoadSeries& loads_;
   ExpandedLaws& laws_;
-  bool found_ = false, slopes_changed_ = false;
+  bool found_ = false, slopes_changed_ = false, limited_ = false;
   bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
-  double end_ = 0.0, limit_ = 1.0;
+  double listed_to_ = 0.0, end_ = 0.0, limit_ = 1.0;
+  Size size_;
   LaneVector moments_;
 };
 

@@ -45,20 +45,16 @@ bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& l
   if (made.h < h) return true;
   made.again = expanded.turns_back(series) || known.came_further(series);
   if (made.again) return true;
-  kinks.reset();
-  if (kinks.find(1.0, nullptr, limits.share)) return sweeps_ = true;
-  kinks.undo();
-  expanded_ = true;
-  return false;
+  sweeps_ = kinks.look(limits.share);
+  expanded_ = !sweeps_;
+  return sweeps_;
 }
 
 bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
   bool found = sweeps_ && kinks.found() && kinks.end() == s;
-  if (sweeps_ && !found) {
-    series.evaluate(s, z_end_, v);
-    found = kinks.find(s, z_end_.data(), exactly ? share_ : std::max(share_, kAlong));
-  }
-  series.evaluate(s, z, v, found && kinks.any());
+  series.evaluate(s, z, v);
+  if (sweeps_ && !found) found = kinks.find(s, z.data(), exactly ? share_ : std::max(share_, kAlong));
+  if (found && kinks.any()) series.add_swept(z, v);
   return found || !sweeps_;
 }
 
@@ -174,8 +170,18 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
                                                                          State& at) {
   const LawSeries::Beside found = laws.first_change_beside(series, known.kink_sizes().push());
   if (found.unsure) return std::nullopt;
-  SweptEnd end{kinks.limit()};
-  if (found.change && found.change->s <= end.s) {
+  SweptEnd end;
+  std::optional<double> knot;
+  if (!found.change) knot = first_knot(1.0);
+  // The first sweep goes to where the step is likely to end, and tells whether it holds so far.
+  const double likely = found.change ? found.change->s : knot.value_or(1.0);
+  if (likely == 1.0 ? !kinks.find(1.0, nullptr, share_) : !evaluate(likely, at.z, at.v)) return std::nullopt;
+  const bool holds = !(kinks.limit() < likely);
+  if (!holds) {
+    end.s = kinks.limit();
+    knot.reset();
+  }
+  if (found.change && holds) {
     LawSeries::Change change = *found.change;
     const auto later = [&](double s) {
       change.s = s;
@@ -186,7 +192,7 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
     change.s = *s;
     end = {*s, change};
   }
-  std::optional<double> knot = first_knot(end.s);
+  if (found.change) knot = first_knot(end.s);
   if (!knot && kinks.any() && !expanded.empty()) {
     if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
     if (kinks.any() && expanded.passes_knot(series, end.s)) knot = end.s;
@@ -222,7 +228,7 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   friction.locate_as(other.friction);
   expanded.locate_as(other.expanded);
   const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
-  if (made.again || made.h != h) return false;
+  if (made.again || made.h != h || (sweeps_ && !kinks.find(1.0, nullptr, limits.share))) return false;
   friction.expand(series, from.state);
   return true;
 }

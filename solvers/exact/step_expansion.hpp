@@ -118,7 +118,6 @@ class StepExpansion {
   LaneVector beyond_cubic_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
   double share_ = 0.0;
-  Vector z_end_;
   double knot_clearance_ = 0.0;
   double contraction_ = 1.0;  // of the last step: how the projection's change came back
   // Change of the motion by the last step's first projection, relative to the motion.

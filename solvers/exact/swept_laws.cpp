@@ -60,7 +60,7 @@ void ExpandedLaws::use_slopes(TaylorSeries& series, double s) {
     const PolynomialDerivatives of_x = derivatives(std::span(law.x).first(terms), s);
     const PolynomialDerivatives of_r = derivatives(std::span(law.r).first(law.varies ? terms : 1), s);
     const PolynomialDerivatives of_p =
-        derivatives(std::span(law.by_phase_terms).first(law.varies ? terms : 0), s);
+        derivatives(std::span(law.by_phase_terms).first(slope_terms(law, terms)), s);
     const auto &x = of_x.value, &r = of_r.value, &p = of_p.value;
     const double k = law.k, y = law.y_0 + k * x[0], g = law.g / h_;
     for (std::size_t d = 0; d <= kChanges; ++d) {

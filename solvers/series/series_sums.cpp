@@ -182,7 +182,7 @@ const double* TaylorSeries::sums(double s) {
   return step_sums_.data();
 }
 
-void TaylorSeries::evaluate(double s, Vector& z, Vector& v, bool swept_too) const {
+void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
   z.resize(n_);
   v.resize(n_);
   const double per_time = 1.0 / h_;
@@ -201,8 +201,10 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v, bool swept_too) cons
       v[i] = per_time * rate[i];
     }
   }
-  if (!swept_too) return;
-  const double *y = swept(0), *rate = swept(-1);
+}
+
+void TaylorSeries::add_swept(Vector& z, Vector& v) const {
+  const double *y = swept(0), *rate = swept(-1), per_time = 1.0 / h_;
   for (int i = 0; i < n_; ++i) {
     z[i] += y[i];
     v[i] += per_time * rate[i];

@@ -141,8 +141,9 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// Finds at once what evaluate(), work() and loss() read at s, where all of them are asked for.
   void sum_up(double s) { sums(s); }
-  /// z and v at s; swept_too: with the motion swept up to there.
-  void evaluate(double s, Vector& z, Vector& v, bool swept_too = false) const;
+  /// z and v at s; and what was swept up to s on top of them.
+  void evaluate(double s, Vector& z, Vector& v) const;
+  void add_swept(Vector& z, Vector& v) const;
   /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
   /// s from the second term on.
   void ranges(double* end, double* size);
