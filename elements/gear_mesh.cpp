@@ -1,4 +1,5 @@
 #include <drev/core/element.hpp>
+#include <drev/core/law/orders.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gear_mesh.hpp>
 #include <drev/elements/involute.hpp>
@@ -30,8 +31,9 @@ GearMesh::GearMesh(Params params)
             .stiffening = params_.stiffening}),
       radius_1_(radius(params_.base_radius_1, params_.module, params_.teeth_1, params_.pressure_angle)),
       radius_2_(radius(params_.base_radius_2, params_.module, params_.teeth_2, params_.pressure_angle)),
-      teeth_per_radian_(params_.teeth_1 / kTwoPi) {
-  pieces_ = law_.pieces(params_.stiffness.mean());
+      teeth_per_radian_(params_.teeth_1 / kTwoPi),
+      mean_stiffness_(params_.stiffness.mean()) {
+  pieces_ = law_.pieces(mean_stiffness_);
   if (const auto* series = std::get_if<MeshStiffness::Fourier>(&params_.stiffness.law()))
     for (const Harmonic& h : series->harmonics) {
       // cos(n (z_1 theta + 2 pi mesh_phase) + phase)
@@ -40,15 +42,26 @@ GearMesh::GearMesh(Params params)
     }
 }
 
-double GearMesh::pieces_scale(double angle) const {
-  return params_.stiffness.at(phase(angle)).value / params_.stiffness.mean();
+CurvePoint GearMesh::stiffness(double angle) const {
+  if (orders_.empty()) {
+    const CurvePoint k = params_.stiffness.at(phase(angle));
+    return {k.value, k.slope * teeth_per_radian_};
+  }
+  CurvePoint part{1.0, 0.0};
+  for_each_order(std::span(orders_), angle, [&](const ScaleOrder& o, double c, double s) {
+    part.value += o.cosine * c + o.sine * s;
+    part.slope += o.order * (o.sine * c - o.cosine * s);
+  });
+  return {mean_stiffness_ * part.value, mean_stiffness_ * part.slope};
 }
 
+double GearMesh::pieces_scale(double angle) const { return stiffness(angle).value / mean_stiffness_; }
+
 ScaleStretch GearMesh::scale_stretch(double angle, double direction) const {
-  const double at = phase(angle), mean = params_.stiffness.mean();
+  const double at = phase(angle);
   const TableStretch k = params_.stiffness.stretch(at, direction);
-  return {k.value / mean, k.slope * teeth_per_radian_ / mean, angle + (k.low - at) / teeth_per_radian_,
-          angle + (k.high - at) / teeth_per_radian_, orders_};
+  return {k.value / mean_stiffness_, k.slope * teeth_per_radian_ / mean_stiffness_,
+          angle + (k.low - at) / teeth_per_radian_, angle + (k.high - at) / teeth_per_radian_, orders_};
 }
 
 std::optional<double> GearMesh::angle_of(std::optional<double> knot, double angle) const {
@@ -132,9 +145,7 @@ void GearMesh::describe(int nodes, Terms& terms) const {
 }
 
 ScalarResponse GearMesh::evaluate(const ScalarInput& in) const {
-  CurvePoint k = params_.stiffness.at(phase(in.angle));
-  k.slope *= teeth_per_radian_;
-  return law_.evaluate(in.x, in.x_dot, k);
+  return law_.evaluate(in.x, in.x_dot, stiffness(in.angle));
 }
 
 Offset GearMesh::offset(double nominal_angle) const {

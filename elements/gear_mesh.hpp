@@ -74,7 +74,7 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
   double base_radius_2() const { return radius_2_; }
 
   ScalarResponse evaluate(const ScalarInput& in) const override;
-  double closed_stiffness() const override { return params_.stiffness.mean(); }
+  double closed_stiffness() const override { return mean_stiffness_; }
   double closed_damping() const override { return params_.damping; }
   std::span<const double> kinks() const override { return law_.kinks(); }
   std::optional<Gap> gap() const override { return law_.gap(); }
@@ -92,10 +92,11 @@ class GearMesh final : public Element, public ScalarForce, public AngleScaledFor
   void check_radii(ParameterCheck& check) const;
   std::optional<double> angle_of(std::optional<double> knot, double angle) const;  // of a phase near it
   double phase(double angle) const { return teeth_per_radian_ * angle + params_.mesh_phase; }
+  CurvePoint stiffness(double angle) const;  // and its slope by the angle of gear 1
 
   Params params_;
   BacklashLaw law_;
-  double radius_1_, radius_2_, teeth_per_radian_;
+  double radius_1_, radius_2_, teeth_per_radian_, mean_stiffness_;
   std::vector<LawPiece> pieces_;
   std::vector<ScaleOrder> orders_;  // of the stiffness over its mean, per revolution of gear 1
 };

@@ -1,5 +1,7 @@
 #include "solvers/exact/expanded_laws.hpp"
 
+#include <drev/core/law/orders.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +21,6 @@ namespace {
 constexpr double kClearOfKnot = 2e-15;
 // Least rate of an angle at a knot, relative to its mean rate up to there.
 constexpr double kLeastRate = 1e-6;
-constexpr double kOrderRounding = 4e-16;  // of an order, relative to it: that of its product with the angle
 // An angle stands on a knot, relative to the angle and to 1 rad at least.
 constexpr double kOnLawKnot = 1e-12;
 
@@ -224,24 +225,15 @@ void ExpandedLaws::start_scale(Law& law) const {
     terms->resize(lanes * capacity());
     std::fill_n(terms->begin(), lanes, 0.0);  // those of higher degree are written before they are read
   }
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    const ScaleOrder& o = orders[i];
-    // Most are multiples of the first one, but for rounding: then the cosine and the sine of a sum.
-    double c, s;
-    if (i > 0 && std::abs(o.order - orders[i - 1].order - orders[0].order) <= kOrderRounding * o.order) {
-      c = law.cosine[i - 1] * law.cosine[0] - law.sine[i - 1] * law.sine[0];
-      s = law.sine[i - 1] * law.cosine[0] + law.cosine[i - 1] * law.sine[0];
-    } else {
-      c = std::cos(o.order * law.angle);
-      s = std::sin(o.order * law.angle);
-    }
+  std::size_t i = 0;
+  for_each_order(orders, law.angle, [&](const ScaleOrder& o, double c, double s) {
     law.orders[i] = o.order;
     law.orders[lanes + i] = o.cosine;
     law.orders[2 * lanes + i] = o.sine;
     law.cosine[i] = c;
-    law.sine[i] = s;
+    law.sine[i++] = s;
     law.r[0] += o.cosine * c + o.sine * s;
-  }
+  });
 }
 
 /// r_m, m >= 1, from theta_1 ... theta_m.

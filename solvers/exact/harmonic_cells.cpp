@@ -54,7 +54,7 @@ HarmonicCells::Place HarmonicCells::at(double angle) {
 void HarmonicCells::make(double centre, Cell& cell) const {
   cell = {.centre = centre, .made = true};
   std::array<double, kTerms>& c = cell.terms;
-  orders_.for_each(centre, [&](const LoadOrder& h, double cosine, double sine) {
+  for_each_order(orders_.terms, centre, [&](const LoadOrder& h, double cosine, double sine) {
     // f = p cos(o x) + q sin(o x), x = theta - centre.
     double p = h.cosine * cosine + h.sine * sine, q = h.sine * cosine - h.cosine * sine;
     q *= h.order;

@@ -195,10 +195,17 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
 /// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, of one by speed d^5/60, and d^5/120 of a slope that is
 /// left out. Where add_changes() has been, of laws the square of that over y, and what the derivative behind those makes, the fourth:
-/// int (d - u) (d - u)^4/24 u^3/6 du = d^9/72576, by speed d^8/8064. between: the s of the kink that makes most of it. Where it is
-/// more than `enough` without add_changes(), how much more is not found.
+/// int (d - u) (d - u)^4/24 u^3/6 du = d^9/72576, by speed d^8/8064. between: the s of the kink that makes most of it. Nearness
+/// is found where it is needed to come below `enough`; and without add_changes() no more of what is above that.
 KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoads::SlopeChange& change,
                                                    double enough) const {
+  Others sum = error_of_slopes(end, change, enough, !corrects_);
+  if (corrects_ && sum.error > enough) sum = error_of_slopes(end, change, enough, true);
+  return sum;
+}
+
+KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoads::SlopeChange& change,
+                                                   double enough, bool by_nearness) const {
   static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
   const double h = series_.step();
@@ -213,7 +220,8 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoa
         of_law = 6.0 * of_law * of_law * d * d +
                  d * d * d * (h * h * law.by_angle_behind * d / 72576.0 + h * law.by_speed_behind / 8064.0);
       of_law += h * h * law.left_out / 120.0;
-      of_slopes = std::max(of_slopes, nearness(kinks.row(i), *law.term, d) * of_law);
+      if (by_nearness) of_law *= nearness(kinks.row(i), *law.term, d);
+      of_slopes = std::max(of_slopes, of_law);
     }
     const double error = loads_.kink_sizes().pull()[i] * fifth * of_slopes;
     sum.error += error;

@@ -183,6 +183,20 @@ TEST_CASE("Fourier series of the rectangular wave against quadrature of its defi
     }
     CHECK(series.at(s).value == Approx(expected).epsilon(1e-8));
   }
+  // The gear mesh turns from order to order; after 400 turns an angle itself is known to 1e-13 periods.
+  GearMesh::Params p = plain();
+  p.teeth_1 = 20;
+  p.mesh_phase = 0.3;
+  p.normal_backlash = 0.0;
+  p.stiffness = series;
+  const GearMesh mesh(p);
+  for (const double angle : {0.0, 0.07, -1.3, 2500.0}) {
+    const CurvePoint k = series.at(20.0 * angle / kTwoPi + 0.3);
+    CHECK(mesh.evaluate({.x = 1e-6, .angle = angle}).y == Approx(1e-6 * k.value).epsilon(1e-11));
+    CHECK(mesh.pieces_scale(angle) == Approx(k.value / series.mean()).epsilon(1e-11));
+    CHECK(mesh.evaluate({.x = 1e-6, .angle = angle}).dy_dangle ==
+          Approx(1e-6 * k.slope * 20.0 / kTwoPi).epsilon(1e-9));
+  }
   CHECK(series.mean() == Approx(single + 0.6 * (both - single)));
   CHECK(MeshStiffness::step(single, both, ratio).mean() == Approx(series.mean()));
   // In the middle of either contact a long series has come to the wave.

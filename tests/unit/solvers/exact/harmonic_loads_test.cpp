@@ -1,6 +1,6 @@
 // Loads that are smooth: sums of harmonics by rotation and by polynomials in cells, against cosines term by term in
 // long double; and exact propagation under many orders, against the same torque as a function nothing is known of.
-// Covers core/law/harmonic_load.hpp, solvers/exact/harmonic_cells.hpp, expanded_loads.hpp and lane_pair.hpp.
+// Covers core/law/harmonic_load.hpp, core/law/orders.hpp, solvers/exact/harmonic_cells.hpp, expanded_loads.hpp and lane_pair.hpp.
 #include <drev/core/element.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
