@@ -78,6 +78,7 @@ void ExpandedLaws::note_changes(const Law& law, const double* x, const double* r
   const double b = largest_coefficient(law.term->z), moved = largest_coefficient(law.gain);
   const double k = std::abs(law.k), g = std::abs(law.g);
   constexpr std::size_t kBehind = kChanges + 1;
+  static_assert(kBehind + 1 <= kDerivatives);
   SlopeChange change{.term = law.term};
   change.by_angle = b * moved * (k * r[1] + g * x[2] / h_);
   change.by_angle_behind = b * moved * (k * r[kBehind] + g * x[kBehind + 1] / h_);
