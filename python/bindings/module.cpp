@@ -7,6 +7,7 @@ NB_MODULE(_drev, module) {
   // Results and models that live until the interpreter ends are no leak.
   nanobind::set_leak_warnings(false);
   drev::app::register_fmu();
+  drev::python::Computing::end_process_at_once();
   drev::python::bind_errors(module);
   drev::python::bind_commands(module);
   drev::python::bind_run(module);

@@ -1,6 +1,9 @@
 #include "python/bindings/request.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <unistd.h>
 
 #include "app/commands/commands.hpp"
 
@@ -68,6 +71,18 @@ void Watch::raise_if_stopped() {
   if (!stopped()) return;
   PyErr_SetNone(PyExc_KeyboardInterrupt);
   throw nb::python_error();
+}
+
+std::atomic<int> Computing::running_ = 0;
+
+void Computing::end_process_at_once() {
+  ::on_exit(
+      [](int status, void*) {
+        if (running_ == 0) return;
+        std::fflush(nullptr);
+        ::_exit(status);
+      },
+      nullptr);
 }
 
 bool Watch::stopped() {

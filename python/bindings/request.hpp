@@ -76,6 +76,21 @@ class Watch {
   std::optional<app::ProgressListener> listener_;
 };
 
+/// A computation of answered(), as long as it exists.
+class Computing {
+ public:
+  Computing() { ++running_; }
+  ~Computing() { --running_; }
+  Computing(const Computing&) = delete;
+  Computing& operator=(const Computing&) = delete;
+  /// From now on the process ends at once, behind what it has written, where one still runs: leaving main() takes the memory of
+  /// libraries that it computes with (OpenBLAS).
+  static void end_process_at_once();
+
+ private:
+  static std::atomic<int> running_;
+};
+
 /// Runs compute() in a separate thread while this one asks for signals, for computations that cannot be
 /// interrupted. On an interruption it throws app::Interruption at once; the thread continues to its end with
 /// the objects that compute() holds, and its result is lost. To be called without Python's lock.
@@ -83,7 +98,7 @@ template <class Compute>
 auto answered(Compute compute) {
   std::packaged_task<decltype(compute())()> task(std::move(compute));
   auto result = task.get_future();
-  std::thread(std::move(task)).detach();
+  std::thread([own = std::make_unique<Computing>(), task = std::move(task)]() mutable { task(); }).detach();
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
     app::end_if_interrupted();
   return result.get();

@@ -283,3 +283,21 @@ def test_ctrl_c_is_answered_promptly(asked):
             time.sleep(1)
     finally:
         timer.cancel()
+
+
+def test_a_program_ends_in_order_behind_an_interrupted_computation():
+    code = """
+import os, signal, sys, threading
+import drev
+from test_control import chain
+threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    chain(700).damped_modes()
+except KeyboardInterrupt:
+    print("interrupted")
+sys.exit(3)
+"""
+    for _ in range(4):
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
+        assert (done.returncode, done.stdout, done.stderr) == (3, "interrupted\n", "")

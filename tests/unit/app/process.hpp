@@ -73,6 +73,8 @@ class Process {
     const rlimit file{limits.file, limits.file}, memory{limits.memory, limits.memory};
     ::setrlimit(RLIMIT_FSIZE, &file);
     ::setrlimit(RLIMIT_AS, &memory);
+    // Where LAPACK is OpenBLAS, it takes memory for every processor, and waits for ever if it gets none.
+    if (limits.memory != RLIM_INFINITY) ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }
