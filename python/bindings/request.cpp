@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <unistd.h>
 
 #include "app/commands/commands.hpp"
 
@@ -80,7 +79,7 @@ void Computing::end_process_at_once() {
       [](int status, void*) {
         if (running_ == 0) return;
         std::fflush(nullptr);
-        ::_exit(status);
+        std::_Exit(status);
       },
       nullptr);
 }
