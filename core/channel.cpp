@@ -1,6 +1,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
 #include <drev/core/error.hpp>
+#include <drev/core/law/angle_scaled_force.hpp>
 #include <drev/core/law/friction.hpp>
 
 #include <algorithm>
@@ -14,10 +15,9 @@ namespace drev {
 
 static constexpr std::size_t kListed = 12;  // channels, beside a pattern that nothing fits
 
-static bool follows_deflection_alone(const ScalarTerm& term) {
-  const std::span<const LawPiece> pieces = linear_pieces(term);
-  return !pieces.empty() &&
-         std::all_of(pieces.begin(), pieces.end(), [](const LawPiece& p) { return p.c == 0.0; });
+static bool undamped(std::span<const LawPiece> pieces) {
+  return !pieces.empty() && std::all_of(pieces.begin(), pieces.end(),
+                                        [](const LawPiece& p) { return p.c == 0.0 && p.product == 0.0; });
 }
 
 class ChannelFinder {
@@ -91,10 +91,7 @@ class ChannelFinder {
     for (std::size_t e = 0; e < elements.size(); ++e) {
       if (elements[e].name.size() != dot || name.compare(0, dot, elements[e].name) != 0) continue;
       for (Channel& c : energies_of(static_cast<int>(e)))
-        if (c.name_ == name) {
-          channel = std::move(c);
-          return true;
-        }
+        if (c.name_ == name) return channel = std::move(c), true;
     }
     return false;
   }
@@ -142,7 +139,11 @@ class ChannelFinder {
     c.kind_ = kind;
     c.index_ = index;
     c.along_line_of_action_ = along_line_of_action;
-    if (kind == Channel::Kind::force) c.damped_ = !follows_deflection_alone(system_.scalars()[idx(index)]);
+    const ScalarTerm* law = kind == Channel::Kind::force ? &system_.scalars()[idx(index)] : nullptr;
+    c.damped_ = law != nullptr && law->phase_node < 0 && !undamped(linear_pieces(*law));
+    c.moved_ =
+        law != nullptr && law->phase_node >= 0 &&
+        (dynamic_cast<const AngleScaledForce*>(law->force) == nullptr || !undamped(law->force->pieces()));
     c.inertial_ = kind == Channel::Kind::load && !system_.varying_inertias().empty();
     make_direct(c, output);
     channels.push_back(std::move(c));
@@ -295,8 +296,7 @@ double ideal_ratio_torque(const Assembler& assembler, const State& s, int which)
 
 double reaction(const Assembler& assembler, const State& s, int k) {
   const System& system = assembler.system();
-  const MatrixSet& zu = system.coupling_zu();
-  const MatrixSet& uu = system.coupling_uu();
+  const MatrixSet &zu = system.coupling_zu(), &uu = system.coupling_uu();
   const int row = system.size() + k;
   double r = system.nominal_inertia()[row] * assembler.nominal().acceleration +
              system.nominal_drag()[row] * assembler.nominal().rate;
@@ -348,18 +348,20 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
       return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x_dot;
     case Kind::force: {
       const ScalarTerm& term = system.scalars()[idx(index_)];
-      if (term.phase_node >= 0) return std::nullopt;  // its stiffness or its offset moves by itself
+      if (moved_) return std::nullopt;
       const ScalarInput in = assembler.input(term, state.z, state.v);
       const ScalarResponse r = term.force->evaluate(in);
-      if (!damped_) return r.dy_dx * in.x_dot;
-      double x_dot_dot = 0.0;
-      for (const Entry& e : term.z) x_dot_dot += e.coeff * state.a[e.index];
-      for (const Entry& e : term.u) x_dot_dot += e.coeff * assembler.prescribed(e.index).acceleration;
-      return r.dy_dx * in.x_dot + r.dy_dx_dot * x_dot_dot;
+      double y = r.dy_dx * in.x_dot;
+      if (r.dy_dangle != 0.0)
+        y += r.dy_dangle * (system.ratio(term.phase_node) * assembler.nominal().rate +
+                            assembler.node_motion(term.phase_node, state).rate);
+      if (!damped_) return y;
+      for (const Entry& e : term.z) y += r.dy_dx_dot * e.coeff * state.a[e.index];
+      for (const Entry& e : term.u) y += r.dy_dx_dot * e.coeff * assembler.prescribed(e.index).acceleration;
+      return y;
     }
     case Kind::energy:
-      if (of_energy_ == &ElementEnergy::stored) return energy_->stored_rate(assembler, state);
-      return std::nullopt;
+      return of_energy_ == &ElementEnergy::stored ? energy_->stored_rate(assembler, state) : std::nullopt;
     default:
       return std::nullopt;
   }

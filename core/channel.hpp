@@ -39,8 +39,9 @@ class Channel {
   const std::string& unit() const { return unit_; }
   /// Value at a state; the assembler must stand at the state's time. Throws SolverError where over_run().
   double evaluate(const Assembler& assembler, const State& state) const;
-  /// Its rate of change at a state: of motions, deflections, forces of laws that follow x and x' alone, and the energy
-  /// stored in these; none for others (accelerations, reactions, loads, ideal gears, laws that follow a phase).
+  /// Its rate of change at a state: of motions, deflections, forces of laws that follow x and x' alone, or x and the angle of
+  /// their phase node by a formula (AngleScaledForce), and the energy stored in those of x and x' alone; none for others
+  /// (accelerations, reactions, loads, ideal gears, other laws that follow a phase).
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
 
   /// Whether it is an integral over the run of its integrand() [W]: no state holds its value, but a Recorder
@@ -101,7 +102,8 @@ class Channel {
   std::shared_ptr<const ElementEnergy> energy_;
   double (ElementEnergy::*of_energy_)(const Assembler&, const State&) const = nullptr;
   bool driven_ = false;
-  bool damped_ = false;    ///< of a force: it follows the rate of the deflection
+  bool damped_ = false;    ///< of a force that has a rate: it follows the rate of the deflection
+  bool moved_ = false;     ///< of a force: by an angle, with no rate that is known
   bool inertial_ = false;  ///< of a load, or its energy: inertias that follow an angle may be among it
 };
 

@@ -96,6 +96,45 @@ TEST_CASE("A mesh's force is positive on the front flank") {
   CHECK(find_channel(s, "mesh.force_N").unit() == "N");
 }
 
+TEST_CASE(
+    "The rate of a mesh's force is that of its values, where its stiffness and its offset move by "
+    "themselves") {
+  const double speed = 30.0, dt = 1e-7;
+  for (const bool table : {false, true}) {
+    CAPTURE(table);
+    GearMesh::Params mesh{.base_radius_1 = 0.1, .base_radius_2 = 0.2, .teeth_1 = 20};
+    mesh.stiffness = table ? MeshStiffness::table({0.0, 0.6}, {1e6, 1.4e6})
+                           : MeshStiffness::fourier_of_step(0.8e6, 1.2e6, 1.4, 3);
+    mesh.normal_backlash = 1e-4;
+    mesh.transmission_error = TransmissionError::table({0.0, 0.3}, {0.0, 2e-5});
+    const auto rate = [&](double damping) {
+      mesh.damping = damping;
+      Model m("pair");
+      m.add_node("given");
+      disc(m, "pinion", 1.0);
+      disc(m, "wheel", 1.0);
+      m.constant_speed("given", speed);
+      m.add<ShaftSpring>("shaft", {"given", "pinion"}, {.stiffness = 1e4});
+      m.add<GearMesh>("mesh", {"pinion", "wheel"}, mesh);
+      const System s = m.build();
+      Assembler a(s);
+      const Channel force = find_channel(s, "mesh.force_N");
+      const auto at = [&](double t) {
+        a.set_time(t);
+        return state_of(s, {0.003 + 0.7 * t, -0.0002 - 0.4 * t}, {0.7, -0.4}, {0, 0});
+      };
+      const double behind = force.evaluate(a, at(0.01 + dt)), ahead = force.evaluate(a, at(0.01 - dt));
+      const State state = at(0.01);
+      return std::pair(force.rate(a, state), (behind - ahead) / (2.0 * dt));
+    };
+    const auto [undamped, difference] = rate(0.0);
+    REQUIRE(undamped);
+    CHECK(std::abs(difference) > 1e4);
+    CHECK(*undamped == Approx(difference).epsilon(1e-6));
+    CHECK_FALSE(rate(100.0).first);  // the offset's second derivative is not known
+  }
+}
+
 TEST_CASE("Reaction of a held node under a static load is the load's negative") {
   Model m("cantilever");
   disc(m, "wall", 1.0);
