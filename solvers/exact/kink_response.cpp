@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -22,6 +23,8 @@ constexpr double kOfRule = 0.1;       // part of what a sweep may leave out that
 constexpr double kPlace = 1e-4;       // largest error of a knot's place, relative to the step
 // Factor on the part of the step behind a kink over which slopes change little enough.
 constexpr double kShortened = 0.9;
+// Part of the share of a motion that is not found exactly that a first sweep alone may be off by; where it has to be exact, more is.
+constexpr double kOfInexact = 0.25;
 
 /// sum_ik gain_i pull_k d^8 where place_i < end is d > 0 behind place_k, of kinks in whole lanes with gains and pulls of zero
 /// behind the last one.
@@ -118,7 +121,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   series_.sweep(moments_.data(), degree);
   const bool holds = limited_ || find_limit(end, share - size_.rest, size_.scale);
   limited_ = true;
-  if (!holds || !corrects_) {
+  if (!holds || !corrects_ || uncorrected_ <= kOfInexact * share) {
     kinks.clear_rows(degree, stride, moments_.data());
     return found_ = holds;
   }
@@ -162,6 +165,7 @@ bool KinkResponse::find_limit(double end, double allowed, double scale) {
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
     const Others bends = slopes ? error_of_slopes(limit, change, 0.5 * most) : Others{};
     if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {
+      uncorrected_ = scale * error_of_slopes(end, change, std::numeric_limits<double>::infinity()).error;
       corrects_ = true;
       continue;
     }

@@ -83,7 +83,9 @@ class KinkResponse {
   LoadSeries& loads_;
   ExpandedLaws& laws_;
   bool found_ = false, slopes_changed_ = false, limited_ = false;
-  bool corrects_ = false;  // this step's sweep takes what slopes of laws change towards the end
+  // This step's sweep takes what slopes of laws change towards the end, which is so much of the motion over the whole of it.
+  bool corrects_ = false;
+  double uncorrected_ = 0.0;
   double listed_to_ = 0.0, end_ = 0.0, limit_ = 1.0;
   Size size_;
   LaneVector moments_;
