@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace drev {
 
@@ -62,6 +63,13 @@ class Search {
 };
 
 }  // namespace
+
+void multiply_polynomial(std::span<const double> by, std::vector<double>& g) {
+  std::vector<double> product(by.size() + g.size() - 1, 0.0);
+  for (std::size_t i = 0; i < by.size(); ++i)
+    for (std::size_t k = 0; k < g.size(); ++k) product[i + k] += by[i] * g[k];
+  g = std::move(product);
+}
 
 double polynomial_value(std::span<const double> g, double s) {
   double sum = 0.0;

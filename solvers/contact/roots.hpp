@@ -12,6 +12,7 @@
 /// Kearfott, M. J. Cloud, Introduction to Interval Analysis, SIAM, 2009.
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace drev {
 
@@ -19,6 +20,8 @@ namespace drev {
 double polynomial_value(std::span<const double> g, double s);
 /// g'(s).
 double polynomial_slope(std::span<const double> g, double s);
+/// g times another one.
+void multiply_polynomial(std::span<const double> by, std::vector<double>& g);
 
 /// First s in (0, end] at which g falls below zero. g_0 must be > 0, or 0 with the first
 /// coefficient that is not 0 positive: the root at 0 is divided out and not found again.

@@ -106,8 +106,8 @@ class ExactRun final : public StepMotion {
     return {inside_assembler_, look_};
   }
   std::optional<int> side(int law) const override { return laws_.side(law); }
-  std::optional<DeflectionRange> deflection_range(int law) override {
-    return expansion_.deflection_range(laws_, system_.scalars()[idx(law)], law, step_.s);
+  std::optional<ForceRange> force_range(int law) override {
+    return expansion_.force_range(laws_, law, step_.s);
   }
 
  private:

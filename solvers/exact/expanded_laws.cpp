@@ -347,6 +347,17 @@ bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<d
   return false;
 }
 
+ExpandedLaws::Turning ExpandedLaws::turning(int index) const {
+  for (const Law& law : laws_) {
+    if (law.index != index || law.scaled == nullptr) continue;
+    Turning turning{std::abs(law.stretch.slope), law.phase_row};
+    for (const ScaleOrder& o : law.stretch.orders)
+      turning.steepest += o.order * (std::abs(o.cosine) + std::abs(o.sine));
+    return turning;
+  }
+  return {};
+}
+
 std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, double end) {
   std::optional<double> first;
   for (Law& law : laws_) {

@@ -75,6 +75,12 @@ class ExpandedLaws final : public TermForces {
   void expand(const TaylorSeries& series);
   /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
   bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale);
+  /// Bound of |dr/dtheta| of a law that has a scale, on the stretch of the step [1/rad]; and the row that turns theta.
+  struct Turning {
+    double steepest = 0.0;
+    std::span<const Entry> row = {};
+  };
+  Turning turning(int law) const;
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);

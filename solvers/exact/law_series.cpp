@@ -7,7 +7,6 @@
 #include "solvers/contact/pieces.hpp"
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/expanded_laws.hpp"
-#include "solvers/run/cubic_peak.hpp"
 #include "solvers/series/series_kernels.hpp"
 
 namespace drev {
@@ -37,14 +36,6 @@ double work_of(std::span<const double> a, std::span<const double> b, double s) {
   return sum;
 }
 
-/// g *= scale, as series.
-void multiply(const std::vector<double>& scale, std::vector<double>& g) {
-  std::vector<double> product(scale.size() + g.size() - 1, 0.0);
-  for (std::size_t i = 0; i < scale.size(); ++i)
-    for (std::size_t k = 0; k < g.size(); ++k) product[i + k] += scale[i] * g[k];
-  g = std::move(product);
-}
-
 /// b is the other side of a's line.
 bool opposite(const LawBound& a, const LawBound& b) {
   const double size_a = std::max({std::abs(a.a), std::abs(a.b_x), std::abs(a.b_v)});
@@ -71,7 +62,8 @@ LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scala
     Law& law = laws_[j];
     const std::span<const LawPiece> own = linear_pieces(term);
     law.pieces = own.empty() ? bounds_alone(*term.force) : std::vector<LawPiece>(own.begin(), own.end());
-    if (own.empty() && ExpandedLaws::takes(term))
+    law.expanded = ExpandedLaws::takes(term);
+    if (law.expanded)
       for (std::size_t i = 0; i < law.pieces.size(); ++i)
         if (const LawPiece& piece = term.force->pieces()[i]; ExpandedLaws::is_linear(term, piece))
           law.pieces[i] = piece;
@@ -186,7 +178,7 @@ void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<doub
   for (std::size_t k = 0; k < terms; ++k) g[k] = b.b_x * law.x[k];
   g[0] += b.a;
   if (b.b_v == 0.0) return;
-  if (law.scaled) multiply(law.scale, g);
+  if (law.scaled) multiply_polynomial(law.scale, g);
   for (std::size_t k = 0; k + 1 < terms; ++k) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
 }
 
@@ -200,7 +192,7 @@ void LawSeries::bound_sizes(int number, const LawBound& b, std::vector<double>& 
     size[0] += std::abs(b.a);
     std::vector<double> scale(law.scale.size());
     std::transform(law.scale.begin(), law.scale.end(), scale.begin(), [](double r) { return std::abs(r); });
-    multiply(scale, size);
+    multiply_polynomial(scale, size);
   }
   for (std::size_t k = 0; k + 1 < terms; ++k)
     size[k] += std::abs(b.b_v) * static_cast<double>(k + 1) / h_ * size_of_term(number, k + 1);
@@ -225,21 +217,11 @@ LawSeries::Start LawSeries::start_of(int number, const LawBound& b, int index) {
   return Start::holds;
 }
 
-Interval LawSeries::range(int law, double end) const {
-  constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
-  const std::vector<double>& x = laws_[idx(law)].x;
-  std::array<double, kParts> s, value, slope;
-  for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
-  polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
-  Interval range{x[0], x[0]};
-  const auto take = [&range](double y) { range = {std::min(range.low, y), std::max(range.high, y)}; };
-  double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
-  for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
-    take(value[i]);
-    const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
-    if (inside) take(polynomial_value(x, s[i] - end / kParts * (1.0 - inside->s)));
-  }
-  return range;
+const LawPiece* LawSeries::force_piece(int law) const {
+  const auto j = idx(law);
+  const ScalarTerm& term = system_.scalars()[j];
+  if (laws_[j].expanded) return &term.force->pieces()[idx(laws_[j].piece)];
+  return linear_pieces(term).empty() ? nullptr : &current(j);
 }
 
 std::optional<LawSeries::Change> LawSeries::change_at_once() {

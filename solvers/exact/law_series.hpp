@@ -39,8 +39,10 @@ class LawSeries {
     return l.sides[idx(l.piece)];
   }
 
-  /// The smallest and the largest value of a law's deflection on its series in [0, end].
-  Interval range(int law, double end) const;
+  /// The piece that tells a law's force, but for what scales it; null: of a law that is projected.
+  const LawPiece* force_piece(int law) const;
+  /// Series of a law's deflection along the step.
+  const std::vector<double>& deflection(int law) const { return laws_[idx(law)].x; }
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
@@ -86,6 +88,7 @@ class LawSeries {
   struct Law {
     std::vector<LawPiece> pieces;           // the law's own; of a projected one its bounds, without forces
     bool scaled = false;                    // by its angle, where that matters to a bound
+    bool expanded = false;                  // the law is one of ExpandedLaws
     std::vector<std::optional<int>> sides;  // StepMotion::side() of each piece
     int piece = 0;
     int root = -1;                                   // bound of the piece that is zero at s = 0

@@ -1,9 +1,12 @@
 #include "solvers/exact/step_expansion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "solvers/contact/roots.hpp"
 #include "solvers/run/cubic_peak.hpp"
+#include "solvers/series/series_kernels.hpp"
 
 namespace drev {
 
@@ -27,9 +30,28 @@ constexpr double kAlong = 1e-9;  // error of points on the way of a swept step, 
 // A place is settled, relative to the step; rounding of a time, relative to the time.
 constexpr double kAtChange = 1e-12, kRoundingOfTime = 4e-16;
 constexpr int kMaxPasses = 20;  // passes of projected loads in one step
+// Terms of a law's scale, relative to the scale, that its force's range leaves out; how many there are at most.
+constexpr double kOfScale = 1e-9, kMostDropped = TaylorSeries::kMaxDegree;
 // How far a kink's response, between s^3 and s^7 from somewhere on, lies from the cubic through its ends: of y and y' there,
 // twice the most.
 constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
+
+/// The smallest and the largest value of a polynomial in [0, end], a step of a series.
+Interval range_of(const std::vector<double>& x, double end) {
+  constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
+  std::array<double, kParts> s, value, slope;
+  for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
+  polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
+  Interval range{x[0], x[0]};
+  const auto take = [&range](double y) { range = {std::min(range.low, y), std::max(range.high, y)}; };
+  double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
+  for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
+    take(value[i]);
+    const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
+    if (inside) take(polynomial_value(x, s[i] - end / kParts * (1.0 - inside->s)));
+  }
+  return range;
+}
 
 }  // namespace
 
@@ -130,17 +152,65 @@ const double* StepExpansion::beyond_cubic(double s) {
   return beyond_cubic_.data();
 }
 
-StepMotion::DeflectionRange StepExpansion::deflection_range(const LawSeries& laws, const ScalarTerm& term,
-                                                            int law, double s) const {
-  const Interval range = laws.range(law, s);
-  double error = 0.0;
-  for (const Entry& e : term.z)
-    if (sweeps_ && kinks.any())  // from zero at rest, |y| <= |y_1| + 4/27 |y'_1| on the cubic
-      error += std::abs(e.coeff) * ((1.0 + kOfKinks) * std::abs(series.swept(0)[e.index]) +
-                                    (kCubicBulge + kOfKinkRates) * std::abs(series.swept(-1)[e.index]));
-    else if (known.kinked())
-      error += std::abs(e.coeff) * known.kinks_inside() * series.z_scale()[idx(series.kind(e.index))];
-  return {range.low, range.high, error};
+StepExpansion::Inside StepExpansion::left_by_kinks(std::span<const Entry> row) const {
+  Inside left;
+  if (sweeps_ && kinks.any())
+    for (const Entry& e : row) {
+      // From zero at rest, the cubic stays within |y_1| + 4/27 |y'_1|, its rate within 3/2 |y_1| + |y'_1|.
+      const double y = std::abs(e.coeff * series.swept(0)[e.index]),
+                   rate = std::abs(e.coeff * series.swept(-1)[e.index]);
+      left.value += (1.0 + kOfKinks) * y + (kCubicBulge + kOfKinkRates) * rate;
+      left.rate += 1.5 * y + (1.0 + 10.0 * kOfKinkRates) * rate;
+    }
+  else if (!sweeps_ && known.kinked())
+    for (const Entry& e : row) {
+      const auto kind = idx(series.kind(e.index));
+      left.value += std::abs(e.coeff) * known.kinks_inside() * series.z_scale()[kind];
+      left.rate += std::abs(e.coeff) * known.kinks_inside() * series.step() * series.v_scale()[kind];
+    }
+  return left;
+}
+
+std::optional<StepMotion::ForceRange> StepExpansion::find_force_range(const LawSeries& laws, int law,
+                                                                      double s) {
+  const LawPiece* p = laws.force_piece(law);
+  if (p == nullptr) return std::nullopt;
+  const std::vector<double>& x = laws.deflection(law);
+  const double per_time = 1.0 / series.step();
+  // r (y_0 + k x) + (c + g x) x', as a series; sizes: bounds of r, x and x' by s.
+  force_.resize(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) force_[k] = p->k * x[k];
+  force_[0] += p->y_0;
+  double of_r = 1.0, of_x = 0.0, of_rate = 0.0, elastic = 0.0;
+  for (const double term : force_) elastic += std::abs(term);
+  if (elastic != 0.0 && expanded.scale_of(law, series, scale_)) {
+    while (scale_.size() > 1 && std::abs(scale_.back()) <= kOfScale * std::abs(scale_[0])) scale_.pop_back();
+    multiply_polynomial(scale_, force_);
+    of_r = 0.0;
+    for (const double term : scale_) of_r += std::abs(term);
+  }
+  if (p->c != 0.0 || p->product != 0.0) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      of_x += std::abs(x[k]);
+      of_rate += static_cast<double>(k) * std::abs(x[k]);
+    }
+    std::vector<double> damped(x.begin(), x.end());
+    for (double& term : damped) term *= 0.5 * p->product;
+    damped[0] += p->c;
+    multiply_polynomial(x, damped);  // its rate is (c + g x) x'
+    force_.resize(std::max(force_.size(), damped.size() - 1), 0.0);
+    for (std::size_t k = 1; k < damped.size(); ++k)
+      force_[k - 1] += static_cast<double>(k) * per_time * damped[k];
+  }
+  const Interval range = range_of(force_, s);
+  const Inside left = left_by_kinks(system_.scalars()[idx(law)].z);
+  const ExpandedLaws::Turning turning = expanded.turning(law);
+  const double damping = std::abs(p->c) + std::abs(p->product) * (of_x + left.value);
+  return StepMotion::ForceRange{
+      range.low, range.high,
+      of_r * std::abs(p->k) * left.value +
+          per_time * (damping * left.rate + std::abs(p->product) * of_rate * left.value) +
+          (turning.steepest * left_by_kinks(turning.row).value + kOfScale * kMostDropped) * elastic};
 }
 
 std::optional<double> StepExpansion::first_knot(double end) {

@@ -6,6 +6,7 @@
 /// projection along the path is repeated until the path settles.
 #include <drev/solvers/run/observer.hpp>
 
+#include <algorithm>
 #include <optional>
 
 #include "solvers/exact/expanded_laws.hpp"
@@ -31,7 +32,10 @@ class StepExpansion {
         smooth(system),
         expanded(system),
         friction(system),
-        kinks(series, known, expanded) {
+        kinks(series, known, expanded),
+        system_(system),
+        ranges_(system.scalars().size()),
+        ranges_known_(ranges_.size(), false) {
     if (!known.expanded().loads().empty()) series.act_through(&known.expanded());
     if (!expanded.empty()) series.act_through(&expanded);
     if (!friction.empty()) series.act_through(&friction);  // which counts on all others
@@ -60,6 +64,7 @@ class StepExpansion {
 
   /// The laws' deflections and bounds along the step.
   void expand_laws(LawSeries& laws) {
+    std::fill(ranges_known_.begin(), ranges_known_.end(), false);
     expanded.expand(series);
     laws.expand(series, known, offsets, [this](int law, std::vector<double>& scale) {
       if (!expanded.scale_of(law, series, scale)) smooth.expand_scale(law, series, scale);
@@ -79,9 +84,13 @@ class StepExpansion {
 
   /// Observer::looks_inside() over the step up to s.
   const double* beyond_cubic(double s);
-  /// StepMotion::deflection_range() up to s: of the series; what kinks add is within the error.
-  StepMotion::DeflectionRange deflection_range(const LawSeries& laws, const ScalarTerm& term, int law,
-                                               double s) const;
+  /// StepMotion::force_range() up to s: of the series; what kinks add is within the error.
+  std::optional<StepMotion::ForceRange> force_range(const LawSeries& laws, int law, double s) {
+    const auto j = idx(law);
+    if (!ranges_known_[j]) ranges_[j] = find_force_range(laws, law, s);
+    ranges_known_[j] = true;
+    return ranges_[j];
+  }
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
@@ -112,10 +121,20 @@ class StepExpansion {
  private:
   bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
                      Attempt& made);
+  /// How far, at most, what is known of kinks at the step's end leaves the motion along a row inside: itself, and its rate by s.
+  struct Inside {
+    double value = 0.0, rate = 0.0;
+  };
+  Inside left_by_kinks(std::span<const Entry> row) const;
+  std::optional<StepMotion::ForceRange> find_force_range(const LawSeries& laws, int law, double s);
   template <class Later>
   std::optional<double> settle(double s, const Later& later, double t, State& at);
 
+  const System& system_;
   LaneVector beyond_cubic_;
+  std::vector<double> force_, scale_;  // of force_range(), which finds each law's once a step
+  std::vector<std::optional<StepMotion::ForceRange>> ranges_;
+  std::vector<bool> ranges_known_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
   double share_ = 0.0;
   double knot_clearance_ = 0.0;

@@ -70,17 +70,6 @@ static std::vector<Channel> gap_forces(const System& system) {
   return forces;
 }
 
-static bool has_one_spring(const ScalarTerm& term, const Gap& gap) {
-  int above = 0, below = 0;
-  for (const LawPiece& p : linear_pieces(term)) {
-    if (p.c != 0.0 || p.product != 0.0) return false;
-    const Interval x = p.x_range();
-    above += x.low >= gap.high;
-    below += x.high <= gap.low;
-  }
-  return above + below > 0 && above <= 1 && below <= 1;
-}
-
 ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     : inside_steps_(inside_steps),
       forces_(inside_steps ? std::make_unique<Peaks>(gap_forces(system)) : nullptr) {
@@ -92,7 +81,6 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     terms_.push_back(j);
     rows_.push_back(term.z);
     in_unknowns_.push_back(term.phase_node < 0 && !term.varies);
-    one_spring_.push_back(in_unknowns_.back() && has_one_spring(term, *gap));
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
     records_.emplace_back().element = system.element_instances()[idx(index(term.element))].name;
@@ -147,14 +135,10 @@ bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& fro
     const auto reach = force_reach(*motion_, law, from, to, beyond);
     if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) return false;
   }
-  // An end on an edge of the gap has the slope of either side.
-  const double k = std::max(a.dy_dx, b.dy_dx);
-  if (!one_spring_[i] || std::min(a.dy_dx, b.dy_dx) < 0.0) return true;
-  const auto range = motion_->deflection_range(law);
+  const auto range = motion_->force_range(law);
   if (!range) return true;
-  const double x = from.inputs[j].x, y_low = a.y + k * (range->low - x), y_high = a.y + k * (range->high - x);
-  const double inside = std::max(-y_low, y_high);
-  if (k * range->error > kLargestOfContact * std::max(inside, largest)) return true;
+  const double inside = std::max(-range->low, range->high);
+  if (range->error > kLargestOfContact * std::max(inside, largest)) return true;
   largest_inside_[i] = inside;
   return false;
 }

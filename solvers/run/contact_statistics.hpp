@@ -92,7 +92,6 @@ class ContactStatistics final : public Observer {
   std::vector<std::size_t> terms_;
   std::vector<std::vector<Entry>> rows_;  // rows of the deflections over the unknowns
   std::vector<bool> in_unknowns_;         // whether unknowns alone move the deflection
-  std::vector<bool> one_spring_;          // and each flank is one spring without damping
   std::vector<Gap> gaps_;
   std::vector<double> masses_;
   std::vector<ContactInterval> intervals_;

@@ -24,12 +24,12 @@ class StepMotion {
   /// Where a law (of System::scalars()) that has a gap is between the two points: 1 on the flank above it, 0 in
   /// the gap, -1 below; none where the method does not end its steps at changes.
   virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
-  /// The smallest and the largest deflection of a law between the two points that looks_inside() was given, both off by at
-  /// most `error` [m or rad]; none where that costs as much as to show the points inside.
-  struct DeflectionRange {
-    double low, high, error;
+  /// The smallest and the largest force of a law (of System::scalars()) between the two points that looks_inside() was given,
+  /// both off by at most `error` [N or N m]; none where that costs as much as to show the points inside.
+  struct ForceRange {
+    double low = 0.0, high = 0.0, error = 0.0;
   };
-  virtual std::optional<DeflectionRange> deflection_range(int /*law*/) { return std::nullopt; }
+  virtual std::optional<ForceRange> force_range(int /*law*/) { return std::nullopt; }
 };
 
 class Observer {

@@ -79,7 +79,12 @@ std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
   if (const int pair = watched_[c].pair; pair >= 0) return pairs_.sum(pair, point.state.v.data());
   if (const int law = channels_[c].deflection_of(); law >= 0) return point.inputs[idx(law)].x_dot;
   // Known motions are those of the assembler's time, which may be another than the point's.
-  if (!channels_[c].is_linear() && assembler.system().any_prescribed_moves()) return std::nullopt;
+  const System& system = assembler.system();
+  const int law = channels_[c].force_of();
+  const bool by_phase = law >= 0 && system.scalars()[idx(law)].phase_node >= 0;
+  if (!channels_[c].is_linear() &&
+      (system.any_prescribed_moves() || (by_phase && assembler.nominal().acceleration != 0.0)))
+    return std::nullopt;
   return channels_[c].rate(assembler, point.state);
 }
 
@@ -112,6 +117,9 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   const double h = to.state.t - from.state.t;
   Interval reach;
   double beyond = 0.0;
+  const auto within = [&peak = peaks_[c]](const Interval& y, double error) {
+    return y.high + error <= peak.max && y.low - error >= peak.min;
+  };
   if (channels_[c].is_linear()) {
     // Its rate reads the acceleration, which is the rate's rate.
     reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
@@ -119,21 +127,22 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
     for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     for (const Entry& e : channels_[c].v_row())
       beyond += std::abs(e.coeff) * beyond_cubic[to.state.z.size() + e.index];
-  } else if (!w.row.empty()) {
+  } else if (const int law = channels_[c].deflection_of(); law >= 0 && !w.row.empty()) {
     for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
-    if (const int law = channels_[c].deflection_of(); law >= 0) {
-      const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
-      reach = cubic_reach(a.x, a.x_dot, b.x, b.x_dot, h);
-    } else {
-      const auto force = force_reach(*motion_, channels_[c].force_of(), from, to, beyond);
-      if (!force) return true;
-      reach = *force;
-      beyond = 0.0;
-    }
+    const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
+    reach = cubic_reach(a.x, a.x_dot, b.x, b.x_dot, h);
+  } else if (const int law = channels_[c].force_of(); law >= 0) {
+    for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
+    const auto force = w.row.empty() ? std::nullopt : force_reach(*motion_, law, from, to, beyond);
+    if (force && within(*force, 0.0)) return false;
+    const auto range = motion_->force_range(law);
+    if (!range) return true;
+    reach = {range->low, range->high};
+    beyond = range->error;
   } else {
     return true;
   }
-  return !(reach.high + beyond <= peaks_[c].max && reach.low - beyond >= peaks_[c].min);
+  return !within(reach, beyond);
 }
 
 /// Values and rates at the step's end, and how far the value may come beyond its peaks: most are so far from them that no slope at

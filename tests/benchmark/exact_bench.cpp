@@ -17,6 +17,7 @@
 #include <memory>
 
 #include "tests/catch.hpp"
+#include "tests/problems/mesh_laws.hpp"
 
 using namespace drev;
 
@@ -72,69 +73,28 @@ TEST_CASE("Exact propagation of the camshaft beside average acceleration") {
 TEST_CASE("Mesh laws under exact propagation: stiffness by phase and damping, beside constant and none") {
   // The camshaft's gear drive, 0.5 s at a tolerance of 1e-8: later stepped stiffness drives the undamped motion up. Errors of
   // the angles at 2 ms over the largest, beside dormand_prince at 1e-11, which shares no series and takes seconds for that.
-  std::printf("| mesh | time [s] | steps | ratio | error |\n|---|---|---|---|---|\n");
-  struct Row {
-    const char* name;
-    void (*change)(GearMesh::Params&);
-  };
-  const Row rows[] = {
-      {"constant stiffness, no damping", [](GearMesh::Params&) {}},
-      {"stiffness in steps",
-       [](GearMesh::Params& p) {
-         p.stiffness = MeshStiffness::step(0.85 * p.stiffness.mean(), 1.15 * p.stiffness.mean(), 1.5);
-       }},
-      {"stiffness as Fourier series, 5 orders",
-       [](GearMesh::Params& p) {
-         p.stiffness =
-             MeshStiffness::fourier_of_step(0.85 * p.stiffness.mean(), 1.15 * p.stiffness.mean(), 1.5, 5);
-       }},
-      {"stiffness as table of 8 points",
-       [](GearMesh::Params& p) {
-         const double k = p.stiffness.mean();
-         p.stiffness = MeshStiffness::table(
-             {0.0, 0.1, 0.25, 0.45, 0.5, 0.6, 0.75, 0.95},
-             {1.1 * k, 1.14 * k, 1.16 * k, 1.12 * k, 0.9 * k, 0.86 * k, 0.84 * k, 0.88 * k});
-       }},
-      {"proportional damping", [](GearMesh::Params& p) { p.damping = 2e4; }},
-      {"limited damping",
-       [](GearMesh::Params& p) {
-         p.damping = 2e4;
-         p.damping_law = MeshDamping::limited;
-       }},
-      {"proportional damping, stiffness in steps", [](GearMesh::Params& p) {
-         p.damping = 2e4;
-         p.stiffness = MeshStiffness::step(0.85 * p.stiffness.mean(), 1.15 * p.stiffness.mean(), 1.5);
-       }}};
-  double constant = 0.0;
-  for (const Row& row : rows) {
-    Parameters s("camshaft", camshaft_entry().parameters);
-    s.set("damping", "undamped");
-    const ModelCase model_case = camshaft_entry().build(s);
-    Model m("camshaft");
-    for (const std::string& node : model_case.model.node_names()) m.add_node(node);
-    for (const ElementInstance& p : model_case.model.element_instances()) {
-      const auto* mesh = dynamic_cast<const GearMesh*>(p.element.get());
-      if (mesh == nullptr) {
-        m.add(p.name, p.nodes, p.element);
-        continue;
-      }
-      GearMesh::Params params = mesh->params();
-      if (params.teeth_1 == 0) params.teeth_1 = 60, params.teeth_2 = 0;
-      params.damping = 0.0;
-      row.change(params);
-      m.add(p.name, p.nodes, std::make_shared<GearMesh>(params));
-    }
-    for (const Model::Prescription& p : model_case.model.prescriptions()) m.constant_speed(p.node, *p.omega);
-    const System system = m.build();
+  std::printf(
+      "| mesh | time [s] | steps | ratio | with observers [s] | ratio | error "
+      "|\n|---|---|---|---|---|---|---|\n");
+  double constant = 0.0, constant_observed = 0.0;
+  for (const test::MeshLaw& law : test::mesh_laws()) {
+    const test::GearDrive drive = test::gear_drive_with(law);
+    const System& system = drive.system;
     RunSummary run;
-    const double seconds =
-        fastest_seconds([&] { run = propagate(system, {.tolerance = 1e-8, .t_end = 0.5}); });
+    const ExactOptions options{.tolerance = 1e-8, .t_end = 0.5};
+    const double seconds = fastest_seconds([&] { run = propagate(system, options); });
+    const double observed = fastest_seconds([&] {
+      Peaks torque(find_channels(system, drive.torques));
+      ContactStatistics contacts(system);
+      propagate(system, options, {&torque, &contacts});
+    });
     CHECK(run.ok());
-    if (constant == 0.0) constant = seconds;
+    if (constant == 0.0) constant = seconds, constant_observed = observed;
     State at_tolerance = State::initial(system), other = at_tolerance;
     propagate(system, {.tolerance = 1e-8, .t_end = 0.002}, at_tolerance);
     simulate(system, {.scheme = step_scheme("dormand_prince"), .tolerance = 1e-11, .t_end = 0.002}, other);
-    std::printf("| %s | %.3f | %ld | %.2f | %.1e |\n", row.name, seconds, run.steps, seconds / constant,
+    std::printf("| %s | %.3f | %ld | %.2f | %.3f | %.2f | %.1e |\n", law.name, seconds, run.steps,
+                seconds / constant, observed, observed / constant_observed,
                 (at_tolerance.z - other.z).lpNorm<Eigen::Infinity>() / other.z.lpNorm<Eigen::Infinity>());
   }
 }

@@ -1,5 +1,5 @@
 // Runs whose instructions are counted (count.sh): what is inside measured() is.
-//   instructions_runs held|gears|modes|main_job
+//   instructions_runs held|gears|modes|main_job|mesh_fourier|mesh_table
 #include <drev/core/system.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/ready_made.hpp>
@@ -13,13 +13,15 @@
 #include <cstdio>
 #include <functional>
 
+#include "tests/problems/mesh_laws.hpp"
+
 using namespace drev;
 
 extern "C" [[gnu::noinline]] void measured(const std::function<bool()>& run, bool& ok) { ok = run(); }
 
 namespace {
 
-constexpr double kDuration = 0.02, kLongDuration = 1.0;  // s
+constexpr double kDuration = 0.02, kMeshDuration = 0.15, kLongDuration = 1.0;  // s
 
 ModelCase camshaft_case(const char* drive) {
   Parameters parameters("camshaft", camshaft_entry().parameters);
@@ -41,6 +43,18 @@ System chain(int n) {
   return m.build();
 }
 
+/// Exact propagation under the main job's observers.
+void watched(const System& system, const std::vector<std::string>& torques,
+             const std::vector<std::string>& deflections, double t_end, bool& ok) {
+  Peaks torque(find_channels(system, torques)), deflection(find_channels(system, deflections));
+  ContactStatistics contacts(system);
+  measured(
+      [&] {
+        return propagate(system, {.tolerance = 1e-8, .t_end = t_end}, {&torque, &deflection, &contacts}).ok();
+      },
+      ok);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,17 +68,10 @@ int main(int argc, char** argv) {
     measured([&] { return propagate(system, {.tolerance = 1e-6, .t_end = kDuration}).ok(); }, ok);
   } else if (name == "main_job") {
     const ModelCase model_case = camshaft_case("gears");
-    const System system = model_case.model.build();
-    Peaks torque(find_channels(system, model_case.torques));
-    Peaks deflection(find_channels(system, {model_case.deflection}));
-    ContactStatistics contacts(system);
-    measured(
-        [&] {
-          return propagate(system, {.tolerance = 1e-8, .t_end = kLongDuration},
-                           {&torque, &deflection, &contacts})
-              .ok();
-        },
-        ok);
+    watched(model_case.model.build(), model_case.torques, {model_case.deflection}, kLongDuration, ok);
+  } else if (name == "mesh_fourier" || name == "mesh_table") {
+    const test::GearDrive drive = test::gear_drive_with(test::mesh_laws()[name == "mesh_fourier" ? 2 : 3]);
+    watched(drive.system, drive.torques, {}, kMeshDuration, ok);
   } else if (name == "modes") {
     const System system = chain(2000);
     measured([&] { return solve_modes(system, {.count = 10}).count() == 10; }, ok);

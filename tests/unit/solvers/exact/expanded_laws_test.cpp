@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "tests/catch.hpp"
+#include "tests/problems/mesh_laws.hpp"
 
 using namespace drev;
 
@@ -230,4 +231,19 @@ TEST_CASE("Exact propagation: mesh stiffness by phase and kinks of tables share 
       if (stiffness == &fourier)
         CHECK(static_cast<double>(run.solves) < 65.0 * static_cast<double>(run.steps));
     }
+}
+
+TEST_CASE("Exact propagation: laws of a mesh take little more steps than a spring does") {
+  // Ratio to constant stiffness: a jump of the stiffness, or a table's point, ends a step.
+  const std::vector<double> most{1.0, 1.15, 1.06, 1.45, 1.1, 1.1, 1.2};
+  std::vector<double> steps;
+  for (const test::MeshLaw& law : test::mesh_laws()) {
+    const RunSummary run = propagate(test::gear_drive_with(law).system, {.tolerance = 1e-8, .t_end = 0.1});
+    REQUIRE(run.ok());
+    steps.push_back(static_cast<double>(run.steps));
+  }
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    CAPTURE(test::mesh_laws()[i].name);
+    CHECK(steps[i] / steps[0] <= most[i]);
+  }
 }
