@@ -15,11 +15,6 @@ namespace drev {
 
 static constexpr std::size_t kListed = 12;  // channels, beside a pattern that nothing fits
 
-static bool undamped(std::span<const LawPiece> pieces) {
-  return !pieces.empty() && std::all_of(pieces.begin(), pieces.end(),
-                                        [](const LawPiece& p) { return p.c == 0.0 && p.product == 0.0; });
-}
-
 class ChannelFinder {
  public:
   /// Makes every channel, or those wanted alone: all those of a large model take several times its memory.
@@ -112,10 +107,8 @@ class ChannelFinder {
       c.of_energy_ = of;
       c.driven_ = of == &ElementEnergy::power && energy->has_loads();
       c.inertial_ = c.driven_ && !system_.varying_inertias().empty();
-      if (energy->has_friction() && kind == Channel::Kind::integral) {
-        c.kind_ = Channel::Kind::friction;
-        c.index_ = energy->friction_heat();
-      }
+      if (energy->has_friction() && kind == Channel::Kind::integral)
+        c.kind_ = Channel::Kind::friction, c.index_ = energy->friction_heat();
       found.push_back(std::move(c));
     };
     using Kind = Channel::Kind;
@@ -140,10 +133,10 @@ class ChannelFinder {
     c.index_ = index;
     c.along_line_of_action_ = along_line_of_action;
     const ScalarTerm* law = kind == Channel::Kind::force ? &system_.scalars()[idx(index)] : nullptr;
-    c.damped_ = law != nullptr && law->phase_node < 0 && !undamped(linear_pieces(*law));
+    c.damped_ = law != nullptr && law->phase_node < 0 && !is_undamped(linear_pieces(*law));
     c.moved_ =
         law != nullptr && law->phase_node >= 0 &&
-        (dynamic_cast<const AngleScaledForce*>(law->force) == nullptr || !undamped(law->force->pieces()));
+        (dynamic_cast<const AngleScaledForce*>(law->force) == nullptr || !is_undamped(law->force->pieces()));
     c.inertial_ = kind == Channel::Kind::load && !system_.varying_inertias().empty();
     make_direct(c, output);
     channels.push_back(std::move(c));
@@ -244,8 +237,8 @@ Vector node_residual(const Assembler& assembler, const State& s) {
   Vector q(nodes), v(nodes), a(nodes);
   for (int i = 0; i < nodes; ++i) {
     const MotionPoint m = assembler.node_motion(i, s);
-    q[i] = m.value, v[i] = m.rate, a[i] = m.acceleration;
-    a[i] += system.ratio(i) * assembler.nominal().acceleration;
+    q[i] = m.value, v[i] = m.rate;
+    a[i] = m.acceleration + system.ratio(i) * assembler.nominal().acceleration;
   }
   const MatrixSet& k = *system.node_matrices();
   Vector r = k.mass * a + k.damping * v + k.stiffness * q;
@@ -348,23 +341,29 @@ std::optional<double> Channel::rate(const Assembler& assembler, const State& sta
       return assembler.input(system.scalars()[idx(index_)], state.z, state.v).x_dot;
     case Kind::force: {
       const ScalarTerm& term = system.scalars()[idx(index_)];
-      if (moved_) return std::nullopt;
       const ScalarInput in = assembler.input(term, state.z, state.v);
-      const ScalarResponse r = term.force->evaluate(in);
-      double y = r.dy_dx * in.x_dot;
-      if (r.dy_dangle != 0.0)
-        y += r.dy_dangle * (system.ratio(term.phase_node) * assembler.nominal().rate +
-                            assembler.node_motion(term.phase_node, state).rate);
-      if (!damped_) return y;
-      for (const Entry& e : term.z) y += r.dy_dx_dot * e.coeff * state.a[e.index];
-      for (const Entry& e : term.u) y += r.dy_dx_dot * e.coeff * assembler.prescribed(e.index).acceleration;
-      return y;
+      return force_rate(assembler, state, in, term.force->evaluate(in));
     }
     case Kind::energy:
       return of_energy_ == &ElementEnergy::stored ? energy_->stored_rate(assembler, state) : std::nullopt;
     default:
       return std::nullopt;
   }
+}
+
+std::optional<double> Channel::force_rate(const Assembler& assembler, const State& state,
+                                          const ScalarInput& in, const ScalarResponse& r) const {
+  const System& system = assembler.system();
+  const ScalarTerm& term = system.scalars()[idx(index_)];
+  if (moved_) return std::nullopt;
+  double y = r.dy_dx * in.x_dot;
+  if (r.dy_dangle != 0.0)
+    y += r.dy_dangle * (system.ratio(term.phase_node) * assembler.nominal().rate +
+                        assembler.node_motion(term.phase_node, state).rate);
+  if (!damped_) return y;
+  for (const Entry& e : term.z) y += r.dy_dx_dot * e.coeff * state.a[e.index];
+  for (const Entry& e : term.u) y += r.dy_dx_dot * e.coeff * assembler.prescribed(e.index).acceleration;
+  return y;
 }
 
 bool Channel::value_needs_acceleration() const {
@@ -491,10 +490,9 @@ std::vector<Channel> find_channels(const System& system, const std::vector<std::
 
 Channel find_channel(const System& system, const std::string& name) {
   const std::vector<Channel> found = find_channels(system, {name});
-  if (found.size() != 1)
-    throw ModelError({{system.name(), "channel", name, "",
-                       "fits " + std::to_string(found.size()) + " channels; one is meant here"}});
-  return found.front();
+  if (found.size() == 1) return found.front();
+  throw ModelError({{system.name(), "channel", name, "",
+                     "fits " + std::to_string(found.size()) + " channels; one is meant here"}});
 }
 
 }  // namespace drev

@@ -21,6 +21,7 @@
 /// mesh's force is positive on the front flank (x > 0); a load's torque is as it enters the right-hand side;
 /// an ideal gear's torque is the one it applies to its second node; a reaction is the torque that must be
 /// applied to the prescribed node to make it move as given.
+#include <drev/core/scalar_force.hpp>
 #include <drev/core/state.hpp>
 
 #include <memory>
@@ -43,6 +44,10 @@ class Channel {
   /// their phase node by a formula (AngleScaledForce), and the energy stored in those of x and x' alone; none for others
   /// (accelerations, reactions, loads, ideal gears, other laws that follow a phase).
   std::optional<double> rate(const Assembler& assembler, const State& state) const;
+  /// The same of the force of a law whose input and response at that state are known; the assembler may stand at another time,
+  /// if no known motion but a constant speed moves it.
+  std::optional<double> force_rate(const Assembler& assembler, const State& state, const ScalarInput& input,
+                                   const ScalarResponse& response) const;
 
   /// Whether it is an integral over the run of its integrand() [W]: no state holds its value, but a Recorder
   /// (recorder.hpp) and ChannelValues (channel_values.hpp) do.

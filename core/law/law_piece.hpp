@@ -50,6 +50,13 @@ inline bool is_linear(std::span<const LawPiece> pieces) {
   return true;
 }
 
+/// True where there are pieces and no force on any of them follows x_dot.
+inline bool is_undamped(std::span<const LawPiece> pieces) {
+  for (const LawPiece& p : pieces)
+    if (p.c != 0.0 || p.product != 0.0) return false;
+  return !pieces.empty();
+}
+
 /// The piece that holds at (x, x_dot), by the one rule that every method follows: the first whose bounds are
 /// all positive. On a bound, or off all pieces by rounding, the one whose least bound, relative to the size
 /// of its terms, is largest; of equals the first. 0 where the input is not finite.

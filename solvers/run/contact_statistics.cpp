@@ -115,7 +115,7 @@ bool ContactStatistics::looks_inside(const EvaluatedState& from, const Evaluated
   bool looks = forces_ && forces_->looks_inside(from, to, beyond_cubic);
   for (std::size_t i = 0; inside_steps_ && i < terms_.size(); ++i) {
     largest_inside_[i].reset();
-    looks = looks || may_rise_inside(i, from, to, beyond_cubic);
+    looks |= may_rise_inside(i, from, to, beyond_cubic);
   }
   return looks;
 }

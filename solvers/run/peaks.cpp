@@ -85,6 +85,8 @@ std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
   if (!channels_[c].is_linear() &&
       (system.any_prescribed_moves() || (by_phase && assembler.nominal().acceleration != 0.0)))
     return std::nullopt;
+  if (law >= 0)
+    return channels_[c].force_rate(assembler, point.state, point.inputs[idx(law)], point.responses[idx(law)]);
   return channels_[c].rate(assembler, point.state);
 }
 

@@ -5,11 +5,14 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <numeric>
 
 #include "tests/catch.hpp"
 #include "tests/problems/mesh_laws.hpp"
@@ -187,6 +190,45 @@ TEST_CASE("A table and harmonics in one model cost no more steps than the dearer
 
 namespace {
 
+/// The mean of the largest force of every contact on a flank, from the motion each microsecond.
+class Sampled final : public Observer {
+ public:
+  explicit Sampled(const System& system) : system_(system) {
+    for (std::size_t j = 0; j < system.scalars().size(); ++j)
+      if (system.scalars()[j].force->gap()) contacts.push_back({.law = j});
+  }
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState& to) override {
+    for (Contact& c : contacts) {
+      const Gap gap = *system_.scalars()[c.law].force->gap();
+      const double x = to.inputs[c.law].x, y = std::abs(to.responses[c.law].y);
+      const int side = x > gap.high ? 1 : x < gap.low ? -1 : 0;
+      if (side != c.side) {
+        if (c.side != 0 && c.begun) (c.side > 0 ? c.front : c.back).push_back(c.largest);
+        c.begun = true;
+        c.side = side;
+        c.largest = 0.0;
+      }
+      c.largest = std::max(c.largest, y);
+    }
+  }
+  bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override { return false; }
+  double next_stop(double t) const override { return t + 1e-6; }
+
+  struct Contact {
+    std::size_t law = 0;
+    int side = 0;
+    bool begun = false;
+    double largest = 0.0;
+    std::vector<double> front = {}, back = {};
+  };
+  std::vector<Contact> contacts;
+
+ private:
+  const System& system_;
+};
+
 /// Counts what it is shown; it asks for points inside steps, or does without.
 class Shown final : public Observer {
  public:
@@ -243,6 +285,35 @@ TEST_CASE(
       CHECK(a.front_force.mean() == Approx(b.front_force.mean()).epsilon(1e-4));
       CHECK(a.back_force.mean() == Approx(b.back_force.mean()).epsilon(1e-4));
       CHECK(a.impact_energy == Approx(b.impact_energy).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond") {
+  std::vector<test::MeshLaw> laws = test::mesh_laws();
+  laws.push_back({"Fourier series and a transmission error", [](GearMesh::Params& p) {
+                    test::mesh_laws()[2].change(p);
+                    p.transmission_error = TransmissionError::table({0.0, 0.3, 0.6, 0.8}, {0, 0, 2e-6, 0});
+                  }});
+  for (const test::MeshLaw& law : laws) {
+    CAPTURE(law.name);
+    const System system = test::gear_drive_with(law).system;
+    const ExactOptions options{.tolerance = 1e-10, .t_end = 0.02};
+    // A force that is largest just before the stiffness jumps lies between two samples.
+    const double within = std::string(law.name).find("steps") != std::string::npos ? 1e-3 : 1e-4;
+    ContactStatistics contacts(system);
+    Sampled sampled(system);
+    REQUIRE(propagate(system, options, {&contacts}).ok());
+    REQUIRE(propagate(system, options, {&sampled}).ok());
+    for (std::size_t i = 0; i < sampled.contacts.size(); ++i) {
+      const auto check = [&](const Distribution& found, const std::vector<double>& expected) {
+        REQUIRE(found.count() == static_cast<long>(expected.size()));
+        if (expected.empty()) return;
+        const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+        CHECK(found.mean() == Approx(sum / static_cast<double>(expected.size())).epsilon(within));
+      };
+      check(contacts.records()[i].front_force, sampled.contacts[i].front);
+      check(contacts.records()[i].back_force, sampled.contacts[i].back);
     }
   }
 }
