@@ -22,12 +22,12 @@ std::optional<Interval> force_reach(const StepMotion& motion, int law, const Eva
   const auto side = motion.side(law);
   if (!side) return std::nullopt;
   const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
-  // Within the gap there is none but damping, and what rounding leaves at an end beside a change.
-  if (*side == 0 && (a.dy_dx_dot != 0.0 || b.dy_dx_dot != 0.0)) return std::nullopt;
+  if (a.dy_dx_dot != 0.0 || b.dy_dx_dot != 0.0) return std::nullopt;
+  // Within the gap there is none, but for what rounding leaves at an end beside a change.
   if (*side == 0) return Interval{std::min({0.0, a.y, b.y}), std::max({0.0, a.y, b.y})};
   // An end on an edge of the gap has the slope of either side.
   const double k = std::max(a.dy_dx, b.dy_dx);
-  if (std::min(a.dy_dx, b.dy_dx) < 0.0) return std::nullopt;
+  if (std::min(a.dy_dx, b.dy_dx) < 0.0 || k == 0.0) return std::nullopt;  // 0: both have that within the gap
   const Interval reach = cubic_reach(a.y, k * from.inputs[idx(law)].x_dot, b.y, k * to.inputs[idx(law)].x_dot,
                                      to.state.t - from.state.t);
   return Interval{reach.low - k * beyond, reach.high + k * beyond};

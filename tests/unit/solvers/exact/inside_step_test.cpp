@@ -163,6 +163,9 @@ TEST_CASE("Contacts of any duration are counted, and the largest force has the s
   CHECK(record.impacts() == 4);
   CHECK(record.largest_force == peaks.peaks()[0].amplitude());
   CHECK(record.largest_force == Approx(1e4).epsilon(1e-9));
+  // Each of them, those that begin and end with one step included.
+  CHECK(record.front_force.mean() == Approx(1e4).epsilon(1e-9));
+  CHECK(record.back_force.mean() == Approx(1e4).epsilon(1e-9));
 }
 
 TEST_CASE("A table and harmonics in one model cost no more steps than the dearer of them") {
