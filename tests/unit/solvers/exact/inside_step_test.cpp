@@ -163,9 +163,37 @@ TEST_CASE("Contacts of any duration are counted, and the largest force has the s
   CHECK(record.impacts() == 4);
   CHECK(record.largest_force == peaks.peaks()[0].amplitude());
   CHECK(record.largest_force == Approx(1e4).epsilon(1e-9));
-  // Each of them, those that begin and end with one step included.
   CHECK(record.front_force.mean() == Approx(1e4).epsilon(1e-9));
   CHECK(record.back_force.mean() == Approx(1e4).epsilon(1e-9));
+}
+
+TEST_CASE("Each of contacts that grow weaker has its own largest force, those of a single step included") {
+  // A mass between two walls; a spring pulls it to the middle, so that it is on a wall for less than half a period. Behind the
+  // edge m d'' = - (k + g) d - g, with the rate v there: d = (sqrt(g^2 + (k + g) m v^2) - g)/(k + g) at most.
+  const double k = 1e8, g = 1e4;  // N/m; the walls are 1 m from the middle
+  Model m("weaker contacts");
+  m.add_node("m", NodeKind::translational);
+  m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
+  m.add<GroundSpring>("pull", {"m"}, {.stiffness = g, .damping = 3e-4});
+  m.add<PolylineSpring>("walls", {"m"}, PolylineSpring::dead_band(k, 1.0));
+  m.set_initial("m", 0.0, std::sqrt(g + 1.0));
+  const System system = m.build();
+  ContactStatistics contacts(system);
+  ContactEvents events(system);
+  REQUIRE(propagate(system, {.tolerance = 1e-10, .t_end = 0.25}, {&contacts, &events}).ok());
+  for (const bool front : {true, false}) {
+    std::vector<double> largest;
+    for (const ContactEvent& e : events.all()) {
+      if (!e.made || e.front != front) continue;
+      largest.push_back(k * (std::sqrt(g * g + (k + g) * e.rate * e.rate) - g) / (k + g));
+      if (largest.size() > 1) CHECK(largest.back() < largest[largest.size() - 2]);
+    }
+    CHECK(largest.size() >= 3);
+    const Distribution& found = front ? contacts.records()[0].front_force : contacts.records()[0].back_force;
+    REQUIRE(found.count() == static_cast<long>(largest.size()));
+    const double sum = std::accumulate(largest.begin(), largest.end(), 0.0);
+    CHECK(found.mean() == Approx(sum / static_cast<double>(largest.size())).epsilon(1e-4));
+  }
 }
 
 TEST_CASE("A table and harmonics in one model cost no more steps than the dearer of them") {
