@@ -158,9 +158,9 @@ void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& f
         note_change(*interval.side, *side, a.x_dot * a.x_dot, begin, masses_[i], interval, record);
       interval.side = side;
       if (*side == 0) record.time_separated += h;
-      note_forces(i, from, to);
+      note_forces(i, assembler, from, to);
     } else {
-      note_forces(i, from, to);
+      note_forces(i, assembler, from, to);
       if (note_time_separated(record, gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
         note_crossings(gaps_[i], a, b, end, masses_[i], interval, record);
     }
@@ -171,7 +171,8 @@ void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& f
   }
 }
 
-void ContactStatistics::note_forces(std::size_t i, const EvaluatedState& from, const EvaluatedState& to) {
+void ContactStatistics::note_forces(std::size_t i, const Assembler& assembler, const EvaluatedState& from,
+                                    const EvaluatedState& to) {
   const std::size_t j = terms_[i];
   const ScalarResponse &r0 = from.responses[j], &r1 = to.responses[j];
   const double h = to.state.t - from.state.t;
@@ -179,8 +180,12 @@ void ContactStatistics::note_forces(std::size_t i, const EvaluatedState& from, c
   note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
   if (largest_inside_[i]) largest = std::max(largest, *largest_inside_[i]);
   if (!inside_steps_ || largest_inside_[i]) return;
-  if (const auto peak =
-          cubic_peak(r0.y, r0.dy_dx * from.inputs[j].x_dot, r1.y, r1.dy_dx * to.inputs[j].x_dot, h))
+  const auto rate = [&](const EvaluatedState& at) {
+    const ScalarResponse& r = at.responses[j];
+    const auto known = forces_->channels()[i].force_rate(assembler, at.state, at.inputs[j], r);
+    return known.value_or(r.dy_dx * at.inputs[j].x_dot);
+  };
+  if (const auto peak = cubic_peak(r0.y, rate(from), r1.y, rate(to), h))
     note_force(records_[i], std::abs(peak->value), from.state.t + peak->s * h, true, largest);
 }
 

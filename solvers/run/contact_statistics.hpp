@@ -85,7 +85,8 @@ class ContactStatistics final : public Observer {
  private:
   bool may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to,
                        const double* beyond_cubic);
-  void note_forces(std::size_t i, const EvaluatedState& from, const EvaluatedState& to);
+  void note_forces(std::size_t i, const Assembler& assembler, const EvaluatedState& from,
+                   const EvaluatedState& to);
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
   std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
