@@ -337,25 +337,27 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   return any;
 }
 
-bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) {
-  for (Law& law : laws_) {
-    if (law.index != index) continue;
-    complete(law, series);
-    scale.assign(law.r.begin(), law.r.begin() + (law.varies ? series.degree() : 0) + 1);
-    return true;
-  }
-  return false;
+ExpandedLaws::Law* ExpandedLaws::find(int index) {
+  const auto law =
+      std::find_if(laws_.begin(), laws_.end(), [index](const Law& l) { return l.index == index; });
+  return law == laws_.end() ? nullptr : &*law;
 }
 
-ExpandedLaws::Turning ExpandedLaws::turning(int index) const {
-  for (const Law& law : laws_) {
-    if (law.index != index || law.scaled == nullptr) continue;
-    Turning turning{std::abs(law.stretch.slope), law.phase_row};
-    for (const ScaleOrder& o : law.stretch.orders)
-      turning.steepest += o.order * (std::abs(o.cosine) + std::abs(o.sine));
-    return turning;
-  }
-  return {};
+bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<double>& scale) {
+  Law* law = find(index);
+  if (law == nullptr) return false;
+  complete(*law, series);
+  scale.assign(law->r.begin(), law->r.begin() + (law->varies ? series.degree() : 0) + 1);
+  return true;
+}
+
+ExpandedLaws::Turning ExpandedLaws::turning(int index) {
+  const Law* law = find(index);
+  if (law == nullptr || law->scaled == nullptr) return {};
+  Turning turning{std::abs(law->stretch.slope), law->phase_row};
+  for (const ScaleOrder& o : law->stretch.orders)
+    turning.steepest += o.order * (std::abs(o.cosine) + std::abs(o.sine));
+  return turning;
 }
 
 std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, double end) {

@@ -80,7 +80,7 @@ class ExpandedLaws final : public TermForces {
     double steepest = 0.0;
     std::span<const Entry> row = {};
   };
-  Turning turning(int law) const;
+  Turning turning(int law);
 
   /// First s in (0, end] at which an angle passes a knot.
   std::optional<double> first_knot(const TaylorSeries& series, double end);
@@ -121,6 +121,8 @@ class ExpandedLaws final : public TermForces {
     // Of the orders, in whole lanes: order, cosine and sine of ScaleOrder; cos and sin of order theta, by degree.
     std::vector<double> orders, cosine, sine;
   };
+  /// Of System::scalars(); null: it is none of these.
+  Law* find(int index);
   void note_changes(const Law& law, const double* x, const double* r, const double* p);
   static void add_slopes(TaylorSeries& series, const Law& law, double factor);
   static void add_spring(TaylorSeries& series, Law& law);

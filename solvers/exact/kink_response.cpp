@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -165,7 +164,7 @@ bool KinkResponse::find_limit(double end, double allowed, double scale) {
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
     const Others bends = slopes ? error_of_slopes(limit, change, 0.5 * most) : Others{};
     if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {
-      uncorrected_ = scale * error_of_slopes(end, change, std::numeric_limits<double>::infinity()).error;
+      uncorrected_ = scale * bends.error;  // here, the limit is the end still
       corrects_ = true;
       continue;
     }
@@ -199,17 +198,17 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
 /// the end: int (d - u) (d - u) u^3/6 du = d^6/360 of what the slope changes, of one by speed d^5/60, and d^5/120 of a slope that is
 /// left out. Where add_changes() has been, of laws the square of that over y, and what the derivative behind those makes, the fourth:
-/// int (d - u) (d - u)^4/24 u^3/6 du = d^9/72576, by speed d^8/8064. between: the s of the kink that makes most of it. Nearness
-/// is found where it is needed to come below `enough`; and without add_changes() no more of what is above that.
+/// int (d - u) (d - u)^4/24 u^3/6 du = d^9/72576, by speed d^8/8064. between: the s of the kink that makes most of it. Behind
+/// add_changes(), nearness is found where it is needed to come below `enough`.
 KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoads::SlopeChange& change,
                                                    double enough) const {
-  Others sum = error_of_slopes(end, change, enough, !corrects_);
-  if (corrects_ && sum.error > enough) sum = error_of_slopes(end, change, enough, true);
+  Others sum = error_of_slopes(end, change, !corrects_);
+  if (corrects_ && sum.error > enough) sum = error_of_slopes(end, change, true);
   return sum;
 }
 
 KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoads::SlopeChange& change,
-                                                   double enough, bool by_nearness) const {
+                                                   bool by_nearness) const {
   static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
   const double h = series_.step();
@@ -229,7 +228,6 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoa
     }
     const double error = loads_.kink_sizes().pull()[i] * fifth * of_slopes;
     sum.error += error;
-    if (!corrects_ && laws_.active() && sum.error > enough) break;
     if (error > most) {
       most = error;
       sum.between = kinks.place(i);

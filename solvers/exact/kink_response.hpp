@@ -69,8 +69,7 @@ class KinkResponse {
   Others error_of_others(double end, double allowed);
   double bound_of_rows_apart(double end, double beside, double apart) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, double enough) const;
-  Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, double enough,
-                         bool by_nearness) const;
+  Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, bool by_nearness) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double end, double allowed, double scale);
   /// (rate h)^2/4: |k| h^2/m of a row's coupling in a chain of equal rows.
