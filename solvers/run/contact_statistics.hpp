@@ -75,7 +75,8 @@ class ContactStatistics final : public Observer {
                     const double* beyond_cubic) override;
   void look_through(StepMotion& motion) override;
   void restart(const Assembler& assembler, const EvaluatedState& point) override;
-  /// inside_steps: as in Peaks, for the largest forces; that of each single contact then holds to 1e-4 of itself.
+  /// inside_steps: as in Peaks, for the largest forces; that of each single contact then holds to 1e-4 of itself, to 1e-3 where
+  /// the flank is damped and its stiffness or offset follows an angle.
   explicit ContactStatistics(const System& system, bool inside_steps = true);
   ~ContactStatistics() override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;

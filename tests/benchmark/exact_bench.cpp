@@ -3,7 +3,6 @@
 // runs. Then what mesh laws cost it.
 //   build/release/bin/bench_exact
 #include <drev/core/system.hpp>
-#include <drev/elements/gear_mesh.hpp>
 #include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
@@ -14,7 +13,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <memory>
 
 #include "tests/catch.hpp"
 #include "tests/problems/mesh_laws.hpp"

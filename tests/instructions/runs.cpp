@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
     const ModelCase model_case = camshaft_case("gears");
     watched(model_case.model.build(), model_case.torques, {model_case.deflection}, kLongDuration, ok);
   } else if (name == "mesh_fourier" || name == "mesh_table") {
-    const test::GearDrive drive = test::gear_drive_with(test::mesh_laws()[name == "mesh_fourier" ? 2 : 3]);
+    const test::GearDrive drive =
+        test::gear_drive_with(test::mesh_law(name == "mesh_fourier" ? "Fourier" : "table"));
     watched(drive.system, drive.torques, {}, kMeshDuration, ok);
   } else if (name == "modes") {
     const System system = chain(2000);

@@ -5,6 +5,7 @@
 #include <drev/models/ready_made.hpp>
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,13 @@ inline const std::vector<MeshLaw>& mesh_laws() {
          p.stiffness = MeshStiffness::step(0.85 * p.stiffness.mean(), 1.15 * p.stiffness.mean(), 1.5);
        }}};
   return laws;
+}
+
+/// The first of them whose name holds a word.
+inline const MeshLaw& mesh_law(const std::string& word) {
+  for (const MeshLaw& law : mesh_laws())
+    if (std::string(law.name).find(word) != std::string::npos) return law;
+  throw std::invalid_argument("no mesh law of the tests is named " + word);
 }
 
 struct GearDrive {

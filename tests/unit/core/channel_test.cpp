@@ -123,9 +123,9 @@ TEST_CASE(
         a.set_time(t);
         return state_of(s, {0.003 + 0.7 * t, -0.0002 - 0.4 * t}, {0.7, -0.4}, {0, 0});
       };
-      const double behind = force.evaluate(a, at(0.01 + dt)), ahead = force.evaluate(a, at(0.01 - dt));
+      const double later = force.evaluate(a, at(0.01 + dt)), earlier = force.evaluate(a, at(0.01 - dt));
       const State state = at(0.01);
-      return std::pair(force.rate(a, state), (behind - ahead) / (2.0 * dt));
+      return std::pair(force.rate(a, state), (later - earlier) / (2.0 * dt));
     };
     const auto [undamped, difference] = rate(0.0);
     REQUIRE(undamped);

@@ -3,6 +3,7 @@
 // Covers solvers/exact/step_expansion.hpp and solvers/run/observer.hpp through propagate().
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
@@ -278,24 +279,20 @@ class Shown final : public Observer {
 
 TEST_CASE(
     "Steps are shown whole where no peak passes inside: the same peaks and contacts from fewer points") {
-  for (const test::MeshLaw& law : test::mesh_laws()) {
-    CAPTURE(law.name);
-    const test::GearDrive drive = test::gear_drive_with(law);
-    const System& system = drive.system;
-    std::vector<std::string> channels = drive.torques;
+  struct Watched {
+    std::vector<Peak> peaks;
+    std::vector<ContactRecord> contacts;
+    long shown = 0, steps = 0;
+  };
+  const auto check = [](const System& system, std::vector<std::string> channels, double t_end) {
     for (const Channel& c : all_channels(system))
       if (c.force_of() >= 0) channels.push_back(c.name());
-    struct Watched {
-      std::vector<Peak> peaks;
-      std::vector<ContactRecord> contacts;
-      long shown = 0, steps = 0;
-    };
     const auto watch = [&](bool inside) {
       Peaks peaks(find_channels(system, channels));
       ContactStatistics contacts(system);
       Shown shown(inside);
       const RunSummary run =
-          propagate(system, {.tolerance = 1e-10, .t_end = 0.15}, {&peaks, &contacts, &shown});
+          propagate(system, {.tolerance = 1e-10, .t_end = t_end}, {&peaks, &contacts, &shown});
       REQUIRE(run.ok());
       return Watched{peaks.peaks(), contacts.records(), shown.count, run.steps};
     };
@@ -317,13 +314,22 @@ TEST_CASE(
       CHECK(a.back_force.mean() == Approx(b.back_force.mean()).epsilon(1e-4));
       CHECK(a.impact_energy == Approx(b.impact_energy).epsilon(1e-9));
     }
+  };
+  Parameters parameters("camshaft", camshaft_entry().parameters);
+  parameters.set("drive", "gears");
+  const ModelCase camshaft = camshaft_entry().build(parameters);  // with Rayleigh damping
+  check(camshaft.model.build(), camshaft.torques, 0.2);
+  for (const test::MeshLaw& law : test::mesh_laws()) {
+    CAPTURE(law.name);
+    const test::GearDrive drive = test::gear_drive_with(law);
+    check(drive.system, drive.torques, 0.15);
   }
 }
 
 TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond") {
   std::vector<test::MeshLaw> laws = test::mesh_laws();
   laws.push_back({"Fourier series and a transmission error", [](GearMesh::Params& p) {
-                    test::mesh_laws()[2].change(p);
+                    test::mesh_law("Fourier").change(p);
                     p.transmission_error = TransmissionError::table({0.0, 0.3, 0.6, 0.8}, {0, 0, 2e-6, 0});
                   }});
   for (const test::MeshLaw& law : laws) {
