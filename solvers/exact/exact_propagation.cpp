@@ -106,8 +106,9 @@ class ExactRun final : public StepMotion {
     return {inside_assembler_, look_};
   }
   std::optional<int> side(int law) const override { return laws_.side(law); }
-  std::optional<ForceRange> force_range(int law) override {
-    return expansion_.force_range(laws_, law, step_.s);
+  std::optional<Range> force_range(int law) override { return expansion_.force_range(laws_, law, step_.s); }
+  std::optional<Range> range(const std::vector<Entry>& z, const std::vector<Entry>& v) override {
+    return expansion_.range(z, v, step_.s);
   }
 
  private:
@@ -178,7 +179,8 @@ class ExactRun final : public StepMotion {
     const bool ahead_of_break = stop.at_break && t_new == stop.t;
     const double evaluated_at = ahead_of_break ? stop.evaluation_time() : t_new;
     const bool whole = forces_ || t_new == stop.t || end.friction;
-    whole ? evaluate(assembler_, next_, evaluated_at) : evaluate_motion(assembler_, next_, evaluated_at);
+    whole ? evaluate(assembler_, next_, evaluated_at)
+          : evaluate_motion(assembler_, next_, evaluated_at, true);
     const LawWork work = expansion_.work(laws_, s, next_);
     const EvaluatedState& before = watch(t_new, end);
     if (&before != &now_) assembler_.set_time(evaluated_at);
@@ -289,9 +291,9 @@ class ExactRun final : public StepMotion {
     return end.at_law_knot ? std::max(expansion_.knot_clearance(), kTimeRounding * std::abs(t)) : 0.0;
   }
 
-  /// Shows the observers points inside a step to t_new: where they asked for one, and, if any looks inside, beside a
-  /// contact change or a law's knot at either end, so that each side of it is seen, and close enough for a cubic between
-  /// them to be off by at most 2e-5 of what moves with the fastest mode. Returns the last one.
+  /// Shows the observers points inside a step to t_new: where they asked for one, and, if any looks inside, beside a contact
+  /// change or a law's knot at either end, so that each side of it is seen, and close enough for a cubic between them to be
+  /// off by at most 2e-5 of what moves with the fastest mode. Returns the last one.
   const EvaluatedState& watch(double t_new, const End& end) {
     const EvaluatedState* last = &now_;
     const double t_0 = now_.state.t, length = t_new - t_0;
@@ -299,7 +301,8 @@ class ExactRun final : public StepMotion {
     const double same = kSameTime * std::max(std::abs(options_.t_start), std::abs(options_.t_end));
     step_ = {t_0, length, end.s};
     bool inside = false;
-    const double* beyond_cubic = expansion_.beyond_cubic(end.s);
+    const double* beyond_cubic =
+        expansion_.beyond_cubic(end.s, changed_ || beside_knot_ > 0.0 || end.at_change() || end.at_law_knot);
     for (Observer* o : observers_) inside |= o->looks_inside(now_, next_, beyond_cubic);
     // Projected forces swing faster.
     const double parts = inside ? std::max(std::ceil(fastest_ * length / kWatchedAngle),
@@ -372,9 +375,8 @@ class ExactRun final : public StepMotion {
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 ends the run.
   double expand(double h) {
     for (;;) {
-      const StepExpansion::Attempt made = expansion_.attempt(now_, laws_, h, limits(h));
-      const double got = made.h;
-      if (made.again) {
+      const auto [got, again] = expansion_.attempt(now_, laws_, h, limits(h));
+      if (again) {
         h = got;
         continue;
       }
@@ -418,28 +420,27 @@ class ExactRun final : public StepMotion {
                         " changes its piece to and fro without the motion going on");
   }
 
-  /// Motion and what energies need alone.
-  void evaluate_motion(Assembler& assembler, EvaluatedState& point, double t) {
+  /// Motion and laws alone; energies: and what those need.
+  void evaluate_motion(Assembler& assembler, EvaluatedState& point, double t, bool energies) {
     assembler.set_time(t);
     evaluate_laws(assembler, point);
-    stiffness_.multiply(1.0, point.state.z, point.kz);
+    if (energies) stiffness_.multiply(1.0, point.state.z, point.kz);
     point.state.a.setConstant(system_.size(), std::numeric_limits<double>::quiet_NaN());
   }
   /// What observers want of a point inside a step.
   void evaluate_wanted(Assembler& assembler, EvaluatedState& point, double t) {
-    forces_ ? evaluate(assembler, point, t) : evaluate_motion(assembler, point, t);
+    forces_ ? evaluate(assembler, point, t) : evaluate_motion(assembler, point, t, false);
   }
 
   void evaluate(Assembler& assembler, EvaluatedState& point, double t) {
-    const State& s = point.state;
     assembler.set_time(t);
     evaluate_laws(assembler, point);
-    assembler.external(s.z, s.v, point.p);
-    stiffness_.multiply(1.0, s.z, point.kz);
-    assembler.multiply_damping(s.v, point.cv);
+    assembler.external(point.state.z, point.state.v, point.p);
+    stiffness_.multiply(1.0, point.state.z, point.kz);
+    assembler.multiply_damping(point.state.v, point.cv);
     point.total = point.kz + point.cv - point.p;
     add_law_forces(system_, point, 1.0, point.total);
-    friction_.add_forces(s.history, point.total);
+    friction_.add_forces(point.state.history, point.total);
     rhs_ = -point.total;
     series_.solve_mass(rhs_, point.state.a);
   }
@@ -470,9 +471,8 @@ class ExactRun final : public StepMotion {
   double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0, allowed_imbalance_ = 0.0;
   SteadyStep steady_step_;
   int changes_here_ = 0, change_limit_ = 0;
-  bool watches_loads_ = false;  // some observer does
-  bool forces_ = false;         // some observer wants accelerations and forces
-  bool whole_ = true;           // now_ has them
+  bool watches_loads_ = false, forces_ = false;  // some observer does, or wants accelerations and forces
+  bool whole_ = true;                            // now_ has them
 };
 
 }  // namespace

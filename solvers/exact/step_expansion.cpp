@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "solvers/contact/roots.hpp"
 #include "solvers/run/cubic_peak.hpp"
@@ -36,20 +37,30 @@ constexpr double kOfScale = 1e-9, kMostDropped = TaylorSeries::kMaxDegree;
 // twice the most.
 constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
-/// The smallest and the largest value of a polynomial in [0, end], a step of a series.
-Interval range_of(const std::vector<double>& x, double end) {
+/// The range of a polynomial in [0, end], a step of a series; its turn as a part of that.
+StepMotion::Range range_of(const std::vector<double>& x, double end) {
   constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
   std::array<double, kParts> s, value, slope;
   for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
   polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
-  Interval range{x[0], x[0]};
-  const auto take = [&range](double y) { range = {std::min(range.low, y), std::max(range.high, y)}; };
+  StepMotion::Range range{x[0], x[0]};
+  const auto take = [&range](double y) {
+    range.low = std::min(range.low, y);
+    range.high = std::max(range.high, y);
+  };
   double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
   for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
     take(value[i]);
     const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
-    if (inside) take(polynomial_value(x, s[i] - end / kParts * (1.0 - inside->s)));
+    if (!inside) continue;
+    const double turn = s[i] - end / kParts * (1.0 - inside->s);
+    take(polynomial_value(x, turn));
+    ++range.turns;
+    range.turn = turn / end;
   }
+  if (range.turns > 0)
+    for (std::size_t k = x.size(); k-- > 2;)
+      range.bend = range.bend * end * range.turn + end * end * static_cast<double>(k * (k - 1)) * x[k];
   return range;
 }
 
@@ -131,17 +142,16 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   }
 }
 
-const double* StepExpansion::beyond_cubic(double s) {
+const double* StepExpansion::beyond_cubic(double s, bool jumps) {
   const int n = series.size(), stride = series.stride();
   // Room for rates of `stride` each, which are moved to behind the n unknowns then.
   beyond_cubic_.resize(idx(2 * stride));
   series.beyond_cubic(s, beyond_cubic_.data());
   if (sweeps_ && kinks.any()) {
-    const double per_time = 1.0 / series.step(), *y = series.swept(0), *rate = series.swept(-1);
-    for (int i = 0; i < n; ++i) {
-      beyond_cubic_[idx(i)] += kOfKinks * std::abs(y[i]) + kOfKinkRates * std::abs(rate[i]);
-      beyond_cubic_[idx(stride + i)] += 10.0 * kOfKinkRates * per_time * std::abs(rate[i]);
-    }
+    const std::array<double, 4> of_y_and_rate{kOfKinks, 0.0, kOfKinkRates,
+                                              10.0 * kOfKinkRates / series.step()};
+    weighted_sums(stride, 0, 2, 2, of_y_and_rate.data(), 2, nullptr, series.swept(0), beyond_cubic_.data(),
+                  true);
   }
   if (stride != n) std::copy_n(beyond_cubic_.data() + stride, n, beyond_cubic_.data() + n);
   if (!sweeps_ && known.kinked())
@@ -149,6 +159,7 @@ const double* StepExpansion::beyond_cubic(double s) {
       beyond_cubic_[idx(i)] += known.kinks_inside() * series.z_scale()[idx(series.kind(i))];
       beyond_cubic_[idx(n + i)] += known.kinks_inside() * series.v_scale()[idx(series.kind(i))];
     }
+  if (jumps) std::fill_n(beyond_cubic_.data() + n, n, std::numeric_limits<double>::infinity());
   return beyond_cubic_.data();
 }
 
@@ -171,8 +182,7 @@ StepExpansion::Inside StepExpansion::left_by_kinks(std::span<const Entry> row) c
   return left;
 }
 
-std::optional<StepMotion::ForceRange> StepExpansion::find_force_range(const LawSeries& laws, int law,
-                                                                      double s) {
+std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries& laws, int law, double s) {
   const LawPiece* p = laws.force_piece(law);
   if (p == nullptr) return std::nullopt;
   const std::vector<double>& x = laws.deflection(law);
@@ -202,15 +212,30 @@ std::optional<StepMotion::ForceRange> StepExpansion::find_force_range(const LawS
     for (std::size_t k = 1; k < damped.size(); ++k)
       force_[k - 1] += static_cast<double>(k) * per_time * damped[k];
   }
-  const Interval range = range_of(force_, s);
+  StepMotion::Range range = range_of(force_, s);
   const Inside left = left_by_kinks(system_.scalars()[idx(law)].z);
   const ExpandedLaws::Turning turning = expanded.turning(law);
   const double damping = std::abs(p->c) + std::abs(p->product) * (of_x + left.value);
-  return StepMotion::ForceRange{
-      range.low, range.high,
-      of_r * std::abs(p->k) * left.value +
-          per_time * (damping * left.rate + std::abs(p->product) * of_rate * left.value) +
-          (turning.steepest * left_by_kinks(turning.row).value + kOfScale * kMostDropped) * elastic};
+  range.error = of_r * std::abs(p->k) * left.value +
+                per_time * (damping * left.rate + std::abs(p->product) * of_rate * left.value) +
+                (turning.steepest * left_by_kinks(turning.row).value + kOfScale * kMostDropped) * elastic;
+  return range;
+}
+
+StepMotion::Range StepExpansion::range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s) {
+  const auto terms = idx(series.degree()) + 1;
+  const double per_time = 1.0 / series.step();
+  force_.assign(terms, 0.0);
+  for (std::size_t k = 0; k < terms; ++k) {
+    for (const Entry& e : z) force_[k] += e.coeff * series.coefficient(static_cast<int>(k), e.index);
+    for (const Entry& e : v)
+      if (k > 0)
+        force_[k - 1] +=
+            static_cast<double>(k) * per_time * e.coeff * series.coefficient(static_cast<int>(k), e.index);
+  }
+  StepMotion::Range range = range_of(force_, s);
+  range.error = left_by_kinks(z).value + per_time * left_by_kinks(v).rate;
+  return range;
 }
 
 std::optional<double> StepExpansion::first_knot(double end) {

@@ -82,15 +82,18 @@ class StepExpansion {
   /// Whether steps may be swept from here on, or are to have passes in any case.
   void allow_sweeps(bool allowed) { refused_ = !allowed; }
 
-  /// Observer::looks_inside() over the step up to s.
-  const double* beyond_cubic(double s);
+  /// Observer::looks_inside() over the step up to s; jumps: accelerations may jump at an end of it, where nobody knows which one a
+  /// point has, so that cubics tell nothing of rates.
+  const double* beyond_cubic(double s, bool jumps);
   /// StepMotion::force_range() up to s: of the series; what kinks add is within the error.
-  std::optional<StepMotion::ForceRange> force_range(const LawSeries& laws, int law, double s) {
+  std::optional<StepMotion::Range> force_range(const LawSeries& laws, int law, double s) {
     const auto j = idx(law);
     if (!ranges_known_[j]) ranges_[j] = find_force_range(laws, law, s);
     ranges_known_[j] = true;
     return ranges_[j];
   }
+  /// The same for StepMotion::range().
+  StepMotion::Range range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s);
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
@@ -126,14 +129,15 @@ class StepExpansion {
     double value = 0.0, rate = 0.0;
   };
   Inside left_by_kinks(std::span<const Entry> row) const;
-  std::optional<StepMotion::ForceRange> find_force_range(const LawSeries& laws, int law, double s);
+  std::optional<StepMotion::Range> find_force_range(const LawSeries& laws, int law, double s);
   template <class Later>
   std::optional<double> settle(double s, const Later& later, double t, State& at);
 
   const System& system_;
   LaneVector beyond_cubic_;
-  std::vector<double> force_, scale_;  // of force_range(), which finds each law's once a step
-  std::vector<std::optional<StepMotion::ForceRange>> ranges_;
+  std::vector<double> force_,
+      scale_;  // series of what has a range; force_range() finds each law's once a step
+  std::vector<std::optional<StepMotion::Range>> ranges_;
   std::vector<bool> ranges_known_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
   double share_ = 0.0;

@@ -3,10 +3,12 @@
 /// no more than it needs, so that memory does not grow with the run.
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace drev {
 
 class Assembler;
+struct Entry;
 struct EvaluatedState;
 
 /// The motion inside the step, or part of one, that observers are being shown.
@@ -24,12 +26,21 @@ class StepMotion {
   /// Where a law (of System::scalars()) that has a gap is between the two points: 1 on the flank above it, 0 in
   /// the gap, -1 below; none where the method does not end its steps at changes.
   virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
-  /// The smallest and the largest force of a law (of System::scalars()) between the two points that looks_inside() was given,
-  /// both off by at most `error` [N or N m]; none where that costs as much as to show the points inside.
-  struct ForceRange {
+  /// The smallest and the largest value of something between the two points that looks_inside() was given, both off by at most
+  /// `error`; how often it turns round between them, about where it last does, as a part of the time between them, and its second
+  /// derivative by that part there. None where that costs as much as to show the points inside.
+  struct Range {
     double low = 0.0, high = 0.0, error = 0.0;
+    int turns = 0;
+    double turn = 0.0, bend = 0.0;
   };
-  virtual std::optional<ForceRange> force_range(int /*law*/) { return std::nullopt; }
+  /// Of the force of a law (of System::scalars()) [N or N m].
+  virtual std::optional<Range> force_range(int /*law*/) { return std::nullopt; }
+  /// Of a sum over unknowns, z [rad or m], and over their rates, v [rad/s or m/s]. Where it is given, at() holds anywhere between
+  /// those two points until the next ones are shown.
+  virtual std::optional<Range> range(const std::vector<Entry>& /*z*/, const std::vector<Entry>& /*v*/) {
+    return std::nullopt;
+  }
 };
 
 class Observer {

@@ -9,12 +9,9 @@ namespace drev {
 
 namespace {
 
-constexpr int kMostLooks = 40;
 constexpr double kRounding = 4e-16;   // rounding of a value over the largest one
 constexpr double kSettled = 1e-13;    // gain of the last parabola over the range
-constexpr double kLeastGain = 1e-15;  // gain of a next look by the rates over the range
 constexpr double kCubicError = 0.25;  // error of a cubic over the rise that it shows,
-constexpr double kRangeError = 1e-6;  // and over the range
 constexpr double kCloser = 0.125;  // part of the way from an end to the middle, looked at where nothing shows
 constexpr double kSwing = 0.5;     // rise of an extremum above both ends over their difference,
 constexpr double kRangeSwing = 0.02;  // and over the range, at most

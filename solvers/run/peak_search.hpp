@@ -13,6 +13,10 @@
 
 namespace drev {
 
+inline constexpr int kMostLooks = 40;
+inline constexpr double kRangeError = 1e-6;  ///< what is smaller beside the range is not looked for
+inline constexpr double kLeastGain = 1e-15;  ///< gain of a next look by the rates, over the range
+
 /// A value of the function, and its rate where it has one.
 struct PeakSample {
   double t = 0.0, y = 0.0;

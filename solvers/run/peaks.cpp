@@ -114,7 +114,7 @@ double Peaks::along(std::size_t c, const Vector& x, const Vector& x_dot) const {
 }
 
 bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
-                     const double* beyond_cubic) const {
+                     const double* beyond_cubic) {
   const Watched& w = watched_[c];
   const double h = to.state.t - from.state.t;
   Interval reach;
@@ -129,6 +129,8 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
     for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     for (const Entry& e : channels_[c].v_row())
       beyond += std::abs(e.coeff) * beyond_cubic[to.state.z.size() + e.index];
+    if (within(reach, beyond)) return false;
+    return !can_seek(c, along(c, from.state.v, from.state.a) * along(c, to.state.v, to.state.a) < 0.0);
   } else if (const int law = channels_[c].deflection_of(); law >= 0 && !w.row.empty()) {
     for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
@@ -221,18 +223,56 @@ bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to,
                           std::abs(pairs_.coeff_2[i]) * beyond_cubic[pairs_.second[i]];
     const Interval reach =
         cubic_reach(pairs_.last[i], pairs_.last_rate[i], pairs_.ahead[i], pairs_.ahead_rate[i], h);
-    if (!(reach.high + beyond <= pairs_.max[i] && reach.low - beyond >= pairs_.min[i])) return true;
+    if (reach.high + beyond <= pairs_.max[i] && reach.low - beyond >= pairs_.min[i]) continue;
+    if (!can_seek(pairs_.channel[i], pairs_.last_rate[i] * pairs_.ahead_rate[i] < 0.0)) return true;
   }
   return false;
+}
+
+/// A linear channel that may pass its peaks, whose motion in the step at hand tells that it does not, or where it turns; opposite:
+/// its rates at both ends are. False: points inside have to tell.
+bool Peaks::can_seek(std::size_t c, bool opposite) {
+  const auto range = motion_->range(channels_[c].z_row(), channels_[c].v_row());
+  if (!range) return false;
+  if (range->high + range->error <= peaks_[c].max && range->low - range->error >= peaks_[c].min) return true;
+  // What is left open of the motion may hide a turn of that height.
+  if (range->turns != (opposite ? 1 : 0) || range->error > kRangeError * (peaks_[c].max - peaks_[c].min))
+    return false;
+  sought_.push_back({c, opposite ? range : std::nullopt});
+  return true;
+}
+
+/// The peak of a channel at the end of the step at hand, and about its turn inside.
+void Peaks::seek(const Sought& sought) {
+  const std::size_t c = sought.channel;
+  Peak& p = peaks_[c];
+  p.note(last(c), ahead_t_);
+  if (sought.turn) {
+    // By Newton's rule, whose slope is that of the rates where kinks bend the motion.
+    const double length = ahead_t_ - begin_t_;
+    double bend = sought.turn->bend / (length * length);
+    PeakSample at = look_at(c, begin_t_ + sought.turn->turn * length);
+    for (int i = 0; i < kMostLooks; ++i) {
+      p.note(at.y, at.t);
+      const double rate = at.rate.value_or(0.0), t = std::clamp(at.t - rate / bend, begin_t_, ahead_t_);
+      if (!(std::abs(rate * (t - at.t)) > kLeastGain * (p.max - p.min))) break;
+      const PeakSample closer = look_at(c, t);
+      bend = (closer.rate.value_or(0.0) - rate) / (closer.t - at.t);
+      at = closer;
+    }
+  }
+  set_bounds(c);
 }
 
 bool Peaks::looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic) {
   passed_over_ = false;
   if (!inside_steps_) return false;
+  sought_.clear();
   for (const std::size_t c : others_)
     if (may_pass(c, from, to, beyond_cubic)) return true;
   if (pairs_may_pass(from, to, beyond_cubic)) return true;
   passed_over_ = true;
+  begin_t_ = from.state.t;
   ahead_t_ = to.state.t;
   return false;
 }
@@ -265,7 +305,12 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
   if (passed_over_) {
     pairs_.last.swap(pairs_.ahead);
     pairs_.last_rate.swap(pairs_.ahead_rate);
-    for (const std::size_t c : others_) last(c) = value(c, assembler, to);
+    for (const std::size_t c : others_) {
+      const double y = last(c) = value(c, assembler, to);
+      // A force may jump at the step's end.
+      if (y > peaks_[c].max || y < peaks_[c].min) peaks_[c].note(y, to.state.t), set_bounds(c);
+    }
+    for (const Sought& sought : sought_) seek(sought);
     passed_over_ = false;
     return;
   }
@@ -301,16 +346,19 @@ bool Peaks::needs_acceleration() const {
   });
 }
 
+PeakSample Peaks::look_at(std::size_t c, double t) {
+  const StepMotion::Point inside = motion_->at(t);
+  return {t, value(c, inside.assembler, inside.at), rate(c, inside.assembler, inside.at)};
+}
+
 void Peaks::look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
                         const EvaluatedState& to, double y_0, double y_1) {
   Peak& p = peaks_[c];
   const PeakSample a{from.state.t, y_0, rate(c, assembler, from)};
   const PeakSample b{to.state.t, y_1, rate(c, assembler, to)};
-  const auto look = [&](double t) -> PeakSample {
-    const StepMotion::Point inside = motion_->at(t);
-    return {t, value(c, inside.assembler, inside.at), rate(c, inside.assembler, inside.at)};
-  };
-  if (motion_) return search_peak(a, b, look, p.max - p.min, p);
+  if (motion_)
+    return search_peak(
+        a, b, [&](double t) { return look_at(c, t); }, p.max - p.min, p);
   // Shown by a caller that has no motion: the cubic itself.
   if (!a.rate || !b.rate) return;
   const double h = b.t - a.t;

@@ -13,6 +13,7 @@ namespace drev {
 class Assembler;
 class System;
 struct EvaluatedState;
+struct PeakSample;
 
 /// The interval that the force of a law (of System::scalars()) stays in over a step of exact propagation in which its
 /// deflection lies by at most `beyond` off the cubic through both ends; none where it is not known to be y_0 + k x.
@@ -82,7 +83,14 @@ class Peaks final : public Observer {
   double along(std::size_t c, const Vector& x, const Vector& x_dot) const;
   /// Whether the value of a channel that is no pair may pass its peaks within a step.
   bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
-                const double* beyond_cubic) const;
+                const double* beyond_cubic);
+  struct Sought {
+    std::size_t channel;
+    std::optional<StepMotion::Range> turn;  ///< where it turns; none: it is monotone
+  };
+  bool can_seek(std::size_t c, bool opposite);
+  void seek(const Sought& sought);
+  PeakSample look_at(std::size_t c, double t);
   bool pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to, const double* beyond_cubic);
 
   std::vector<Channel> channels_;
@@ -91,11 +99,13 @@ class Peaks final : public Observer {
   Pairs pairs_;
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
-  double longest_ = 0.0;             // step so far [s]
-  bool passed_over_ = false;         // no value passes its peaks in this step, inside or at its end
-  double ahead_t_ = 0.0;             // its end [s]
-  bool last_rates_ = false;          // the last step was passed over: rates at its end are known
-  std::vector<std::size_t> others_;  // channels of other kinds than two entries
+  double longest_ = 0.0;  // step so far [s]
+  // No value passes its peaks in this step, inside or at its end, but those of sought_.
+  bool passed_over_ = false;
+  std::vector<Sought> sought_;
+  double begin_t_ = 0.0, ahead_t_ = 0.0;  // its start and end [s]
+  bool last_rates_ = false;               // the last step was passed over: rates at its end are known
+  std::vector<std::size_t> others_;       // channels of other kinds than two entries
 };
 
 }  // namespace drev

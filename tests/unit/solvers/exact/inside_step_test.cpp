@@ -261,17 +261,30 @@ class Sampled final : public Observer {
   const System& system_;
 };
 
-/// Counts what it is shown; it asks for points inside steps, or does without.
+/// Counts what an observer is shown; `inside`: of each step points inside, whether it asks for them or not.
 class Shown final : public Observer {
  public:
-  explicit Shown(bool inside) : inside_(inside) {}
-  void start(const Assembler&, const EvaluatedState&) override {}
-  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override { ++count; }
-  bool needs_acceleration() const override { return false; }
-  bool looks_inside(const EvaluatedState&, const EvaluatedState&, const double*) override { return inside_; }
+  Shown(Observer& shown, bool inside) : shown_(shown), inside_(inside) {}
+  void look_through(StepMotion& motion) override { shown_.look_through(motion); }
+  void start(const Assembler& assembler, const EvaluatedState& point) override {
+    shown_.start(assembler, point);
+  }
+  void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override {
+    ++count;
+    shown_.step(assembler, from, to);
+  }
+  void restart(const Assembler& assembler, const EvaluatedState& point) override {
+    shown_.restart(assembler, point);
+  }
+  bool needs_acceleration() const override { return shown_.needs_acceleration(); }
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
+                    const double* beyond_cubic) override {
+    return inside_ || shown_.looks_inside(from, to, beyond_cubic);
+  }
   long count = 0;
 
  private:
+  Observer& shown_;
   bool inside_;
 };
 
@@ -290,15 +303,15 @@ TEST_CASE(
     const auto watch = [&](bool inside) {
       Peaks peaks(find_channels(system, channels));
       ContactStatistics contacts(system);
-      Shown shown(inside);
+      Shown of_peaks(peaks, inside), of_contacts(contacts, inside);
       const RunSummary run =
-          propagate(system, {.tolerance = 1e-10, .t_end = t_end}, {&peaks, &contacts, &shown});
+          propagate(system, {.tolerance = 1e-10, .t_end = t_end}, {&of_peaks, &of_contacts});
       REQUIRE(run.ok());
-      return Watched{peaks.peaks(), contacts.records(), shown.count, run.steps};
+      return Watched{peaks.peaks(), contacts.records(), of_peaks.count, run.steps};
     };
     const Watched few = watch(false), all = watch(true);
     CHECK(all.shown > 8 * all.steps);
-    CHECK(2 * few.shown < all.shown);
+    CHECK(9 * few.shown < 2 * all.shown);
     for (std::size_t c = 0; c < all.peaks.size(); ++c) {
       CAPTURE(channels[c]);
       CHECK(few.peaks[c].max == Approx(all.peaks[c].max).epsilon(1e-9));
@@ -324,6 +337,92 @@ TEST_CASE(
     const test::GearDrive drive = test::gear_drive_with(law);
     check(drive.system, drive.torques, 0.15);
   }
+}
+
+/// Compares speeds in the middle of steps with the cubic through both ends and its bound.
+class OfSpeeds final : public Observer {
+ public:
+  void look_through(StepMotion& motion) override { motion_ = &motion; }
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond) override {
+    const double h = to.state.t - from.state.t;
+    const EvaluatedState& middle = motion_->at(0.5 * (from.state.t + to.state.t)).at;
+    const Vector cubic = 0.5 * (from.state.v + to.state.v) + h / 8.0 * (from.state.a - to.state.a);
+    for (Eigen::Index i = 0, n = cubic.size(); i < n; ++i)
+      CHECK(std::abs(middle.state.v[i] - cubic[i]) <= beyond[n + i] + 1e-10 * std::abs(cubic[i]));
+    unbounded += std::isinf(beyond[cubic.size()]) ? 1 : 0;
+    return false;
+  }
+  int unbounded = 0;
+
+ private:
+  StepMotion* motion_ = nullptr;
+};
+
+TEST_CASE("Speeds stay within their bound of a cubic, where accelerations jump with a stiffness as well") {
+  Model m("mesh under load");
+  for (const char* node : {"pinion", "wheel"}) m.add_node(node);
+  m.constant_speed("pinion", 3.0);
+  m.add<Inertia>("J", {"wheel"}, {.inertia = 0.2});
+  m.add<AppliedTorque>("load", {"wheel"}, {.table = TimeTable({0.0, 1.0}, {100.0, 100.0})});
+  m.add<GearMesh>("mesh", {"pinion", "wheel"},
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.1,
+                   .teeth_1 = 20,
+                   .stiffness = MeshStiffness::step(0.7e6, 1.3e6, 1.5)});
+  OfSpeeds speeds;
+  const RunSummary run = propagate(m.build(), {.t_end = 0.2}, {&speeds});
+  CHECK(run.ok());
+  // 3 rad/s over 20 teeth: 1.9 mesh periods with two jumps, beside each of which are two steps.
+  CHECK(speeds.unbounded >= 6);
+  CHECK(2 * speeds.unbounded < run.steps);
+}
+
+/// Compares the ranges of A cos(w t) + c v in the steps with their closed form.
+class OfOscillation final : public Observer {
+ public:
+  static constexpr double kA = 0.01, kW = 200.0, kC = 3e-3;
+  void look_through(StepMotion& motion) override { motion_ = &motion; }
+  void start(const Assembler&, const EvaluatedState&) override {}
+  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
+  bool needs_acceleration() const override { return false; }
+  bool looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double*) override {
+    const auto range = motion_->range({{0, 2.0}}, {{0, kC}});
+    REQUIRE(range);
+    // 2 cos(w t) - w c sin(w t) = r cos(w t + lag).
+    const double r = kA * std::hypot(2.0, kW * kC), lag = std::atan2(kW * kC, 2.0);
+    const double begin = kW * from.state.t + lag, end = kW * to.state.t + lag;
+    const double first = std::ceil(begin / kPi), a = r * std::cos(begin), b = r * std::cos(end);
+    const bool turns = first * kPi < end;
+    const double peak = r * std::cos(first * kPi);
+    CHECK(range->high == Approx(turns ? std::max({a, b, peak}) : std::max(a, b)).margin(1e-9 * r));
+    CHECK(range->low == Approx(turns ? std::min({a, b, peak}) : std::min(a, b)).margin(1e-9 * r));
+    CHECK(range->error == 0.0);
+    CHECK(range->turns == (turns ? 1 : 0));
+    if (!turns) return false;
+    CHECK(range->turn == Approx((first * kPi - begin) / (end - begin)).margin(1e-3));
+    CHECK(range->bend == Approx(-peak * (end - begin) * (end - begin)).epsilon(1e-3));
+    ++count;
+    return false;
+  }
+  int count = 0;
+
+ private:
+  StepMotion* motion_ = nullptr;
+};
+
+TEST_CASE("The range of a row inside steps, and where it turns, in closed form") {
+  Model m("oscillator");
+  m.add_node("disc");
+  m.add<Inertia>("J", {"disc"}, {.inertia = 0.5});
+  m.add<GroundSpring>("k", {"disc"}, {.stiffness = 0.5 * OfOscillation::kW * OfOscillation::kW});
+  const System system = m.build();
+  State state = State::initial(system);
+  state.z[0] = OfOscillation::kA;
+  OfOscillation ranges;
+  CHECK(propagate(system, {.tolerance = 1e-12, .t_end = 1.0}, state, {&ranges}).ok());
+  CHECK(ranges.count > 60);
 }
 
 TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond") {
