@@ -195,16 +195,11 @@ void KinkMoments::make_room() {
   std::fill_n(theta_.end() - kGroup + kLanes, kLanes, 1.0);  // lanes without a kink have a place, too
 }
 
-void KinkMoments::add(int row, double knot, double factor, std::span<const double> force, double end) {
-  const std::size_t i = idx_of(count_++);
-  if (i == row_.size()) make_room();
-  row_[i] = row;
-  knot_[i] = knot;
-  end_[i] = end;
+/// The terms of a force behind its first one.
+void KinkMoments::add_powers(std::size_t i, double factor, std::span<const double> force) {
   for (; powers_ < force.size(); ++powers_)  // those before have none of this power
     for (std::size_t k = 0; k < i; ++k) force_[k / kLanes * kForce + powers_ * kLanes + k % kLanes] = 0.0;
   double* own = force_.data() + i / kLanes * kForce + i % kLanes;
-  own[0] = factor * force[0];
   for (std::size_t q = 1; q < powers_; ++q) own[q * kLanes] = q < force.size() ? factor * force[q] : 0.0;
 }
 

@@ -24,7 +24,15 @@ class KinkMoments {
   bool straight() const { return powers_ == 1; }
   /// A kink: theta passes `knot` once before the end of the step, or of the part of it that is looked at, and monotonously, and
   /// stands at `end` there. force: factor times these are the terms of f from the first power on, at most kMostPowers.
-  void add(int row, double knot, double factor, std::span<const double> force, double end);
+  void add(int row, double knot, double factor, std::span<const double> force, double end) {
+    const std::size_t i = idx_of(count_++);
+    if (i == row_.size()) make_room();
+    row_[i] = row;
+    knot_[i] = knot;
+    end_[i] = end;
+    force_[i / kLanes * kForce + i % kLanes] = factor * force[0];
+    if (powers_ > 1 || force.size() > 1) add_powers(i, factor, force);
+  }
   /// theta of every kink has so many terms, at most kMostTerms, to be written to angle(), kLanes apart.
   void set_terms(std::size_t terms) { terms_ = terms; }
   double* angle(int i) { return theta_.data() + idx_of(i) / kLanes * kGroup + lane_of(i); }
@@ -59,6 +67,7 @@ class KinkMoments {
   static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
   static std::size_t lane_of(int i) { return static_cast<std::size_t>(i) % kLanes; }
   void make_room();
+  void add_powers(std::size_t i, double factor, std::span<const double> force);
   template <int kNodes>
   void find_sweep_moments(double end, std::size_t place_terms);
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;

@@ -46,25 +46,14 @@ void KinkSizes::make_room() {
                 values.begin() + static_cast<std::ptrdiff_t>(q * more));
   values_ = std::move(values);
   room_ = more;
-}
-
-void KinkSizes::add(const PlacedLoad& load, double rate, double chord, double slope) {
-  const std::size_t i = loads_.size();
-  if (i == room_) make_room();
-  loads_.push_back(&load);
-  at(kReach)[i] = load.reach;
-  at(kPush)[i] = load.push;
-  at(kFeedback)[i] = load.feedback ? load.coeff : 0.0;
-  at(kRate)[i] = rate;
-  at(kChord)[i] = chord;
-  at(kSlope)[i] = slope;
+  loads_.resize(room_);
 }
 
 void KinkSizes::find(double h) {
   most_pull_ = most_gain_ = push_ = 0.0;
   least_rate_ = std::numeric_limits<double>::infinity();
-  if (loads_.empty()) return;
-  for (std::size_t i = loads_.size(); i % kLanes != 0; ++i) {  // no kink, but one that turns
+  if (count_ == 0) return;
+  for (std::size_t i = count_; i % kLanes != 0; ++i) {  // no kink, but one that turns
     for (const Quantity q : {kReach, kPush, kFeedback, kChord, kSlope}) at(q)[i] = 0.0;
     at(kRate)[i] = 1.0;
   }

@@ -11,11 +11,21 @@ namespace drev {
 
 class KinkSizes {
  public:
-  void clear() { loads_.clear(); }
-  int count() const { return static_cast<int>(loads_.size()); }
+  void clear() { count_ = 0; }
+  int count() const { return static_cast<int>(count_); }
   /// A kink of a load whose angle comes over the knot at a rate that stays within kMonotone of `rate`, by s [rad]. Over the turn behind
   /// it its force is bounded by chord times the turn, and by slope times the angle's change [N m/rad].
-  void add(const PlacedLoad& load, double rate, double chord, double slope);
+  void add(const PlacedLoad& load, double rate, double chord, double slope) {
+    if (count_ == room_) make_room();
+    loads_[count_] = &load;
+    double* to = values_.data() + count_++;
+    to[kReach * room_] = load.reach;
+    to[kPush * room_] = load.push;
+    to[kFeedback * room_] = load.feedback ? load.coeff : 0.0;
+    to[kRate * room_] = rate;
+    to[kChord * room_] = chord;
+    to[kSlope * room_] = slope;
+  }
   static constexpr double kMonotone = 0.25;
   /// Finds what follows, over a step of h [s].
   void find(double h);
@@ -42,7 +52,7 @@ class KinkSizes {
   void make_room();
 
   std::vector<const PlacedLoad*> loads_;
-  std::size_t room_ = 0;
+  std::size_t room_ = 0, count_ = 0;
   LaneVector values_;
   double most_pull_ = 0.0, most_gain_ = 0.0, push_ = 0.0;
   double least_rate_ = std::numeric_limits<double>::infinity();

@@ -82,8 +82,8 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double ra
     l.watched = !behind || !(rises ? behind->high > bound : behind->low < bound);
     if (l.watched) break;
     // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
-    double chord = 0.0, slope = 0.0, power = 1.0;
-    for (std::size_t q = 0; q < behind->force.size(); ++q, power *= turn) {
+    double chord = std::abs(behind->force[0]), slope = chord, power = turn;
+    for (std::size_t q = 1; q < behind->force.size(); ++q, power *= turn) {
       chord += std::abs(behind->force[q]) * power;
       slope += static_cast<double>(q + 1) * std::abs(behind->force[q]) * power;
     }
@@ -120,7 +120,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   bool all = true;
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   for (const StraightLoads::Near& near : straight_.near_knots(series, to, phi_, turns)) {
-    StraightLoads::Load& l = *near.load;
+    StraightLoads::Load& l = straight_.load_of(near);
     if (!near.monotone) {
       l.watched = true;
       all = false;
@@ -175,8 +175,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
 
 void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
   for (int i = 0; i < kinks_.count(); ++i) {
-    const double feedback = kink_sizes_.feedback(i);
-    if (feedback != 0.0) series.add_row_stiffness(kinks_.row(i), -factor * feedback * kinks_.jump(i));
+    series.add_row_stiffness(kinks_.row(i), -factor * kink_sizes_.feedback(i) * kinks_.jump(i));
   }
 }
 

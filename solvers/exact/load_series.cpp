@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solvers/contact/roots.hpp"
+#include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {
 
@@ -104,7 +105,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
   std::fill_n(p_.begin(), 3 * stride_, 0.0);
   const auto p = [&](int k, int row) -> double& { return p_[idx(k * stride_ + row)]; };
   const auto add = [&](int k, double factor, const Vector& values) {
-    for (int i = 0; i < n; ++i) p(k, i) += factor * values[i];
+    add_multiple(n, factor, values.data(), &p(k, 0));
   };
   const MotionPoint& nominal = assembler_.nominal();
   phi_ = over_step(nominal, h);
@@ -128,7 +129,7 @@ void LoadSeries::add_to(TaylorSeries& series, double h) {
   }
   straight_.add_to(series, t_, h, phi_, p_.data());
   smooth_.add_to(h, phi_, p_.data());
-  for (int i = 0; i < 3 * stride_; ++i) series.right_side(0)[i] += p_[idx(i)];
+  add_multiple(3 * stride_, 1.0, p_.data(), series.right_side(0));
   smooth_.add_slopes(series);
   expanded_.add_to(series, h, phi_);
 }

@@ -205,7 +205,7 @@ void StraightLoads::move(const MotionPoint& nominal, const Vector& z, const Vect
 void StraightLoads::move_as(const StraightLoads& other) {
   loads_ = other.loads_;
   layers_ = other.layers_;
-  listed_ = other.listed_;
+  near_ = other.near_;
   stale_ = other.stale_;
 }
 
@@ -260,7 +260,7 @@ void StraightLoads::look_beyond(Load& l, double t, double bound, bool rises) con
 }
 
 void StraightLoads::locate(double t) {
-  listed_.clear();
+  near_.clear();
   for (Load& l : loads()) {
     l.watched = false;
     look_up(l, t, l.speed);
@@ -279,8 +279,8 @@ void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
 
 void StraightLoads::advance(double t, bool whole) {
   if (whole)
-    for (const int k : listed_) {
-      Load& l = loads_[idx(k)];
+    for (const Near& near : near_) {
+      Load& l = load_of(near);
       if (l.watched) continue;
       l.stretch = l.ahead;
       l.angle_0 = l.ahead_angle_0;
@@ -315,12 +315,11 @@ void StraightLoads::add_to(TaylorSeries& series, double t, double h, const std::
 const std::vector<StraightLoads::Near>& StraightLoads::near_knots(const TaylorSeries& series, double to,
                                                                   const std::array<double, 3>& phi,
                                                                   const double* turns) {
-  for (const int k : listed_) {
-    Load& l = loads_[idx(k)];
+  for (const Near& near : near_) {
+    Load& l = load_of(near);
     l.watched = false;
     l.contraction = 0.0;
   }
-  listed_.clear();
   near_.clear();
   for (const Layer& layer : layers_) {
     run_widest<Reach>(stride_, static_cast<const double*>(layer.values.data()), to, phi.data(),
@@ -328,9 +327,8 @@ const std::vector<StraightLoads::Near>& StraightLoads::near_knots(const TaylorSe
     for_flagged(layer, [&](int k) {
       Load& l = loads_[idx(k)];
       refresh(l);
-      listed_.push_back(k);
       const double* turned = turned_.data() + l.row;
-      near_.push_back({&l, turned[2 * stride_] >= 0.0, turned[0], turned[stride_]});
+      near_.push_back({k, turned[2 * stride_] >= 0.0, turned[0], turned[stride_]});
     });
   }
   return near_;

@@ -57,10 +57,11 @@ class StraightLoads {
   /// others are no longer watched, and stay on their stretches. Monotone: of the first rate by s, all others add up to no more than
   /// KinkSizes::kMonotone.
   struct Near {
-    Load* load;
+    int load;  // its place in loads()
     bool monotone;
     double rate, end;  // first rate by s; angle at `to`
   };
+  Load& load_of(const Near& near) { return loads_[idx(near.load)]; }
   const std::vector<Near>& near_knots(const TaylorSeries& series, double to, const std::array<double, 3>& phi,
                                       const double* turns);
   /// Work of the slopes on the motion from that of the series' start to z [J].
@@ -106,8 +107,7 @@ class StraightLoads {
   std::vector<Load> loads_;
   std::vector<TableStretches> tables_;
   std::vector<Layer> layers_;
-  std::vector<int> listed_;  // indices in loads_ of those that were near knots when last asked for
-  std::vector<Near> near_;
+  std::vector<Near> near_;  // when last asked for
   LaneVector rows_, rates_, slopes_,
       turned_;  // turned_: by row, Near's rate, end and what is not negative where it is monotone
   std::vector<unsigned> flags_;  // of a layer's rows, kLanes in each

@@ -106,28 +106,19 @@ struct RowTerms {
   template <class L>
   [[gnu::always_inline]] static void run(int stride, int terms, const double* z_0, const Entry* row,
                                          int entries, double* x, double* sums) {
-    L reach{}, rate_reach{};
+    for (int e = 0; e < entries; ++e) {
+      const double coeff = row[e].coeff, *__restrict term = z_0 + row[e].index;
+      double* __restrict sum = x;
+      for (int k = 0; k < terms; ++k, term += stride) sum[k] += coeff * *term;
+    }
+    L reach{}, rate_reach{}, term, weight;
     for (int k = 0; k < terms; k += kLanes) {
-      // Behind the last term the last one once more, times zero.
-      int place[kLanes];
-      double known[kLanes];
-      for (int lane = 0; lane < kLanes; ++lane) {
-        place[lane] = std::min(k + lane, terms - 1) * stride;
-        known[lane] = k + lane < terms ? 1.0 : 0.0;
-      }
-      L sum, part{}, mask, weight;
-      load(x + k, sum);
-      load(known, mask);
-      for (int e = 0; e < entries; ++e) {
-        gather(z_0 + row[e].index, place, part);
-        sum += row[e].coeff * (mask * part);
-      }
-      store(sum, x + k);
-      magnitude(sum);
+      load(x + k, term);
+      magnitude(term);
       load(kFromFirst[0].data() + k, weight);
-      reach += weight * sum;
+      reach += weight * term;
       load(kFromFirst[1].data() + k, weight);
-      rate_reach += weight * sum;
+      rate_reach += weight * term;
     }
     sums[0] = sum_of(reach);
     sums[1] = sum_of(rate_reach);
@@ -243,11 +234,11 @@ struct Sums {
   [[gnu::always_inline]] static void run(int stride, int terms, int sizes, int count, const double* weight,
                                          int per_column, const int* begin, const double* f, double* out,
                                          bool add, const double* tails) {
-    if (add)
-      all<L, false, true>(stride, 0, terms, count, per_column, weight, begin, nullptr, f, out);
-    else
-      all<L, false, false>(stride, 0, terms, count, per_column, weight, begin, nullptr, f, out);
-    all<L, true, false>(stride, terms, terms + sizes, count, per_column, weight, begin, tails, f, out);
+    const auto both = [&]<bool kAdd>() __attribute__((always_inline)) {
+      all<L, false, kAdd>(stride, 0, terms, count, per_column, weight, begin, nullptr, f, out);
+      all<L, true, kAdd>(stride, terms, terms + sizes, count, per_column, weight, begin, tails, f, out);
+    };
+    add ? both.template operator()<true>() : both.template operator()<false>();
   }
 };
 

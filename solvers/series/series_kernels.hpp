@@ -90,7 +90,7 @@ void find_derivatives(int terms, const double* c, double x, PolynomialDerivative
 
 /// out_j = sum_q w_qj f_q, j < terms, and behind those out_j = sum_q w_qj |f_q|, j < terms + sizes, q < count; w_qj at
 /// weight[q per_column + j], columns f_q at f + q stride, out_j at out + j stride. begin, where it is not null: the w_qj before
-/// q = begin[j] are zero. add: the first ones to what out holds; tails, where it is not null: the sizes to this of each j.
+/// q = begin[j] are zero. add: to what out holds; else tails, where it is not null: the sizes to this of each j.
 void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, int per_column,
                    const int* begin, const double* f, double* out, bool add = false,
                    const double* tails = nullptr);

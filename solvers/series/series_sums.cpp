@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solvers/linear/lane_pair.hpp"
+#include "solvers/linear/vector_kernels.hpp"
 #include "solvers/series/taylor_series.hpp"
 
 namespace drev {
@@ -12,7 +13,7 @@ namespace {
 
 // Legendre polynomials that rates are expanded in for losses: coefficients fall as (rate h/2)^k/(2 k + 1)!!, and what the most of them
 // leave out is at most 1e-16 of the loss by a mode of rate h = 4.5. As few are taken as set_loss_accuracy() allows.
-constexpr int kLossTerms = 12;
+constexpr int kLossTerms = 12, kFewestLossTerms = 6;
 // The same of the motion swept, which is a small part of all, and at the nodes of Gauss's rule: at most 1e-11 by one of rate h = 3.
 constexpr int kSweptTerms = 8;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
@@ -143,7 +144,7 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
 }
 
 /// As many moments as losses in this step want: of the series, the next one tells what is left out, relative to the square of the
-/// largest rate. A motion that is swept beside it bends where forces kink, and wants more.
+/// largest rate. A motion that is swept beside it bends where forces kink, but is a small part of all.
 int TaylorSeries::loss_terms() const {
   const auto suffices = [this](int terms) {
     const double* weight = sum_weights().end.data() + kMoments + terms;
@@ -155,7 +156,7 @@ int TaylorSeries::loss_terms() const {
     }
     return true;
   };
-  int terms = fewest_loss_terms_;
+  int terms = kFewestLossTerms;
   while (terms < kLossTerms && !suffices(terms)) terms += 2;
   return terms;
 }
@@ -187,28 +188,19 @@ void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
   v.resize(n_);
   const double per_time = 1.0 / h_;
   if (s == sums_at_) {
-    const double *from = coefficients(0), *turn = step_sums_.data() + idx(kMoments * stride_),
-                 *rate = step_sums_.data() + idx(kRateSum * stride_);
-    for (int i = 0; i < n_; ++i) {
-      z[i] = from[i] + turn[i];
-      v[i] = per_time * rate[i];
-    }
+    sum_with(n_, coefficients(0), 1.0, step_sums_.data() + idx(kMoments * stride_), z.data());
+    sum_with(n_, zeros_.data(), per_time, step_sums_.data() + idx(kRateSum * stride_), v.data());
   } else {
     double *along = values_.data(), *rate = along + stride_;
     series_values(stride_, degree_, coefficients(0), s, along, rate);
-    for (int i = 0; i < n_; ++i) {
-      z[i] = along[i];
-      v[i] = per_time * rate[i];
-    }
+    std::copy_n(along, n_, z.data());
+    sum_with(n_, zeros_.data(), per_time, rate, v.data());
   }
 }
 
 void TaylorSeries::add_swept(Vector& z, Vector& v) const {
-  const double *y = swept(0), *rate = swept(-1), per_time = 1.0 / h_;
-  for (int i = 0; i < n_; ++i) {
-    z[i] += y[i];
-    v[i] += per_time * rate[i];
-  }
+  add_multiple(n_, 1.0, swept(0), z.data());
+  add_multiple(n_, 1.0 / h_, swept(-1), v.data());
 }
 
 /// The sums of sizes of `count` terms from `first` on, by rows, and of a tail of each that is the same for all unknowns of a kind.
@@ -227,7 +219,6 @@ void TaylorSeries::sum_sizes(int first, int count, const double* weight, const N
 }
 
 void TaylorSeries::ranges(double* end, double* size) {
-  fewest_loss_terms_ = kSweptTerms;
   std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
   Norm tail{}, slope_tail{};

@@ -55,6 +55,7 @@ TaylorSeries::TaylorSeries(const System& system)
   if (translational > 0 && translational < n_) kinds_ = std::move(kinds);
   find_rows();
   k_.now = k_.base;
+  if (main_ >= 0) k_main_ = k_.now.data() + diagonals_[idx(main_)].values;
   c_.now = c_.base;
   reset();
 }
@@ -258,7 +259,7 @@ void TaylorSeries::scale_as(const TaylorSeries& other) {
 }
 
 TaylorSeries::Norm TaylorSeries::norm(const double* x) const {
-  if (kinds_.empty()) return {Eigen::Map<const Vector>(x, n_).lpNorm<Eigen::Infinity>(), 0.0};
+  if (kinds_.empty()) return {largest_size(n_, x), 0.0};
   Norm result{};
   for (int i = 0; i < n_; ++i) {
     double& largest = result[idx(kinds_[idx(i)])];
@@ -404,12 +405,11 @@ TaylorSeries::Norm TaylorSeries::next_term(int k) {
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
   sums_at_ = -1.0;
-  fewest_loss_terms_ = kFewestLossTerms;
   scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
   std::copy_n(z.data(), n_, column(0));
-  for (int i = 0; i < n_; ++i) column(1)[i] = h * v[i];
+  sum_with(n_, zeros_.data(), h, v.data(), column(1));
   for (int k = 0; k < 2; ++k) rows_of(column(k));
   note_scale(z, v);
   Norm z_scale = z_scale_, v_scale = v_scale_;

@@ -61,7 +61,7 @@ class TaylorSeries {
   void add_row_stiffness(int row, double value) {
     if (row >= n_)
       row_slopes_[row - n_] += value;
-    else if (main_ >= 0)
+    else if (k_main_ != nullptr)
       main_diagonal()[row] += value;
     else
       add_stiffness(system_.diagonal_slots()[idx(row)], value);
@@ -206,7 +206,7 @@ class TaylorSeries {
   /// K's main diagonal, to be changed: it is reset and scaled as a whole.
   double* main_diagonal() {
     main_unscaled_ = true;
-    return k_.now.data() + diagonals_[idx(main_)].values;
+    return k_main_;
   }
   template <class Add>
   void for_slots(const ScalarTerm& term, double value, const Add& add);
@@ -254,6 +254,7 @@ class TaylorSeries {
   std::vector<std::size_t> position_;            // of a slot of the pattern in K and C
   std::vector<Diagonal> diagonals_;              // padded to stride_; empty: rows of the pattern
   int main_ = -1;                                // which diagonal is the main one
+  double* k_main_ = nullptr;                     // that of K now
   std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
   Chain k_chain_{}, c_chain_{};  // where nearly all of them are the main one and its neighbours: these
@@ -272,8 +273,6 @@ class TaylorSeries {
   };
   std::vector<Damper> dampers_;  // beside the system's own, within c_
   int loss_terms_ = 0;           // moments in step_sums_
-  static constexpr int kFewestLossTerms = 6;
-  int fewest_loss_terms_ = kFewestLossTerms;  // in this step
   double left_of_loss_ = 1e-16;
   double sums_at_ = -1.0;  // s of step_sums_; -1: none of this step
   LaneVector p_, z_, zeros_;

@@ -79,8 +79,8 @@ TEST_CASE("Straight loads: those that pass a knot in a step, and the torques tha
     std::set<const LoadTerm*> found;
     std::map<const LoadTerm*, bool> monotone;
     for (const StraightLoads::Near& near : straight.near_knots(series, 1.0, phi, ranges.data())) {
-      found.insert(near.load->term);
-      monotone[near.load->term] = near.monotone;
+      found.insert(straight.load_of(near).term);
+      monotone[straight.load_of(near).term] = near.monotone;
     }
     Vector at(n), speed(n);
     for (const StraightLoads::Load& load : straight.loads()) {
