@@ -174,9 +174,8 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
 }
 
 void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
-  for (int i = 0; i < kinks_.count(); ++i) {
+  for (int i = 0; i < kinks_.count(); ++i)
     series.add_row_stiffness(kinks_.row(i), -factor * kink_sizes_.feedback(i) * kinks_.jump(i));
-  }
 }
 
 /// The same of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.

@@ -188,14 +188,14 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
   const std::vector<double>& x = laws.deflection(law);
   const double per_time = 1.0 / series.step();
   // r (y_0 + k x) + (c + g x) x', as a series; sizes: bounds of r, x and x' by s.
-  force_.resize(x.size());
-  for (std::size_t k = 0; k < x.size(); ++k) force_[k] = p->k * x[k];
-  force_[0] += p->y_0;
+  ranged_.resize(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) ranged_[k] = p->k * x[k];
+  ranged_[0] += p->y_0;
   double of_r = 1.0, of_x = 0.0, of_rate = 0.0, elastic = 0.0;
-  for (const double term : force_) elastic += std::abs(term);
+  for (const double term : ranged_) elastic += std::abs(term);
   if (elastic != 0.0 && expanded.scale_of(law, series, scale_)) {
     while (scale_.size() > 1 && std::abs(scale_.back()) <= kOfScale * std::abs(scale_[0])) scale_.pop_back();
-    multiply_polynomial(scale_, force_);
+    multiply_polynomial(scale_, ranged_);
     of_r = 0.0;
     for (const double term : scale_) of_r += std::abs(term);
   }
@@ -208,11 +208,11 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
     for (double& term : damped) term *= 0.5 * p->product;
     damped[0] += p->c;
     multiply_polynomial(x, damped);  // its rate is (c + g x) x'
-    force_.resize(std::max(force_.size(), damped.size() - 1), 0.0);
+    ranged_.resize(std::max(ranged_.size(), damped.size() - 1), 0.0);
     for (std::size_t k = 1; k < damped.size(); ++k)
-      force_[k - 1] += static_cast<double>(k) * per_time * damped[k];
+      ranged_[k - 1] += static_cast<double>(k) * per_time * damped[k];
   }
-  StepMotion::Range range = range_of(force_, s);
+  StepMotion::Range range = range_of(ranged_, s);
   const Inside left = left_by_kinks(system_.scalars()[idx(law)].z);
   const ExpandedLaws::Turning turning = expanded.turning(law);
   const double damping = std::abs(p->c) + std::abs(p->product) * (of_x + left.value);
@@ -225,15 +225,15 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
 StepMotion::Range StepExpansion::range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s) {
   const auto terms = idx(series.degree()) + 1;
   const double per_time = 1.0 / series.step();
-  force_.assign(terms, 0.0);
+  ranged_.assign(terms, 0.0);
   for (std::size_t k = 0; k < terms; ++k) {
-    for (const Entry& e : z) force_[k] += e.coeff * series.coefficient(static_cast<int>(k), e.index);
+    for (const Entry& e : z) ranged_[k] += e.coeff * series.coefficient(static_cast<int>(k), e.index);
     for (const Entry& e : v)
       if (k > 0)
-        force_[k - 1] +=
+        ranged_[k - 1] +=
             static_cast<double>(k) * per_time * e.coeff * series.coefficient(static_cast<int>(k), e.index);
   }
-  StepMotion::Range range = range_of(force_, s);
+  StepMotion::Range range = range_of(ranged_, s);
   range.error = left_by_kinks(z).value + per_time * left_by_kinks(v).rate;
   return range;
 }

@@ -135,8 +135,7 @@ class StepExpansion {
 
   const System& system_;
   LaneVector beyond_cubic_;
-  std::vector<double> force_,
-      scale_;  // series of what has a range; force_range() finds each law's once a step
+  std::vector<double> ranged_, scale_;  // series of what has a range
   std::vector<std::optional<StepMotion::Range>> ranges_;
   std::vector<bool> ranges_known_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
