@@ -12,6 +12,8 @@ namespace drev {
 
 // Of the largest force of one contact: what it may be off by.
 static constexpr double kLargestOfContact = 1e-4;
+// Of a force, what kinks may leave open of it where its turn is read off the series.
+static constexpr double kMostOpen = 0.03;
 
 std::vector<double> equivalent_masses(const System& system) {
   std::vector<double> all(system.scalars().size(), 0.0);
@@ -87,6 +89,7 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
   }
   intervals_.resize(terms_.size());
   largest_inside_.resize(terms_.size());
+  turn_.resize(terms_.size());
 }
 
 ContactStatistics::~ContactStatistics() = default;
@@ -115,6 +118,7 @@ bool ContactStatistics::looks_inside(const EvaluatedState& from, const Evaluated
   bool looks = forces_ && forces_->looks_inside(from, to, beyond_cubic);
   for (std::size_t i = 0; inside_steps_ && i < terms_.size(); ++i) {
     largest_inside_[i].reset();
+    turn_[i].reset();
     looks |= may_rise_inside(i, from, to, beyond_cubic);
   }
   return looks;
@@ -138,8 +142,14 @@ bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& fro
   const auto range = motion_->force_range(law);
   if (!range) return true;
   const double inside = std::max(-range->low, range->high);
-  if (range->error > kLargestOfContact * std::max(inside, largest)) return true;
-  largest_inside_[i] = inside;
+  if (range->error <= kLargestOfContact * std::max(inside, largest)) {
+    largest_inside_[i] = inside;
+    return false;
+  }
+  // What kinks add hardly moves the place of a single turn, and of that the square counts.
+  if (range->turns > 1 || range->error > kMostOpen * std::max(inside, largest)) return true;
+  largest_inside_[i] = 0.0;
+  if (range->turns == 1) turn_[i] = from.state.t + range->turn * (to.state.t - from.state.t);
   return false;
 }
 
@@ -178,6 +188,8 @@ void ContactStatistics::note_forces(std::size_t i, const Assembler& assembler, c
   const double h = to.state.t - from.state.t;
   double& largest = intervals_[i].largest;
   note_force(records_[i], std::abs(r1.y), to.state.t, true, largest);
+  if (turn_[i]) largest_inside_[i] = std::abs(motion_->at(*turn_[i]).at.responses[j].y);
+  turn_[i].reset();
   if (largest_inside_[i]) largest = std::max(largest, *largest_inside_[i]);
   if (!inside_steps_ || largest_inside_[i]) return;
   const auto rate = [&](const EvaluatedState& at) {

@@ -75,8 +75,7 @@ class ContactStatistics final : public Observer {
                     const double* beyond_cubic) override;
   void look_through(StepMotion& motion) override;
   void restart(const Assembler& assembler, const EvaluatedState& point) override;
-  /// inside_steps: as in Peaks, for the largest forces; that of each single contact then holds to 1e-4 of itself, to 1e-3 where
-  /// the flank is damped and its stiffness or offset follows an angle.
+  /// inside_steps: as in Peaks, for the largest forces; that of each single contact then holds to 1e-4 of itself.
   explicit ContactStatistics(const System& system, bool inside_steps = true);
   ~ContactStatistics() override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;
@@ -98,6 +97,7 @@ class ContactStatistics final : public Observer {
   std::vector<double> masses_;
   std::vector<ContactInterval> intervals_;
   std::vector<std::optional<double>> largest_inside_;  // of each force in the step at hand, where it is known
+  std::vector<std::optional<double>> turn_;            // time at which it is to be read off there [s]
   std::vector<ContactRecord> records_;
 };
 

@@ -425,6 +425,24 @@ TEST_CASE("The range of a row inside steps, and where it turns, in closed form")
   CHECK(ranges.count > 60);
 }
 
+/// Compares the mean of the largest forces of all contacts with that of the motion each microsecond.
+void check_contacts(const System& system, const ExactOptions& options, double within) {
+  ContactStatistics contacts(system);
+  Sampled sampled(system);
+  REQUIRE(propagate(system, options, {&contacts}).ok());
+  REQUIRE(propagate(system, options, {&sampled}).ok());
+  for (std::size_t i = 0; i < sampled.contacts.size(); ++i) {
+    const auto check = [&](const Distribution& found, const std::vector<double>& expected) {
+      REQUIRE(found.count() == static_cast<long>(expected.size()));
+      if (expected.empty()) return;
+      const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+      CHECK(found.mean() == Approx(sum / static_cast<double>(expected.size())).epsilon(within));
+    };
+    check(contacts.records()[i].front_force, sampled.contacts[i].front);
+    check(contacts.records()[i].back_force, sampled.contacts[i].back);
+  }
+}
+
 TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond") {
   std::vector<test::MeshLaw> laws = test::mesh_laws();
   laws.push_back({"Fourier series and a transmission error", [](GearMesh::Params& p) {
@@ -437,19 +455,36 @@ TEST_CASE("The largest force of each contact is that of the motion sampled every
     const ExactOptions options{.tolerance = 1e-10, .t_end = 0.02};
     // A force that is largest just before the stiffness jumps lies between two samples.
     const double within = std::string(law.name).find("steps") != std::string::npos ? 1e-3 : 1e-4;
-    ContactStatistics contacts(system);
-    Sampled sampled(system);
-    REQUIRE(propagate(system, options, {&contacts}).ok());
-    REQUIRE(propagate(system, options, {&sampled}).ok());
-    for (std::size_t i = 0; i < sampled.contacts.size(); ++i) {
-      const auto check = [&](const Distribution& found, const std::vector<double>& expected) {
-        REQUIRE(found.count() == static_cast<long>(expected.size()));
-        if (expected.empty()) return;
-        const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
-        CHECK(found.mean() == Approx(sum / static_cast<double>(expected.size())).epsilon(within));
-      };
-      check(contacts.records()[i].front_force, sampled.contacts[i].front);
-      check(contacts.records()[i].back_force, sampled.contacts[i].back);
-    }
+    check_contacts(system, options, within);
   }
+}
+
+TEST_CASE("The largest force of each contact beside cams on both gears, with damping and varying stiffness") {
+  for (const double speed : {70.0, 110.0, 150.0})
+    for (const MeshDamping damping : {MeshDamping::proportional, MeshDamping::limited})
+      for (const bool stiffening : {false, true}) {
+        CAPTURE(speed, damping == MeshDamping::limited, stiffening);
+        Model m("cams beside a mesh");
+        for (const char* node : {"drive", "pinion", "wheel"}) m.add_node(node);
+        m.constant_speed("drive", speed);
+        m.add<ShaftSpring>("shaft", {"drive", "pinion"}, {.stiffness = 3e4});
+        GearMesh::Params mesh{.base_radius_1 = 0.08, .base_radius_2 = 0.16, .teeth_1 = 20, .teeth_2 = 40};
+        mesh.normal_backlash = 5e-5;
+        mesh.damping = 1500.0;
+        mesh.damping_law = damping;
+        mesh.stiffness = MeshStiffness::fourier_of_step(1e7, 1.8e7, 1.6, 4);
+        if (stiffening) {
+          mesh.stiffness = 1.4e7;
+          mesh.stiffening = {{0.0, 2e-5}, {0.8, 1.3}};
+          mesh.reference_penetration = 5e-6;
+        }
+        m.add<GearMesh>("mesh", {"pinion", "wheel"}, mesh);
+        for (const char* node : {"pinion", "wheel"}) {
+          m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 0.05});
+          m.add<CamTorque>(std::string("cam_") + node, {node},
+                           {.angle_table = PeriodicTable({0.0, 0.2, 0.3, 0.5, 0.7, 1.0},
+                                                         {0.0, -60.0, 20.0, 35.0, 0.0, 0.0}, 1.2)});
+        }
+        check_contacts(m.build(), {.tolerance = 1e-10, .t_end = 0.04}, 5e-5);
+      }
 }
