@@ -148,7 +148,7 @@ bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& fro
   }
   // What kinks add hardly moves the place of a single turn, and of that the square counts.
   if (range->turns > 1 || range->error > kMostOpen * std::max(inside, largest)) return true;
-  largest_inside_[i] = 0.0;
+  largest_inside_[i] = 0.0;  // a monotone force is largest at an end, which is noted anyway
   if (range->turns == 1) turn_[i] = from.state.t + range->turn * (to.state.t - from.state.t);
   return false;
 }

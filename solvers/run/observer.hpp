@@ -28,7 +28,8 @@ class StepMotion {
   virtual std::optional<int> side(int /*law*/) const { return std::nullopt; }
   /// The smallest and the largest value of something between the two points that looks_inside() was given, both off by at most
   /// `error`; how often it turns round between them, about where it last does, as a part of the time between them, and its second
-  /// derivative by that part there. None where that costs as much as to show the points inside.
+  /// derivative by that part there. None where that costs as much as to show the points inside; where it is given, at() holds
+  /// anywhere between those two points until the next ones are shown.
   struct Range {
     double low = 0.0, high = 0.0, error = 0.0;
     int turns = 0;
@@ -36,8 +37,7 @@ class StepMotion {
   };
   /// Of the force of a law (of System::scalars()) [N or N m].
   virtual std::optional<Range> force_range(int /*law*/) { return std::nullopt; }
-  /// Of a sum over unknowns, z [rad or m], and over their rates, v [rad/s or m/s]. Where it is given, at() holds anywhere between
-  /// those two points until the next ones are shown.
+  /// Of a sum over unknowns, z [rad or m], and over their rates, v [rad/s or m/s].
   virtual std::optional<Range> range(const std::vector<Entry>& /*z*/, const std::vector<Entry>& /*v*/) {
     return std::nullopt;
   }

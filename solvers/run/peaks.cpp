@@ -119,9 +119,6 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   const double h = to.state.t - from.state.t;
   Interval reach;
   double beyond = 0.0;
-  const auto within = [&peak = peaks_[c]](const Interval& y, double error) {
-    return y.high + error <= peak.max && y.low - error >= peak.min;
-  };
   if (channels_[c].is_linear()) {
     // Its rate reads the acceleration, which is the rate's rate.
     reach = cubic_reach(w.last, along(c, from.state.v, from.state.a), along(c, to.state.z, to.state.v),
@@ -129,7 +126,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
     for (const Entry& e : channels_[c].z_row()) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     for (const Entry& e : channels_[c].v_row())
       beyond += std::abs(e.coeff) * beyond_cubic[to.state.z.size() + e.index];
-    if (within(reach, beyond)) return false;
+    if (within_peaks(c, reach.low, reach.high, beyond)) return false;
     return !can_seek(c, along(c, from.state.v, from.state.a) * along(c, to.state.v, to.state.a) < 0.0);
   } else if (const int law = channels_[c].deflection_of(); law >= 0 && !w.row.empty()) {
     for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
@@ -138,7 +135,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   } else if (const int law = channels_[c].force_of(); law >= 0) {
     for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
     const auto force = w.row.empty() ? std::nullopt : force_reach(*motion_, law, from, to, beyond);
-    if (force && within(*force, 0.0)) return false;
+    if (force && within_peaks(c, force->low, force->high, 0.0)) return false;
     const auto range = motion_->force_range(law);
     if (!range) return true;
     reach = {range->low, range->high};
@@ -146,7 +143,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
   } else {
     return true;
   }
-  return !within(reach, beyond);
+  return !within_peaks(c, reach.low, reach.high, beyond);
 }
 
 /// Values and rates at the step's end, and how far the value may come beyond its peaks: most are so far from them that no slope at
@@ -223,7 +220,7 @@ bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to,
                           std::abs(pairs_.coeff_2[i]) * beyond_cubic[pairs_.second[i]];
     const Interval reach =
         cubic_reach(pairs_.last[i], pairs_.last_rate[i], pairs_.ahead[i], pairs_.ahead_rate[i], h);
-    if (reach.high + beyond <= pairs_.max[i] && reach.low - beyond >= pairs_.min[i]) continue;
+    if (within_peaks(pairs_.channel[i], reach.low, reach.high, beyond)) continue;
     if (!can_seek(pairs_.channel[i], pairs_.last_rate[i] * pairs_.ahead_rate[i] < 0.0)) return true;
   }
   return false;
@@ -234,7 +231,7 @@ bool Peaks::pairs_may_pass(const EvaluatedState& from, const EvaluatedState& to,
 bool Peaks::can_seek(std::size_t c, bool opposite) {
   const auto range = motion_->range(channels_[c].z_row(), channels_[c].v_row());
   if (!range) return false;
-  if (range->high + range->error <= peaks_[c].max && range->low - range->error >= peaks_[c].min) return true;
+  if (within_peaks(c, range->low, range->high, range->error)) return true;
   // What is left open of the motion may hide a turn of that height.
   if (range->turns != (opposite ? 1 : 0) || range->error > kRangeError * (peaks_[c].max - peaks_[c].min))
     return false;
@@ -308,7 +305,9 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
     for (const std::size_t c : others_) {
       const double y = last(c) = value(c, assembler, to);
       // A force may jump at the step's end.
-      if (y > peaks_[c].max || y < peaks_[c].min) peaks_[c].note(y, to.state.t), set_bounds(c);
+      if (within_peaks(c, y, y, 0.0)) continue;
+      peaks_[c].note(y, to.state.t);
+      set_bounds(c);
     }
     for (const Sought& sought : sought_) seek(sought);
     passed_over_ = false;

@@ -81,6 +81,10 @@ class Peaks final : public Observer {
   void find_rows(const System& system);
   /// Of a linear channel: its row over the unknowns times x, and its row over their rates times x_dot.
   double along(std::size_t c, const Vector& x, const Vector& x_dot) const;
+  /// Whether values between low and high, both off by at most `error`, are within the peaks so far.
+  bool within_peaks(std::size_t c, double low, double high, double error) const {
+    return high + error <= peaks_[c].max && low - error >= peaks_[c].min;
+  }
   /// Whether the value of a channel that is no pair may pass its peaks within a step.
   bool may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedState& to,
                 const double* beyond_cubic);

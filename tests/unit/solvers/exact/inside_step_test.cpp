@@ -339,12 +339,20 @@ TEST_CASE(
   }
 }
 
-/// Compares speeds in the middle of steps with the cubic through both ends and its bound.
-class OfSpeeds final : public Observer {
+/// Looks at the motion inside steps alone.
+class InsideSteps : public Observer {
  public:
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler&, const EvaluatedState&) override {}
   void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
+
+ protected:
+  StepMotion* motion_ = nullptr;
+};
+
+/// Compares speeds in the middle of steps with the cubic through both ends and its bound.
+class OfSpeeds final : public InsideSteps {
+ public:
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double* beyond) override {
     const double h = to.state.t - from.state.t;
     const EvaluatedState& middle = motion_->at(0.5 * (from.state.t + to.state.t)).at;
@@ -355,9 +363,6 @@ class OfSpeeds final : public Observer {
     return false;
   }
   int unbounded = 0;
-
- private:
-  StepMotion* motion_ = nullptr;
 };
 
 TEST_CASE("Speeds stay within their bound of a cubic, where accelerations jump with a stiffness as well") {
@@ -380,12 +385,9 @@ TEST_CASE("Speeds stay within their bound of a cubic, where accelerations jump w
 }
 
 /// Compares the ranges of A cos(w t) + c v in the steps with their closed form.
-class OfOscillation final : public Observer {
+class OfOscillation final : public InsideSteps {
  public:
   static constexpr double kA = 0.01, kW = 200.0, kC = 3e-3;
-  void look_through(StepMotion& motion) override { motion_ = &motion; }
-  void start(const Assembler&, const EvaluatedState&) override {}
-  void step(const Assembler&, const EvaluatedState&, const EvaluatedState&) override {}
   bool needs_acceleration() const override { return false; }
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to, const double*) override {
     const auto range = motion_->range({{0, 2.0}}, {{0, kC}});
@@ -407,9 +409,6 @@ class OfOscillation final : public Observer {
     return false;
   }
   int count = 0;
-
- private:
-  StepMotion* motion_ = nullptr;
 };
 
 TEST_CASE("The range of a row inside steps, and where it turns, in closed form") {
