@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "solvers/exact/law_series.hpp"
-#include "solvers/exact/steady_step.hpp"
 #include "solvers/exact/step_expansion.hpp"
+#include "solvers/exact/step_length.hpp"
 #include "solvers/linear/matrix_product.hpp"
 #include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
@@ -22,14 +22,12 @@ namespace drev {
 namespace {
 
 constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
-constexpr double kGrowth = 1.5;  // most of a step's length over that of the one before, which was shortened
 constexpr int kMaxCuts = 20;
 // A shorter step, relative to the largest one, is not shortened for what projection leaves.
 constexpr double kShortest = 1e-6;
 constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
 // Distances from a step's ends, relative to the step's length.
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
-constexpr double kRetreat = 1.0 / 16.0;  // length of the next attempt over that of a step with overflow
 // Rounding of a time, relative to the time; two times that are the same, relative to the run's times.
 constexpr double kTimeRounding = 4e-16, kSameTime = 1e-14;
 constexpr double kEnergyTolerance = 1e-6;  // relative to the energy scale
@@ -64,9 +62,7 @@ class ExactRun final : public StepMotion {
     series_.set_loss_accuracy(kOfImbalance * allowed_imbalance_);
     laws_.add_stiffest(series_);
     fastest_ = series_.bound_rates();
-    const double duration = options.t_end - options.t_start;
-    largest_step_ = fastest_ > 0.0 ? std::min(duration, kFastestTimesStep / fastest_) : duration;
-    growing_step_ = largest_step_;
+    length_.start(fastest_, options_.t_end - options_.t_start);
   }
 
   RunSummary run() {
@@ -188,8 +184,9 @@ class ExactRun final : public StepMotion {
       evaluate(assembler_, next_, evaluated_at);
       return end_not_finite(summary_, assembler_, now_, next_);
     }
-    if (s * got > kNoProgress * largest_step_) changes_here_ = 0;
+    if (s * got > kNoProgress * length_.largest()) changes_here_ = 0;
     ++summary_.steps;
+    length_.count();
     if (t_new > from.t)
       for (Observer* o : observers_) o->step(assembler_, before, next_);
     laws_.forget_roots();
@@ -214,7 +211,8 @@ class ExactRun final : public StepMotion {
     }
     if (!progress_.goes_on(summary_.steps, t_new)) end_interrupted(summary_, system_.name(), t_new);
     if (!progress_.would_end(summary_.steps, t_new))
-      throw SolverError(at_time(system_.name(), t_new) + Progress::kNoEnd + to_text(largest_step_) + " s");
+      throw SolverError(at_time(system_.name(), t_new) + Progress::kNoEnd + to_text(length_.largest()) +
+                        " s");
   }
 
   void pass_friction(const FrictionSeries::Change& change) {
@@ -233,7 +231,7 @@ class ExactRun final : public StepMotion {
   /// Expands until the step's end is known. What was projected holds for a whole step only: there, the
   /// step is cut at the change and expanded anew, until the change is at its end.
   End find_end(double remaining, double end_of_steps) {
-    double h = steady_step_.next(now_.state.t, end_of_steps, growing_step_);
+    double h = length_.next(now_.state.t, end_of_steps);
     End cut;
     expansion_.allow_sweeps(true);
     for (int cuts = 0;; ++cuts) {
@@ -249,7 +247,10 @@ class ExactRun final : public StepMotion {
       if (expansion_.sweeps()) {
         if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state))
           return {.s = found->s, .change = found->change, .at_law_knot = found->at_law_knot};
-        expansion_.allow_sweeps(false);
+        if (h > length_.largest())
+          h = length_.hold_back();
+        else
+          expansion_.allow_sweeps(false);
         continue;
       }
       if (!friction_.empty()) {
@@ -377,24 +378,24 @@ class ExactRun final : public StepMotion {
     for (;;) {
       const auto [got, again] = expansion_.attempt(now_, laws_, h, limits(h));
       if (again) {
-        h = got;
+        h = got == length_.largest() && h > got ? length_.hold_back() : got;
         continue;
       }
-      if (got > 0.0) growing_step_ = std::min(largest_step_, kGrowth * std::max(got, growing_step_));
+      const double shorter = length_.attempted(h, got);
       if (got == h) return h;
-      growing_step_ = got > 0.0 ? got : kRetreat * h;
-      if (growing_step_ <= kNoProgress * largest_step_) return give_up(h);
+      if (shorter <= kNoProgress * length_.largest()) return give_up(h);
       if (got > 0.0 && expansion_.shortens()) {
         known_.shorten(got / h);
         return got;
       }
-      h = growing_step_;
+      h = shorter;
     }
   }
 
   StepExpansion::Limits limits(double h) const {
     const double share = options_.tolerance * h / (options_.t_end - options_.t_start);
-    return {std::max(share, kLeastShare), options_.tolerance, kShortest * largest_step_};
+    return {std::max(share, kLeastShare), options_.tolerance, kShortest * length_.largest(),
+            length_.largest()};
   }
 
   /// No step is short enough: a force that is not finite in the step of length h ends the run.
@@ -468,8 +469,8 @@ class ExactRun final : public StepMotion {
   Progress progress_;
   EnergyMonitor* energy_ = nullptr;
   RunSummary summary_;
-  double fastest_ = 0.0, largest_step_ = 0.0, growing_step_ = 0.0, allowed_imbalance_ = 0.0;
-  SteadyStep steady_step_;
+  double fastest_ = 0.0, allowed_imbalance_ = 0.0;
+  StepLength length_;
   int changes_here_ = 0, change_limit_ = 0;
   bool watches_loads_ = false, forces_ = false;  // some observer does, or wants accelerations and forces
   bool whole_ = true;                            // now_ has them

@@ -39,7 +39,7 @@ constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 /// The range of a polynomial in [0, end], a step of a series; its turn as a part of that.
 StepMotion::Range range_of(const std::vector<double>& x, double end) {
-  constexpr int kParts = 2 * kLanes;  // omega h < 0.2 between two places
+  constexpr int kParts = 2 * kLanes;  // omega h <= 0.25 between two places
   std::array<double, kParts> s, value, slope;
   for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
   polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
@@ -105,11 +105,12 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
   if (known.part_held() < 1.0) return {h * known.part_held(), true};
   // Loads and smooth laws can be stiffer than what bounded the largest step.
-  const double steepest = 1.5 * kFastestTimesStep / series.rate();
+  const double steepest = 1.5 * StepLength::kFastestTimesStep / series.rate();
   if (h > steepest) return {steepest};
   if (Attempt made; attempt_sweep(from, laws, h, limits, made)) return made;
   bool settled = false;
   const bool projects = known.projects() || !smooth.empty();
+  if (projects && h > limits.longest) return {limits.longest, true};
   // Each pass needs to be no better than the next one takes up of it.
   // Nor better than what the first one is about to change.
   double tolerance =
@@ -322,7 +323,7 @@ bool StepExpansion::expand_part(const StepExpansion& other, const EvaluatedState
   series.scale_as(other.series);
   friction.locate_as(other.friction);
   expanded.locate_as(other.expanded);
-  const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h});
+  const Attempt made = attempt(from, laws, h, {limits.share, limits.tolerance, h, h});
   if (made.again || made.h != h || (sweeps_ && !kinks.find(1.0, nullptr, limits.share))) return false;
   friction.expand(series, from.state);
   return true;

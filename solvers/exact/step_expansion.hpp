@@ -16,12 +16,10 @@
 #include "solvers/exact/law_series.hpp"
 #include "solvers/exact/load_series.hpp"
 #include "solvers/exact/projected_laws.hpp"
+#include "solvers/exact/step_length.hpp"
 #include "solvers/series/taylor_series.hpp"
 
 namespace drev {
-
-/// omega h of the longest step: bounds degree and growth of rounding.
-inline constexpr double kFastestTimesStep = 3.0;
 
 class StepExpansion {
  public:
@@ -46,6 +44,7 @@ class StepExpansion {
     double share = 0.0;      ///< of the tolerance, for this step
     double tolerance = 0.0;  ///< of the run
     double shortest = 0.0;   ///< s: in shorter steps what is left is an undeclared discontinuity, or rounding
+    double longest = 0.0;    ///< s: of a step by passes
   };
   /// What became of an attempt: the step that the series holds for, <= h [s]; 0 if its terms overflow; or,
   /// where again, the step to try next: one to just behind the knot of a law, or the same with what was learnt.

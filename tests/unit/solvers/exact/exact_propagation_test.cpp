@@ -207,3 +207,16 @@ TEST_CASE("Exact propagation: what cannot be propagated is refused with the reas
   CHECK_THROWS_AS(propagate(system, {.t_end = -1.0}), ModelError);
   CHECK_THROWS_AS(propagate(system, {.tolerance = 0.0, .t_end = 1.0}), ModelError);
 }
+
+TEST_CASE("Exact propagation: a step takes 4 rad of the fastest mode, and 3 rad where forces are projected") {
+  const auto steps = [](bool projected) {
+    Model m = unit_oscillator();
+    m.set_initial("m", 1.0, 0.0);
+    if (projected) m.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return std::sin(t); }});
+    const RunSummary run = propagate(m.build(), {.tolerance = 1e-8, .t_end = 120.0});
+    CHECK(run.ok());
+    return static_cast<double>(run.steps);
+  };
+  CHECK(steps(false) == Approx(std::ceil(120.0 * kTwoPi / 4.0)).epsilon(0.01));
+  CHECK(steps(true) == Approx(std::ceil(120.0 * kTwoPi / 3.0)).epsilon(0.01));
+}

@@ -1,0 +1,74 @@
+#pragma once
+/// StepLength: how long the next step is to be.
+///
+/// The series bears steps of omega h = 4, beyond which rounding and degrees grow. Kinks that are swept allow them, too, as long
+/// as they move little; passes want omega h <= 3 (legendre_projection.hpp). A longer step is tried, and where it is given up
+/// the next ones are not longer than that: the more of them, the sooner it is given up again.
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/run/stops.hpp"
+
+namespace drev {
+
+class StepLength {
+ public:
+  static constexpr double kFastestTimesStep = 3.0;   ///< omega h of a step by passes, at most
+  static constexpr double kFastestTimesSwept = 4.0;  ///< omega h of any step, at most
+
+  /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s].
+  void start(double fastest, double duration) {
+    const auto step = [&](double angle) {
+      return fastest > 0.0 ? std::min(duration, angle / fastest) : duration;
+    };
+    largest_ = step(kFastestTimesStep);
+    swept_ = growing_ = step(kFastestTimesSwept);
+  }
+  /// Of a step by passes [s].
+  double largest() const { return largest_; }
+
+  /// The length [s] of the next of as few steps from t to `end` as may be: all alike to the last bit (EvenSteps), so that what
+  /// depends on it is computed once.
+  double next(double t, double end) {
+    const EvenSteps even(t, end, growing_);
+    if (!(even.count > 1.0)) return even.h;
+    if (!(std::abs(even.h - last_) <= kSame * even.h)) last_ = even.h;
+    return last_;
+  }
+  /// An attempt over h held for `got` [s], 0 where terms overflowed. Returns the length to try where that is less.
+  double attempted(double h, double got) {
+    if (got > 0.0) growing_ = std::min(wait_ > 0 ? largest_ : swept_, kGrowth * std::max(got, growing_));
+    if (got != h) growing_ = got > 0.0 ? got : kRetreat * h;
+    return growing_;
+  }
+  /// A step over h longer than largest() was given up. Returns the length to try.
+  double hold_back() {
+    pause_ = longer_ < pause_ ? std::min(2 * pause_, kLongestPause) : kPause;
+    wait_ = pause_;
+    longer_ = 0;
+    growing_ = std::min(growing_, largest_);
+    return largest_;
+  }
+  /// A step was made.
+  void count() {
+    if (wait_ > 0)
+      --wait_;
+    else if (longer_ < kLongestPause)
+      ++longer_;
+  }
+
+ private:
+  static constexpr double kGrowth =
+      1.5;  // most of a step's length over that of the one before, which was shortened
+  static constexpr double kRetreat =
+      1.0 / 16.0;  // length of the next attempt over that of a step with overflow
+  // Two lengths that differ by the rounding of times alone, relative to them.
+  static constexpr double kSame = 1e-7;
+  static constexpr int kPause = 8, kLongestPause = 1024;  // steps
+
+  double largest_ = 0.0, swept_ = 0.0, growing_ = 0.0, last_ = 0.0;
+  int pause_ = 0, wait_ = 0;  // steps that are not longer than largest_: when last given up, left of them
+  int longer_ = 0;            // steps since then that may have been
+};
+
+}  // namespace drev
