@@ -247,10 +247,8 @@ class ExactRun final : public StepMotion {
       if (expansion_.sweeps()) {
         if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state))
           return {.s = found->s, .change = found->change, .at_law_knot = found->at_law_knot};
-        if (h > length_.largest())
-          h = length_.hold_back();
-        else
-          expansion_.allow_sweeps(false);
+        expansion_.allow_sweeps(h > length_.largest());
+        h = length_.hold_back(h);
         continue;
       }
       if (!friction_.empty()) {
@@ -378,7 +376,7 @@ class ExactRun final : public StepMotion {
     for (;;) {
       const auto [got, again] = expansion_.attempt(now_, laws_, h, limits(h));
       if (again) {
-        h = got == length_.largest() && h > got ? length_.hold_back() : got;
+        h = got == length_.largest() ? length_.hold_back(h) : got;
         continue;
       }
       const double shorter = length_.attempted(h, got);

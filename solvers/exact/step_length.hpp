@@ -1,9 +1,9 @@
 #pragma once
 /// StepLength: how long the next step is to be.
 ///
-/// The series bears steps of omega h = 4, beyond which rounding and degrees grow. Kinks that are swept allow them, too, as long
-/// as they move little; passes want omega h <= 3 (legendre_projection.hpp). A longer step is tried, and where it is given up
-/// the next ones are not longer than that: the more of them, the sooner it is given up again.
+/// Passes over projected forces want omega h <= 3 (legendre_projection.hpp). The series itself bears more, and so do kinks that are
+/// swept as long as they move little: up to omega h = 4 a step costs less than its length gains. Such a step is tried; where it is
+/// given up, the next steps are no longer than passes bear, and the more of them the sooner a longer one is given up again.
 #include <algorithm>
 #include <cmath>
 
@@ -41,8 +41,9 @@ class StepLength {
     if (got != h) growing_ = got > 0.0 ? got : kRetreat * h;
     return growing_;
   }
-  /// A step over h longer than largest() was given up. Returns the length to try.
-  double hold_back() {
+  /// A step over h was given up. Returns the length to try, which is largest() where it was longer than that.
+  double hold_back(double h) {
+    if (!(h > largest_)) return h;
     pause_ = longer_ < pause_ ? std::min(2 * pause_, kLongestPause) : kPause;
     wait_ = pause_;
     longer_ = 0;
@@ -58,17 +59,15 @@ class StepLength {
   }
 
  private:
-  static constexpr double kGrowth =
-      1.5;  // most of a step's length over that of the one before, which was shortened
-  static constexpr double kRetreat =
-      1.0 / 16.0;  // length of the next attempt over that of a step with overflow
+  // Most of a step's length over that of the one before, which was shortened; of the next attempt over a step with overflow.
+  static constexpr double kGrowth = 1.5, kRetreat = 1.0 / 16.0;
   // Two lengths that differ by the rounding of times alone, relative to them.
   static constexpr double kSame = 1e-7;
   static constexpr int kPause = 8, kLongestPause = 1024;  // steps
 
   double largest_ = 0.0, swept_ = 0.0, growing_ = 0.0, last_ = 0.0;
-  int pause_ = 0, wait_ = 0;  // steps that are not longer than largest_: when last given up, left of them
-  int longer_ = 0;            // steps since then that may have been
+  int pause_ = 0, wait_ = 0;  // steps no longer than largest_: when one was last given up, and left of these
+  int longer_ = 0;            // steps since then that were free to be longer
 };
 
 }  // namespace drev

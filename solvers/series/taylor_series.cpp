@@ -453,6 +453,9 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   };
   double last = 0.0;
   const double per_time = 1.0 / h;
+  // Of a mode of rate w, term k is no more than growth = (w h)^k/k! times as large as the motion, whose scale is that of the motion.
+  const double most_growth = std::max(std::sqrt(k_step), c_step);
+  double growth = most_growth;
   // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
   int known = 1;
   const int likely = by_diagonals() ? degree_ : 0;
@@ -464,9 +467,10 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       if (const Norm& size = sizes_[idx(known)]; !std::isfinite(size[0] + size[1])) return end(k, 0.0);
     }
     const Norm& size = sizes_[idx(k)];
+    growth = std::max(1.0, growth * most_growth * inverse(k));
     for (std::size_t i = 0; i < kinds; ++i) {
-      z_scale[i] = std::max(z_scale[i], size[i]);
-      v_scale[i] = std::max(v_scale[i], k * per_time * size[i]);
+      z_scale[i] = std::max(z_scale[i], size[i] / growth);
+      v_scale[i] = std::max(v_scale[i], k * per_time * size[i] / growth);
     }
     if (k < std::max(known_degree + 2, judged)) continue;  // a term of the right side may still be to come
     const double before = last;

@@ -55,22 +55,24 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   step.start(2.0, end);
   CHECK(step.largest() == 1.5);
   CHECK(step.next(0.0, end) == Approx(2.0).epsilon(1e-5));
-  CHECK(step.hold_back() == step.largest());
+  CHECK(step.hold_back(1.4) == 1.4);  // not a longer one
+  CHECK(step.next(0.0, end) > step.largest());
+  CHECK(step.hold_back(2.0) == step.largest());
   CHECK(step.next(0.0, end) <= step.largest());
   const int first = steps_held_back(step, end);
   CHECK(first >= 8);
   CHECK(first <= 10);
-  step.hold_back();
+  step.hold_back(2.0);
   const int second = steps_held_back(step, end);
   CHECK(second >= 2 * 8);
   CHECK(second <= 2 * first);
   for (int i = 0; i < 20; ++i) {
-    step.hold_back();
+    step.hold_back(2.0);
     CHECK(steps_held_back(step, end) <= 1026);
   }
   // Where it was borne for as long as it paused, that is forgotten.
   for (int i = 0; i < 1100; ++i) step.count();
-  step.hold_back();
+  step.hold_back(2.0);
   CHECK(steps_held_back(step, end) == first);
 }
 
