@@ -211,7 +211,7 @@ class ExactRun final : public StepMotion {
     }
     if (!progress_.goes_on(summary_.steps, t_new)) end_interrupted(summary_, system_.name(), t_new);
     if (!progress_.would_end(summary_.steps, t_new))
-      throw SolverError(at_time(system_.name(), t_new) + Progress::kNoEnd + to_text(length_.largest()) +
+      throw SolverError(at_time(system_.name(), t_new) + Progress::kNoEnd + to_text(length_.longest()) +
                         " s");
   }
 

@@ -24,8 +24,9 @@ class StepLength {
     largest_ = step(kFastestTimesStep);
     swept_ = growing_ = step(kFastestTimesSwept);
   }
-  /// Of a step by passes [s].
+  /// Of a step by passes [s], and of any.
   double largest() const { return largest_; }
+  double longest() const { return swept_; }
 
   /// The length [s] of the next of as few steps from t to `end` as may be: all alike to the last bit (EvenSteps), so that what
   /// depends on it is computed once.

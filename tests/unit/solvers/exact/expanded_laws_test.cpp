@@ -202,7 +202,7 @@ Model cams_behind_mesh(GearMesh::Params mesh) {
 
 }  // namespace
 
-TEST_CASE("Exact propagation: mesh stiffness by phase and kinks of tables share a sweep") {
+TEST_CASE("Exact propagation: mesh stiffness by phase and kinks of tables share a sweep", "[once]") {
   const double k = 3e7;
   const MeshStiffness constant(k),
       fourier = MeshStiffness::fourier_of_step(0.7 * k, 1.2 * k, 1.6, 4),

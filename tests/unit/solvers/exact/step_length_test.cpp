@@ -54,6 +54,7 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   const double end = 1e6;
   step.start(2.0, end);
   CHECK(step.largest() == 1.5);
+  CHECK(step.longest() == 2.0);
   CHECK(step.next(0.0, end) == Approx(2.0).epsilon(1e-5));
   CHECK(step.hold_back(1.4) == 1.4);  // not a longer one
   CHECK(step.next(0.0, end) > step.largest());
