@@ -212,7 +212,8 @@ TEST_CASE("Exact propagation: a step takes 4 rad of the fastest mode, and 3 rad 
   const auto steps = [](bool projected) {
     Model m = unit_oscillator();
     m.set_initial("m", 1.0, 0.0);
-    if (projected) m.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return std::sin(0.1 * t); }});
+    if (projected)
+      m.add<AppliedTorque>("load", {"m"}, {.torque = [](double t) { return std::sin(0.1 * t); }});
     const RunSummary run = propagate(m.build(), {.tolerance = 1e-8, .t_end = 120.0});
     CHECK(run.ok());
     return static_cast<double>(run.steps);
