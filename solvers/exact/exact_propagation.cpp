@@ -245,8 +245,10 @@ class ExactRun final : public StepMotion {
         continue;
       }
       if (expansion_.sweeps()) {
-        if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state))
+        if (const auto found = expansion_.first_swept_change(laws_, now_.state.t, next_.state)) {
+          if (found->by_kinks) length_.hold_back(h);
           return {.s = found->s, .change = found->change, .at_law_knot = found->at_law_knot};
+        }
         expansion_.allow_sweeps(h > length_.largest());
         h = length_.hold_back(h);
         continue;
@@ -391,9 +393,8 @@ class ExactRun final : public StepMotion {
   }
 
   StepExpansion::Limits limits(double h) const {
-    const double share = options_.tolerance * h / (options_.t_end - options_.t_start);
-    return {std::max(share, kLeastShare), options_.tolerance, kShortest * length_.largest(),
-            length_.largest()};
+    const double most = length_.largest(), part = h / (options_.t_end - options_.t_start);
+    return {std::max(options_.tolerance * part, kLeastShare), options_.tolerance, kShortest * most, most};
   }
 
   /// No step is short enough: a force that is not finite in the step of length h ends the run.

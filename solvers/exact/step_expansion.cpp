@@ -275,6 +275,7 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
   const bool holds = !(kinks.limit() < likely);
   if (!holds) {
     end.s = kinks.limit();
+    end.by_kinks = true;
     knot.reset();
   }
   if (found.change && holds) {

@@ -109,6 +109,7 @@ class StepExpansion {
     double s = 1.0;
     std::optional<LawSeries::Change> change = {};
     bool at_law_knot = false;
+    bool by_kinks = false;  ///< what they do to each other ends the step
   };
   std::optional<SweptEnd> first_swept_change(LawSeries& laws, double t, State& at);
 

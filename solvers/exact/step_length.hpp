@@ -3,7 +3,8 @@
 ///
 /// Passes over projected forces want omega h <= 3 (legendre_projection.hpp). The series itself bears more, and so do kinks that are
 /// swept as long as they move little: up to omega h = 4 a step costs less than its length gains. Such a step is tried; where it is
-/// given up, the next steps are no longer than passes bear, and the more of them the sooner a longer one is given up again.
+/// given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
+/// a step given up costs what some ten longer ones gain.
 #include <algorithm>
 #include <cmath>
 
@@ -42,10 +43,10 @@ class StepLength {
     if (got != h) growing_ = got > 0.0 ? got : kRetreat * h;
     return growing_;
   }
-  /// A step over h was given up. Returns the length to try, which is largest() where it was longer than that.
+  /// A step over h was given up, or kinks ended it. Returns the length to try, which is largest() where it was longer than that.
   double hold_back(double h) {
     if (!(h > largest_)) return h;
-    pause_ = longer_ < pause_ ? std::min(2 * pause_, kLongestPause) : kPause;
+    pause_ = longer_ < kEnough ? std::clamp(2 * pause_, kPause, kLongestPause) : kPause;
     wait_ = pause_;
     longer_ = 0;
     growing_ = std::min(growing_, largest_);
@@ -64,7 +65,7 @@ class StepLength {
   static constexpr double kGrowth = 1.5, kRetreat = 1.0 / 16.0;
   // Two lengths that differ by the rounding of times alone, relative to them.
   static constexpr double kSame = 1e-7;
-  static constexpr int kPause = 8, kLongestPause = 1024;  // steps
+  static constexpr int kPause = 8, kEnough = 16, kLongestPause = 1024;  // steps
 
   double largest_ = 0.0, swept_ = 0.0, growing_ = 0.0, last_ = 0.0;
   int pause_ = 0, wait_ = 0;  // steps no longer than largest_: when one was last given up, and left of these
