@@ -184,7 +184,7 @@ class ExactRun final : public StepMotion {
       evaluate(assembler_, next_, evaluated_at);
       return end_not_finite(summary_, assembler_, now_, next_);
     }
-    if (s * got > kNoProgress * length_.largest()) changes_here_ = 0;
+    if (s * got > kNoProgress * length_.longest_projected()) changes_here_ = 0;
     ++summary_.steps;
     length_.count();
     if (t_new > from.t)
@@ -249,7 +249,7 @@ class ExactRun final : public StepMotion {
           if (found->by_kinks) length_.hold_back(h);
           return {.s = found->s, .change = found->change, .at_law_knot = found->at_law_knot};
         }
-        expansion_.allow_sweeps(h > length_.largest());
+        expansion_.allow_sweeps(h > length_.longest_projected());
         h = length_.hold_back(h);
         continue;
       }
@@ -378,12 +378,12 @@ class ExactRun final : public StepMotion {
     for (;;) {
       const auto [got, again] = expansion_.attempt(now_, laws_, h, limits(h));
       if (again) {
-        h = got == length_.largest() ? length_.hold_back(h) : got;
+        h = got == length_.longest_projected() ? length_.hold_back(h) : got;
         continue;
       }
       const double shorter = length_.attempted(h, got);
       if (got == h) return h;
-      if (shorter <= kNoProgress * length_.largest()) return give_up(h);
+      if (shorter <= kNoProgress * length_.longest_projected()) return give_up(h);
       if (got > 0.0 && expansion_.shortens()) {
         known_.shorten(got / h);
         return got;
@@ -393,7 +393,7 @@ class ExactRun final : public StepMotion {
   }
 
   StepExpansion::Limits limits(double h) const {
-    const double most = length_.largest(), part = h / (options_.t_end - options_.t_start);
+    const double most = length_.longest_projected(), part = h / (options_.t_end - options_.t_start);
     return {std::max(options_.tolerance * part, kLeastShare), options_.tolerance, kShortest * most, most};
   }
 

@@ -105,7 +105,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
   if (known.part_held() < 1.0) return {h * known.part_held(), true};
   // Loads and smooth laws can be stiffer than what bounded the largest step.
-  const double steepest = 1.5 * StepLength::kFastestTimesStep / series.rate();
+  const double steepest = 1.5 * StepLength::kProjectedAngle / series.rate();
   if (h > steepest) return {steepest};
   if (Attempt made; attempt_sweep(from, laws, h, limits, made)) return made;
   bool settled = false;

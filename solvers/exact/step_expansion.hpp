@@ -44,7 +44,7 @@ class StepExpansion {
     double share = 0.0;      ///< of the tolerance, for this step
     double tolerance = 0.0;  ///< of the run
     double shortest = 0.0;   ///< s: in shorter steps what is left is an undeclared discontinuity, or rounding
-    double longest = 0.0;    ///< s: of a step by passes
+    double longest = 0.0;    ///< s: of a step with projected forces
   };
   /// What became of an attempt: the step that the series holds for, <= h [s]; 0 if its terms overflow; or,
   /// where again, the step to try next: one to just behind the knot of a law, or the same with what was learnt.

@@ -14,20 +14,20 @@ namespace drev {
 
 class StepLength {
  public:
-  static constexpr double kFastestTimesStep = 3.0;   ///< omega h of a step by passes, at most
-  static constexpr double kFastestTimesSwept = 4.0;  ///< omega h of any step, at most
+  static constexpr double kProjectedAngle = 3.0;  ///< omega h of a step with projected forces, at most [rad]
+  static constexpr double kLongestAngle = 4.0;    ///< omega h of any step, at most [rad]
 
   /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s].
   void start(double fastest, double duration) {
     const auto step = [&](double angle) {
       return fastest > 0.0 ? std::min(duration, angle / fastest) : duration;
     };
-    largest_ = step(kFastestTimesStep);
-    swept_ = growing_ = step(kFastestTimesSwept);
+    longest_projected_ = step(kProjectedAngle);
+    longest_ = growing_ = step(kLongestAngle);
   }
-  /// Of a step by passes [s], and of any.
-  double largest() const { return largest_; }
-  double longest() const { return swept_; }
+  /// Of a step with projected forces, and of any, at most [s].
+  double longest_projected() const { return longest_projected_; }
+  double longest() const { return longest_; }
 
   /// The length [s] of the next of as few steps from t to `end` as may be: all alike to the last bit (EvenSteps), so that what
   /// depends on it is computed once.
@@ -39,18 +39,19 @@ class StepLength {
   }
   /// An attempt over h held for `got` [s], 0 where terms overflowed. Returns the length to try where that is less.
   double attempted(double h, double got) {
-    if (got > 0.0) growing_ = std::min(wait_ > 0 ? largest_ : swept_, kGrowth * std::max(got, growing_));
+    if (got > 0.0)
+      growing_ = std::min(wait_ > 0 ? longest_projected_ : longest_, kGrowth * std::max(got, growing_));
     if (got != h) growing_ = got > 0.0 ? got : kRetreat * h;
     return growing_;
   }
-  /// A step over h was given up, or kinks ended it. Returns the length to try, which is largest() where it was longer than that.
+  /// A step over h was given up, or kinks ended it. Returns the length to try, which is longest_projected() where it was longer than that.
   double hold_back(double h) {
-    if (!(h > largest_)) return h;
+    if (!(h > longest_projected_)) return h;
     pause_ = longer_ < kEnough ? std::clamp(2 * pause_, kPause, kLongestPause) : kPause;
     wait_ = pause_;
     longer_ = 0;
-    growing_ = std::min(growing_, largest_);
-    return largest_;
+    growing_ = std::min(growing_, longest_projected_);
+    return longest_projected_;
   }
   /// A step was made.
   void count() {
@@ -67,9 +68,10 @@ class StepLength {
   static constexpr double kSame = 1e-7;
   static constexpr int kPause = 8, kEnough = 16, kLongestPause = 1024;  // steps
 
-  double largest_ = 0.0, swept_ = 0.0, growing_ = 0.0, last_ = 0.0;
-  int pause_ = 0, wait_ = 0;  // steps no longer than largest_: when one was last given up, and left of these
-  int longer_ = 0;            // steps since then that were free to be longer
+  double longest_projected_ = 0.0, longest_ = 0.0, growing_ = 0.0, last_ = 0.0;
+  int pause_ = 0,
+      wait_ = 0;    // steps no longer than longest_projected_: when one was last given up, and left of these
+  int longer_ = 0;  // steps since then that were free to be longer
 };
 
 }  // namespace drev

@@ -10,7 +10,7 @@ TEST_CASE(
     "one ends there") {
   StepLength step;
   const double end = 5.0, longest = 8.1e-5;
-  step.start(StepLength::kFastestTimesSwept / longest, end);
+  step.start(StepLength::kLongestAngle / longest, end);
   double t = 0.0, first = 0.0;
   long count = 0, changes = 0;
   while (t < end) {
@@ -42,7 +42,7 @@ namespace {
 int steps_held_back(StepLength& step, double end) {
   for (int held = 0;; ++held) {
     const double h = step.next(0.0, end);
-    if (h > step.largest() || held == 5000) return held;
+    if (h > step.longest_projected() || held == 5000) return held;
     step.attempted(h, h);
     step.count();
   }
@@ -53,13 +53,13 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   StepLength step;
   const double end = 1e6;
   step.start(2.0, end);
-  CHECK(step.largest() == 1.5);
+  CHECK(step.longest_projected() == 1.5);
   CHECK(step.longest() == 2.0);
   CHECK(step.next(0.0, end) == Approx(2.0).epsilon(1e-5));
   CHECK(step.hold_back(1.4) == 1.4);  // not a longer one
-  CHECK(step.next(0.0, end) > step.largest());
-  CHECK(step.hold_back(2.0) == step.largest());
-  CHECK(step.next(0.0, end) <= step.largest());
+  CHECK(step.next(0.0, end) > step.longest_projected());
+  CHECK(step.hold_back(2.0) == step.longest_projected());
+  CHECK(step.next(0.0, end) <= step.longest_projected());
   const int first = steps_held_back(step, end);
   CHECK(first >= 8);
   CHECK(first <= 10);
@@ -88,7 +88,7 @@ TEST_CASE("A step that was shortened grows by half a step at a time; terms that 
   // Without a mode, or in a run shorter than its step, the run is one step.
   step.start(0.0, 7.0);
   CHECK(step.next(0.0, 7.0) == 7.0);
-  CHECK(step.largest() == 7.0);
+  CHECK(step.longest_projected() == 7.0);
   step.start(0.1, 7.0);
   CHECK(step.next(0.0, 7.0) == 7.0);
 }
